@@ -73,6 +73,7 @@ struct Stage {
     _master: Running,
     address: String,
     folder: PathBuf,
+    sensor: &'static str,
     _alone: MutexGuard<'static, ()>,
 }
 
@@ -113,8 +114,12 @@ fn has_ros() -> bool {
 }
 
 impl Stage {
-    /// `None` where ROS 1 is not installed.
+    /// A robot with a camera; `None` where ROS 1 is not installed.
     fn new(name: &str) -> Option<Self> {
+        Self::with_sensor(name, "camera")
+    }
+
+    fn with_sensor(name: &str, sensor: &'static str) -> Option<Self> {
         if !has_ros() {
             return None;
         }
@@ -137,15 +142,33 @@ impl Stage {
         until("the master", || TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_ok());
         let listener = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros1/listener.py");
         let listener = ros(PYTHON, &[listener.as_ref(), path("received").as_ref()]);
-        see(&folder);
+        if sensor == "camera" {
+            see(&folder);
+        }
         let [camera, colours] = [path("camera.toml"), path("colours.toml")];
         let simulate = ["simulate", "worlds/shape-6.toml", "--seed", "3", "--ros", &address];
-        let seen = ["--speed", SPEED, "--calibration", &camera, "--colours", &colours];
+        fs::write(folder.join("plain.toml"), "furniture = 0\ndoors = 0\npeople = 0\n").unwrap();
+        let plain = path("plain.toml");
+        let seen = match sensor {
+            "camera" => ["--speed", SPEED, "--calibration", &camera, "--colours", &colours],
+            _ => ["--speed", SPEED, "--sensor", sensor, "--scanner", &plain],
+        };
         let output = fs::File::create(folder.join("robot")).unwrap();
         let robot = Running::new(toposlam(&[&simulate[..], &seen].concat()).stdout(output));
-        let stage =
-            Self { robot, _listener: listener, _master: master, address, folder, _alone: alone };
-        until("odometry and pictures", || stage.received("/odom") && stage.received("/camera"));
+        let stage = Self {
+            robot,
+            _listener: listener,
+            _master: master,
+            address,
+            folder,
+            sensor,
+            _alone: alone,
+        };
+        until("odometry", || stage.received("/odom"));
+        match sensor {
+            "camera" => until("pictures", || stage.received("/camera")),
+            _ => until("scans", || stage.received("/scan 360")),
+        }
         Some(stage)
     }
 
@@ -180,10 +203,14 @@ impl Stage {
     fn drive(&self) -> Running {
         let [camera, colours] = [self.path("camera.toml"), self.path("colours.toml")];
         let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
-        let drive = ["drive", "--ros", &self.address, "--calibration", &camera];
-        let written = ["--colours", &colours, "--log", &log, "--map", &map, "--json"];
+        let drive = ["drive", "--ros", &self.address, "--sensor", self.sensor];
+        let seen: &[&str] = match self.sensor {
+            "camera" => &["--calibration", &camera, "--colours", &colours],
+            _ => &[],
+        };
+        let written = ["--log", &log, "--map", &map, "--json"];
         let output = fs::File::create(self.folder.join("output")).unwrap();
-        Running::new(toposlam(&[&drive[..], &written].concat()).stdout(output))
+        Running::new(toposlam(&[&drive[..], seen, &written].concat()).stdout(output))
     }
 
     /// The last message of the log.
@@ -229,10 +256,22 @@ fn see(folder: &Path) {
     stdout_of(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
 }
 
+#[test]
+fn a_robot_that_has_only_a_laser_scanner_maps_shape_6_through_ros() {
+    if let Some(stage) = Stage::with_sensor("scanned", "laser") {
+        maps_shape_6(stage);
+    }
+}
+
 // paper: hardware.ros
 #[test]
 fn the_whole_of_shape_6_is_mapped_through_ros() {
-    let Some(mut stage) = Stage::new("mapped") else { return };
+    if let Some(stage) = Stage::new("mapped") {
+        maps_shape_6(stage);
+    }
+}
+
+fn maps_shape_6(mut stage: Stage) {
     let begun = Instant::now();
     let status = stage.drive().ends_within(600).unwrap();
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 16] = [
+const COMMANDS: [(&str, &[&str]); 17] = [
     ("paper", &["paper --section 2.3"]),
     (
         "proofs",
@@ -64,6 +64,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "simulate worlds/shape-6.toml --by-scene --log run.mcap",
             "simulate worlds/shape-6.toml --by-scene --fault carried@40 --log carried.mcap",
             "simulate worlds/shape-6.toml --by-scene --fault carried@9999",
+            "simulate worlds/shape-6.toml --sensor laser",
         ],
     ),
     (
@@ -96,6 +97,10 @@ const COMMANDS: [(&str, &[&str]); 16] = [
     (
         "evaluate-control",
         &["evaluate control --traversals 60", "evaluate control --traversals 300 --noise 5"],
+    ),
+    (
+        "evaluate-laser",
+        &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"],
     ),
     (
         "evaluate-runs",

@@ -20,10 +20,10 @@ use toposlam_vision::laser::{
 use crate::logs::carmen;
 
 /// A straight corridor: the ends of its middle line, and its width.
-type Corridor = ([f64; 2], [f64; 2], f64);
+pub(crate) type Corridor = ([f64; 2], [f64; 2], f64);
 
 /// The range at which a ray leaves the union of the corridors.
-fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64 {
+pub(crate) fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64 {
     let mut pieces: Vec<(f64, f64)> = corridors
         .iter()
         .filter_map(|&(one, other, width)| {

@@ -358,11 +358,10 @@ impl ConformArguments {
         };
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
-        // Bends of corridors are no vertices of a laser log.
-        let world = worlds.map(|(world, smooth)| match evidence {
-            Evidence::Laser => smooth,
-            _ => world,
-        });
+        let laser = self.laser.params()?;
+        // In a laser log bends of corridors are vertices only if that is asked for.
+        let smooths = evidence == Evidence::Laser && !laser.corner.corners;
+        let world = worlds.map(|(world, smooth)| if smooths { smooth } else { world });
         let marker_start = self.marker_start(&opened, evidence)?;
         let known =
             world.map(|world| Known::new(world, start, (marker, marker_start), run, algorithm));
@@ -370,12 +369,7 @@ impl ConformArguments {
         let progress = Progress::endless("reading", "images and scans")?;
         let sensor = opened.sensor();
         let marked = marker.name() == Directional.name();
-        let config = ExtractConfig {
-            evidence,
-            sensor: sensor.as_ref(),
-            marked,
-            laser: self.laser.params()?,
-        };
+        let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
         let gathered = extract(&opened.log, &opened.mapping, &config, &progress);
         let mut gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),

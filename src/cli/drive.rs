@@ -7,17 +7,24 @@ mod result;
 
 use std::path::PathBuf;
 
-use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
+use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 
 use super::{
-    CliError, Outcome, exit_codes::help_end, mapping_marker::AlgorithmOption, simulate::MAX_DARTS,
+    CliError, Outcome,
+    exit_codes::help_end,
+    mapping_marker::AlgorithmOption,
+    robot_sensor::{SensorChoice, one_sensor},
+    simulate::MAX_DARTS,
 };
 
-/// Let a live SuperScout map its building from camera images
+/// Let a live SuperScout map its building by its camera or its laser scanner
 ///
 /// The robot stands at an L, with its back to one of the two hallways and its marker on the floor along
 /// it. The program reads the camera and the odometry and commands the wheels through ROS 1 topics. It
 /// maps as in a simulated run.
+///
+/// With --sensor laser it reads a laser scanner in the robot's centre that looks ahead. A scanner does not see
+/// the marker: a detector of its own must publish the marker's pose in the robot's frame, x along the marker.
 ///
 /// The last command to the wheels is always a stop: at the end, after an error, if odometry or images
 /// do not come, and after Ctrl-C. The sonars are not used. Keep the robot's bumpers on and its stop
@@ -26,7 +33,8 @@ use super::{
 #[command(
     override_usage = "\
 toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
-                      --colours <FILE>",
+                      --colours <FILE>
+       toposlam drive [OPTIONS] --ros <URI> --sensor laser",
     after_help = help_end(
         NOTES,
         &[
@@ -42,18 +50,27 @@ pub(super) struct DriveArguments {
     /// The ROS 1 master, as in http://127.0.0.1:11311
     #[arg(long, value_name = "URI")]
     ros: String,
+    /// The sensor by which the robot drives: camera or laser
+    #[arg(long, value_name = "SENSOR", default_value = "camera", value_parser = one_sensor())]
+    sensor: SensorChoice,
     /// The camera
     #[arg(long, value_name = "FILE")]
-    calibration: PathBuf,
+    calibration: Option<PathBuf>,
     /// The colours of the building, as `toposlam train` writes them
     #[arg(long, value_name = "FILE")]
-    colours: PathBuf,
+    colours: Option<PathBuf>,
     /// The algorithm that makes the map: algorithm1 or folding
     #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
     algorithm: AlgorithmOption,
     /// The topic of images: sensor_msgs/CompressedImage
     #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
     image_topic: String,
+    /// With --sensor laser: the topic of scans, sensor_msgs/LaserScan
+    #[arg(long, value_name = "TOPIC", default_value = SCAN)]
+    scan_topic: String,
+    /// With --sensor laser: the topic of the marker's pose, geometry_msgs/PoseStamped
+    #[arg(long, value_name = "TOPIC", default_value = MARKER)]
+    marker_topic: String,
     /// The topic of odometry: nav_msgs/Odometry, stamped by the same clock as the images
     #[arg(long, value_name = "TOPIC", default_value = ODOM)]
     odom_topic: String,
@@ -106,4 +123,5 @@ This command needs a build with ROS 1: cargo build --release --features ros1
 Examples:
   toposlam drive --ros http://robot:11311 --calibration camera.toml --colours colours.toml \\
       --log run.mcap --map map.toml
+  toposlam drive --ros http://robot:11311 --sensor laser --log run.mcap
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311    a simulated robot";

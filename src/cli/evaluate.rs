@@ -2,6 +2,7 @@
 
 mod control;
 mod failing;
+mod laser;
 mod report;
 mod robots;
 mod runs;
@@ -20,7 +21,8 @@ use super::{CliError, Outcome, exit_codes::help_end};
 Examples:
   toposlam evaluate vision --views 200   sensing on rendered views
   toposlam evaluate control              every door of every junction
-  toposlam evaluate runs                 mapping of whole buildings",
+  toposlam evaluate runs                 mapping of whole buildings
+  toposlam evaluate laser                junctions by a laser scanner",
     &[
         (0, "all targets are met, everything is right"),
         (1, "a target is missed, or something is wrong"),
@@ -38,6 +40,7 @@ enum What {
     Vision(vision::EvaluateVisionArguments),
     Control(control::EvaluateControlArguments),
     Runs(runs::EvaluateRunsArguments),
+    Laser(laser::EvaluateLaserArguments),
 }
 
 impl EvaluateArguments {
@@ -46,6 +49,7 @@ impl EvaluateArguments {
             What::Vision(vision) => vision.run(out),
             What::Control(control) => control.run(out),
             What::Runs(runs) => runs.run(out),
+            What::Laser(laser) => laser.run(out),
         }
     }
 }

@@ -14,7 +14,10 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
-use toposlam_robot::log::{error::LogError, reader::Log};
+use toposlam_robot::{
+    log::{error::LogError, reader::Log},
+    simulator::ScannerParams,
+};
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,
@@ -71,6 +74,13 @@ pub(crate) fn read_camera(path: &Path) -> Result<Camera, CliError> {
         fs::read(path)
     };
     calibration::read(&read(path)?, beside).map_err(|error| CliError::in_file(path, error))
+}
+
+/// Reads the parameters of a simulated laser scanner.
+pub(crate) fn read_scanner(path: &Path) -> Result<ScannerParams, CliError> {
+    let bytes = read(path)?;
+    let text = std::str::from_utf8(&bytes).map_err(|error| CliError::in_file(path, error))?;
+    ScannerParams::from_toml(text).map_err(|error| CliError::in_file(path, error))
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.

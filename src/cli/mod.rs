@@ -36,6 +36,7 @@ mod renamed;
 mod render;
 mod replay;
 mod report_output;
+mod robot_sensor;
 mod scene;
 mod sense;
 mod simulate;

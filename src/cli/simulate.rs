@@ -1,6 +1,7 @@
 //! `toposlam simulate PLAN`: a simulated SuperScout maps a floor plan. Sections 5 and 6.
 
 mod feasible;
+mod laser;
 mod log;
 #[cfg(feature = "ros1")]
 mod node;
@@ -22,12 +23,12 @@ use toposlam_model::{
 use toposlam_robot::{
     evaluation::{LearnedSensors, LearningError},
     log::recorder::Recorder,
-    record::StoppedBy,
+    record::{RobotSensor, StoppedBy},
     recording::Recording,
     run::{offline, run},
     simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
 };
-use toposlam_vision::{camera::Camera, sensing::Sensor};
+use toposlam_vision::camera::Camera;
 
 use super::{
     CliError, Outcome,
@@ -38,6 +39,7 @@ use super::{
     mapping_marker::AlgorithmOption,
     noise, output,
     progress::{Progress, StopSignal},
+    robot_sensor::SensorChoice,
     story_lines::StoryLines,
     text::capital,
 };
@@ -46,13 +48,16 @@ use run_capture::{Pictures, RunCapture};
 
 pub(super) use log::MAX_DARTS;
 
-/// Let a simulated SuperScout map a floor plan from rendered camera images
+/// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
 /// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L.
 /// Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1 or
 /// the folding explorer makes the map. Each move, each percept and the map are checked against the floor
 /// plan's embedded graph.
+///
+/// With --sensor laser, laser scans take the place of the images, and a detector of its own reports the marker.
+/// With --sensor both, the robot drives by its camera, and the log has the scans, too.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(super) struct SimulateArguments {
@@ -78,6 +83,18 @@ pub(super) struct SimulateArguments {
     colours: Option<PathBuf>,
     #[command(flatten)]
     appearance: Appearance,
+    /// Sensors of the robot: camera, laser or both
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SENSOR",
+        default_value = "camera",
+        hide_possible_values = true
+    )]
+    sensor: SensorChoice,
+    /// Parameters of the laser scanner and of what makes its scans harder to read, .toml
+    #[arg(long, value_name = "FILE")]
+    scanner: Option<PathBuf>,
     /// Render no images: simulate scenes with the measured accuracy of sensing
     #[arg(long, conflicts_with_all = OF_IMAGES)]
     by_scene: bool,
@@ -143,6 +160,7 @@ impl SimulateArguments {
         if self.ros.is_some() {
             return Err(super::without_ros());
         }
+        let scanner = self.scanner_params()?;
         self.check_places()?;
         let begun = Instant::now();
         let world = input::read_world(&self.plan)?;
@@ -157,8 +175,22 @@ impl SimulateArguments {
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
         let simulation = Simulation { world, plan, facing, setting, begun };
+        if let (SensorChoice::Laser, Some(scanner)) = (self.sensor, &scanner) {
+            let robot = simulation.setting.by_laser(scanner);
+            #[cfg(feature = "ros1")]
+            if let Some(master) = &self.ros {
+                return node::run(robot, master, self.speed, out);
+            }
+            let sensor = RobotSensor::Laser(Box::default());
+            let log = self.recorder(&simulation, None)?;
+            return self.simulate(&simulation, robot, Some(sensor), Pictures::None, log, out);
+        }
+        let equipped = |robot: SimulatedRobot| match &scanner {
+            Some(scanner) => robot.with_scanner(simulation.setting.scanner(scanner)),
+            None => robot,
+        };
         if self.by_scene {
-            let robot = simulation.setting.by_scene();
+            let robot = equipped(simulation.setting.by_scene());
             let log = self.recorder(&simulation, None)?;
             return self.simulate(&simulation, robot, None, Pictures::None, log, out);
         }
@@ -166,12 +198,12 @@ impl SimulateArguments {
         let effects = self.appearance.effects(self.seed)?;
         let eyes = self.eyes(&camera)?;
         feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
-        let robot = simulation.robot(&eyes, &self.appearance, &effects);
+        let robot = equipped(simulation.robot(&eyes, &self.appearance, &effects));
         #[cfg(feature = "ros1")]
         if let Some(master) = &self.ros {
             return node::run(robot, master, self.speed, out);
         }
-        let sensor = eyes.sensor(self.appearance.look);
+        let sensor = RobotSensor::Camera(Box::new(eyes.sensor(self.appearance.look)));
         let log =
             self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
         let pictures = match (&self.frames, &self.html) {
@@ -240,7 +272,7 @@ impl SimulateArguments {
         &self,
         simulation: &Simulation,
         robot: SimulatedRobot,
-        sensor: Option<Sensor>,
+        sensor: Option<RobotSensor>,
         pictures: Pictures,
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
@@ -270,6 +302,7 @@ impl SimulateArguments {
             facing: *facing,
             seed: self.seed,
             algorithm,
+            frames: if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" },
             run: &run,
             missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),
             replayed: replayed.ok(),
@@ -336,7 +369,7 @@ fn after_help() -> String {
     let notes = head
         + &faults.collect::<String>()
         + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \
-/camera/annotated/compressed, /cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, \
+/camera/annotated/compressed, /scan, /cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, \
 percept, hypothesis, map, end. If the program is killed, all but the last ten seconds can be read.
 
 Examples:
@@ -345,6 +378,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/building-12.toml --by-scene --algorithm folding
+  toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 ";

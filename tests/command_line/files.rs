@@ -127,7 +127,7 @@ const OUTPUTS: [OutputOption; 39] = [
 /// Options that read files.
 const INPUTS: [(&str, &[&str]); 9] = [
     ("check", &["--from"]),
-    ("simulate", &["--calibration", "--colours"]),
+    ("simulate", &["--calibration", "--colours", "--scanner"]),
     ("drive", &["--calibration", "--colours", "--plan"]),
     ("render", &["--calibration"]),
     ("calibrate", &["--initial"]),
@@ -152,15 +152,21 @@ fn file_options(verb: &str) -> BTreeSet<String> {
 #[test]
 fn every_option_that_writes_a_file_is_in_the_list() {
     let verbs: BTreeSet<_> = OUTPUTS.iter().map(|output| output.verb).collect();
-    let others = ["paper", "proofs", "evaluate control", "evaluate runs"];
+    let others = ["paper", "proofs", "evaluate control", "evaluate runs", "evaluate laser"];
     for verb in verbs.into_iter().chain(others) {
         let outputs = OUTPUTS.iter().filter(|output| output.verb == verb);
         let inputs = INPUTS.iter().filter(|(of, _)| *of == verb).flat_map(|(_, names)| *names);
         let mut known: BTreeSet<_> = outputs.map(|output| output.option.to_owned()).collect();
         known.extend(inputs.map(|&name| name.to_owned()));
         match verb {
-            "evaluate vision" | "evaluate control" | "evaluate runs" => {
+            "evaluate vision" => {
                 known.insert("--plan".to_owned());
+            }
+            "evaluate control" | "evaluate runs" => {
+                known.extend(["--plan", "--scanner"].map(str::to_owned));
+            }
+            "evaluate laser" => {
+                known.insert("--scanner".to_owned());
             }
             "info" => {
                 known.insert("--mapping".to_owned());

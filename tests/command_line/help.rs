@@ -30,12 +30,14 @@ const VERBS: [(&str, &[&str]); 19] = [
     ("calibrate", &["--out", "--initial", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision", "control", "runs"]),
+    ("evaluate", &["vision", "control", "runs", "laser"]),
     (
         "simulate",
         &[
             "--start",
             "--seed",
+            "--sensor",
+            "--scanner",
             "--by-scene",
             "--fault",
             "--noise",
@@ -166,7 +168,7 @@ fn every_shell_has_completions_of_every_verb() {
 
 #[test]
 fn the_help_of_every_verb_ends_with_its_exit_codes() {
-    let parts = ["evaluate vision", "evaluate control", "evaluate runs"];
+    let parts = ["evaluate vision", "evaluate control", "evaluate runs", "evaluate laser"];
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
     let without_verdict =
@@ -187,7 +189,7 @@ fn the_help_of_every_verb_ends_with_its_exit_codes() {
 fn there_is_a_manual_page_of_every_verb() {
     let folder = folder("man");
     stdout_of(["man", "-o", folder.to_str().unwrap()]);
-    let parts = ["evaluate-vision", "evaluate-control", "evaluate-runs"];
+    let parts = ["evaluate-vision", "evaluate-control", "evaluate-runs", "evaluate-laser"];
     let mut pages: Vec<_> = VERBS.iter().map(|(verb, _)| *verb).chain(parts).collect();
     pages.sort_unstable();
     let mut names: Vec<_> = pages.iter().map(|verb| format!("toposlam-{verb}.1")).collect();

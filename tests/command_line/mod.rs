@@ -17,6 +17,7 @@ mod folding;
 mod help;
 mod info;
 mod laser;
+mod laser_logs;
 mod lines;
 mod log;
 mod names;

@@ -163,8 +163,13 @@ impl Bearings {
 }
 
 impl Sight {
+    /// A bearing on which a wall was measured at this range. A wall behind [`REACH`] is not looked at.
+    #[must_use]
+    pub(crate) fn measured(range: f64) -> Self {
+        if range < REACH { Self::at(Some(range)) } else { Self { floor: REACH, ..Self::default() } }
+    }
+
     /// A bearing with one sure edge or none.
-    #[cfg(test)]
     pub(crate) fn at(range: Option<f64>) -> Self {
         let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
         Self { edges: [edge, None, None], floor: range.unwrap_or_default() }

@@ -136,7 +136,23 @@ pub fn interpreted(
     stripe: Stripe,
     params: &SensingParams,
 ) -> (Scene, SensingTrace) {
-    let mut boundary = bearings.look(view);
+    let (place, trace) = place_within(bearings.look(view), margin(stripe), params);
+    let junction = match &place {
+        Place::Junction(junction) => Some(junction),
+        Place::Hallway(_) | Place::Unknown(_) => None,
+    };
+    let boundary = trace.boundary.as_ref();
+    let marker = boundary.and_then(|boundary| marker(view, boundary, junction, &params.marker));
+    (Scene { marker, place }, trace)
+}
+
+/// The place within a boundary, and the results of the steps that lead to it. `margin` is the distance from
+/// the boundary to the wall planes, in metres.
+pub(crate) fn place_within(
+    mut boundary: Boundary,
+    margin: f64,
+    params: &SensingParams,
+) -> (Place, SensingTrace) {
     let clusters = clusters(&boundary, &params.cluster);
     let lines = lines(&clusters, &params.line);
     let frame = WallFrame::of(&lines, &params.wall);
@@ -147,14 +163,9 @@ pub fn interpreted(
     let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame, params));
     let mut trace =
         SensingTrace { clusters, lines, frame, walls, hallway, ..SensingTrace::default() };
-    let place = place(&mut trace, &boundary, margin(stripe), params);
-    let junction = match &place {
-        Place::Junction(junction) => Some(junction),
-        Place::Hallway(_) | Place::Unknown(_) => None,
-    };
-    let scene = Scene { marker: marker(view, &boundary, junction, &params.marker), place };
+    let place = place(&mut trace, &boundary, margin, params);
     trace.boundary = Some(boundary);
-    (scene, trace)
+    (place, trace)
 }
 
 /// The distance from the edge that is seen, between floor and stripe, to the wall plane, in metres.

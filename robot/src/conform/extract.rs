@@ -243,6 +243,10 @@ pub fn extract(
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
     let mut junctions = Vec::new();
+    if evidence == Evidence::Laser && events.end.is_some() {
+        // Corners and dead ends are no visits: the recorded moves and map are those of another graph.
+        (events.has_head, events.end, events.map) = (false, None, None);
+    }
     events.events = match evidence {
         Evidence::Recorded => recorded.finish(),
         Evidence::Scenes | Evidence::Pictures => infer_events(&seen, marked),

@@ -3,11 +3,13 @@
 pub mod bound;
 pub mod calibration;
 mod colour_learning;
+mod equipment;
 pub mod failure_groups;
 #[cfg(test)]
 mod impatient;
 pub mod judge;
 pub mod judged_view;
+pub mod laser;
 mod learned_sensors;
 mod parallel;
 mod plans;
@@ -22,5 +24,6 @@ pub mod verdict;
 pub mod view_sampler;
 
 pub use colour_learning::{LearningError, learned};
+pub use equipment::RobotEquipment;
 pub use learned_sensors::LearnedSensors;
 pub use plans::plans;

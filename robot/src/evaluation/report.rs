@@ -48,6 +48,10 @@ pub enum ReportSubject {
     Marker,
     /// Visits.
     Visit,
+    /// Walks through whole buildings.
+    Walk,
+    /// Whole runs.
+    Run,
 }
 
 /// The rate of a failure.
@@ -429,6 +433,8 @@ impl ReportSubject {
             Self::Turned => "turned",
             Self::Marker => "marker",
             Self::Visit => "visit",
+            Self::Walk => "walk",
+            Self::Run => "run",
         }
     }
 }

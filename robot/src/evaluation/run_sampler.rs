@@ -11,12 +11,12 @@ use toposlam_model::{
     mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, MappingError},
 };
 
-use super::{LearnedSensors, parallel::made_in_turn};
+use super::{RobotEquipment, parallel::made_in_turn};
 use crate::{
     explorer::ExplorerError,
     record::StoppedBy,
     run::{RunOutcome, explored, run},
-    simulator::{Effects, FAULTS, FaultKind, RobotFault, SimulationConfig},
+    simulator::{FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
 
 /// All runs of a seed: the same number of starts in each plan.
@@ -133,20 +133,20 @@ impl RunSampler {
         Some(RunCase { number, plan_name, config })
     }
 
-    /// Makes runs by their numbers on all threads; with rendered images if there are sensors. If
-    /// the watch stops, some are missing.
+    /// Makes runs by their numbers on all threads, with these sensors. If the watch stops, some are
+    /// missing.
     #[must_use]
     pub fn judged(
         &self,
         numbers: std::ops::Range<u64>,
-        eyes: Option<&LearnedSensors>,
+        equipment: &RobotEquipment,
         watch: &dyn Watch,
     ) -> Vec<JudgedRun> {
         made_in_turn(
             numbers,
             watch,
             |number| self.case(number),
-            |case| judged(case, eyes, self.algorithm, watch),
+            |case| judged(case, equipment, self.algorithm, watch),
         )
     }
 }
@@ -154,22 +154,14 @@ impl RunSampler {
 /// Makes a run. Returns `None` if the watch stops.
 fn judged(
     case: RunCase,
-    eyes: Option<&LearnedSensors>,
+    equipment: &RobotEquipment,
     algorithm: DirectionalAlgorithm,
     watch: &dyn Watch,
 ) -> Option<JudgedRun> {
-    let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
+    let SimulationConfig { plan, marker, .. } = case.config.clone();
     // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
-    let (robot, sensor) = match eyes {
-        None => (case.config.by_scene(), None),
-        Some(eyes) => {
-            let look = eyes.look(case.number);
-            let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
-            let robot = case.config.with_images(eyes.rig(), look, &effects);
-            (robot, Some(eyes.sensor(look)))
-        }
-    };
+    let (robot, sensor) = equipment.robot(&case.config, case.number);
     let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, bound);
     if matches!(run.error, Some(MappingError::World(ExplorerError::Stopped { .. }))) {
         return None;

@@ -13,14 +13,14 @@ use toposlam_model::{
     world::World,
 };
 
-use super::{LearnedSensors, parallel::made_in_turn, run_sampler::starts_of};
+use super::{RobotEquipment, parallel::made_in_turn, run_sampler::starts_of};
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     pose::Pose,
     record::StoppedBy,
     robot::Robot,
-    simulator::{Effects, SimulationConfig, start_pose},
+    simulator::{SimulationConfig, start_pose},
 };
 
 /// The greatest distance of the robot from the turning point at the start, along and across the
@@ -134,20 +134,20 @@ impl TraversalSampler {
         Some(Traversal { number, plan_name, entry, door, config })
     }
 
-    /// Makes traversals by their numbers on all threads; with rendered images if there are sensors.
-    /// If the watch stops, some are missing.
+    /// Makes traversals by their numbers on all threads, with these sensors. If the watch stops, some
+    /// are missing.
     #[must_use]
     pub fn judged(
         &self,
         numbers: std::ops::Range<u64>,
-        eyes: Option<&LearnedSensors>,
+        equipment: &RobotEquipment,
         watch: &dyn Watch,
     ) -> Vec<JudgedTraversal> {
         made_in_turn(
             numbers,
             watch,
             |number| self.traversal(number),
-            |case| judged(case, eyes, watch),
+            |case| judged(case, equipment, watch),
         )
     }
 }
@@ -155,19 +155,10 @@ impl TraversalSampler {
 /// Makes a traversal. Returns `None` if the watch stops.
 fn judged(
     case: Traversal,
-    eyes: Option<&LearnedSensors>,
+    equipment: &RobotEquipment,
     watch: &dyn Watch,
 ) -> Option<JudgedTraversal> {
-    let (robot, sensor) = match eyes {
-        None => (case.config.by_scene(), None),
-        Some(eyes) => {
-            let look = eyes.look(case.number);
-            let mut chance = Xoshiro256PlusPlus::seed_from_u64(case.config.seed);
-            let effects = Effects::drawn(&mut chance);
-            let robot = case.config.with_images(eyes.rig(), look, &effects);
-            (robot, Some(eyes.sensor(look)))
-        }
-    };
+    let (robot, sensor) = equipment.robot(&case.config, case.number);
     let plan = case.config.plan.clone();
     let monitor = GroundTruthMonitor::at(&plan, case.config.marker, case.entry);
     let standing = monitor.standing(case.config.pose);
@@ -234,8 +225,8 @@ mod tests {
         let algorithm = DirectionalAlgorithm::Algorithm1;
         let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0, algorithm);
         let counts: [Count<'_>; 2] =
-            [&|watch| traversals.judged(0..1, None, watch).len(), &|watch| {
-                runs.judged(0..1, None, watch).len()
+            [&|watch| traversals.judged(0..1, &RobotEquipment::Scenes, watch).len(), &|watch| {
+                runs.judged(0..1, &RobotEquipment::Scenes, watch).len()
             }];
         for count in counts {
             let patient = Impatient::never();

@@ -9,7 +9,7 @@ use super::{
     encode,
     message::Message,
     messages::{self, ProjectMessage, Stamp},
-    standard::{CompressedImage, OdometryMessage, TFMessage, Twist},
+    standard::{CompressedImage, LaserScanMessage, OdometryMessage, TFMessage, Twist},
     writer::{LogWriteError, LogWriter},
 };
 use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
@@ -18,6 +18,10 @@ use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
 pub const IMAGE: &str = "/camera/image/compressed";
 /// The topic of the same images with the scene drawn over them.
 pub const ANNOTATED: &str = "/camera/annotated/compressed";
+/// The topic of the scans of the laser scanner.
+pub const SCAN: &str = "/scan";
+/// The topic on which a live robot's detector reports the marker. A log has the marker in its scenes.
+pub const MARKER: &str = "/marker";
 /// The topic of the commands of the wheels.
 pub const CMD_VEL: &str = "/cmd_vel";
 /// The topic of odometry.
@@ -89,6 +93,9 @@ impl<W: Write> Recorder<W> {
             if let Some(annotated) = self.annotated(frame) {
                 self.write(ANNOTATED, &CompressedImage::new(taken, &annotated));
             }
+        }
+        if let Some(scan) = &frame.scan {
+            self.write(SCAN, &LaserScanMessage::new(taken, scan));
         }
         if let Some(scene) = &frame.scene {
             self.write_own(&encode::scene(taken, scene));

@@ -1,11 +1,12 @@
-//! The messages of ROS 2 that a log holds: pictures, commands to the wheels, odometry and the frames
-//! that it relates. Their fields stand in the order of their definitions, which are in `robot/msgs`.
+//! The messages of ROS 2 that a log holds: pictures, laser scans, commands to the wheels, odometry and the
+//! frames that it relates. Their fields stand in the order of their definitions, which are in `robot/msgs`.
 //!
 //! x ahead, y to the left, metres, radians counter-clockwise (REP 103); the robot, `base_link`, moves in
 //! the frame `odom` (REP 105).
 
 use serde::{Serialize, Serializer};
 use toposlam_model::driving::odometry;
+use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
 use super::{
     message::{Message, TIME, TypeDefinition, definition},
@@ -62,6 +63,59 @@ impl<'a> CompressedImage<'a> {
             _ => "",
         };
         Self { header: Header { stamp: taken, frame_id: CAMERA }, format, data }
+    }
+}
+
+/// A sweep of a laser scanner in the robot's centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LaserScanMessage<'a> {
+    /// When it was taken, and by which scanner.
+    pub header: Header,
+    /// The angle of the first range, in radians counter-clockwise from ahead.
+    pub angle_min: f32,
+    /// That of the last one.
+    pub angle_max: f32,
+    /// From one to the next.
+    pub angle_increment: f32,
+    /// The time from one to the next, in seconds.
+    pub time_increment: f32,
+    /// The time from one sweep to the next, in seconds.
+    pub scan_time: f32,
+    /// Shorter ranges are invalid, in metres.
+    pub range_min: f32,
+    /// Longer ranges are invalid, in metres.
+    pub range_max: f32,
+    /// In metres; infinite without a return.
+    pub ranges: &'a [f32],
+    /// None.
+    pub intensities: &'a [f32],
+}
+
+impl Message for LaserScanMessage<'_> {
+    const TYPE: &'static str = "sensor_msgs/msg/LaserScan";
+    const DEFINITION: &'static str = definition!("sensor_msgs", "LaserScan").text;
+    const USES: &'static [TypeDefinition] = &[HEADER, TIME];
+}
+
+impl<'a> LaserScanMessage<'a> {
+    /// A scan.
+    #[must_use]
+    pub fn new(taken: Stamp, scan: &'a Scan) -> Self {
+        let ScanGeometry { angle_min, angle_increment, range_min, range_max } = scan.geometry();
+        let ranges = scan.ranges();
+        let angle_max = angle_min + angle_increment * ranges.len().saturating_sub(1) as f64;
+        Self {
+            header: Header { stamp: taken, frame_id: BASE },
+            angle_min: angle_min as f32,
+            angle_max: angle_max as f32,
+            angle_increment: angle_increment as f32,
+            time_increment: 0.0,
+            scan_time: 0.0,
+            range_min: range_min as f32,
+            range_max: range_max as f32,
+            ranges,
+            intensities: &[],
+        }
     }
 }
 
@@ -324,6 +378,7 @@ mod tests {
     #[test]
     fn every_definition_comes_with_those_that_it_uses_and_no_others() {
         closed::<CompressedImage>();
+        closed::<LaserScanMessage>();
         closed::<Twist>();
         closed::<OdometryMessage>();
         closed::<TFMessage>();

@@ -6,7 +6,10 @@ use std::{
 };
 
 use image::RgbImage;
-use toposlam_model::driving::{odometry::Odometry, scene::Scene};
+use toposlam_model::driving::{
+    odometry::Odometry,
+    scene::{MarkerView, Scene},
+};
 use toposlam_vision::{
     image_file::{ImageFile, ImageFileError},
     laser::scan::Scan,
@@ -25,6 +28,8 @@ pub struct Frame {
     pub image: Option<CameraImage>,
     /// The scan of the laser scanner, if there is one.
     pub scan: Option<Arc<Scan>>,
+    /// The marker, if a detector of its own has seen it: a scanner does not.
+    pub marker: Option<MarkerView>,
     /// The scene, once the frame has been sensed. A simulation without images supplies it.
     pub scene: Option<Scene>,
 }

@@ -13,4 +13,4 @@ pub(crate) use frame::DECODED;
 pub use frame::{CameraImage, Frame};
 pub use map::MapRecord;
 pub use observer::{RunObserver, StoppedBy};
-pub use sensor::{FrameSensor, NoSensor, SensingError};
+pub use sensor::{FrameSensor, NoSensor, RobotSensor, SensingError};

@@ -4,6 +4,7 @@ use thiserror::Error;
 use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{
     image_file::ImageFileError,
+    laser::scene::ScanPlaceSensor,
     sensing::{Sensor, WrongSize},
 };
 
@@ -38,6 +39,36 @@ impl FrameSensor for Sensor {
         match &frame.image {
             Some(image) => Ok(self.sense(image.pixels()?)?),
             None => NoSensor.scene(frame),
+        }
+    }
+}
+
+/// Senses the scan; a frame without one must have its scene. The marker is that of the frame.
+impl FrameSensor for ScanPlaceSensor {
+    fn scene(&mut self, frame: &Frame) -> Result<Scene, SensingError> {
+        match &frame.scan {
+            Some(scan) => {
+                Ok(Scene { place: self.sense(scan, &frame.odometry), marker: frame.marker })
+            }
+            None => NoSensor.scene(frame),
+        }
+    }
+}
+
+/// Senses with a camera or with a laser scanner.
+#[derive(Clone, Debug)]
+pub enum RobotSensor {
+    /// A camera.
+    Camera(Box<Sensor>),
+    /// A laser scanner.
+    Laser(Box<ScanPlaceSensor>),
+}
+
+impl FrameSensor for RobotSensor {
+    fn scene(&mut self, frame: &Frame) -> Result<Scene, SensingError> {
+        match self {
+            Self::Camera(sensor) => sensor.scene(frame),
+            Self::Laser(sensor) => sensor.scene(frame),
         }
     }
 }

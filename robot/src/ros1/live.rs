@@ -1,11 +1,14 @@
 //! A live robot behind the topics of a SuperScout. Section 2.5.
 
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 use super::{
     RobotTopics,
     base::LiveBase,
-    messages::{Photograph, TWIST, read_odometry, read_picture},
+    messages::{
+        LiveMarker, LiveScan, Nanoseconds, Photograph, TWIST, read_marker, read_odometry,
+        read_picture, read_scan,
+    },
     node::{Node, Subscription},
     wheels::Wheels,
 };
@@ -20,20 +23,35 @@ use crate::{
 /// It turns and drives with the same control loop as the simulated robot, within a SuperScout's
 /// limits. After an error, and when it is dropped, the last command to its wheels is to stop.
 ///
-/// Only images that were taken after the end of the last motion count. Odometry and images are
-/// stamped by one clock.
+/// Only images, scans and markers of a time after the end of the last motion count. All stamps are of one
+/// clock.
 // paper: hardware.ros
 pub struct LiveRobot {
     // The fields are dropped in this order. The node is last, because the wheels are stopped
     // through it.
     base: LiveBase,
-    pictures: Subscription<Photograph>,
+    sensor: SensorTopics,
     asked: u64,
     _node: Node,
 }
 
+/// What a live robot senses with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LiveSensor {
+    /// A camera.
+    Camera,
+    /// A laser scanner, and a detector of the marker.
+    Laser,
+}
+
+/// The topics of a sensor.
+enum SensorTopics {
+    Camera(Subscription<Photograph>),
+    Laser { scans: Subscription<LiveScan>, markers: Subscription<LiveMarker> },
+}
+
 impl LiveRobot {
-    /// The robot behind these topics, as soon as odometry and an image have come.
+    /// The robot behind these topics, as soon as odometry and an image, or a scan, have come.
     ///
     /// `patience` is the longest time without odometry, and without an image if one is expected. If
     /// `stop` returns true, the robot stops and does nothing more.
@@ -42,17 +60,30 @@ impl LiveRobot {
     /// Returns an error if there is no master or no robot.
     pub fn connect(
         topics: &RobotTopics,
+        sensor: LiveSensor,
         patience: Duration,
         stop: impl Fn() -> bool + 'static,
     ) -> Result<Self, RobotError> {
         let node = Node::new(&topics.master, "/toposlam")?;
         let odometry = node.subscribe(&topics.odometry, read_odometry)?;
-        let pictures = node.subscribe(&topics.pictures, read_picture)?;
+        let sensor = match sensor {
+            LiveSensor::Camera => {
+                SensorTopics::Camera(node.subscribe(&topics.pictures, read_picture)?)
+            }
+            LiveSensor::Laser => SensorTopics::Laser {
+                scans: node.subscribe(&topics.scans, read_scan)?,
+                markers: node.subscribe(&topics.marker, read_marker)?,
+            },
+        };
         let wheels = Wheels::new(node.advertise(&topics.wheels, TWIST)?, odometry.clone());
         let base = LiveBase::new(wheels, odometry, patience.max(FIRST), Box::new(stop))?;
-        pictures.wait(patience.max(FIRST), base.stop(), |_| Some(()))?;
+        let first = patience.max(FIRST);
+        match &sensor {
+            SensorTopics::Camera(pictures) => pictures.wait(first, base.stop(), |_| Some(()))?,
+            SensorTopics::Laser { scans, .. } => scans.wait(first, base.stop(), |_| Some(()))?,
+        }
         let base = base.patient(patience);
-        Ok(Self { base, pictures, asked: 0, _node: node })
+        Ok(Self { base, sensor, asked: 0, _node: node })
     }
 
     /// The number of images that were requested.
@@ -66,13 +97,36 @@ impl LiveRobot {
         let id = self.asked;
         let mut behind = None;
         let base = &self.base;
-        let fresh = |photograph: Photograph| {
-            let taken = base.seconds(photograph.stamp);
+        let mut is_fresh = |stamp: Nanoseconds| {
+            let taken = base.seconds(stamp);
             behind = Some(ended - taken);
-            let image = Some(CameraImage::encoded(photograph.file));
-            (taken > ended).then_some(Frame { id, taken, odometry, image, ..Frame::default() })
+            (taken > ended).then_some(Frame { id, taken, odometry, ..Frame::default() })
         };
-        let picture = self.pictures.wait(base.patience(), base.stop(), fresh);
+        let picture = match &self.sensor {
+            SensorTopics::Camera(pictures) => {
+                pictures.wait(base.patience(), base.stop(), |photograph| {
+                    let image = Some(CameraImage::encoded(photograph.file));
+                    Some(Frame { image, ..is_fresh(photograph.stamp)? })
+                })
+            }
+            SensorTopics::Laser { scans, markers } => {
+                let scanned =
+                    scans.wait(base.patience(), base.stop(), |LiveScan { stamp, scan }| {
+                        Some(Frame { scan: Some(Arc::new(scan)), ..is_fresh(stamp)? })
+                    });
+                // The marker is reported only where it is seen.
+                scanned.and_then(|frame| {
+                    let seen = |LiveMarker { stamp, marker }| {
+                        (base.seconds(stamp) > ended).then_some(marker)
+                    };
+                    match markers.wait(MARKER_DELAY, base.stop(), seen) {
+                        Ok(marker) => Ok(Frame { marker: Some(marker), ..frame }),
+                        Err(RobotError::Silent { .. }) => Ok(frame),
+                        Err(error) => Err(error),
+                    }
+                })
+            }
+        };
         picture.map_err(|error| match (error, behind) {
             (RobotError::Silent { .. }, Some(behind)) => RobotError::StalePicture { behind },
             (RobotError::Silent { .. }, None) => RobotError::NoPicture,
@@ -81,6 +135,8 @@ impl LiveRobot {
     }
 }
 
+/// A marker that was seen with a scan is reported within this time after it.
+const MARKER_DELAY: Duration = Duration::from_millis(250);
 /// The longest time until nodes have found each other.
 const FIRST: Duration = Duration::from_secs(10);
 

@@ -10,10 +10,17 @@ use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeOwned, Visitor},
 };
-use toposlam_model::driving::odometry;
+use toposlam_model::driving::{
+    odometry,
+    scene::{MarkerView, undirected},
+};
+use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
 
 use crate::{
-    log::standard::{BASE, CAMERA, ODOM, Quaternion},
+    log::{
+        messages::Stamp,
+        standard::{BASE, CAMERA, LaserScanMessage, ODOM, Quaternion},
+    },
     superscout::WheelSpeeds,
 };
 
@@ -87,6 +94,29 @@ pub(super) const PICTURE: MessageKind = MessageKind {
     definition: concat!("Header header\nstring format\nuint8[] data\n", header!()),
 };
 
+/// A sweep of a laser scanner.
+pub(super) const SCAN: MessageKind = MessageKind {
+    name: "sensor_msgs/LaserScan",
+    definition: concat!(
+        "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n",
+        "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n",
+        "float32[] ranges\nfloat32[] intensities\n",
+        header!(),
+    ),
+};
+
+/// Where the marker is.
+pub(super) const MARKER_POSE: MessageKind = MessageKind {
+    name: "geometry_msgs/PoseStamped",
+    definition: concat!(
+        "Header header\nPose pose\n",
+        header!(),
+        used!("geometry_msgs/Pose", "Point position" "Quaternion orientation"),
+        vector!("geometry_msgs/Point"),
+        quaternion!(),
+    ),
+};
+
 /// Where frames are in each other.
 pub(super) const FRAMES: MessageKind = MessageKind {
     name: "tf2_msgs/TFMessage",
@@ -119,6 +149,22 @@ pub(super) struct Photograph {
     pub(super) file: Vec<u8>,
 }
 
+/// What is read of a scan.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LiveScan {
+    pub(super) stamp: Nanoseconds,
+    pub(super) scan: Scan,
+}
+
+/// What is read of the marker's pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LiveMarker {
+    pub(super) stamp: Nanoseconds,
+    pub(super) marker: MarkerView,
+}
+
+/// The fields of `sensor_msgs/LaserScan` in order.
+type ScanFields<T> = (Header<T>, [f32; 7], Vec<f32>, Vec<f32>);
 /// A header: number, seconds, nanoseconds and frame. `T` is a text.
 type Header<T> = (u32, u32, u32, T);
 /// A position and the quaternion of an orientation.
@@ -217,6 +263,51 @@ pub(super) fn read_picture(bytes: &[u8]) -> Option<Photograph> {
     Some(Photograph { stamp: time(seconds, nanoseconds), file })
 }
 
+/// The body of a scan.
+pub(super) fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
+    let LaserScanMessage {
+        angle_min,
+        angle_max,
+        angle_increment,
+        time_increment,
+        scan_time,
+        range_min,
+        range_max,
+        ranges,
+        ..
+    } = LaserScanMessage::new(Stamp::default(), scan);
+    let numbers =
+        [angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max];
+    let message: ScanFields<_> =
+        (header(number, stamp, BASE), numbers, ranges.to_vec(), Vec::new());
+    write(&message)
+}
+
+/// A scan; `None` if it is no such message, or no scan.
+pub(super) fn read_scan(bytes: &[u8]) -> Option<LiveScan> {
+    let ((_, seconds, nanoseconds, _), numbers, ranges, _) = read::<ScanFields<Bytes>>(bytes)?;
+    let [angle_min, _, angle_increment, _, _, range_min, range_max] = numbers.map(f64::from);
+    let geometry = ScanGeometry { angle_min, angle_increment, range_min, range_max };
+    let scan = Scan::new(geometry, ranges, ScannerPose::default()).ok()?;
+    Some(LiveScan { stamp: time(seconds, nanoseconds), scan })
+}
+
+/// The body of the marker's pose in the robot's frame.
+pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
+    let at = odometry::Odometry { position: marker.position, heading: marker.axis };
+    write(&(header(number, stamp, BASE), pose(&at)))
+}
+
+/// The marker; `None` if it is no such message, or a number in it is not finite.
+pub(super) fn read_marker(bytes: &[u8]) -> Option<LiveMarker> {
+    let ((_, seconds, nanoseconds, _), pose) = read::<(Header<Bytes>, PoseNumbers)>(bytes)?;
+    let [x, y, _, qx, qy, qz, qw] = pose;
+    let axis = undirected(Quaternion { x: qx, y: qy, z: qz, w: qw }.heading()?);
+    let marker = MarkerView { position: [x, y], axis, door: None };
+    let is_finite = x.is_finite() && y.is_finite();
+    is_finite.then_some(LiveMarker { stamp: time(seconds, nanoseconds), marker })
+}
+
 fn header(number: u32, stamp: Nanoseconds, frame: &str) -> Header<&str> {
     (number, (stamp / SECOND) as u32, (stamp % SECOND) as u32, frame)
 }
@@ -265,6 +356,8 @@ mod tests {
             (ODOMETRY, "cd5e73d190d741a2f92e81eda573aca7"),
             (PICTURE, "8f7a12909da2c9d3332d540a0977563f"),
             (FRAMES, "94810edda583a504dfda3829e70d7eec"),
+            (SCAN, "90c7ef2dc6895d81024acba2ac42f369"),
+            (MARKER_POSE, "d3812c3cbc69362b77dc0b19b345f8f5"),
         ];
         for (kind, sum) in kinds {
             let found = from_message_definition(kind.name, kind.definition).unwrap();
@@ -281,6 +374,19 @@ mod tests {
         assert!((wheels.speed() - 0.1).abs() < 1e-12 && (wheels.turn_rate() - 0.2).abs() < 1e-12);
         let photograph = Photograph { stamp: 5, file: vec![0xff, 0xd8, 1] };
         assert_eq!(read_picture(&picture(1, 5, &photograph.file)), Some(photograph));
+        let geometry = ScanGeometry {
+            angle_min: -0.5,
+            angle_increment: 0.25,
+            range_min: 0.125,
+            range_max: 30.0,
+        };
+        let sweep = Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], ScannerPose::default());
+        let sweep = LiveScan { stamp: 7, scan: sweep.unwrap() };
+        assert_eq!(read_scan(&scan(1, 7, &sweep.scan)), Some(sweep));
+        let found = MarkerView { position: [0.5, -0.25], axis: 1.0, door: None };
+        let read = read_marker(&marker(1, 9, &found)).unwrap();
+        assert_eq!((read.stamp, read.marker.position), (9, found.position));
+        assert!((read.marker.axis - 1.0).abs() < 1e-12, "{read:?}");
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! A SuperScout behind the topics of ROS 1, with the usual names: one for wheel speeds, one for
-//! odometry, one for images. Section 2.5.
+//! odometry, one for images, or one for laser scans and one for the marker. Section 2.5.
 //!
 //! [`LiveRobot`] drives any robot behind these topics. [`serve`] is a simulated robot behind them.
 //! Both are nodes of one master and have no other connection.
@@ -11,7 +11,7 @@ mod node;
 mod simulated;
 mod wheels;
 
-pub use live::LiveRobot;
+pub use live::{LiveRobot, LiveSensor};
 pub use simulated::{MOST_SPEED, ServeSummary, serve};
 
 use crate::log::recorder;
@@ -23,6 +23,10 @@ pub struct RobotTopics {
     pub master: String,
     /// Topic of the images, `sensor_msgs/CompressedImage`.
     pub pictures: String,
+    /// Topic of the scans of a laser scanner in the robot's centre, `sensor_msgs/LaserScan`.
+    pub scans: String,
+    /// Topic of the marker in the robot's frame, x along it, `geometry_msgs/PoseStamped`.
+    pub marker: String,
     /// Topic of the odometry, `nav_msgs/Odometry`.
     pub odometry: String,
     /// Topic of the wheel speeds, `geometry_msgs/Twist`.
@@ -36,6 +40,8 @@ impl RobotTopics {
         Self {
             master: master.to_owned(),
             pictures: recorder::IMAGE.to_owned(),
+            scans: recorder::SCAN.to_owned(),
+            marker: recorder::MARKER.to_owned(),
             odometry: recorder::ODOM.to_owned(),
             wheels: recorder::CMD_VEL.to_owned(),
         }

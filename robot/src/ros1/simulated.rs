@@ -8,8 +8,8 @@ use std::{
 use super::{
     RobotTopics,
     messages::{
-        FRAMES, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SECOND, frames, odometry, picture,
-        read_twist,
+        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SCAN, SECOND, frames,
+        marker, odometry, picture, read_twist, scan,
     },
     node::{Node, Publisher, Subscription},
 };
@@ -63,6 +63,8 @@ pub fn serve(
         odometry: node.advertise(&topics.odometry, ODOMETRY)?,
         frames: node.advertise(recorder::TF, FRAMES)?,
         pictures: node.advertise(&topics.pictures, PICTURE)?,
+        scans: node.advertise(&topics.scans, SCAN)?,
+        markers: node.advertise(&topics.marker, MARKER_POSE)?,
         epoch: now(),
         ignores: false,
         exposed: None,
@@ -93,6 +95,8 @@ fn now() -> Nanoseconds {
 struct Scout {
     commands: Subscription<WheelSpeeds>,
     odometry: Publisher,
+    scans: Publisher,
+    markers: Publisher,
     frames: Publisher,
     pictures: Publisher,
     /// The stamp of its time 0.
@@ -151,6 +155,12 @@ impl Scout {
             let stamp = self.stamp(exposed.taken);
             if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
                 self.pictures.publish(&picture(number, stamp, file))?;
+            }
+            if let Some(seen) = &exposed.marker {
+                self.markers.publish(&marker(number, stamp, seen))?;
+            }
+            if let Some(sweep) = &exposed.scan {
+                self.scans.publish(&scan(number, stamp, sweep))?;
             }
         }
         if time >= self.next_picture {

@@ -1,4 +1,4 @@
-//! The cameras of simulated robots: one renders images, the other reports scenes without images.
+//! The cameras of simulated robots: one renders images, one reports scenes without images, one only the marker.
 //! Sections 2.5 and 3.
 
 use std::{
@@ -218,6 +218,21 @@ impl SceneCamera {
             axis: undirected(marker.axis + chance.off(HEADING)),
             door: marker.door,
         })
+    }
+}
+
+/// A detector of the marker alone, for a robot whose other sensors do not see it.
+#[derive(Clone, Debug)]
+pub struct MarkerDetector(pub SceneCamera);
+
+impl SimulatedCamera for MarkerDetector {
+    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
+        let frame = self.0.picture(pose, number, stops);
+        Frame { marker: frame.scene.and_then(|scene| scene.marker), scene: None, ..frame }
+    }
+
+    fn lights_out(&mut self) {
+        self.0.lights_out();
     }
 }
 

@@ -3,7 +3,8 @@
 //! A [`Building`] is built from a floor plan, one of the [`LOOKS`] and a seed; a [`Rig`] from a
 //! calibrated camera. [`render`] returns the image that the rig takes from a [`Pose`], and
 //! [`labels`] the class of each of its pixels. [`Effects`] make images harder to read. A
-//! [`SimulatedRobot`] drives in the building, with [`MotionNoise`] and [`RobotFault`]s.
+//! [`SimulatedRobot`] drives in the building, with [`MotionNoise`] and [`RobotFault`]s. It has a camera, a
+//! [`LaserScanner`], or both.
 
 #![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
 
@@ -23,6 +24,7 @@ mod optics;
 mod random_stream;
 mod renderer;
 mod rig;
+mod scanner;
 mod sight_lines;
 mod simulated_robot;
 mod squares;
@@ -32,7 +34,7 @@ mod walls;
 
 pub use crate::pose::Pose;
 pub use building::Building;
-pub use cameras::{RenderingCamera, SceneCamera, SimulatedCamera};
+pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
 pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
 pub use effects::{EffectScope, Effects, KNOBS, Knob, KnobError};
 pub use faults::{FAULTS, FaultError, FaultKind, RobotFault};
@@ -42,5 +44,9 @@ pub use motion::{MotionNoise, SimulatedBase};
 pub use optics::{CameraRay, RayPath, RigErrors};
 pub use renderer::render;
 pub use rig::Rig;
+pub use scanner::{
+    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
+    ScannerParams, ScannerParamsError, WallSurface,
+};
 pub use simulated_robot::SimulatedRobot;
 pub use walls::{BuildingWall, walls};

@@ -17,6 +17,11 @@ pub(super) enum StreamPurpose {
     Wheels,
     Scenes,
     Faults,
+    Rooms,
+    Furniture,
+    Surfaces,
+    People,
+    Ranges,
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.

@@ -1,4 +1,4 @@
-//! A simulated SuperScout: a base, a camera and faults. Section 2.5.
+//! A simulated SuperScout: a base, a camera, perhaps a laser scanner, and faults. Section 2.5.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
 
 use super::{
     building::Building,
-    cameras::{RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
+    cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
     config::SimulationConfig,
     effects::Effects,
     faults::{FaultKind, RobotFault},
@@ -15,6 +15,7 @@ use super::{
     motion::SimulatedBase,
     random_stream::{StreamPurpose, stream},
     rig::Rig,
+    scanner::{CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams},
 };
 use crate::{
     pose::Pose,
@@ -29,6 +30,7 @@ pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
     base: SimulatedBase,
     camera: Box<dyn SimulatedCamera>,
+    scanner: Option<LaserScanner>,
     /// The time to take an image, in seconds.
     picture_time: f64,
     faults: Vec<RobotFault>,
@@ -60,9 +62,25 @@ impl SimulationConfig {
     /// A robot with a camera that reports scenes without images.
     #[must_use]
     pub fn by_scene(&self) -> SimulatedRobot {
-        let marker = Some(self.marker);
-        let camera = SceneCamera::new(self.plan.clone(), marker, self.noise, self.seed);
-        SimulatedRobot::new(self, camera)
+        SimulatedRobot::new(self, self.scene_camera())
+    }
+
+    /// A robot with a laser scanner and a detector of the marker, without a camera.
+    #[must_use]
+    pub fn by_laser(&self, params: &ScannerParams) -> SimulatedRobot {
+        let robot = SimulatedRobot::new(self, MarkerDetector(self.scene_camera()));
+        robot.with_scanner(self.scanner(params))
+    }
+
+    /// A laser scanner in the robot's building. Its rooms, furniture and people follow from the seed.
+    #[must_use]
+    pub fn scanner(&self, params: &ScannerParams) -> LaserScanner {
+        let building = ScannedBuilding::new(&CorridorPlan::from(&*self.plan), params, self.seed);
+        LaserScanner::new(Arc::new(building), params, self.seed)
+    }
+
+    fn scene_camera(&self) -> SceneCamera {
+        SceneCamera::new(self.plan.clone(), Some(self.marker), self.noise, self.seed)
     }
 }
 
@@ -74,7 +92,14 @@ impl SimulatedRobot {
             base.keep_track();
         }
         let camera = Box::new(camera);
-        Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
+        let (scanner, last) = (None, None);
+        Self { plan, base, camera, scanner, picture_time, faults, seed, pictures: 0, last }
+    }
+
+    /// The same robot with a laser scanner.
+    #[must_use]
+    pub fn with_scanner(self, scanner: LaserScanner) -> Self {
+        Self { scanner: Some(scanner), ..self }
     }
 
     /// The true pose.
@@ -112,8 +137,11 @@ impl SimulatedRobot {
             Some(last) if spoilt(FaultKind::Late) => last.clone(),
             Some(last) if spoilt(FaultKind::Frozen) => Frame { taken, odometry, ..last.clone() },
             _ => {
-                let frame = self.camera.picture(self.base.pose(), number, stops);
-                let frame = Frame { taken, odometry, ..frame };
+                let pose = self.base.pose();
+                let frame = self.camera.picture(pose, number, stops);
+                let scan = self.scanner.as_ref().map(|scanner| scanner.scan(pose, number, taken));
+                let scan = scan.and_then(Result::ok).map(Arc::new);
+                let frame = Frame { taken, odometry, scan, ..frame };
                 if spoilt(FaultKind::Corrupt) { corrupt(frame, number) } else { frame }
             }
         };

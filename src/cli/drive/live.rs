@@ -21,9 +21,9 @@ use toposlam_robot::{
         world_hash,
         writer::LogWriteError,
     },
-    record::{Event, EventKind, RunObserver},
+    record::{Event, EventKind, RobotSensor, RunObserver},
     robot::{Robot, RobotError},
-    ros1::{LiveRobot, RobotTopics},
+    ros1::{LiveRobot, LiveSensor, RobotTopics},
 };
 use toposlam_vision::{
     camera::{Camera, calibration},
@@ -36,6 +36,7 @@ use crate::cli::{
     explore::story::{Story, StoryDetail},
     input, output,
     progress::Progress,
+    robot_sensor::{SensorChoice, needs_camera},
     story_lines::StoryLines,
     text::quoted,
     version,
@@ -49,9 +50,14 @@ impl DriveArguments {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
-        let camera = input::read_camera(&self.calibration)?;
-        let colours = input::read_colours(&self.colours)?;
-        let sensor = Sensor::new(&camera, &colours);
+        let eyes = self.eyes()?;
+        let (sensor, live) = match &eyes {
+            Some((camera, colours)) => {
+                let sensor = Box::new(Sensor::new(camera, colours));
+                (RobotSensor::Camera(sensor), LiveSensor::Camera)
+            }
+            None => (RobotSensor::Laser(Box::default()), LiveSensor::Laser),
+        };
         let world = match &self.plan {
             Some(path) => {
                 let world = input::read_world(path)?;
@@ -68,23 +74,51 @@ impl DriveArguments {
         let topics = RobotTopics {
             master: self.ros.clone(),
             pictures: self.image_topic.clone(),
+            scans: self.scan_topic.clone(),
+            marker: self.marker_topic.clone(),
             odometry: self.odom_topic.clone(),
             wheels: self.cmd_vel_topic.clone(),
         };
         let patience = Duration::from_secs_f64(self.patience);
-        let robot = match LiveRobot::connect(&topics, patience, move || stop.stop()) {
+        let robot = match LiveRobot::connect(&topics, live, patience, move || stop.stop()) {
             Ok(robot) => robot,
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
             Err(error) => return Err(CliError::at("--ros", error)),
         };
-        let log = self.recorder(world.as_ref(), &camera, &colours)?;
+        let log = self.recorder(world.as_ref(), eyes.as_ref())?;
         self.explore(robot, sensor, world.as_ref(), log, &progress, out)
+    }
+
+    /// The camera and the colours of the building; `None` with a laser scanner.
+    fn eyes(&self) -> Result<Option<(Camera, ColourModel)>, CliError> {
+        let needed = |option: &str| CliError::at(option, "a robot with a camera needs it");
+        let files = (&self.calibration, &self.colours);
+        match (self.sensor, files) {
+            (SensorChoice::Laser, (None, None)) => {
+                let is_default = self.image_topic == recorder::IMAGE;
+                if is_default { Ok(None) } else { Err(needs_camera("--image-topic")) }
+            }
+            (SensorChoice::Laser, (Some(_), _)) => Err(needs_camera("--calibration")),
+            (SensorChoice::Laser, (None, Some(_))) => Err(needs_camera("--colours")),
+            (_, (None, _)) => Err(needed("--calibration")),
+            (_, (_, None)) => Err(needed("--colours")),
+            (_, (Some(camera), Some(colours))) => {
+                let topics = [
+                    ("--scan-topic", &self.scan_topic, recorder::SCAN),
+                    ("--marker-topic", &self.marker_topic, recorder::MARKER),
+                ];
+                if let Some((option, ..)) = topics.iter().find(|(_, topic, usual)| topic != usual) {
+                    return Err(CliError::at(option, "has an effect only with --sensor laser"));
+                }
+                Ok(Some((input::read_camera(camera)?, input::read_colours(colours)?)))
+            }
+        }
     }
 
     fn explore(
         &self,
         robot: LiveRobot,
-        sensor: Sensor,
+        sensor: RobotSensor,
         world: Option<&(NamedWorld, Dart)>,
         mut log: Option<Recorder<File>>,
         progress: &Rc<Progress>,
@@ -111,7 +145,9 @@ impl DriveArguments {
         logged.map_err(|error| self.unwritten(&error))?;
         let name = world.map_or("", |(world, _)| &world.name);
         let error = error.as_ref();
-        let result = DriveResult { world: name, mapping: &mapping, error, seconds, pictures };
+        let frames = if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" };
+        let result =
+            DriveResult { world: name, mapping: &mapping, error, seconds, pictures, frames };
         if self.json {
             result.print_json(out)?;
         } else {
@@ -130,8 +166,7 @@ impl DriveArguments {
     fn recorder(
         &self,
         world: Option<&(NamedWorld, Dart)>,
-        camera: &Camera,
-        colours: &ColourModel,
+        eyes: Option<&(Camera, ColourModel)>,
     ) -> Result<Option<Recorder<File>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
@@ -147,12 +182,13 @@ impl DriveArguments {
             start,
             marker: "directional".to_owned(),
             seed: 0,
-            calibration: calibration::to_toml(camera),
-            colours: colours.to_toml(),
+            calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
+            colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
             command: self.command(),
             algorithm: self.algorithm.directional().name().to_owned(),
         };
-        let recorder = Recorder::new(output::create_growing(path)?, &run, Some(camera.clone()));
+        let camera = eyes.map(|(camera, _)| camera.clone());
+        let recorder = Recorder::new(output::create_growing(path)?, &run, camera);
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 
@@ -169,10 +205,13 @@ impl DriveArguments {
         let is_default = algorithm == DirectionalAlgorithm::default();
         let options = [
             ("--ros", Some(self.ros.clone())),
-            ("--calibration", Some(path(&self.calibration))),
-            ("--colours", Some(path(&self.colours))),
+            ("--sensor", (self.sensor == SensorChoice::Laser).then(|| "laser".to_owned())),
+            ("--calibration", self.calibration.as_ref().map(path)),
+            ("--colours", self.colours.as_ref().map(path)),
             ("--algorithm", (!is_default).then(|| algorithm.name().to_owned())),
             ("--image-topic", unless(&self.image_topic, recorder::IMAGE)),
+            ("--scan-topic", unless(&self.scan_topic, recorder::SCAN)),
+            ("--marker-topic", unless(&self.marker_topic, recorder::MARKER)),
             ("--odom-topic", unless(&self.odom_topic, recorder::ODOM)),
             ("--cmd-vel-topic", unless(&self.cmd_vel_topic, recorder::CMD_VEL)),
             ("--plan", self.plan.as_ref().map(path)),

@@ -24,6 +24,8 @@ pub(super) struct DriveResult<'a> {
     /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
     pub(super) pictures: u64,
+    /// What they are called.
+    pub(super) frames: &'static str,
 }
 
 /// What `--json` prints.
@@ -78,7 +80,7 @@ impl DriveResult<'_> {
         print_paragraph(out, &sentence(&ended))?;
         writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
         let minutes = self.seconds / 60.0;
-        writeln!(out, "  pictures          {}", self.pictures)?;
+        writeln!(out, "  {:<17} {}", self.frames, self.pictures)?;
         writeln!(out, "  robot time        {minutes:.1} minutes")?;
         Ok(())
     }

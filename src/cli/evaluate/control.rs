@@ -29,6 +29,7 @@ use crate::cli::{
 Examples:
   toposlam evaluate control                             takes a few seconds
   toposlam evaluate control --images --traversals 200   with rendered images
+  toposlam evaluate control --sensor laser --traversals 2000
   toposlam evaluate control --plan worlds/shape-6.toml --noise 2 --json",
     &[
         (0, "every traversal is right"),
@@ -53,10 +54,10 @@ impl EvaluateControlArguments {
         use_threads(self.robots.threads)?;
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
-        let sensors = self.robots.sensors()?;
+        let equipment = self.robots.equipment()?;
         let begun = Instant::now();
         let progress = Progress::new("traversals", "traversals")?;
-        let judged = traversals.judged(0..self.traversals, sensors.as_ref(), &progress);
+        let judged = traversals.judged(0..self.traversals, &equipment, &progress);
         progress.finish();
         let outcome = if judged.iter().any(|traversal| traversal.outcome != Made::Right) {
             Outcome::Violated

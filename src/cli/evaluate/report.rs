@@ -256,7 +256,7 @@ fn pair_row([below, above]: [&FailureGroup; 2]) -> [String; 4] {
     [below.by.to_owned(), below.what.clone(), below_rate, above_rate]
 }
 
-fn rate_row(rate: &Rate) -> [String; 6] {
+pub(super) fn rate_row(rate: &Rate) -> [String; 6] {
     let figure = |share: Option<f64>| share.map_or_else(|| format!("{:>9}", "-"), percent);
     [
         rate.subject.name().to_owned(),
@@ -315,7 +315,7 @@ fn status(status: TargetStatus, needed: Option<usize>) -> String {
 }
 
 /// A share in percent.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{:>9}", format!("{:.3} %", 100.0 * share))
 }
 

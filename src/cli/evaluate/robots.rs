@@ -6,7 +6,7 @@ use serde_json::json;
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_robot::{
     evaluation::{
-        LearnedSensors,
+        LearnedSensors, RobotEquipment,
         bound::upper_bound,
         plans,
         random_plan::{random_plan, random_plan_with},
@@ -21,6 +21,7 @@ use crate::cli::{
     appearance::{ImageSize, looks},
     noise,
     progress::Progress,
+    robot_sensor::{SensorChoice, needs_camera, one_sensor},
     text::{grouped, print_indented},
 };
 
@@ -43,6 +44,12 @@ pub(super) struct RobotArguments {
     /// With --images: look of the buildings (repeatable) [default: every look]
     #[arg(long, value_name = "NAME", value_parser = looks(), requires = "images")]
     look: Vec<&'static BuildingLook>,
+    /// The sensor of the robots: camera or laser. A robot with a laser scanner drives by its scans
+    #[arg(long, value_name = "SENSOR", default_value = "camera", value_parser = one_sensor())]
+    sensor: SensorChoice,
+    /// With --sensor laser: parameters of the scanner and of what makes scans harder to read, .toml
+    #[arg(long, value_name = "FILE")]
+    scanner: Option<PathBuf>,
     /// Multiple of the default noise of wheels and odometry, and of sensing without images
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
     pub(super) noise: f64,
@@ -93,22 +100,31 @@ impl RobotArguments {
         Ok(named)
     }
 
-    /// Rigs and sensors, if images are rendered.
-    pub(super) fn sensors(&self) -> Result<Option<LearnedSensors>, CliError> {
+    /// The sensors of the robots.
+    pub(super) fn equipment(&self) -> Result<RobotEquipment, CliError> {
+        if let Some(scanner) = self.sensor.scanner(self.scanner.as_deref())? {
+            return if self.images {
+                Err(needs_camera("--images"))
+            } else {
+                Ok(RobotEquipment::Laser(scanner))
+            };
+        }
         if !self.images {
-            return Ok(None);
+            return Ok(RobotEquipment::Scenes);
         }
         let looks = if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() };
         let progress = Progress::new("learning colours", "looks")?;
         let camera = Camera::superscout().sized(self.size.pixels());
         let sensors = LearnedSensors::new(&camera, &looks, &progress);
         progress.finish();
-        sensors.map(Some).map_err(unlearned)
+        sensors.map(RobotEquipment::Images).map_err(unlearned)
     }
 
     /// How the robots sense, in words.
     pub(super) fn sensing(&self) -> String {
-        if self.images {
+        if self.sensor == SensorChoice::Laser {
+            "scans of a laser scanner".to_owned()
+        } else if self.images {
             let [width, height] = self.size.pixels();
             format!("rendered images of {width}x{height}")
         } else {

@@ -5,7 +5,10 @@ use std::{io::Write, time::Instant};
 use serde_json::json;
 use toposlam_model::mapping::DirectionalAlgorithm;
 use toposlam_robot::{
-    evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
+    evaluation::{
+        RobotEquipment,
+        run_sampler::{Faults, JudgedRun, RunSampler},
+    },
     run::RunOutcome,
     simulator::{FAULTS, FaultKind},
 };
@@ -33,6 +36,7 @@ Examples:
   toposlam evaluate runs                                 takes half a minute
   toposlam evaluate runs --images --plans 10 --starts 3  with rendered images,
                                                          takes 15 minutes
+  toposlam evaluate runs --sensor laser --plans 40       by a laser scanner
   toposlam evaluate runs --faults --plans 100            one fault in each run
   toposlam evaluate runs --algorithm folding             fewer moves
 
@@ -72,10 +76,10 @@ const MOST_WITH_IMAGES: usize = 12;
 impl EvaluateRunsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.robots.threads)?;
-        let sensors = self.robots.sensors()?;
-        let (random, most) = match sensors {
-            None => (RandomPlans::Large(self.plans), usize::MAX),
-            Some(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
+        let equipment = self.robots.equipment()?;
+        let (random, most) = match equipment {
+            RobotEquipment::Images(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
+            _ => (RandomPlans::Large(self.plans), usize::MAX),
         };
         let plans = self.robots.plans(random, most)?;
         let count = plans.len();
@@ -86,7 +90,7 @@ impl EvaluateRunsArguments {
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
-        let judged = runs.judged(0..wanted, sensors.as_ref(), &progress);
+        let judged = runs.judged(0..wanted, &equipment, &progress);
         progress.finish();
         let violations = judged.iter().filter(|run| self.violates(run)).count();
         let outcome = if violations > 0 {

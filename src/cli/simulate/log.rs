@@ -13,7 +13,7 @@ use toposlam_vision::{
 };
 
 use super::{CliError, SimulateArguments, Simulation};
-use crate::cli::{output, text::quoted, version};
+use crate::cli::{output, robot_sensor::SensorChoice, text::quoted, version};
 
 impl SimulateArguments {
     /// Opens the log, if one is wanted. Its head has the camera and the colours.
@@ -76,6 +76,9 @@ impl SimulateArguments {
             option("--fault", Some(fault.to_string()));
         }
         option("--max-darts", (self.max_darts != MAX_DARTS).then(|| self.max_darts.to_string()));
+        let is_camera = self.sensor == SensorChoice::Camera;
+        option("--sensor", (!is_camera).then(|| self.sensor.name().to_owned()));
+        option("--scanner", self.scanner.as_ref().map(path));
         if self.by_scene {
             words.push("--by-scene".to_owned());
         }
@@ -116,6 +119,10 @@ mod tests {
                 "0.5"
             ]),
             "toposlam simulate 'a b.toml' --seed 0 --noise 0.5 --by-scene"
+        );
+        assert_eq!(
+            command_of(&["a.toml", "--scanner", "my scanner.toml", "--sensor", "laser"]),
+            "toposlam simulate a.toml --seed 0 --sensor laser --scanner 'my scanner.toml'"
         );
         let line = "it's.toml --start a:b --algorithm folding --seed 7 --calibration c.toml --size 1280x960 \
                     --colours d.toml --look tiles --effects none --effect noise=0.25 \

@@ -20,10 +20,10 @@ pub(super) fn run(
 ) -> Result<Outcome, CliError> {
     let progress = Progress::endless("serving", "pictures")?.hidden();
     let topics = RobotTopics::usual(master);
-    let RobotTopics { wheels, odometry, pictures, .. } = &topics;
+    let RobotTopics { wheels, odometry, pictures, scans, marker, .. } = &topics;
     writeln!(out, "A simulated robot at {master}. Ctrl-C ends it.")?;
     writeln!(out, "  subscribes to  {wheels}")?;
-    writeln!(out, "  publishes      {odometry}, /tf, {pictures}")?;
+    writeln!(out, "  publishes      {odometry}, /tf, {pictures}, {scans}, {marker}")?;
     out.flush()?;
     let served = serve(robot, &topics, speed, || progress.stop());
     progress.finish();

@@ -26,6 +26,8 @@ pub(super) struct SimulationResult<'a> {
     pub(super) facing: Dart,
     pub(super) seed: u64,
     pub(super) algorithm: DirectionalAlgorithm,
+    /// What its frames are called.
+    pub(super) frames: &'static str,
     pub(super) run: &'a Run<'a>,
     /// The faults that did not happen: the run ended before their pictures.
     pub(super) missed: Vec<&'a RobotFault>,
@@ -108,8 +110,8 @@ impl SimulationResult<'_> {
         }
         for fault in &self.missed {
             let text = format!(
-                "The fault {fault} did not happen: the run ended after {} pictures.",
-                run.pictures
+                "The fault {fault} did not happen: the run ended after {} {}.",
+                run.pictures, self.frames
             );
             print_paragraph(out, &text)?;
         }
@@ -120,7 +122,7 @@ impl SimulationResult<'_> {
         writeln!(out, "  edges             {edges}")?;
         writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
-        writeln!(out, "  pictures          {}", run.pictures)?;
+        writeln!(out, "  {:<17} {}", self.frames, run.pictures)?;
         writeln!(out, "  simulated time    {minutes:.1} minutes")?;
         // Without images there is almost nothing to compute.
         if self.replayed.is_some() && seconds >= SHOWN {

@@ -12,6 +12,8 @@
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`]: junctions, corners and dead ends;
 //! * [`sensor`]: all of these steps, and [`pictures`] of them.
+//!
+//! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
@@ -27,6 +29,7 @@ pub mod pictures;
 pub mod plane;
 mod ray_counts;
 pub mod scan;
+pub mod scene;
 pub mod sensor;
 pub mod skeleton;
 pub mod way_graph;

@@ -1,0 +1,262 @@
+//! A random walk through a random building, and where the robot is on it.
+
+use std::f64::consts::{PI, TAU};
+
+use rand::{RngExt, SeedableRng, seq::IndexedRandom};
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::corridor_world::{CorridorArm, CorridorWorld};
+use crate::pose::Pose;
+
+/// A walk: it begins and ends within a corridor, and passes places in between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaserWalk {
+    /// The places that the robot passes.
+    pub passed: Vec<PassedPlace>,
+    /// Where the robot takes its scans.
+    pub steps: Vec<WalkStep>,
+}
+
+/// A place that the robot passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassedPlace {
+    /// The place.
+    pub place: usize,
+    /// Its arms, clockwise from the one by which the robot came.
+    pub arms: Vec<CorridorArm>,
+    /// The index of the arm by which it leaves.
+    pub door: usize,
+    /// The length of its way when it is there, in metres.
+    pub way: f64,
+    /// Whether the robot has turned back since the junction before it.
+    pub turned_back: bool,
+}
+
+/// Where the robot takes a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WalkStep {
+    /// The length of its way, in metres.
+    pub way: f64,
+    /// Where it is.
+    pub pose: Pose,
+    /// Where it is by odometry.
+    pub odometry: Odometry,
+    /// In seconds.
+    pub time: f64,
+}
+
+/// The way from scan to scan, in metres, and the turn, in radians.
+const STEP: f64 = 0.25;
+const TURN: f64 = 0.25;
+/// Metres and radians a second.
+const SPEED: f64 = 0.5;
+const TURN_RATE: f64 = 0.5;
+/// The robot passes a place at most this far from its middle, and in a corridor is this far aside, in metres.
+const OFF: f64 = 0.25;
+const ASIDE: f64 = 0.2;
+/// Noise of the odometry: of a length as a part of it, and of the heading in radians a step.
+const LENGTH_NOISE: f64 = 0.01;
+const HEADING_NOISE: f64 = 0.002;
+/// How often the robot turns back where it need not.
+const BACK: f64 = 0.08;
+
+/// Drives from point to point, and takes scans on its way.
+#[derive(Clone, Debug)]
+pub(super) struct WalkDriver {
+    pub(super) steps: Vec<WalkStep>,
+    /// Where it is, and the length of its way, in metres.
+    at: [f64; 2],
+    pub(super) way: f64,
+    /// The direction of the last leg.
+    heading: Option<f64>,
+    /// Of the heading of the odometry, in radians a metre.
+    drift: f64,
+    pub(super) chance: Xoshiro256PlusPlus,
+}
+
+impl LaserWalk {
+    /// The random walk of a seed that passes so many places. The heading of the odometry drifts by up to
+    /// `drift` radians a metre, always to the same side.
+    #[must_use]
+    pub fn random(world: &CorridorWorld, places: usize, drift: f64, seed: u64) -> Self {
+        let mut passed: Vec<PassedPlace> = Vec::new();
+        let mut driver = WalkDriver::new(drift, seed);
+        let Some(&link) = world.links.choose(&mut driver.chance) else {
+            return Self { passed, steps: Vec::new() };
+        };
+        let [mut from, mut at] = link;
+        if driver.chance.random() {
+            std::mem::swap(&mut from, &mut at);
+        }
+        driver.at = middle(world.places[from], world.places[at]);
+        let (mut turned_back, mut has_visited) = (false, false);
+        for _ in 0..places {
+            let arms = world.arms_from(at, from);
+            let door = if arms.len() == 1 || driver.chance.random::<f64>() < BACK {
+                0
+            } else {
+                driver.chance.random_range(1..arms.len())
+            };
+            driver.drive_near(world.places[at]);
+            let to = arms[door].to;
+            let is_junction = arms.len() >= 3;
+            // Who has not been at a junction yet comes from anywhere.
+            let turned = turned_back && has_visited;
+            let way = driver.way;
+            passed.push(PassedPlace { place: at, arms, door, way, turned_back: turned });
+            if is_junction {
+                (turned_back, has_visited) = (false, true);
+            } else {
+                turned_back ^= door == 0;
+            }
+            (from, at) = (at, to);
+        }
+        driver.drive_to(middle(driver.at, world.places[at]));
+        Self { passed, steps: driver.steps }
+    }
+}
+
+impl WalkDriver {
+    pub(super) fn new(drift: f64, seed: u64) -> Self {
+        let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let drift = drift * chance.random_range(-1.0..=1.0);
+        Self { steps: Vec::new(), at: [0.0; 2], way: 0.0, heading: None, drift, chance }
+    }
+
+    /// Puts the robot at a point, before it has driven.
+    pub(super) fn begin_at(&mut self, point: [f64; 2]) {
+        self.at = point;
+    }
+
+    /// Drives to a place, nearly.
+    pub(super) fn drive_near(&mut self, place: [f64; 2]) {
+        let off = [(); 2].map(|()| OFF * self.chance.random_range(-1.0..=1.0));
+        self.drive_to([0, 1].map(|axis| place[axis] + off[axis]));
+    }
+
+    /// Turns, and drives to a point.
+    pub(super) fn drive_to(&mut self, point: [f64; 2]) {
+        let from = self.at;
+        let length = distance(from, point);
+        let ahead = (point[1] - from[1]).atan2(point[0] - from[0]);
+        let turn = self.heading.map_or(0.0, |heading| wrapped(ahead - heading));
+        let turns = (turn.abs() / TURN).ceil();
+        for part in 1..=turns as u32 {
+            let heading = wrapped(ahead - turn * (1.0 - f64::from(part) / turns));
+            self.push(Pose { position: from, heading }, self.way);
+        }
+        self.heading = Some(ahead);
+        // The robot swings about the middle of the corridor, and is on the line at both ends.
+        let swings = f64::from(self.chance.random_range(1..=3_u32));
+        let aside = ASIDE * self.chance.random_range(-1.0..=1.0);
+        let count = (length / STEP).ceil();
+        let (sine, cosine) = ahead.sin_cos();
+        for step in 1..=count as u32 {
+            let share = f64::from(step) / count;
+            let swing = (PI * swings * share).sin_cos();
+            let left = aside * swing.0;
+            let slope = aside * PI * swings / length * swing.1;
+            let along = share * length;
+            let position =
+                [from[0] + along * cosine - left * sine, from[1] + along * sine + left * cosine];
+            let heading = wrapped(ahead + slope.atan());
+            self.push(Pose { position, heading }, self.way + along);
+        }
+        self.way += length;
+        self.at = point;
+    }
+
+    /// Adds a step, with odometry that drifts.
+    fn push(&mut self, pose: Pose, way: f64) {
+        let Some(&last) = self.steps.last() else {
+            let odometry = Odometry { position: pose.position, heading: pose.heading };
+            self.steps.push(WalkStep { way, pose, odometry, time: 0.0 });
+            return;
+        };
+        let off = [0, 1].map(|axis| pose.position[axis] - last.pose.position[axis]);
+        let (driven, turned) = (off[0].hypot(off[1]), wrapped(pose.heading - last.pose.heading));
+        let chance = &mut self.chance;
+        let mut standard = || -> f64 { StandardNormal.sample(chance) };
+        let (sine, cosine) = wrapped(last.odometry.heading - last.pose.heading).sin_cos();
+        let scale = 1.0 + LENGTH_NOISE * standard();
+        let position = [
+            last.odometry.position[0] + scale * (off[0] * cosine - off[1] * sine),
+            last.odometry.position[1] + scale * (off[0] * sine + off[1] * cosine),
+        ];
+        let noise = HEADING_NOISE * standard();
+        let heading = wrapped(last.odometry.heading + turned + self.drift * driven + noise);
+        let time = last.time + driven / SPEED + turned.abs() / TURN_RATE;
+        self.steps.push(WalkStep { way, pose, odometry: Odometry { position, heading }, time });
+    }
+}
+
+fn middle(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|axis| f64::midpoint(one[axis], other[axis]))
+}
+
+fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
+    (one[0] - other[0]).hypot(one[1] - other[1])
+}
+
+/// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
+#[must_use]
+pub fn clockwise(from: f64, to: f64) -> f64 {
+    (from - to).rem_euclid(TAU)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walk(seed: u64, drift: f64) -> (CorridorWorld, LaserWalk) {
+        let world = CorridorWorld::random(seed);
+        let walk = LaserWalk::random(&world, 12, drift, seed);
+        (world, walk)
+    }
+
+    #[test]
+    fn the_robot_stays_on_the_floor() {
+        for seed in 0..60 {
+            let (world, walk) = walk(seed, 0.0);
+            let floor = world.plan.floor();
+            for step in &walk.steps {
+                let is_on_floor = floor.iter().any(|piece| piece.holds(step.pose.position));
+                assert!(is_on_floor, "{seed}: {step:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn it_leaves_a_place_by_the_corridor_that_leads_to_the_next() {
+        for seed in 0..60 {
+            let (_, walk) = walk(seed, 0.0);
+            assert_eq!(walk.passed.len(), 12);
+            for two in walk.passed.windows(2) {
+                assert_eq!(two[0].arms[two[0].door].to, two[1].place);
+                assert_eq!(two[1].arms[0].to, two[0].place, "the first arm is the way back");
+                let doors = |place: &PassedPlace| {
+                    let entry = place.arms[0].direction;
+                    place.arms.iter().map(|arm| clockwise(entry, arm.direction)).collect::<Vec<_>>()
+                };
+                assert!(doors(&two[0]).is_sorted(), "{:?}", doors(&two[0]));
+            }
+        }
+    }
+
+    #[test]
+    fn odometry_drifts_by_the_way_and_a_little_noise() {
+        let drift = 2_f64.to_radians() / 10.0;
+        let mut most: f64 = 0.0;
+        for seed in 0..40 {
+            let (_, walk) = walk(seed, drift);
+            let last = walk.steps.last().unwrap();
+            let off = wrapped(last.odometry.heading - last.pose.heading).abs();
+            // 12 corridors of up to 25 m turn by up to 60 degrees.
+            assert!(off < drift * last.way + 0.4, "{off}");
+            most = most.max(off / (drift * last.way));
+        }
+        assert!(most > 0.7, "{most}");
+    }
+}

@@ -1,0 +1,195 @@
+//! Convex polygons: the pieces of a floor, and what stands on it.
+
+use std::f64::consts::TAU;
+
+/// A convex polygon, in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexPolygon {
+    /// Counter-clockwise.
+    corners: Vec<[f64; 2]>,
+}
+
+/// A straight line between two points.
+pub(super) type Segment = [[f64; 2]; 2];
+
+/// What is nearer to the border than this is on it, in metres.
+const TOLERANCE: f64 = 1e-6;
+/// A shorter piece of wall comes from rounding, in metres.
+const SHORTEST: f64 = 1e-3;
+
+impl ConvexPolygon {
+    /// The rectangle around a straight line, with this width across it, and longer by `beyond` at both ends.
+    #[must_use]
+    pub fn along([from, to]: [[f64; 2]; 2], width: f64, beyond: f64) -> Self {
+        let off = [to[0] - from[0], to[1] - from[1]];
+        let length = off[0].hypot(off[1]);
+        let middle = [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]));
+        Self::rectangle(middle, [length / 2.0 + beyond, width / 2.0], off[1].atan2(off[0]))
+    }
+
+    /// A rectangle with this middle and these half sides, its first side in this direction.
+    #[must_use]
+    pub fn rectangle(middle: [f64; 2], half: [f64; 2], direction: f64) -> Self {
+        let (sine, cosine) = direction.sin_cos();
+        let corner = |[x, y]: [f64; 2]| {
+            let [x, y] = [x * half[0], y * half[1]];
+            [middle[0] + x * cosine - y * sine, middle[1] + x * sine + y * cosine]
+        };
+        let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        Self { corners: signs.map(corner).to_vec() }
+    }
+
+    /// A regular polygon with so many corners on a circle.
+    #[must_use]
+    pub fn round(middle: [f64; 2], radius: f64, corners: u32) -> Self {
+        let corner = |number: u32| {
+            let (sine, cosine) = (TAU * f64::from(number) / f64::from(corners)).sin_cos();
+            [middle[0] + radius * cosine, middle[1] + radius * sine]
+        };
+        Self { corners: (0..corners).map(corner).collect() }
+    }
+
+    /// Its sides, counter-clockwise.
+    pub fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().zip(next).map(|(&from, &to)| [from, to])
+    }
+
+    /// Whether a point is inside, and not on the border.
+    #[must_use]
+    pub fn holds(&self, point: [f64; 2]) -> bool {
+        self.sides().all(|side| depth(side, point) > TOLERANCE)
+    }
+
+    /// Where a straight line is inside, as shares of its length.
+    #[must_use]
+    pub fn inside(&self, [from, to]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        for side in self.sides() {
+            let [begin, end] = [from, to].map(|point| depth(side, point) - TOLERANCE);
+            if begin <= 0.0 && end <= 0.0 {
+                return None;
+            }
+            let crossing = begin / (begin - end);
+            if begin < 0.0 {
+                enters = enters.max(crossing);
+            } else if end < 0.0 {
+                leaves = leaves.min(crossing);
+            }
+        }
+        (enters < leaves).then_some([enters, leaves])
+    }
+
+    /// Whether two polygons have inner points in common.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        let is_apart = |one: &Self, other: &Self| {
+            one.sides()
+                .any(|side| other.corners.iter().all(|&corner| depth(side, corner) <= TOLERANCE))
+        };
+        !is_apart(self, other) && !is_apart(other, self)
+    }
+}
+
+/// How far a point is to the left of a side, in metres.
+fn depth([from, to]: Segment, point: [f64; 2]) -> f64 {
+    let side = [to[0] - from[0], to[1] - from[1]];
+    let off = [point[0] - from[0], point[1] - from[1]];
+    (side[0] * off[1] - side[1] * off[0]) / side[0].hypot(side[1])
+}
+
+/// The border of the union of polygons: the pieces of their sides that are inside no other one, each with the
+/// index of its polygon.
+pub(super) fn border(polygons: &[ConvexPolygon]) -> Vec<(usize, Segment)> {
+    let mut border = Vec::new();
+    for (number, polygon) in polygons.iter().enumerate() {
+        for side in polygon.sides() {
+            let others = polygons.iter().enumerate().filter(|&(other, _)| other != number);
+            let mut hidden: Vec<_> = others.filter_map(|(_, other)| other.inside(side)).collect();
+            hidden.sort_by(|one, other| one[0].total_cmp(&other[0]));
+            hidden.push([1.0, 1.0]);
+            let mut seen = 0.0;
+            for [from, to] in hidden {
+                border.extend((from > seen).then(|| (number, part(side, seen, from))));
+                seen = to.max(seen);
+            }
+        }
+    }
+    border.retain(|&(_, segment)| length(segment) > SHORTEST);
+    border
+}
+
+/// A part of a segment, given as shares of its length.
+pub(super) fn part([from, to]: Segment, begin: f64, end: f64) -> Segment {
+    [begin, end].map(|share| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+}
+
+/// The length of a segment, in metres.
+pub(super) fn length([from, to]: Segment) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    fn total(segments: &[Segment]) -> f64 {
+        segments.iter().copied().map(length).sum()
+    }
+
+    fn border(polygons: &[ConvexPolygon]) -> Vec<Segment> {
+        super::border(polygons).into_iter().map(|(_, segment)| segment).collect()
+    }
+
+    #[test]
+    fn the_border_of_a_crossing_has_no_walls_across_its_corridors() {
+        let along = ConvexPolygon::along([[-5.0, 0.0], [5.0, 0.0]], 2.0, 0.0);
+        let across = ConvexPolygon::along([[0.0, -5.0], [0.0, 5.0]], 2.0, 0.0);
+        let border = border(&[along, across]);
+        // Four ends of 2 m, and eight walls of 4 m.
+        assert!((total(&border) - 40.0).abs() < 1e-3, "{}", total(&border));
+        let in_crossing = |point: &[f64; 2]| point.iter().all(|part| part.abs() < 0.99);
+        assert!(!border.iter().flatten().any(in_crossing));
+    }
+
+    #[test]
+    fn corridors_that_go_on_straight_have_no_wall_between_them() {
+        let first = ConvexPolygon::along([[0.0, 0.0], [5.0, 0.0]], 2.0, 1.0);
+        let second = ConvexPolygon::along([[5.0, 0.0], [9.0, 0.0]], 1.6, 0.8);
+        let border = border(&[first, second]);
+        let across = |segment: &&Segment| (segment[0][0] - segment[1][0]).abs() < 1e-9;
+        let planes: Vec<f64> = border.iter().filter(across).map(|wall| wall[0][0]).collect();
+        // Both ends, and two shoulders of 0.2 m where the second corridor begins.
+        assert_eq!(planes.len(), 4, "{border:?}");
+        let shoulders = border.iter().filter(across).filter(|wall| length(**wall) < 0.3);
+        assert_eq!(shoulders.count(), 2);
+    }
+
+    #[test]
+    fn a_round_polygon_has_nearly_the_border_of_its_circle() {
+        let lobby = ConvexPolygon::round([1.0, 2.0], 2.0, 64);
+        let around = total(&lobby.sides().collect::<Vec<_>>());
+        assert!((around - 4.0 * PI).abs() < 0.02, "{around}");
+        assert!(lobby.holds([2.9, 2.0]) && !lobby.holds([3.1, 2.0]));
+    }
+
+    #[test]
+    fn polygons_that_touch_do_not_meet() {
+        let square = |x: f64| ConvexPolygon::rectangle([x, 0.0], [1.0, 1.0], 0.0);
+        assert!(square(0.0).meets(&square(1.9)));
+        assert!(!square(0.0).meets(&square(2.0)));
+        let turned = ConvexPolygon::rectangle([2.2, 0.0], [1.0, 1.0], PI / 4.0);
+        assert!(square(0.0).meets(&turned), "its corner is at 2.2 - 1.41");
+    }
+
+    #[test]
+    fn a_line_is_inside_between_its_crossings() {
+        let square = ConvexPolygon::rectangle([0.0, 0.0], [1.0, 1.0], 0.0);
+        let [enters, leaves] = square.inside([[-2.0, 0.0], [2.0, 0.0]]).unwrap();
+        assert!((enters - 0.25).abs() < 1e-5 && (leaves - 0.75).abs() < 1e-5);
+        assert_eq!(square.inside([[-2.0, 1.0], [2.0, 1.0]]), None, "along a side");
+        assert_eq!(square.inside([[2.0, 0.0], [3.0, 0.0]]), None);
+    }
+}

@@ -1,0 +1,284 @@
+//! `toposlam evaluate laser`: compares junctions that are sensed with a laser scanner with the truth.
+
+use std::{io::Write, path::PathBuf, time::Instant};
+
+use serde_json::json;
+use toposlam_robot::evaluation::{
+    laser::{
+        judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
+        laser_report::{LaserGroup, LaserReport},
+        scanned_run::ScannedRun,
+    },
+    report::{Rate, TargetStatus},
+};
+use toposlam_vision::laser::params::LaserParams;
+
+use super::report::{percent, rate_row};
+use crate::cli::{
+    CliError, Outcome,
+    exit_codes::help_end,
+    input,
+    json::print_line,
+    progress::Progress,
+    text::{counted, grouped, print_indented, print_rows},
+    use_threads,
+};
+
+/// Measure sensing with a laser scanner on random walks in random buildings
+///
+/// Buildings have corridors at any angle, 1.65 to 2.4 m wide and longer than 11 m, junctions with 3 to 5
+/// doors, bends, dead ends, alcoves, round lobbies, and what the scanner's parameters add: glass, black walls,
+/// open doors of furnished rooms, furniture, people. None of them was used to choose the parameters of sensing.
+///
+/// A view is one scan and those before it. A visit is derived from several views, as `conform --events laser`
+/// derives it. It is right if it has the right degree and the right door. A walk is right if all of its visits
+/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it
+/// decides by the views up to there.
+#[derive(clap::Args)]
+#[command(after_help = help_end(
+    "\
+Examples:
+  toposlam evaluate laser                          takes two minutes
+  toposlam evaluate laser --walks 400 --runs 0 --drift 5 --json
+  toposlam evaluate laser --scanner scanner.toml   another scanner
+  toposlam evaluate laser --walk 17                each visit of one walk
+
+A target is met if the 95 % interval of the rate is within it, missed if the
+interval is beyond it, and otherwise not shown: the sample is too small.",
+    &[
+        (0, "all targets are met"),
+        (1, "a target is missed"),
+        (2, "bad usage or input"),
+        (3, "a target is not shown, or not everything was measured"),
+    ],
+))]
+pub(super) struct EvaluateLaserArguments {
+    /// Number of walks, each in another building
+    #[arg(long, default_value_t = 60, value_name = "N")]
+    walks: u64,
+    /// Number of whole runs, each in another building
+    #[arg(long, default_value_t = 10, value_name = "N")]
+    runs: u64,
+    /// Number of places that a walk passes: junctions, bends and dead ends
+    #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    places: u16,
+    /// Random seed
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// The most that the heading of the odometry drifts, in degrees in 10 m
+    #[arg(long, default_value_t = 1.0, value_name = "DEGREES", value_parser = drift)]
+    drift: f64,
+    /// Parameters of the scanner and of what makes its scans harder to read, .toml [default: the usual
+    /// ones, with a field of view of 360 and of 180 degrees in turn]
+    #[arg(long, value_name = "FILE")]
+    scanner: Option<PathBuf>,
+    /// Measure only the walk with this number, and print each of its visits
+    #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs"])]
+    walk: Option<u64>,
+    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print one JSON object per figure
+    #[arg(long)]
+    json: bool,
+}
+
+impl EvaluateLaserArguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        use_threads(self.threads)?;
+        let begun = Instant::now();
+        let scanner = self.scanner.as_deref().map(input::read_scanner).transpose()?;
+        let sampler = WalkSampler {
+            seed: self.seed,
+            places: self.places.into(),
+            drift: self.drift.to_radians() / 10.0,
+            scanner,
+            sensing: LaserParams::default(),
+        };
+        let numbers = match self.walk {
+            Some(walk) => walk..walk.saturating_add(1),
+            None => 0..self.walks,
+        };
+        let runs = if self.walk.is_some() { 0 } else { self.runs };
+        let wanted = numbers.end - numbers.start;
+        let progress = Progress::new("walks", "walks")?;
+        let walks = sampler.judged(numbers, &progress);
+        progress.finish();
+        let progress = Progress::new("runs", "runs")?;
+        let made = sampler.runs(0..runs, &progress);
+        progress.finish();
+        let interrupted = (walks.len() as u64) < wanted || (made.len() as u64) < runs;
+        let report = LaserReport::of(&walks, &made);
+        let outcome = match report.standing() {
+            TargetStatus::Missed => Outcome::Violated,
+            TargetStatus::Met if !interrupted => Outcome::Holds,
+            TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
+        };
+        if self.json {
+            self.print_json(&walks, &made, &report, interrupted, outcome, out)?;
+        } else {
+            self.print(&walks, &made, &report, interrupted, outcome, out)?;
+        }
+        let threads = rayon::current_num_threads();
+        remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        Ok(outcome)
+    }
+
+    fn print(
+        &self,
+        walks: &[JudgedWalk],
+        runs: &[ScannedRun],
+        report: &LaserReport,
+        interrupted: bool,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let visits: usize = walks.iter().map(|walk| walk.visits.len()).sum();
+        let count = counted(walks.len(), "walk");
+        let visits = counted(visits, "visit");
+        writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
+        writeln!(out, "  odometry drifts by up to {} degrees in 10 m\n", self.drift)?;
+        let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
+        let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
+        print_rows(out, heads, &rows)?;
+        if report.groups.iter().any(|group| group.wrong + group.undecided > 0) {
+            writeln!(out, "\n  Visits that are not right, by what they have in common:\n")?;
+            let rows: Vec<_> = report.groups.iter().map(group_row).collect();
+            print_rows(out, ["by", "", " wrong", "undecided", "    of", "    rate"], &rows)?;
+        }
+        writeln!(out)?;
+        for walk in walks {
+            for visit in &walk.visits {
+                if self.walk.is_some() || visit.verdict != LaserVerdict::Right {
+                    let text = format!("walk {}, {}", walk.number, in_words(visit));
+                    print_indented(out, "  ", 4, &text)?;
+                }
+            }
+            for (degree, way) in &walk.invented {
+                let text = format!("walk {}, {way:.0} m: invented, {degree} doors", walk.number);
+                print_indented(out, "  ", 4, &text)?;
+            }
+        }
+        for run in runs.iter().filter(|run| run.verdict != LaserVerdict::Right) {
+            let ScannedRun { number, moves, way, verdict } = run;
+            let moves = counted(*moves as usize, "move");
+            let text = format!("run {number}, {moves}, {way:.0} m: {}", verdict.name());
+            print_indented(out, "  ", 4, &text)?;
+        }
+        let count =
+            |is: TargetStatus| report.rates.iter().filter(|rate| rate.standing() == is).count();
+        let verdict = match outcome {
+            Outcome::Holds => "holds: all targets are met".to_owned(),
+            Outcome::Violated => {
+                format!("violated: missed {}", counted(count(TargetStatus::Missed), "target"))
+            }
+            Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
+            Outcome::Incomplete => format!(
+                "not shown: the sample is too small for {}",
+                counted(count(TargetStatus::NotShown), "target")
+            ),
+        };
+        Ok(writeln!(out, "\n{verdict}")?)
+    }
+
+    fn print_json(
+        &self,
+        walks: &[JudgedWalk],
+        runs: &[ScannedRun],
+        report: &LaserReport,
+        interrupted: bool,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let line = json!({
+            "walks": walks.len(), "runs": runs.len(), "places": self.places, "seed": self.seed, "drift": self.drift,
+        });
+        print_line(out, "source", &line)?;
+        for walk in walks {
+            for visit in &walk.visits {
+                if self.walk.is_none() && visit.verdict == LaserVerdict::Right {
+                    continue;
+                }
+                let found = visit.found;
+                let line = json!({
+                    "walk": walk.number, "way": rounded(visit.way),
+                    "verdict": visit.verdict.name(),
+                    "degree": visit.features.degree, "door": visit.door,
+                    "found_degree": found.map(|(degree, _)| degree),
+                    "found_door": found.and_then(|(_, door)| door),
+                });
+                print_line(out, "visit", &line)?;
+            }
+            for (degree, way) in &walk.invented {
+                let line = json!({
+                    "walk": walk.number, "way": rounded(*way), "verdict": "invented",
+                    "degree": null, "door": null, "found_degree": degree, "found_door": null,
+                });
+                print_line(out, "visit", &line)?;
+            }
+        }
+        for ScannedRun { number, moves, way, verdict } in runs {
+            let verdict = verdict.name();
+            let line =
+                json!({"run": number, "moves": moves, "way": rounded(*way), "verdict": verdict});
+            print_line(out, "run", &line)?;
+        }
+        for rate in &report.rates {
+            print_line(out, "rate", &rate_line(rate))?;
+        }
+        for LaserGroup { by, what, wrong, undecided, of } in &report.groups {
+            let line =
+                json!({"by": by, "what": what, "wrong": wrong, "undecided": undecided, "of": of});
+            print_line(out, "failures", &line)?;
+        }
+        let line = json!({
+            "target": report.standing().name(), "interrupted": interrupted,
+            "holds": outcome == Outcome::Holds,
+        });
+        print_line(out, "verdict", &line)
+    }
+}
+
+fn rate_line(rate: &Rate) -> serde_json::Value {
+    json!({
+        "of": rate.subject.name(), "what": rate.what, "seen": rate.seen, "cases": rate.cases,
+        "rate": rate.rate(), "upper_bound": rate.upper_bound(), "limit": rate.limit,
+        "target": rate.limit.map(|_| rate.standing().name()),
+        "cases_needed": rate.cases_needed(),
+    })
+}
+
+fn group_row(group: &LaserGroup) -> [String; 6] {
+    let failed = group.wrong + group.undecided;
+    [
+        group.by.to_owned(),
+        group.what.clone(),
+        format!("{:>6}", grouped(group.wrong as u128)),
+        format!("{:>9}", grouped(group.undecided as u128)),
+        format!("{:>6}", grouped(group.of as u128)),
+        percent(failed as f64 / group.of.max(1) as f64),
+    ]
+}
+
+/// A visit, in words.
+fn in_words(visit: &JudgedLaserVisit) -> String {
+    let JudgedLaserVisit { features, way, door, found, verdict, .. } = visit;
+    let expected = format!("{} doors, left by door {door}", features.degree);
+    let found = match found {
+        Some((degree, Some(door))) => format!("; derived {degree} doors, door {door}"),
+        Some((degree, None)) => format!("; derived {degree} doors"),
+        None => String::new(),
+    };
+    format!("{way:.0} m: {}, {expected}{found}", verdict.name())
+}
+
+/// To a tenth.
+fn rounded(metres: f64) -> f64 {
+    (metres * 10.0).round() / 10.0
+}
+
+/// Parses the drift of odometry.
+fn drift(text: &str) -> Result<f64, String> {
+    let degrees = text.parse().ok().filter(|degrees: &f64| (0.0..=90.0).contains(degrees));
+    degrees.ok_or_else(|| "expected a number of degrees from 0 to 90".to_owned())
+}
