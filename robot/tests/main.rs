@@ -5,4 +5,5 @@
 mod laser;
 mod logs;
 mod renderer;
+mod rim;
 mod sensing;

@@ -2,6 +2,7 @@
 
 pub mod bound;
 pub mod calibration;
+pub mod clutter;
 mod colour_learning;
 pub mod failure_groups;
 #[cfg(test)]

@@ -17,6 +17,9 @@ pub(super) enum StreamPurpose {
     Wheels,
     Scenes,
     Faults,
+    Blocks,
+    Cables,
+    Overhead,
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.
