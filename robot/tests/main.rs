@@ -6,4 +6,5 @@ mod laser;
 mod logs;
 mod renderer;
 mod scanner;
+mod rim;
 mod sensing;
