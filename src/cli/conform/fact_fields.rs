@@ -143,7 +143,7 @@ impl<'j> FactFields<'j> {
                 }
             }),
             smallest,
-            unique: open.as_ref().map(Vec::is_empty),
+            unique: judgement.determines_world(),
             open_doors: open.as_ref().map(Vec::len),
             never_followed: open.map(|open| open.into_iter().map(NeverFollowed::from).collect()),
             twin: judged.twin.as_ref().map(OtherWorld::fields),

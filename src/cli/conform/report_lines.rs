@@ -102,9 +102,11 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
         };
         match &event.kind {
             CheckedKind::Arrival { arrival, .. } => {
-                let marker = arrival.sighting.map(|sighting| match sighting {
-                    Sighting::Pointing(door) => i64::from(door.0),
-                    _ => -1,
+                // An undirected marker points along no door.
+                let marker = arrival.sighting.and_then(|sighting| match sighting {
+                    Sighting::Pointing(door) => Some(i64::from(door.0)),
+                    Sighting::Nothing => Some(-1),
+                    _ => None,
                 });
                 let visit = visit(Some(arrival.degree), marker);
                 lines.push(visit);
