@@ -17,8 +17,8 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld, Quirks,
-        RunDriver, RunEvents, extract, judge,
+        CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld,
+        Quirks, RunDriver, RunEvents, extract, judge,
     },
     evaluation::random_plan::random_plan_with,
     log::{

@@ -5,6 +5,6 @@
 mod laser;
 mod logs;
 mod renderer;
-mod scanner;
 mod rim;
+mod scanner;
 mod sensing;

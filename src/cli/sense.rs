@@ -141,7 +141,8 @@ impl SenseArguments {
             return Err(CliError::at(option, "this is for laser scans, and no input is a log"));
         }
         if any_log && self.stages.is_some() && self.scans.is_none() {
-            let cause = "for a log this needs --scans: there is a picture for each step of each scan";
+            let cause =
+                "for a log this needs --scans: there is a picture for each step of each scan";
             return Err(CliError::at("--stages", cause));
         }
         Ok(())

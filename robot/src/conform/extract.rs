@@ -3,10 +3,7 @@
 
 use rayon::prelude::*;
 use thiserror::Error;
-use toposlam_model::driving::{
-    odometry::Odometry,
-    scene::Scene,
-};
+use toposlam_model::driving::{odometry::Odometry, scene::Scene};
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{

@@ -164,6 +164,39 @@ pub fn judge(
     }
 }
 
+/// What a walk shows of its world if all sightings of an undirected marker are of one vertex.
+struct MarkedTrail {
+    /// The folded trail, if the sightings are of one vertex in one way only.
+    trail: Option<FoldedTrail>,
+    /// Whether the walk determines its world; `None` if that is not known.
+    determined: Option<bool>,
+    /// In how many ways they are of one vertex.
+    ways: usize,
+    /// Where they cannot be.
+    impossible: Option<(usize, Impossibility)>,
+}
+
+impl MarkedTrail {
+    fn new(before: &FoldedTrail, trace: &Trace, watch: &dyn Watch) -> Self {
+        let MarkedTrails { trails, may_be_more } = before.with_one_marked_vertex(watch);
+        let is_impossible = |trail: &FoldedTrail| {
+            let found = trail.with_one_marked_vertex(watch);
+            found.trails.is_empty() && !found.may_be_more
+        };
+        let impossible = (trails.is_empty() && !may_be_more).then(|| {
+            (first_percept(trace, before.moves(), is_impossible), Impossibility::OnePlace)
+        });
+        let determined = match &trails[..] {
+            [one] if !may_be_more => Some(one.open_count() == 0),
+            [] | [_] => None,
+            _ => Some(false),
+        };
+        let ways = trails.len();
+        let trail = trails.into_iter().next().filter(|_| ways == 1 && !may_be_more);
+        Self { trail, determined, ways, impossible }
+    }
+}
+
 impl Judgement {
     fn new(
         events: &RunEvents,
@@ -235,33 +268,16 @@ impl Judgement {
         }
         let FoldedTrace { mut trail, mut impossible } =
             FoldedTrace::new(trace, question.marker, question.search.class);
-        let marked = (question.marker.name() == Undirected.name())
-            .then(|| trail.as_ref().map(|trail| trail.with_one_marked_vertex(watch)))
-            .flatten();
-        if let (Some(MarkedTrails { trails, may_be_more: false }), Some(before)) = (&marked, &trail)
-            && trails.is_empty()
+        if question.marker.name() == Undirected.name()
+            && let Some(before) = &trail
         {
-            let is_impossible = |trail: &FoldedTrail| {
-                let found = trail.with_one_marked_vertex(watch);
-                found.trails.is_empty() && !found.may_be_more
-            };
-            let event = first_percept(trace, before.moves(), is_impossible);
-            impossible = impossible.or(Some((event, Impossibility::OnePlace)));
-        }
-        judgement.determined = match &marked {
-            None => trail.as_ref().map(|trail| trail.open_count() == 0),
-            Some(MarkedTrails { trails, may_be_more }) => match &trails[..] {
-                [one] if !may_be_more => Some(one.open_count() == 0),
-                [] | [_] => None,
-                _ => Some(false),
-            },
-        };
-        judgement.ways = marked.as_ref().map_or(1, |marked| marked.trails.len());
-        // If the marked vertices are one in one way only, that is proved.
-        if let Some(MarkedTrails { trails, may_be_more: false }) = &marked
-            && let [one] = &trails[..]
-        {
-            trail = Some(one.clone());
+            let marked = MarkedTrail::new(before, trace, watch);
+            judgement.ways = marked.ways;
+            judgement.determined = marked.determined;
+            impossible = impossible.or(marked.impossible);
+            trail = marked.trail.or(trail);
+        } else {
+            judgement.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
         }
         if question.world.is_none() && impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);

@@ -179,7 +179,7 @@ mod tests {
         let doors = vec![PI, FRAC_PI_2, 0.0];
         let mut events = Vec::new();
         let mut junctions = Vec::new();
-        for (number, &centre) in (1..).zip(centres) {
+        for (number, &centre) in (1_u64..).zip(centres) {
             let event = events.len();
             junctions.push(VisitedJunction { event, centre, clearance: 1.2, doors: doors.clone() });
             let (seconds, entry) = (10 * number, Some(PI));

@@ -28,7 +28,8 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
 };
 pub use extract::{
-    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract,
+    infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};

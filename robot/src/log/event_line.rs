@@ -20,9 +20,9 @@ pub(super) struct VisitLine {
     pub(super) index: Option<u32>,
     /// When it was, in seconds.
     pub(super) stamp: Option<f64>,
-    /// The number of doors; `Some(None)` if the junction was not recognised.
+    /// The number of doors.
     #[serde(default, deserialize_with = "given")]
-    degree: Option<Option<u32>>,
+    degree: LineDegree,
     /// The door by which the robot left, clockwise from the way back; `None` if the log ends there.
     pub(super) door: Option<u32>,
     /// The door along which the marker points; -1: no marker is there. `None`: not recorded.
@@ -32,9 +32,19 @@ pub(super) struct VisitLine {
     pub(super) turned_back: Option<bool>,
 }
 
+/// The number of doors in a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum LineDegree {
+    /// The line has no such field.
+    #[default]
+    Missing,
+    /// It has; `None` if the junction was not recognised.
+    Given(Option<u32>),
+}
+
 /// A field that is there, even if it is `null`.
-fn given<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<Option<u32>>, D::Error> {
-    Deserialize::deserialize(deserializer).map(Some)
+fn given<'d, D: Deserializer<'d>>(deserializer: D) -> Result<LineDegree, D::Error> {
+    Deserialize::deserialize(deserializer).map(LineDegree::Given)
 }
 
 /// What a line is, without its other fields.
@@ -92,7 +102,7 @@ impl Columns {
             let cell = cell.trim();
             if cell.is_empty() || cell == "null" {
                 if *name == "degree" {
-                    event.degree = Some(None);
+                    event.degree = LineDegree::Given(None);
                 }
                 continue;
             }
@@ -100,7 +110,9 @@ impl Columns {
             match *name {
                 "index" => event.index = Some(cell.parse().map_err(|_| wrong())?),
                 "stamp" => event.stamp = Some(cell.parse().map_err(|_| wrong())?),
-                "degree" => event.degree = Some(Some(cell.parse().map_err(|_| wrong())?)),
+                "degree" => {
+                    event.degree = LineDegree::Given(Some(cell.parse().map_err(|_| wrong())?));
+                }
                 "door" => event.door = Some(cell.parse().map_err(|_| wrong())?),
                 "marker" => event.marker = Some(cell.parse().map_err(|_| wrong())?),
                 _ => event.turned_back = Some(cell.parse().map_err(|_| wrong())?),
@@ -139,7 +151,7 @@ pub(super) fn parse(line: &[u8], columns: Option<&Columns>) -> Result<Parsed, St
     if event.stamp.is_some_and(|stamp| !stamp.is_finite() || stamp < 0.0) {
         return Err(format!("its stamp is {:?}", event.stamp.unwrap_or_default()));
     }
-    let degree = event.degree.ok_or("it has no degree")?;
+    let LineDegree::Given(degree) = event.degree else { return Err("it has no degree".to_owned()) };
     Ok(Parsed::Event(event, degree))
 }
 

@@ -4,7 +4,7 @@
 //! `apriltag_msgs` has no poses: the pose of a tag is a transform with the stamp of the detection, from the frame
 //! of the camera to that of the tag, which is called `tag36h11:3` for the tag 3 of the family `tag36h11`.
 
-use std::collections::VecDeque;
+use std::{borrow::Cow, collections::VecDeque};
 
 use toposlam_model::driving::odometry::Odometry;
 
@@ -145,14 +145,14 @@ fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed
         let Some(best) = best else { continue };
         let name = ["hypothesis.class_id", "id"].into_iter().find_map(|path| {
             let name = best.at(path)?;
-            name.text().map(|text| text.into_owned()).or(name.i64().map(|id| id.to_string()))
+            name.text().map(Cow::into_owned).or(name.i64().map(|id| id.to_string()))
         });
         if carried.id.is_some() && carried.id != name {
             continue;
         }
         let frame = ["header.frame_id"].into_iter().find_map(|path| {
             [object.at(path), message.at(path)].into_iter().flatten().find_map(|frame| {
-                frame.text().filter(|frame| !frame.is_empty()).map(|frame| frame.into_owned())
+                frame.text().filter(|frame| !frame.is_empty()).map(Cow::into_owned)
             })
         });
         let pose = pose_at(&best, "pose.pose")?;

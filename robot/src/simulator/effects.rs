@@ -203,7 +203,7 @@ impl Effects {
     /// The camera as `zoom` and `off-centre` make it; `None` if it has no mirror that they could crop.
     #[must_use]
     pub fn camera(&self, camera: &Camera) -> Option<Camera> {
-        if self.zoom == 1.0 && self.off_centre == 0.0 {
+        if [self.zoom - 1.0, self.off_centre].into_iter().all(|off| off.abs() < f64::EPSILON) {
             return Some(camera.clone());
         }
         let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return None };

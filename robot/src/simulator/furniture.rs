@@ -187,8 +187,8 @@ impl Block {
 }
 
 /// The number of sectors of a full turn.
-const SECTORS: usize = 256;
-const PER_SECTOR: usize = 65_536 / SECTORS;
+const SECTORS: u16 = 256;
+const PER_SECTOR: usize = 65_536 / SECTORS as usize;
 
 /// The blocks around a place, by direction.
 #[derive(Clone, Debug)]
@@ -207,17 +207,17 @@ impl<'a> BlocksAround<'a> {
             if !(CLEAR..FAR).contains(&near) {
                 continue;
             }
-            sectors.resize(SECTORS, Vec::new());
+            sectors.resize(SECTORS.into(), Vec::new());
             let angles = block.corners().map(|[x, y]| (y - place[1]).atan2(x - place[0]));
             let off =
                 angles.map(|angle| (angle - angles[0] + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0);
             let rounded = TURN_ERROR as f64 / 65_536.0 * TAU;
             let slack = (off_axis / near).min(1.0).asin() + rounded;
-            let sector = |angle: f64| (angle / TAU * SECTORS as f64).floor() as i64;
+            let sector = |angle: f64| (angle / TAU * f64::from(SECTORS)).floor() as i64;
             let first = sector(angles[0] + off.into_iter().fold(0.0, f64::min) - slack);
             let last = sector(angles[0] + off.into_iter().fold(0.0, f64::max) + slack);
-            for sector in first..=last.min(first + SECTORS as i64 - 1) {
-                sectors[sector.rem_euclid(SECTORS as i64) as usize].push(number as u32);
+            for sector in first..=last.min(first + i64::from(SECTORS) - 1) {
+                sectors[sector.rem_euclid(SECTORS.into()) as usize].push(number as u32);
             }
         }
         Self { blocks, sectors }
