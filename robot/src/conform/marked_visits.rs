@@ -183,8 +183,10 @@ mod tests {
             let event = events.len();
             junctions.push(VisitedJunction { event, centre, clearance: 1.2, doors: doors.clone() });
             let (seconds, entry) = (10 * number, Some(PI));
-            let source =
-                |seconds| EventSource { time: seconds * 1_000_000_000, ..EventSource::default() };
+            let source = |seconds: u64| EventSource {
+                time: seconds * 1_000_000_000,
+                ..EventSource::default()
+            };
             let arrival = Arrival { number: None, degree: 3, sighting: None, form: None, entry };
             let arrived = CheckedKind::Arrival { arrival, entry_off: None };
             events.push(CheckedEvent { source: source(seconds), kind: arrived });
