@@ -190,13 +190,8 @@ fn write_walls(page: &mut Page, walls: &BTreeSet<[i32; 2]>, metre: f64, shift: P
     let mut rows: Vec<[i32; 2]> = walls.iter().map(|&[x, y]| [y, x]).collect();
     rows.sort_unstable();
     let mut path = String::new();
-    let mut index = 0;
-    while let Some(&[y, x]) = rows.get(index) {
-        let mut length = 1;
-        while rows.get(index + length) == Some(&[y, x + length as i32]) {
-            length += 1;
-        }
-        index += length;
+    for run in rows.chunk_by(|one, next| one[0] == next[0] && one[1] + 1 == next[1]) {
+        let ([y, x], length) = (run[0], run.len());
         // Writing to a string does not fail.
         let _ = write!(path, "M{x} {}h{length}v1h-{length}z", -1 - y);
     }

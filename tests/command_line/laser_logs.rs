@@ -2,7 +2,10 @@
 //! robots where their logs are present.
 
 use std::{
-    env, fs,
+    env,
+    f64::consts::{FRAC_PI_2, PI, TAU},
+    fmt::Write as _,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -45,19 +48,18 @@ fn log(way: &[[f64; 2]]) -> String {
     let mut see = |[x, y]: [f64; 2], heading: f64| {
         time += 1.0;
         let ranges = (0..=180).map(|degree: u32| {
-            let bearing = heading - std::f64::consts::FRAC_PI_2 + f64::from(degree).to_radians();
+            let bearing = heading - FRAC_PI_2 + f64::from(degree).to_radians();
             format!("{:.2}", range([x, y], bearing))
         });
         let ranges = ranges.collect::<Vec<_>>().join(" ");
-        lines +=
-            &format!("FLASER 181 {ranges} {x} {y} {heading} {x} {y} {heading} {time} h {time}\n");
+        let pose = format!("{x} {y} {heading}");
+        writeln!(lines, "FLASER 181 {ranges} {pose} {pose} {time} h {time}").unwrap();
     };
     for leg in way.windows(2) {
         let [dx, dy] = [0, 1].map(|axis| leg[1][axis] - leg[0][axis]);
         let ahead = dy.atan2(dx);
         if let Some(before) = heading {
-            let turn = (ahead - before + 9.424_777_960_769_38).rem_euclid(6.283_185_307_179_586)
-                - 3.141_592_653_589_793;
+            let turn = (ahead - before + 3.0 * PI).rem_euclid(TAU) - PI;
             for part in 1..4 {
                 see(leg[0], ahead - turn * (1.0 - f64::from(part) / 4.0));
             }

@@ -24,7 +24,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliE
     let mut picture = scanned(log, judged)?;
     picture.visits = visits(&judged.gathered.events, &judged.gathered.junctions);
     let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
-    picture.title = name.trim_end_matches(".gz").trim_end_matches(".log").to_owned();
+    name.trim_end_matches(".gz").trim_end_matches(".log").clone_into(&mut picture.title);
     let verdict = match judged.judgement.verdict() {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",
