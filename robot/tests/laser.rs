@@ -77,16 +77,16 @@ fn scan(corridors: &[Corridor], at: &Odometry) -> Scan {
 /// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
 /// there; its odometry drifts by so many radians a metre.
 fn events(corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> RunEvents {
-    events_with(LaserParams::default(), corridors, way, drift)
+    events_with(&LaserParams::default(), corridors, way, drift)
 }
 
 fn events_with(
-    params: LaserParams,
+    params: &LaserParams,
     corridors: &[Corridor],
     way: &[[f64; 2]],
     drift: f64,
 ) -> RunEvents {
-    let mut inferred = LaserEvents::new(params);
+    let mut inferred = LaserEvents::new(*params);
     let (mut believed, mut driven) = (way[0], 0.0);
     let mut heading = f64::NAN;
     let mut number = 0;
@@ -164,7 +164,7 @@ fn each_junction_on_the_way_is_visited_once() {
     let mut params = LaserParams::default();
     params.matching.rounds = 8;
     for drift in [0.0_f64, 10.0, -10.0, 20.0, -20.0] {
-        let events = events_with(params, &comb(), &way, drift.to_radians() / 10.0);
+        let events = events_with(&params, &comb(), &way, drift.to_radians() / 10.0);
         assert_eq!(visits(&events), expected, "matched, drift of {drift} degrees in 10 m");
     }
     // Out by the stem on the left, which is the second door clockwise from the way back.
@@ -244,16 +244,18 @@ fn sharp_bends_are_vertices_if_corners_are() {
     ];
     let way = [[2.0, 0.0], [20.0, 0.0], [20.0, 16.0], [36.0, 16.0], [46.0, 26.0]];
     let corner = (Some(2), Some(1));
-    assert_eq!(visits(&events_with(params, &plan, &way, 0.0)), [corner, corner]);
+    assert_eq!(visits(&events_with(&params, &plan, &way, 0.0)), [corner, corner]);
     assert_eq!(visits(&events(&plan, &way, 0.0)), []);
 }
 
 /// A degree, and the door that was taken.
 type MarkedVisit = (u64, Option<u64>);
+/// A scan, and the odometry at its time.
+type PlacedScan = (Arc<Scan>, Odometry);
 
 /// The visits of junctions in a log of a real building, as they were marked by hand, and the scans of the log,
 /// each with its odometry.
-fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<(Arc<Scan>, Odometry)>)> {
+fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
     let folder = carmen::folder()?;
     let text = std::fs::read_to_string(folder.join(format!("{name}-visits.jsonl"))).unwrap();
     let marked = text.lines().map(|line| {
@@ -271,8 +273,8 @@ fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<(Arc<Scan>, Odometry)>)
     Some((marked.collect(), scans.collect()))
 }
 
-fn events_of(params: LaserParams, scans: &[(Arc<Scan>, Odometry)]) -> RunEvents {
-    let mut inferred = LaserEvents::new(params);
+fn events_of(scans: &[PlacedScan]) -> RunEvents {
+    let mut inferred = LaserEvents::new(LaserParams::default());
     for (number, (scan, odometry)) in scans.iter().enumerate() {
         let source = EventSource { time: number as u64, ..EventSource::default() };
         inferred.see(source, scan, odometry);
@@ -286,7 +288,7 @@ fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand()
         let Some((mut marked, scans)) = recorded(name) else { return };
         marked.retain(|visit| visit.0 >= 3);
         assert_eq!(marked.len(), count);
-        let found = visits(&events_of(LaserParams::default(), &scans));
+        let found = visits(&events_of(&scans));
         let found: Vec<_> =
             found.into_iter().filter(|visit| visit.0.is_some_and(|degree| degree != 1)).collect();
         assert_eq!(found.len(), count, "{name}: {found:?}");

@@ -12,7 +12,7 @@ use toposlam_model::{
     mapping::DirectionalAlgorithm, percept::Door,
 };
 use toposlam_robot::{
-    conform::{CheckedKind, Evidence, RunEvents, extract},
+    conform::{CheckedKind, Evidence, ExtractConfig, RunEvents, extract},
     evaluation::{
         RobotEquipment, plans,
         random_plan::random_plan,
@@ -148,7 +148,8 @@ fn visits(events: &RunEvents) -> Vec<(u32, Option<u32>)> {
 fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
     let log = Log::open(log).unwrap();
     let mapping = TopicMap::from_log(&log).unwrap();
-    let run = extract(&log, &mapping, evidence, None, true, &()).unwrap();
+    let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
+    let run = extract(&log, &mapping, &config, &()).unwrap();
     assert!(run.scans > 0 || evidence != Evidence::Laser);
     visits(&run.events)
 }
