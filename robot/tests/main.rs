@@ -5,6 +5,5 @@
 mod laser;
 mod logs;
 mod renderer;
-mod rim;
 mod scanner;
 mod sensing;

@@ -2,7 +2,6 @@
 
 pub mod bound;
 pub mod calibration;
-pub mod clutter;
 mod colour_learning;
 mod equipment;
 pub mod failure_groups;
