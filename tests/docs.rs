@@ -37,7 +37,13 @@ fn the_documents_show_what_the_commands_print() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("worlds")).unwrap();
-    for world in ["worlds/shape-6.toml", "worlds/shape-8.toml"] {
+    fs::create_dir_all(folder.join("worlds/laser")).unwrap();
+    for world in [
+        "worlds/shape-6.toml",
+        "worlds/shape-8.toml",
+        "worlds/theta-plane.toml",
+        "worlds/laser/long-8.toml",
+    ] {
         fs::write(folder.join(world), read(world)).unwrap();
     }
     for page in ["README.md", "docs/commands.md", "docs/folding.md"] {
@@ -45,8 +51,9 @@ fn the_documents_show_what_the_commands_print() {
         let mut blocks = blocks(&page_text).into_iter().peekable();
         while let Some((kind, commands)) = blocks.next() {
             let expected = blocks.next_if(|(kind, _)| *kind == "text");
-            let writes =
-                ["--log shape-6.mcap", "--stages steps"].iter().any(|o| commands.contains(o));
+            let writes = ["--log shape-6.mcap", "--log laser.mcap", "--stages steps"]
+                .iter()
+                .any(|o| commands.contains(o));
             if kind != "sh" || (expected.is_none() && !writes) {
                 continue;
             }

@@ -93,7 +93,13 @@ const COMMANDS: [(&str, &[&str]); 17] = [
         "train",
         &["train --images images --labels labels --calibration camera.toml --out colours.toml"],
     ),
-    ("sense", &["sense 2.png 5.png 7.png --calibration camera.toml --colours colours.toml"]),
+    (
+        "sense",
+        &[
+            "sense 2.png 5.png 7.png --calibration camera.toml --colours colours.toml",
+            "sense scans.log",
+        ],
+    ),
     (
         "evaluate-control",
         &["evaluate control --traversals 60", "evaluate control --traversals 300 --noise 5"],
@@ -171,6 +177,9 @@ fn folder() -> PathBuf {
     let in_the_chunk = log.len() - 200;
     log[in_the_chunk] ^= 0x55;
     fs::write(folder.join("damaged.mcap"), log).unwrap();
+    let ranges = vec!["3.0"; 181].join(" ");
+    let scan = |x: u32| format!("FLASER 181 {ranges} {x} 0 0 {x} 0 0 {x} host {x}\n");
+    fs::write(folder.join("scans.log"), scan(1) + &scan(2)).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
         let render =

@@ -211,11 +211,14 @@ impl SenseArguments {
     }
 }
 
-/// Whether a file is an image, by its name.
+/// Whether a file is an image. Folders, and files with the ending of a log, are logs.
 fn is_image(path: &Path) -> bool {
     let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-    matches!(ending.as_deref(), Some("png" | "jpg" | "jpeg"))
+    !path.is_dir() && !ending.is_some_and(|ending| LOGS.contains(&&*ending))
 }
+
+/// The endings of logs that can have laser scans.
+const LOGS: [&str; 7] = ["mcap", "bag", "db3", "log", "clf", "gz", "zst"];
 
 /// The names of the files without their endings. The pictures of their stages start with them.
 fn stage_names(files: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliError> {

@@ -132,8 +132,11 @@ const INPUTS: [(&str, &[&str]); 9] = [
     ("render", &["--calibration"]),
     ("calibrate", &["--initial"]),
     ("train", &["--images", "--labels", "--calibration"]),
-    ("sense", &["--calibration", "--colours"]),
-    ("conform", &["--world", "--mapping", "--calibration", "--colours", "--quirks"]),
+    ("sense", &["--calibration", "--colours", "--laser-params", "--mapping"]),
+    (
+        "conform",
+        &["--world", "--mapping", "--calibration", "--colours", "--quirks", "--laser-params"],
+    ),
     ("replay", &["--mapping", "--calibration", "--colours"]),
 ];
 
