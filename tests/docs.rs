@@ -42,6 +42,7 @@ fn the_documents_show_what_the_commands_print() {
         "worlds/shape-6.toml",
         "worlds/shape-8.toml",
         "worlds/theta-plane.toml",
+        "worlds/building-12.toml",
         "worlds/laser/long-8.toml",
     ] {
         fs::write(folder.join(world), read(world)).unwrap();

@@ -227,7 +227,9 @@ fn a_robot_that_turns_back_at_the_end_of_a_corridor_was_at_a_dead_end() {
     let plan = [([0.0, 0.0], [30.0, 0.0], 2.0), ([14.0, -14.0], [14.0, 0.0], 2.0)];
     // Past the stem on the right to the end of the corridor, and back into the stem.
     let way = [[2.0, 0.0], [28.0, 0.0], [14.0, 0.0], [14.0, -10.0]];
-    let events = events(&plan, &way, 0.0);
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    let events = events_with(&params, &plan, &way, 0.0);
     assert_eq!(visits(&events), [(Some(3), Some(1)), (Some(1), Some(0)), (Some(3), Some(1))]);
 }
 

@@ -14,7 +14,7 @@ pub(super) struct LaserOptions {
     /// Parameters of sensing with a laser scanner (TOML) [default: for buildings with corridors]
     #[arg(long, value_name = "FILE")]
     laser_params: Option<PathBuf>,
-    /// Whether a bend of a corridor is a vertex, for laser scans [default: no]
+    /// Whether bends and dead ends of corridors are vertices, for laser scans [default: no]
     #[arg(long, value_enum, value_name = "WHETHER")]
     corners: Option<Corners>,
 }
@@ -22,9 +22,9 @@ pub(super) struct LaserOptions {
 /// Whether bends of corridors are vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Corners {
-    /// A bend by 60 degrees or more is a vertex of degree 2
+    /// Bends by 60 degrees or more have degree 2, dead ends degree 1
     Yes,
-    /// A bend is a part of its corridor
+    /// They are parts of their corridors
     No,
 }
 

@@ -23,12 +23,12 @@ pub struct LaserJunction {
 }
 
 impl WayGraph {
-    /// The junctions, the dead ends and, if they are vertices, the corners.
+    /// The junctions, and the corners and dead ends if they are vertices.
     #[must_use]
     pub fn junctions(&self, params: &LaserParams) -> Vec<LaserJunction> {
         let mut junctions = self.meets(&params.arm);
-        junctions.extend(self.dead_ends(&params.arm, &params.corner));
         if params.corner.corners {
+            junctions.extend(self.dead_ends(&params.arm, &params.corner));
             junctions.extend(self.ways.iter().flat_map(|way| way.corners(&params.corner)));
         }
         junctions

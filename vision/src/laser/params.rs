@@ -128,7 +128,7 @@ params! {
 
     /// Corners and dead ends.
     CornerParams {
-        /// Whether a bend of a corridor is a vertex of the world.
+        /// Whether the bends and the dead ends of corridors are vertices of the world.
         corners: bool = false,
         /// The directions of the arms of a bend are measured this far from it, along the middle line.
         /// Geometry: more than the width of a corridor.
