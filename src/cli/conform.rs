@@ -80,7 +80,7 @@ Examples:
         (0, "all logs conform"),
         (1, "a log diverges"),
         (2, "bad usage or input"),
-        (3, "not known: a log is truncated, its run did not end, a limit was reached, or a required case is not covered"),
+        (3, "not known: a log is truncated, its run did not end, a junction was not recognised, a limit was reached, or a required case is not covered"),
     ],
 ))]
 pub(super) struct ConformArguments {

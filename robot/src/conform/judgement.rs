@@ -34,6 +34,9 @@ pub struct Judgement {
     pub trace: Trace,
     /// The first divergence.
     pub divergence: Option<Divergence>,
+    /// The index of the first visit of a junction that was not recognised. The events from there on are not
+    /// checked.
+    pub unrecognised: Option<usize>,
     /// The folded trail of the events before the divergence, or of all; `None` if there is none, or if it is
     /// too large.
     pub trail: Option<FoldedTrail>,
@@ -159,6 +162,12 @@ pub fn judge(
     loop {
         let judgement = Judgement::new(tolerance.events(), question, tolerance.noted(), watch)?;
         if !tolerance.grows(judgement.divergence.as_ref()) {
+            let judgement = match judgement.divergence {
+                Some(Divergence { event, cause: DivergenceCause::Undecided, .. }) => {
+                    judgement.up_to(event, question, tolerance.noted(), watch)?
+                }
+                _ => judgement,
+            };
             return Ok(Judgement { tolerated: tolerance.finish(), ..judgement });
         }
     }
@@ -228,6 +237,7 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
+            unrecognised: None,
             trail: None,
             poses: None,
             smallest: None,
@@ -304,12 +314,37 @@ impl Judgement {
         Ok(judgement)
     }
 
+    /// The judgement of the events before one at which it is not known what the robot perceived. That is no
+    /// fault of the run.
+    fn up_to(
+        self,
+        event: usize,
+        question: &ConformConfig,
+        tolerated: &BTreeSet<(usize, &'static str)>,
+        watch: &dyn Watch,
+    ) -> Result<Self, JudgeError> {
+        let before = match event.checked_sub(1) {
+            Some(last) => Self::new(&self.events.up_to(last), question, tolerated, watch)?,
+            None => Self {
+                divergence: None,
+                trail: None,
+                poses: None,
+                smallest: None,
+                determined: None,
+                algorithm: None,
+                coverage: RunCoverage::default(),
+                ..self.clone()
+            },
+        };
+        Ok(Self { events: self.events, unrecognised: Some(event), ..before })
+    }
+
     /// The verdict.
     #[must_use]
     pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
             ConformVerdict::Diverged
-        } else if self.is_decided() && self.events.is_whole(self.algorithm.is_some()) {
+        } else if self.unrecognised.is_none() && self.is_decided() && self.events.is_whole(self.algorithm.is_some()) {
             ConformVerdict::Conforms
         } else {
             ConformVerdict::Incomplete

@@ -86,6 +86,12 @@ impl Judged<'_> {
             }
             Some(RunEnding::Mapped) | None => {}
         }
+        if let Some(event) = self.judgement.unrecognised {
+            remarks.push(format!(
+                "the junction of event {} was not recognised: the events from there on are not checked",
+                event + 1
+            ));
+        }
         // What was not searched matters only if nothing diverged.
         if verdict != ConformVerdict::Diverged {
             remarks.extend(self.judgement.limits().into_iter().map(|limit| self.limit(limit)));

@@ -143,7 +143,10 @@ pub(super) fn json(
         event: divergence.map(|divergence| divergence.event),
         class: divergence.map(|divergence| divergence.fault.name()),
         events: report.events.len(),
-        matched: divergence.map_or(report.events.len(), |divergence| divergence.event - 1),
+        matched: divergence
+            .map(|divergence| divergence.event - 1)
+            .or(judged.judgement.unrecognised)
+            .unwrap_or(report.events.len()),
         candidates: judged.judgement.candidates(),
         coverage: counts(&report.coverage),
         unreachable: unreachable.map(|covered| &*covered.case).collect(),

@@ -42,7 +42,7 @@ struct Met {
 const MIRRORING: f64 = 0.15;
 /// A black surface reflects from up to this range, in metres.
 const DARK: f64 = 3.0;
-/// Two walls that meet have this much of their bearings in common, in radians, lest a ray passes between them.
+/// Two walls that meet have this much of their bearings in common, in radians, so that no ray passes between them.
 const OVERLAP: f64 = 1e-9;
 
 impl LaserScanner {
