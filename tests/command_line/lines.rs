@@ -122,7 +122,10 @@ fn printed_events_are_read_as_they_were_printed() {
     // What was not recognised is no fault: the events before it are checked.
     assert_eq!((code, &verdict["verdict"]), (Some(3), &"incomplete".into()), "{verdict}");
     let remarks = verdict["remarks"].to_string();
-    assert!(remarks.contains("was not recognised: the events from there on are not checked"), "{verdict}");
+    assert!(
+        remarks.contains("was not recognised: the events from there on are not checked"),
+        "{verdict}"
+    );
     assert_eq!(events, objects(&undecided));
     fs::remove_dir_all(folder).unwrap();
 }

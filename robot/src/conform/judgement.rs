@@ -344,7 +344,10 @@ impl Judgement {
     pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
             ConformVerdict::Diverged
-        } else if self.unrecognised.is_none() && self.is_decided() && self.events.is_whole(self.algorithm.is_some()) {
+        } else if self.unrecognised.is_none()
+            && self.is_decided()
+            && self.events.is_whole(self.algorithm.is_some())
+        {
             ConformVerdict::Conforms
         } else {
             ConformVerdict::Incomplete
