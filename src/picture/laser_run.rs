@@ -322,8 +322,9 @@ mod tests {
         let mut hits = ScanHits::default();
         for step in 0..100 {
             for _ in 0..2 {
-                hits.add([0.2 * f64::from(step), 1.1]);
-                hits.add([0.2 * f64::from(step), -1.1]);
+                let middle = 0.2 * f64::from(step) + 0.1;
+                hits.add([middle, 1.1]);
+                hits.add([middle, -1.1]);
             }
         }
         // A person: nothing else was hit near them.
