@@ -11,6 +11,8 @@ import numpy as np
 from rosbags import rosbag1, rosbag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from rosbag_writer import write
+
 SCANS = 7
 MODE, FORMAT, PLUGIN = rosbag2.CompressionMode, rosbag2.CompressionFormat, rosbag2.StoragePlugin
 
@@ -57,15 +59,6 @@ def messages(store):
             )
 
 
-def write(writer, store, serialize):
-    connections = {}
-    with writer:
-        for time, topic, kind, message in messages(store):
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, kind, typestore=store)
-            writer.write(connections[topic], time, serialize(message, kind))
-
-
 def main(folder):
     ros2, ros1 = get_typestore(Stores.ROS2_HUMBLE), get_typestore(Stores.ROS1_NOETIC)
     definition = "geometry_msgs/TransformStamped[] transforms"
@@ -80,8 +73,8 @@ def main(folder):
         writer = rosbag2.Writer(folder / name, version=9, storage_plugin=plugin)
         if compression:
             writer.set_compression(compression, FORMAT.ZSTD)
-        write(writer, ros2, ros2.serialize_cdr)
-    write(rosbag1.Writer(folder / "ros1.bag"), ros1, ros1.serialize_ros1)
+        write(writer, messages(ros2), ros2.serialize_cdr, ros2)
+    write(rosbag1.Writer(folder / "ros1.bag"), messages(ros1), ros1.serialize_ros1, ros1)
 
 
 main(Path(sys.argv[1]))

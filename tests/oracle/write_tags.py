@@ -13,6 +13,8 @@ import numpy as np
 from rosbags import rosbag1, rosbag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from rosbag_writer import write
+
 DEFINITIONS = {
     "apriltag_msgs/msg/Point": "float64 x\nfloat64 y",
     "apriltag_msgs/msg/AprilTagDetection": (
@@ -99,15 +101,6 @@ def messages(store):
         yield time + 8, "/tag", kind, make(kind, header(time + 1, "camera"), pose(2.0, 1.0, True))
 
 
-def write(writer, store, serialize):
-    connections = {}
-    with writer:
-        for time, topic, kind, message in messages(store):
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, kind, typestore=store)
-            writer.write(connections[topic], time, serialize(message, kind))
-
-
 def main(folder):
     ros2, ros1 = get_typestore(Stores.ROS2_HUMBLE), get_typestore(Stores.ROS1_NOETIC)
     for store in (ros2, ros1):
@@ -117,8 +110,8 @@ def main(folder):
     plugin = rosbag2.StoragePlugin
     for name, kind in (("database", plugin.SQLITE3), ("mcap", plugin.MCAP)):
         writer = rosbag2.Writer(folder / name, version=9, storage_plugin=kind)
-        write(writer, ros2, ros2.serialize_cdr)
-    write(rosbag1.Writer(folder / "ros1.bag"), ros1, ros1.serialize_ros1)
+        write(writer, messages(ros2), ros2.serialize_cdr, ros2)
+    write(rosbag1.Writer(folder / "ros1.bag"), messages(ros1), ros1.serialize_ros1, ros1)
 
 
 main(Path(sys.argv[1]))

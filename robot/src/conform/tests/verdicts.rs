@@ -9,6 +9,7 @@ use toposlam_model::{
     format::world_file,
     mapping::{Journey, MappingEvent, MappingRun},
     marker::NoMarker,
+    percept::Sighting,
     trace::{Trace, TraceEventKind},
     world::World,
 };
@@ -222,12 +223,17 @@ proptest! {
                 prop_assert!(!places.iter().any(|place| place.explains(&cut)));
             }
             Some(DivergenceCause::Algorithm(departure)) => {
-                // The algorithm begins where it has laid the marker. A percept that contradicts others does
-                // so in every world.
-                let is_start = judgement.trace.index_of(departure.event.id) == 0;
-                if matches!(departure.event.kind, TraceEventKind::Percept(_)) && !is_start {
-                    let event = judgement.trace.index_of(departure.event.id);
-                    prop_assert!(witness(&judgement.trace.up_to(event)).is_none());
+                let event = judgement.trace.index_of(departure.event.id);
+                match departure.event.kind {
+                    // The algorithm begins with the marker in front of it.
+                    TraceEventKind::Percept(percept) if event == 0 => {
+                        prop_assert_ne!(percept.sighting, Sighting::Pointing(Door(0)));
+                    }
+                    // A percept that contradicts others does so in every world.
+                    TraceEventKind::Percept(_) => {
+                        prop_assert!(witness(&judgement.trace.up_to(event)).is_none());
+                    }
+                    _ => {}
                 }
             }
             Some(_) => {}

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::scene::wrapped;
+use toposlam_vision::laser::plane::{direction, distance};
 
 use crate::simulator::{Corridor, CorridorPlan, Lobby};
 
@@ -238,14 +239,6 @@ fn other_end([one, other]: [usize; 2], place: usize) -> Option<usize> {
         _ if place == other => Some(one),
         _ => None,
     }
-}
-
-fn direction(from: [f64; 2], to: [f64; 2]) -> f64 {
-    (to[1] - from[1]).atan2(to[0] - from[0])
-}
-
-fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
-    (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
 #[cfg(test)]

@@ -7,7 +7,12 @@ use toposlam_model::{
     enumerate::Watch,
     percept::Door,
 };
-use toposlam_vision::laser::{junctions::LaserJunction, params::LaserParams, sensor::LaserSensor};
+use toposlam_vision::laser::{
+    junctions::LaserJunction,
+    params::LaserParams,
+    plane::{Motion, distance},
+    sensor::LaserSensor,
+};
 
 use super::{
     super::parallel::made_in_turn,
@@ -315,17 +320,9 @@ fn features(world: &CorridorWorld, passed: &PassedPlace) -> JunctionFeatures {
 }
 
 /// A point of the plan in the frame of odometry.
-fn by_odometry(pose: Pose, odometry: Odometry, [x, y]: [f64; 2]) -> [f64; 2] {
-    let (sine, cosine) = (odometry.heading - pose.heading).sin_cos();
-    let off = [x - pose.position[0], y - pose.position[1]];
-    [
-        odometry.position[0] + off[0] * cosine - off[1] * sine,
-        odometry.position[1] + off[0] * sine + off[1] * cosine,
-    ]
-}
-
-fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
-    (one[0] - other[0]).hypot(one[1] - other[1])
+fn by_odometry(pose: Pose, odometry: Odometry, point: [f64; 2]) -> [f64; 2] {
+    let Pose { position, heading } = pose;
+    Motion::between(&Odometry { position, heading }, &odometry).point(point)
 }
 
 impl JudgedWalk {

@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use toposlam_vision::laser::plane::distance;
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
 use crate::pose::Pose;
@@ -194,10 +195,6 @@ impl WalkDriver {
 
 fn middle(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|axis| f64::midpoint(one[axis], other[axis]))
-}
-
-fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
-    (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
 /// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
