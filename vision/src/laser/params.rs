@@ -104,7 +104,7 @@ params! {
         min_sight: f64 = 2.9,
         /// ... nor does one without a straight wall along this part of what is seen on one side, ... Logs
         /// and simulated buildings.
-        min_wall: f64 = 0.85,
+        min_wall: f64 = 0.75,
         /// ... or along this part on both sides, ... Logs and simulated buildings.
         min_walls: f64 = 0.17,
         /// ... if it is known for less than this. Logs and simulated buildings.
