@@ -10,6 +10,7 @@
 //! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall;
 //! * [`ends`]: where the ways around the robot go on unseen, and where they end;
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
+//! * `arm_view`: how far one sees along an arm, and beside which walls;
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`]: junctions, corners and dead ends;
 //! * [`sensor`]: all of these steps, and [`pictures`] of them.
 //!
@@ -17,6 +18,7 @@
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
+mod arm_view;
 pub mod clearances;
 pub mod distance;
 pub mod ends;

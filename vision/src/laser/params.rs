@@ -4,7 +4,8 @@
 //! from:
 //!
 //! * **geometry**: the robot, the scanner or the building gives the value;
-//! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them.
+//! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them;
+//! * **simulated buildings**: chosen on those of `toposlam evaluate laser --seed 7`.
 
 use crate::params::params;
 
@@ -96,7 +97,19 @@ params! {
         /// An arm that is seen to end nearer than this, along the free space from the junction's centre,
         /// does not count. Geometry: rooms and entrances are less deep.
         min_arm: f64 = 10.0,
-        /// An arm that is not seen to end counts if it is known for at least this length...  Logs.
+        /// An arm counts if free space is seen this far on a straight line from the junction's centre.
+        /// Geometry: what is left to [`Self::min_arm`] are the cells at both ends.
+        sight: f64 = 9.5,
+        /// An arm of which one sees less than this and that is not seen to end does not count, ... Logs.
+        min_sight: f64 = 2.9,
+        /// ... nor does one without a straight wall along this part of what is seen on one side, ... Logs
+        /// and simulated buildings.
+        min_wall: f64 = 0.75,
+        /// ... or along this part on both sides, ... Logs and simulated buildings.
+        min_walls: f64 = 0.17,
+        /// ... if it is known for less than this. Logs and simulated buildings.
+        long: f64 = 6.5,
+        /// Otherwise an arm that is not seen to end counts if it is known for at least this length...  Logs.
         min_known: f64 = 3.6,
         /// ... and this far behind the walls of the junction, ... Logs.
         min_behind: f64 = 0.5,
@@ -118,8 +131,8 @@ params! {
         /// over cells this much nearer to the robot. Geometry: half of a corridor.
         min_prominence: f64 = 1.0,
         /// Meet points nearer to each other than this many times their distance from the walls are one
-        /// junction. Geometry: the lobby around a crossing.
-        merge: f64 = 1.0,
+        /// junction. Simulated buildings: corridors that cross at an angle meet in two points.
+        merge: f64 = 1.3,
         /// The direction of an arm is measured this far behind the walls of the junction. Geometry.
         direction: f64 = 1.5,
         /// The robot does not doubt an arm whose middle line is this near. Geometry: half of a corridor.

@@ -86,7 +86,7 @@ impl LaserSensor {
         grid.clean(&params);
         let skeleton = Skeleton::new(&grid, robot.position, &self.params);
         let graph = skeleton.as_ref().map_or_else(WayGraph::default, |skeleton| {
-            WayGraph::new(skeleton, &grid).pruned(robot.position, &self.params.arm)
+            WayGraph::new(skeleton, &grid).pruned(robot.position, &grid, &self.params.arm)
         });
         let junctions = graph.junctions(&self.params);
         let to_odometry = self.matcher.correction().inverse();

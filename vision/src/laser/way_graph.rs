@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::{
+    arm_view::ArmView,
     ends::{End, WayEnd},
     grid::Grid,
     params::ArmParams,
@@ -95,12 +96,13 @@ impl WayGraph {
         all.filter(|&(end, _)| end == node).map(|(_, index)| index).collect()
     }
 
-    /// The graph with those arms only that count, for a robot at a point. The shortest is removed first,
-    /// because others become longer by it.
+    /// The graph with those arms only that count, for a robot at a point of a local map. The shortest is
+    /// removed first, because others become longer by it.
     #[must_use]
-    pub fn pruned(mut self, robot: [f64; 2], params: &ArmParams) -> Self {
+    pub fn pruned(mut self, robot: [f64; 2], grid: &Grid, params: &ArmParams) -> Self {
         loop {
-            let removed = (0..self.ways.len()).filter(|&way| !self.counts(way, robot, params));
+            let counts = |way: &usize| self.counts(*way, robot, grid, params);
+            let removed = (0..self.ways.len()).filter(|way| !counts(way));
             let shortest = removed
                 .min_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
             let Some(shortest) = shortest else { return self };
@@ -111,7 +113,7 @@ impl WayGraph {
     }
 
     /// Whether a way counts: it is not an arm of a meet point that ends, or an arm that is no alcove.
-    fn counts(&self, way: usize, robot: [f64; 2], params: &ArmParams) -> bool {
+    fn counts(&self, way: usize, robot: [f64; 2], grid: &Grid, params: &ArmParams) -> bool {
         let way = &self.ways[way];
         let [one, other] = way.nodes;
         let (leaf, meet) = match (self.at(one).len(), self.at(other).len()) {
@@ -119,6 +121,7 @@ impl WayGraph {
             (3.., 1) => (other, one),
             _ => return true,
         };
+        let way = way.clone().from_node(meet);
         let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
         let Some(end) = leaf.end else { return true };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
@@ -126,11 +129,16 @@ impl WayGraph {
         if has_robot {
             return true;
         }
+        let view = ArmView::new(&way, meet, grid);
+        if view.depth >= params.sight {
+            return true;
+        }
         let known = way.length + end.beyond;
         match end.end {
             WayEnd::Closed => known + leaf.clearance >= params.min_arm,
             WayEnd::Open if way.length < meet.clearance + params.min_behind => false,
             WayEnd::Open if known >= params.min_arm => true,
+            WayEnd::Open if view.depth < params.min_sight => false,
             WayEnd::Open => {
                 let mut widths: Vec<f64> = way
                     .line
@@ -144,7 +152,10 @@ impl WayGraph {
                 widths.sort_by(f64::total_cmp);
                 let width = widths.get(widths.len() / 2).copied().unwrap_or(2.0 * leaf.clearance);
                 let widest = widths.last().copied().unwrap_or(width);
-                known >= params.min_known
+                let [less, more] = view.walled;
+                let is_walled = more >= params.min_wall || less >= params.min_walls;
+                (is_walled || known >= params.long)
+                    && known >= params.min_known
                     && width >= params.min_width
                     && widest <= params.max_width
                     && (params.min_gap..=params.max_gap).contains(&(end.gap / width))

@@ -1,0 +1,112 @@
+//! What is seen along an arm of a junction: how far, and beside which walls. A corridor that goes straight on is
+//! seen far; through the door of a room one sees its far wall. Of a corridor that bends soon, or that was
+//! seen from the side only, one sees straight walls.
+
+use super::{
+    grid::{Cell, Grid},
+    plane::{direction, distance},
+    way_graph::{Way, WayNode},
+};
+
+/// The view along an arm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ArmView {
+    /// How far from the meet point free space is seen on one straight line, in metres.
+    pub depth: f64,
+    /// The parts of this line beside which there is a straight wall: on the side with less of it, and on the
+    /// other one.
+    pub walled: [f64; 2],
+}
+
+/// Lines of sight begin this far behind the walls of the junction, and are directed along the arm between
+/// there and this far behind them, in metres.
+const MOUTH: f64 = 0.3;
+const AHEAD: f64 = 2.0;
+/// Lines of sight: their greatest angle to the arm and the angle between two, in radians; how far beside its
+/// middle they begin, in metres.
+const FAN: i32 = 8;
+const STEP: f64 = 0.035;
+const ASIDE: [f64; 3] = [-0.3, 0.0, 0.3];
+/// Walls are looked for up to this far on a line of sight and beside it, at points this far apart, in metres.
+const FAR: f64 = 10.0;
+const BESIDE: f64 = 3.0;
+const APART: f64 = 0.3;
+/// A wall is straight where it is this near to its usual distance from the line, in metres.
+const STRAIGHT: f64 = 0.25;
+
+/// A ray on the local map.
+#[derive(Clone, Copy)]
+struct Ray {
+    from: [f64; 2],
+    angle: f64,
+}
+
+impl ArmView {
+    /// The view along a way that begins at a meet point.
+    pub(super) fn new(way: &Way, meet: &WayNode, grid: &Grid) -> Self {
+        let behind = |least: f64| {
+            let beyond = |(point, _): &&([f64; 2], f64)| {
+                distance(*point, meet.point) >= meet.clearance + least
+            };
+            way.line.iter().find(beyond).or(way.line.last()).map(|&(point, _)| point)
+        };
+        let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
+            return Self::default();
+        };
+        let from = if distance(mouth, towards) > 0.5 { mouth } else { meet.point };
+        let ahead = direction(from, towards);
+        let (sine, cosine) = ahead.sin_cos();
+        let starts = ASIDE.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
+        let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
+        for number in -FAN..=FAN {
+            let angle = ahead + STEP * f64::from(number);
+            for from in starts {
+                let ray = Ray { from, angle };
+                let (free, _) = ray.free(grid, f64::INFINITY);
+                if free > length {
+                    (longest, length) = (ray, free);
+                }
+            }
+        }
+        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid));
+        walled.sort_by(f64::total_cmp);
+        Self { depth: length + distance(longest.from, meet.point), walled }
+    }
+}
+
+impl Ray {
+    fn at(&self, length: f64) -> [f64; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        [self.from[0] + length * cosine, self.from[1] + length * sine]
+    }
+
+    /// The length of the ray up to the first cell that is not free, or to a limit, in metres; and what that
+    /// cell is.
+    fn free(&self, grid: &Grid, limit: f64) -> (f64, Cell) {
+        let mut length = 0.0;
+        loop {
+            let cell = grid.index(self.at(length)).map_or(Cell::Unknown, |at| grid.cells[at]);
+            if cell != Cell::Free || length > limit {
+                return (length, cell);
+            }
+            length += grid.cell / 2.0;
+        }
+    }
+
+    /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
+    /// right (-1).
+    fn walled(&self, length: f64, side: f64, grid: &Grid) -> f64 {
+        let points = ((length.min(FAR) / APART) as u32).max(1);
+        let across = self.angle + side * std::f64::consts::FRAC_PI_2;
+        let beside = |point: u32| {
+            let from = self.at(APART * f64::from(point));
+            let (off, cell) = Ray { from, angle: across }.free(grid, BESIDE);
+            (cell == Cell::Occupied).then_some(off)
+        };
+        let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();
+        walls.sort_by(f64::total_cmp);
+        let Some(&usual) = walls.get(walls.len() / 2) else { return 0.0 };
+        let straight = walls.iter().filter(|&&off| (off - usual).abs() < STRAIGHT);
+        straight.count() as f64 / f64::from(points)
+    }
+}
