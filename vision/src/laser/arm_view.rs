@@ -9,13 +9,18 @@ use super::{
 };
 
 /// The view along an arm.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct ArmView {
-    /// How far from the meet point free space is seen on one straight line, in metres.
-    pub depth: f64,
-    /// The parts of this line beside which there is a straight wall: on the side with less of it, and on the
-    /// other one.
-    pub walled: [f64; 2],
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ArmView {
+    /// Free space is seen far enough on one straight line: what is beside it does not matter.
+    Far,
+    /// It is seen less far.
+    Near {
+        /// How far from the meet point free space is seen on one straight line, in metres.
+        depth: f64,
+        /// The parts of this line beside which there is a straight wall: on the side with less of it, and on
+        /// the other one.
+        walled: [f64; 2],
+    },
 }
 
 /// Lines of sight begin this far behind the walls of the junction, and are directed along the arm between
@@ -42,8 +47,9 @@ struct Ray {
 }
 
 impl ArmView {
-    /// The view along a way that begins at a meet point.
-    pub(super) fn new(way: &Way, meet: &WayNode, grid: &Grid) -> Self {
+    /// The view along a way that begins at a meet point; it is far from a distance to the meet point on, in
+    /// metres.
+    pub(super) fn new(way: &Way, meet: &WayNode, grid: &Grid, far: f64) -> Self {
         let behind = |least: f64| {
             let beyond = |(point, _): &&([f64; 2], f64)| {
                 distance(*point, meet.point) >= meet.clearance + least
@@ -51,18 +57,22 @@ impl ArmView {
             way.line.iter().find(beyond).or(way.line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
-            return Self::default();
+            return Self::Near { depth: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet.point };
         let ahead = direction(from, towards);
         let (sine, cosine) = ahead.sin_cos();
         let starts = ASIDE.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
-        for number in -FAN..=FAN {
+        for number in (0..=FAN).flat_map(|number| [number, -number]) {
             let angle = ahead + STEP * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
-                let (free, _) = ray.free(grid, f64::INFINITY);
+                let before = distance(from, meet.point);
+                let (free, _) = ray.free(grid, far - before);
+                if free + before >= far {
+                    return Self::Far;
+                }
                 if free > length {
                     (longest, length) = (ray, free);
                 }
@@ -70,7 +80,7 @@ impl ArmView {
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid));
         walled.sort_by(f64::total_cmp);
-        Self { depth: length + distance(longest.from, meet.point), walled }
+        Self::Near { depth: length + distance(longest.from, meet.point), walled }
     }
 }
 

@@ -78,7 +78,7 @@ pub(super) fn ends(
     let metres = |length: u32| f64::from(length) / f64::from(STRAIGHT) * grid.cell;
     let mut at_gap = vec![false; ways.len()];
     let mut ends = Vec::new();
-    for gap in grid.groups(|at| ways[at] && clearances.unknown[at] <= 4) {
+    for gap in grid.groups(|at| ways[at] && clearances.border[at] <= 4) {
         for &at in &gap {
             at_gap[at] = true;
         }
@@ -111,7 +111,7 @@ pub(super) fn ends(
 fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -> Vec<bool> {
     let mut borders = vec![false; grid.cells.len()];
     let is_border = |at: usize| {
-        grid.cells[at] == Cell::Free && clearances.unknown[at] == 1 && clearances.wall[at] >= 2
+        grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
     };
     for border in grid.groups(is_border) {
         if border.len() as f64 * grid.cell >= params.arm.border {
@@ -139,12 +139,13 @@ fn is_near(set: &[bool], cell: usize, grid: &Grid, distance: f64) -> bool {
 /// The maxima of a function on a set of cells from which one must descend at least this far to reach a
 /// greater one.
 fn maxima(set: &[bool], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..set.len()).filter(|&at| set[at]).collect();
-    order.sort_unstable_by_key(|&at| (Reverse(value[at]), at));
+    let set = (0..set.len()).filter(|&at| set[at]);
+    let mut order: Vec<(Reverse<u32>, usize)> = set.map(|at| (Reverse(value[at]), at)).collect();
+    order.sort_unstable();
     // Components of the cells so far, each with its maximum as its root.
-    let mut parent: Vec<Option<usize>> = vec![None; set.len()];
-    let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();
-    for at in order {
+    let mut parent: Vec<Option<usize>> = vec![None; value.len()];
+    let mut maxima: Vec<usize> = order.first().map(|&(_, at)| at).into_iter().collect();
+    for (_, at) in order {
         parent[at] = Some(at);
         for near in grid.neighbours(at) {
             if parent[near].is_none() {

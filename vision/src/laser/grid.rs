@@ -1,6 +1,6 @@
 //! The local map around the robot: cells that are free, occupied or unknown.
 
-use super::params::LocalMapParams;
+use super::{params::LocalMapParams, plane::floor};
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Grid {
     /// The column and the row of a point, on the map or not.
     #[must_use]
     pub fn column_row(&self, point: [f64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| ((point[axis] - self.origin[axis]) / self.cell).floor() as i64)
+        [0, 1].map(|axis| floor((point[axis] - self.origin[axis]) / self.cell))
     }
 
     /// The middle of a cell.
@@ -101,11 +101,13 @@ impl Grid {
         let mut changed: Vec<usize> = Vec::new();
         for row in 1..self.rows().saturating_sub(1) {
             for at in row * self.columns + 1..(row + 1) * self.columns - 1 {
-                if self.cells[at] == Cell::Unknown {
-                    let near = self.neighbours(at).map(|near| self.cells[near] == Cell::Free);
-                    if near.into_iter().filter(|&is_free| is_free).count() >= 5 {
-                        changed.push(at);
-                    }
+                let is_free = |at: &usize| self.cells[*at] == Cell::Free;
+                let direct = [at - 1, at + 1, at - self.columns, at + self.columns];
+                if self.cells[at] == Cell::Unknown
+                    && direct.iter().any(is_free)
+                    && self.neighbours(at).iter().filter(|at| is_free(at)).count() >= 5
+                {
+                    changed.push(at);
                 }
             }
         }

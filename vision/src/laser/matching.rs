@@ -9,7 +9,7 @@ use toposlam_model::driving::odometry::Odometry;
 
 use super::{
     params::MatchingParams,
-    plane::{Motion, distance, dot},
+    plane::{Motion, distance, dot, floor},
     scan::Scan,
 };
 use crate::least_squares::{NormalEquations, principal_component};
@@ -52,13 +52,14 @@ impl ScanMatcher {
     /// metres. Walls that were last seen before `forgotten` on that way are forgotten. Returns the pose in
     /// the frame of the local map.
     pub fn see(&mut self, scan: &Scan, odometry: &Odometry, way: f64, forgotten: f64) -> Odometry {
+        if self.params.rounds == 0 {
+            return *odometry;
+        }
         let points = wall_points(scan, &self.params, way);
         let predicted = self.correction().pose(odometry);
         let pose = match &self.last {
-            Some([last, _]) if self.params.rounds > 0 => {
-                self.matched(&points, &predicted, last, odometry)
-            }
-            _ => predicted,
+            Some([last, _]) => self.matched(&points, &predicted, last, odometry),
+            None => predicted,
         };
         self.last = Some([*odometry, pose]);
         for points in self.walls.values_mut() {
@@ -214,5 +215,5 @@ fn normal(line: &[[f64; 2]], straight: f64) -> Option<[f64; 2]> {
 
 /// The square metre of a point.
 fn square(point: [f64; 2]) -> [i64; 2] {
-    point.map(|at| at.floor() as i64)
+    point.map(floor)
 }

@@ -69,6 +69,12 @@ impl Motion {
     }
 }
 
+/// The greatest whole number that is not above this one. `f64::floor` calls a function on older processors.
+pub(super) fn floor(number: f64) -> i64 {
+    let towards_zero = number as i64;
+    towards_zero.saturating_sub(i64::from(number < towards_zero as f64))
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;

@@ -3,6 +3,7 @@
 use super::{
     grid::{Cell, Grid},
     params::LocalMapParams,
+    plane::floor,
 };
 
 /// The rays of one scan, in metres in the frame of odometry.
@@ -138,7 +139,7 @@ impl RayCounts {
 
 /// The cell at a place; far away, one beyond every map.
 fn cell_at(place: [f64; 2]) -> [i64; 2] {
-    place.map(|at| at.clamp(-1e9, 1e9).floor() as i64)
+    place.map(|at| floor(at.clamp(-1e9, 1e9)))
 }
 
 /// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.

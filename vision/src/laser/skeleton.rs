@@ -66,12 +66,12 @@ fn thin(cells: &mut [bool], clearances: &Clearances, ends: &[End], grid: &Grid) 
     for end in ends {
         is_end[end.cell] = true;
     }
-    let order = |at: usize| (clearances.wall[at].min(clearances.unknown[at]), at);
-    let mut left: Vec<usize> = (0..cells.len()).filter(|&at| cells[at] && !is_end[at]).collect();
-    left.sort_unstable_by_key(|&at| order(at));
+    let all = (0..cells.len()).filter(|&at| cells[at] && !is_end[at]);
+    let mut left: Vec<(u32, usize)> = all.map(|at| (clearances.border[at], at)).collect();
+    left.sort_unstable();
     loop {
         let before = left.len();
-        left.retain(|&at| {
+        left.retain(|&(_, at)| {
             let keep = !is_simple(cells, at, grid);
             cells[at] = keep;
             keep

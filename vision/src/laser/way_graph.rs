@@ -100,67 +100,85 @@ impl WayGraph {
     /// removed first, because others become longer by it.
     #[must_use]
     pub fn pruned(mut self, robot: [f64; 2], grid: &Grid, params: &ArmParams) -> Self {
+        let mut ways: Vec<usize> = (0..self.ways.len()).collect();
+        // Whether arms count, by their meet point and their end. Most are the same in the next round.
+        let mut known = BTreeMap::new();
         loop {
-            let counts = |way: &usize| self.counts(*way, robot, grid, params);
-            let removed = (0..self.ways.len()).filter(|way| !counts(way));
-            let shortest = removed
-                .min_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
-            let Some(shortest) = shortest else { return self };
+            ways.truncate(self.ways.len());
+            ways.iter_mut().enumerate().for_each(|(index, way)| *way = index);
+            ways.sort_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
+            let shortest = ways.iter().find(|&&way| {
+                let Some([meet, leaf]) = self.arm(way) else { return false };
+                !*known
+                    .entry([meet, leaf])
+                    .or_insert_with(|| self.counts(way, [meet, leaf], robot, grid, params))
+            });
+            let Some(&shortest) = shortest else { return self };
             for node in self.ways.swap_remove(shortest).nodes {
                 self.join_at(node);
             }
         }
     }
 
-    /// Whether a way counts: it is not an arm of a meet point that ends, or an arm that is no alcove.
-    fn counts(&self, way: usize, robot: [f64; 2], grid: &Grid, params: &ArmParams) -> bool {
-        let way = &self.ways[way];
-        let [one, other] = way.nodes;
-        let (leaf, meet) = match (self.at(one).len(), self.at(other).len()) {
-            (1, 3..) => (one, other),
-            (3.., 1) => (other, one),
-            _ => return true,
-        };
-        let way = way.clone().from_node(meet);
+    /// The meet point and the end of a way that has both.
+    fn arm(&self, way: usize) -> Option<[usize; 2]> {
+        let [one, other] = self.ways[way].nodes;
+        match (self.at(one).len(), self.at(other).len()) {
+            (3.., 1) => Some([one, other]),
+            (1, 3..) => Some([other, one]),
+            _ => None,
+        }
+    }
+
+    /// Whether a way from a meet point to an end is an arm, and no alcove.
+    fn counts(
+        &self,
+        way: usize,
+        [meet, leaf]: [usize; 2],
+        robot: [f64; 2],
+        grid: &Grid,
+        params: &ArmParams,
+    ) -> bool {
+        let way = self.ways[way].clone().from_node(meet);
         let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
         let Some(end) = leaf.end else { return true };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
-        if has_robot {
-            return true;
-        }
-        let view = ArmView::new(&way, meet, grid);
-        if view.depth >= params.sight {
-            return true;
-        }
         let known = way.length + end.beyond;
-        match end.end {
+        let is_behind = way.length >= meet.clearance + params.min_behind;
+        let is_long = match end.end {
             WayEnd::Closed => known + leaf.clearance >= params.min_arm,
-            WayEnd::Open if way.length < meet.clearance + params.min_behind => false,
-            WayEnd::Open if known >= params.min_arm => true,
-            WayEnd::Open if view.depth < params.min_sight => false,
-            WayEnd::Open => {
-                let mut widths: Vec<f64> = way
-                    .line
-                    .iter()
-                    .filter(|(point, _)| {
-                        distance(*point, meet.point) > meet.clearance
-                            && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
-                    })
-                    .map(|&(_, clearance)| 2.0 * clearance)
-                    .collect();
-                widths.sort_by(f64::total_cmp);
-                let width = widths.get(widths.len() / 2).copied().unwrap_or(2.0 * leaf.clearance);
-                let widest = widths.last().copied().unwrap_or(width);
-                let [less, more] = view.walled;
-                let is_walled = more >= params.min_wall || less >= params.min_walls;
-                (is_walled || known >= params.long)
-                    && known >= params.min_known
-                    && width >= params.min_width
-                    && widest <= params.max_width
-                    && (params.min_gap..=params.max_gap).contains(&(end.gap / width))
-            }
+            WayEnd::Open => is_behind && known >= params.min_arm,
+        };
+        if has_robot || is_long {
+            return true;
         }
+        let ArmView::Near { depth, walled } = ArmView::new(&way, meet, grid, params.sight) else {
+            return true;
+        };
+        if end.end == WayEnd::Closed || !is_behind {
+            return false;
+        }
+        let mut widths: Vec<f64> = way
+            .line
+            .iter()
+            .filter(|(point, _)| {
+                distance(*point, meet.point) > meet.clearance
+                    && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
+            })
+            .map(|&(_, clearance)| 2.0 * clearance)
+            .collect();
+        widths.sort_by(f64::total_cmp);
+        let width = widths.get(widths.len() / 2).copied().unwrap_or(2.0 * leaf.clearance);
+        let widest = widths.last().copied().unwrap_or(width);
+        let [less, more] = walled;
+        let is_walled = more >= params.min_wall || less >= params.min_walls;
+        depth >= params.min_sight
+            && (is_walled || known >= params.long)
+            && known >= params.min_known
+            && width >= params.min_width
+            && widest <= params.max_width
+            && (params.min_gap..=params.max_gap).contains(&(end.gap / width))
     }
 
     /// Makes one way of two that end at a node.
