@@ -14,10 +14,11 @@ use toposlam_vision::laser::{
     params::{CornerParams, LaserParams},
     plane::{Motion, direction, distance},
     scan::Scan,
-    sensor::LaserSensor,
+    sensor::{LaserSensor, LaserView},
 };
 
 use super::{
+    bends::{Bend, Bends},
     events::{CheckedEvent, CheckedKind, EventSource},
     marked_visits::VisitedJunction,
     seen_junctions::{SeenArm, SeenJunction, SeenJunctions},
@@ -35,6 +36,8 @@ pub struct LaserEvents {
     /// Junctions, and corners if they are vertices.
     junctions: SeenJunctions,
     dead_ends: SeenJunctions,
+    /// Bends of the robot's way, which are corners.
+    bends: Bends,
     /// The visit that goes on.
     visit: Option<Visit>,
     /// Visits that are over and not decided yet.
@@ -71,11 +74,16 @@ struct Visit {
     to_odometry: Motion,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum VisitKind {
-    /// Of a junction or a corner.
+    /// Of a junction, or of a corner in which the log begins, ends, or the robot turns back.
     Junction,
     DeadEnd,
+    /// Of a corner that the robot passed: the length of its way to there, and whether it is in doubt.
+    Bend {
+        way: f64,
+        in_doubt: bool,
+    },
 }
 
 /// What is known of a junction that was left.
@@ -84,6 +92,8 @@ struct PastVisit {
     centre: [f64; 2],
     extent: f64,
     exit: f64,
+    /// The length of the robot's way when it left.
+    left: f64,
 }
 
 /// What the views of a visited place show.
@@ -116,6 +126,7 @@ impl LaserEvents {
             visited: Vec::new(),
             junctions: SeenJunctions::new(params.visit),
             dead_ends: SeenJunctions::new(params.visit),
+            bends: Bends::new(params.corner),
             visit: None,
             waiting: VecDeque::new(),
             since: Vec::new(),
@@ -143,6 +154,11 @@ impl LaserEvents {
         self.leave(robot);
         self.turn(robot);
         self.since.push(robot);
+        if self.params.corner.corners {
+            for bend in self.bends.go(robot, self.way, source) {
+                self.bend(&bend, &view);
+            }
+        }
         self.enter(robot);
         while let Some(visit) = self.waiting.pop_front() {
             if visit.exit.is_some_and(|(_, left)| self.way - left < self.params.visit.settle) {
@@ -235,6 +251,36 @@ impl LaserEvents {
         })
     }
 
+    /// Adds the visit of a robot that has passed a corner.
+    fn bend(&mut self, bend: &Bend, view: &LaserView) {
+        let CornerParams { arm, min_way, .. } = self.params.corner;
+        let sight = self.params.arm.sight;
+        // The log may begin in a room.
+        if bend.way < min_way {
+            return;
+        }
+        if self.visit.as_ref().is_some_and(|visit| distance(visit.centre, bend.point) < arm) {
+            return;
+        }
+        let [entry, exit] = bend.arms;
+        let in_doubt = bend.arms.iter().any(|back| {
+            // A corridor may go straight on there.
+            view.grid.sight(bend.point, back + PI, sight).0 >= sight
+        });
+        self.waiting.push_back(Visit {
+            kind: VisitKind::Bend { way: bend.way, in_doubt },
+            source: bend.source,
+            centre: bend.point,
+            clearance: 0.0,
+            entry: Some(entry),
+            exit: Some((exit, self.way)),
+            left: self.source,
+            turned_back: self.turned_back,
+            to_odometry: self.to_odometry,
+        });
+        self.turned_back = false;
+    }
+
     /// Begins a visit of a robot that is within a junction.
     fn enter(&mut self, robot: [f64; 2]) {
         if self.visit.is_some() {
@@ -259,15 +305,39 @@ impl LaserEvents {
         });
     }
 
-    /// Adds the events of a visit that is over.
-    fn decide(&mut self, visit: &Visit) {
-        let exit = visit.exit.map(|(exit, _)| exit);
+    /// What the views show of a visited place, and its extent in metres.
+    fn shown(&self, visit: &Visit) -> Option<(Shown, f64)> {
+        let params = &self.params.visit;
         let places = match visit.kind {
             VisitKind::Junction => &self.junctions,
             VisitKind::DeadEnd => &self.dead_ends,
+            VisitKind::Bend { way, in_doubt } => {
+                // A junction where the robot turned is no corner.
+                let arm = self.params.corner.arm;
+                let is_junction = self.last.is_some_and(|(last, _)| {
+                    distance(last.centre, visit.centre) < arm && way <= last.left + arm
+                });
+                let exit = visit.exit.map(|(exit, _)| exit);
+                let shown = match (is_junction, in_doubt) {
+                    (true, _) => Shown::Nothing,
+                    (_, true) => Shown::Doubt,
+                    _ => Shown::Doors(visit.entry.into_iter().chain(exit).collect()),
+                };
+                return Some((shown, params.same));
+            }
         };
-        let Some(known) = places.at(visit.centre) else { return };
-        let shown = visit.shown(&known.arms(&self.params.visit), &self.params);
+        let known = places.at(visit.centre)?;
+        let shown = match visit.shown(&known.arms_of_meet(params), &self.params) {
+            Shown::Nothing => visit.shown(&known.arms(params), &self.params),
+            shown => shown,
+        };
+        Some((shown, known.extent(params)))
+    }
+
+    /// Adds the events of a visit that is over.
+    fn decide(&mut self, visit: &Visit) {
+        let exit = visit.exit.map(|(exit, _)| exit);
+        let Some((shown, extent)) = self.shown(visit) else { return };
         if matches!(shown, Shown::Nothing) {
             // It went on, or it turned back there.
             let back = visit.entry.zip(exit).is_some_and(|(entry, exit)| is_same_arm(entry, exit));
@@ -286,9 +356,8 @@ impl LaserEvents {
                 entry = entry.or(Some(last.exit));
             }
         }
-        let extent = known.extent(&self.params.visit);
-        let past = |exit| (PastVisit { centre: visit.centre, extent, exit }, false);
-        self.last = exit.map(past).or(self.last);
+        let past = |(exit, left)| (PastVisit { centre: visit.centre, extent, exit, left }, false);
+        self.last = visit.exit.map(past).or(self.last);
         if turned_back {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
@@ -351,9 +420,12 @@ impl Visit {
     fn shown(&self, arms: &[SeenArm], params: &LaserParams) -> Shown {
         let CornerParams { corners, min_turn, .. } = params.corner;
         let params = &params.visit;
-        let is_corner =
-            |one: f64, other: f64| corners && PI - wrapped(one - other).abs() >= min_turn;
         let exit = self.exit.map(|(exit, _)| exit);
+        // Where the robot went on, its own way shows whether there is a corner.
+        let went_on = self.entry.zip(exit).is_some_and(|(entry, exit)| !is_same_arm(entry, exit));
+        let is_corner = |one: f64, other: f64| {
+            corners && !went_on && PI - wrapped(one - other).abs() >= min_turn
+        };
         let is_traversed = |arm: &SeenArm| {
             let mut ways = [self.entry, exit].into_iter().flatten();
             ways.any(|way| is_same_arm(way, arm.direction))

@@ -1,6 +1,7 @@
 //! Checks a recorded run against the specification: the first divergence, what the specification allows
 //! there instead, and the class of the fault. Sections 2 and 4 to 6.
 
+mod bends;
 mod config;
 mod consistency;
 mod divergence;

@@ -19,6 +19,8 @@ pub(super) struct SeenJunction {
     pub clearance: f64,
     /// The directions of its arms in each view, the last one last; empty where it is not seen.
     views: Vec<Vec<f64>>,
+    /// Whether a view has shown more than a corner.
+    is_meet: bool,
     /// The length of the robot's way at the last view.
     way: f64,
 }
@@ -53,12 +55,18 @@ impl SeenJunctions {
             if distance(junction.centre, robot) > range + junction.clearance {
                 continue;
             }
+            let is_meet = junction.arms.len() >= 3;
             if let Some(known) = self.index_at(junction.centre) {
                 let known = &mut self.junctions[known];
-                let views = known.views.len().min(most) as f64;
-                let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
-                known.centre = [0, 1].map(|axis| mean(known.centre[axis], junction.centre[axis]));
-                known.clearance = mean(known.clearance, junction.clearance);
+                if is_meet || !known.is_meet {
+                    let views = if is_meet == known.is_meet { known.views.len() } else { 0 };
+                    let views = views.min(most) as f64;
+                    let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
+                    let centre = [known.centre, junction.centre];
+                    known.centre = [0, 1].map(|axis| mean(centre[0][axis], centre[1][axis]));
+                    known.clearance = mean(known.clearance, junction.clearance);
+                    known.is_meet = is_meet;
+                }
                 known.views.push(junction.arms.clone());
                 known.way = way;
             } else {
@@ -66,6 +74,7 @@ impl SeenJunctions {
                     centre: junction.centre,
                     clearance: junction.clearance,
                     views: vec![junction.arms.clone()],
+                    is_meet,
                     way,
                 });
             }
@@ -114,25 +123,38 @@ impl SeenJunction {
         params.same.max(0.6 * self.clearance)
     }
 
-    /// The arms that are seen.
+    /// The arms that are seen if it is a junction: the views that show a corner miss it.
+    pub(super) fn arms_of_meet(&self, params: &VisitParams) -> Vec<SeenArm> {
+        let is_corner = |view: &[f64]| view.len() < 3;
+        let views = self.views.iter().map(Vec::as_slice).skip_while(|view| is_corner(view));
+        let views = views.map(|view| if is_corner(view) { &[] } else { view });
+        common_arms(&views.collect::<Vec<_>>(), params)
+    }
+
+    /// The arms that are seen if it may be a corner or a dead end.
     pub(super) fn arms(&self, params: &VisitParams) -> Vec<SeenArm> {
-        // The mean direction, the number of views, and the last of them.
-        let mut groups: Vec<(f64, u32, usize)> = Vec::new();
-        for (number, view) in self.views.iter().enumerate() {
-            for &arm in view {
-                let off = |group: &(f64, u32, usize)| wrapped(group.0 - arm).abs();
-                let near = groups.iter_mut().filter(|group| off(group) < params.same_arm);
-                if let Some(group) = near.min_by(|one, other| off(one).total_cmp(&off(other))) {
-                    group.0 = wrapped(group.0 + wrapped(arm - group.0) / f64::from(group.1 + 1));
-                    group.1 += u32::from(group.2 != number);
-                    group.2 = number;
-                } else {
-                    groups.push((arm, 1, number));
-                }
+        common_arms(&self.views.iter().map(Vec::as_slice).collect::<Vec<_>>(), params)
+    }
+}
+
+/// The arms in several views.
+fn common_arms(views: &[&[f64]], params: &VisitParams) -> Vec<SeenArm> {
+    // The mean direction, the number of views, and the last of them.
+    let mut groups: Vec<(f64, u32, usize)> = Vec::new();
+    for (number, &view) in views.iter().enumerate() {
+        for &arm in view {
+            let off = |group: &(f64, u32, usize)| wrapped(group.0 - arm).abs();
+            let near = groups.iter_mut().filter(|group| off(group) < params.same_arm);
+            if let Some(group) = near.min_by(|one, other| off(one).total_cmp(&off(other))) {
+                group.0 = wrapped(group.0 + wrapped(arm - group.0) / f64::from(group.1 + 1));
+                group.1 += u32::from(group.2 != number);
+                group.2 = number;
+            } else {
+                groups.push((arm, 1, number));
             }
         }
-        let all = self.views.len().max(1) as f64;
-        let arm = |(direction, seen, _)| SeenArm { direction, part: f64::from(seen) / all };
-        groups.into_iter().map(arm).collect()
     }
+    let all = views.len().max(1) as f64;
+    let arm = |(direction, seen, _)| SeenArm { direction, part: f64::from(seen) / all };
+    groups.into_iter().map(arm).collect()
 }

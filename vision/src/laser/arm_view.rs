@@ -69,7 +69,7 @@ impl ArmView {
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet.point);
-                let (free, _) = ray.free(grid, far - before);
+                let (free, _) = grid.sight(from, angle, far - before);
                 if free + before >= far {
                     return Self::Far;
                 }
@@ -90,19 +90,6 @@ impl Ray {
         [self.from[0] + length * cosine, self.from[1] + length * sine]
     }
 
-    /// The length of the ray up to the first cell that is not free, or to a limit, in metres; and what that
-    /// cell is.
-    fn free(&self, grid: &Grid, limit: f64) -> (f64, Cell) {
-        let mut length = 0.0;
-        loop {
-            let cell = grid.index(self.at(length)).map_or(Cell::Unknown, |at| grid.cells[at]);
-            if cell != Cell::Free || length > limit {
-                return (length, cell);
-            }
-            length += grid.cell / 2.0;
-        }
-    }
-
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
     fn walled(&self, length: f64, side: f64, grid: &Grid) -> f64 {
@@ -110,7 +97,7 @@ impl Ray {
         let across = self.angle + side * std::f64::consts::FRAC_PI_2;
         let beside = |point: u32| {
             let from = self.at(APART * f64::from(point));
-            let (off, cell) = Ray { from, angle: across }.free(grid, BESIDE);
+            let (off, cell) = grid.sight(from, across, BESIDE);
             (cell == Cell::Occupied).then_some(off)
         };
         let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();

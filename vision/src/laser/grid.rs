@@ -55,6 +55,22 @@ impl Grid {
         [0, 1].map(|axis| self.origin[axis] + (at[axis] as f64 + 0.5) * self.cell)
     }
 
+    /// How far one sees from a point in a direction: the length up to the first cell that is not free, or to a
+    /// limit, in metres; and what that cell is.
+    #[must_use]
+    pub fn sight(&self, from: [f64; 2], direction: f64, limit: f64) -> (f64, Cell) {
+        let (sine, cosine) = direction.sin_cos();
+        let mut length = 0.0;
+        loop {
+            let point = [from[0] + length * cosine, from[1] + length * sine];
+            let cell = self.index(point).map_or(Cell::Unknown, |at| self.cells[at]);
+            if cell != Cell::Free || length > limit {
+                return (length, cell);
+            }
+            length += self.cell / 2.0;
+        }
+    }
+
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.
     #[must_use]
     pub fn neighbours(&self, index: usize) -> [usize; 8] {
