@@ -49,11 +49,30 @@ impl RunEvents {
                     }
                 }
                 CheckedKind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
-                CheckedKind::TurnedBack => fault(DivergenceCause::TurnedBack),
+                CheckedKind::TurnedBack if !self.may_turn_back => {
+                    fault(DivergenceCause::TurnedBack);
+                }
+                CheckedKind::TurnedBack => {
+                    if let Some(cause) = self.false_return(place) {
+                        fault(cause);
+                    }
+                }
                 CheckedKind::Undecided => fault(DivergenceCause::Undecided),
             }
         }
         faults
+    }
+
+    /// The contradiction between two percepts of a junction that the robot left, and entered again after it
+    /// turned back at this event.
+    fn false_return(&self, back: usize) -> Option<DivergenceCause> {
+        let arrival = |place: Option<usize>| match &self.events.get(place?)?.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival.degree),
+            _ => None,
+        };
+        let before = arrival(back.checked_sub(2))?;
+        let now = arrival(back.checked_add(1))?;
+        Some(DivergenceCause::Return { before, now })
     }
 
     /// The contradictions between the recorded end and the algorithm.

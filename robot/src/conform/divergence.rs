@@ -89,6 +89,13 @@ pub enum DivergenceCause {
     },
     /// The robot turned back in a hallway.
     TurnedBack,
+    /// The robot turned back, as it may, and perceived the junction that it had left otherwise than before.
+    Return {
+        /// The number of doors before.
+        before: u32,
+        /// The number of doors after it.
+        now: u32,
+    },
     /// The robot was at a junction that could not be recognised in its images.
     Undecided,
     /// It does not fit the known world.
@@ -132,7 +139,7 @@ impl DivergenceCause {
                 FaultClass::Log
             }
             Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
-            Self::Entry { .. } | Self::Undecided => FaultClass::Perception,
+            Self::Return { .. } | Self::Entry { .. } | Self::Undecided => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map { .. } | Self::WrongMap => FaultClass::Algorithm,
             Self::World(Misfit { event, .. })
             | Self::Algorithm(Departure { event, .. })
@@ -153,6 +160,7 @@ impl DivergenceCause {
             Self::Aside { .. } => "aside",
             Self::Entry { .. } => "entry",
             Self::TurnedBack => "turned-back",
+            Self::Return { .. } => "return",
             Self::Undecided => "undecided",
             Self::World(misfit) => match misfit.event.kind {
                 TraceEventKind::Percept(_) => "percept",
@@ -172,13 +180,14 @@ impl DivergenceCause {
 }
 
 /// The names of all causes.
-pub(super) const NAMES: [&str; 16] = [
+pub(super) const NAMES: [&str; 17] = [
     "not-in-turn",
     "number",
     "form",
     "aside",
     "entry",
     "turned-back",
+    "return",
     "undecided",
     "percept",
     "no-such-door",
@@ -213,6 +222,16 @@ impl fmt::Display for DivergenceCause {
             Self::TurnedBack => {
                 write!(out, "the robot turned back before it reached a junction")
             }
+            Self::Return { before, now } if before == now => {
+                write!(
+                    out,
+                    "the robot turned back and entered the junction that it had left, and the marker is elsewhere"
+                )
+            }
+            Self::Return { before, now } => write!(
+                out,
+                "the robot turned back and entered the junction that it had left: {before} doors, now {now}"
+            ),
             Self::Undecided => {
                 write!(out, "the robot was at a junction that its images do not show clearly")
             }

@@ -75,6 +75,8 @@ pub struct RunEvents {
     pub map: Option<MapRecord>,
     /// Whether the log is truncated.
     pub truncated: bool,
+    /// Whether the robot may turn back between junctions. The excursions that fit are not among the events.
+    pub may_turn_back: bool,
 }
 
 /// An event that is earlier than the one before it.
@@ -187,7 +189,7 @@ impl RunEvents {
         }
         // Whoever has turned back at the end has not arrived again.
         events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
-        Self { events, ..self.clone() }
+        Self { events, may_turn_back: true, ..self.clone() }
     }
 
     /// Checks that no event is earlier than the one before it.

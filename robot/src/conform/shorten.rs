@@ -179,6 +179,7 @@ impl RunEvents {
                 *number = number.map(|number| number.wrapping_sub(before));
             }
         }
-        Some(Self { events, has_head: self.has_head, ..Self::default() })
+        let Self { has_head, may_turn_back, .. } = *self;
+        Some(Self { events, has_head, may_turn_back, ..Self::default() })
     }
 }

@@ -110,7 +110,7 @@ params! {
         /// ... if it is known for less than this. Logs and simulated buildings.
         long: f64 = 6.5,
         /// Otherwise an arm that is not seen to end counts if it is known for at least this length...  Logs.
-        min_known: f64 = 3.6,
+        min_known: f64 = 3.3,
         /// ... and this far behind the walls of the junction, ... Logs.
         min_behind: f64 = 0.5,
         /// ... is at least this wide, ... Geometry: the doors of rooms.
@@ -126,7 +126,7 @@ params! {
         /// long is unknown, within [`Self::border_near`] of the end. Logs.
         border: f64 = 0.6,
         /// See [`Self::border`]. Logs.
-        border_near: f64 = 1.2,
+        border_near: f64 = 1.8,
         /// A maximum of the distance from the robot is an end of a way if every other end is reached only
         /// over cells this much nearer to the robot. Geometry: half of a corridor.
         min_prominence: f64 = 1.0,

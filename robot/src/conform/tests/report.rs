@@ -63,6 +63,18 @@ fn each_cause_has_a_name_a_class_and_words() {
         ),
         (TurnedBack, "turned-back", Motion, "the robot turned back before it reached a junction"),
         (
+            Return { before: 3, now: 4 },
+            "return",
+            Perception,
+            "the robot turned back and entered the junction that it had left: 3 doors, now 4",
+        ),
+        (
+            Return { before: 3, now: 3 },
+            "return",
+            Perception,
+            "the robot turned back and entered the junction that it had left, and the marker is elsewhere",
+        ),
+        (
             Undecided,
             "undecided",
             Perception,

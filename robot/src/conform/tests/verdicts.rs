@@ -454,3 +454,36 @@ fn the_first_event_that_no_planar_world_explains_is_exact() {
     let other = ConformConfig { search: without_world().search, ..planar.clone() };
     assert_eq!(judged(&events, &other).divergence, None);
 }
+
+#[test]
+fn a_driver_may_turn_back_but_not_find_another_junction_then() {
+    let arrival = |degree| CheckedKind::Arrival {
+        arrival: Arrival {
+            number: None,
+            degree,
+            sighting: Some(Sighting::Nothing),
+            form: None,
+            entry: None,
+        },
+        entry_off: None,
+    };
+    let door = |door| CheckedKind::Door { door: Door(door), number: None, off: None };
+    let kinds = |again| {
+        vec![arrival(3), door(1), CheckedKind::TurnedBack, arrival(again), door(2), arrival(2)]
+    };
+    let events = |again| RunEvents {
+        events: kinds(again)
+            .into_iter()
+            .map(|kind| CheckedEvent { source: EventSource::default(), kind })
+            .collect(),
+        ..RunEvents::default()
+    };
+    let anyone = ConformConfig { driver: RunDriver::Anyone, ..without_world() };
+    assert_eq!(judged(&events(3).without_excursions(), &anyone).divergence, None);
+    let found = judged(&events(4).without_excursions(), &anyone).divergence.unwrap();
+    assert_eq!((found.event, found.fault), (2, FaultClass::Perception));
+    assert_eq!(found.cause, DivergenceCause::Return { before: 3, now: 4 });
+    // Who does not say that it may turn back has not moved as it should.
+    let found = judged(&events(3), &anyone).divergence.unwrap();
+    assert_eq!((found.event, found.cause), (2, DivergenceCause::TurnedBack));
+}
