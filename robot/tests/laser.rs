@@ -173,6 +173,13 @@ fn each_junction_on_the_way_is_visited_once() {
 }
 
 #[test]
+fn a_robot_whose_log_begins_at_a_junction_has_its_back_to_door_0() {
+    // It drives on along the corridor, past a stem on the left.
+    let events = events(&comb(), &[[14.0, 0.0], [24.0, 0.0]], 0.0);
+    assert_eq!(visits(&events), [(Some(3), Some(2))]);
+}
+
+#[test]
 fn the_arms_of_a_junction_can_have_any_angle() {
     // A corridor that forks: the arms are 120 degrees apart.
     let arm = |degrees: f64| {

@@ -49,6 +49,8 @@ pub struct LaserEvents {
     /// The last visit that was decided, and whether the robot has turned back between it and the visits
     /// that were decided to be none.
     last: Option<(PastVisit, bool)>,
+    /// The direction to what was behind the robot at first.
+    behind: Option<f64>,
     /// The length of the robot's way, in metres.
     way: f64,
     source: EventSource,
@@ -108,6 +110,8 @@ enum Shown {
 
 /// A robot within this distance of where it was before goes back, in metres.
 const RETRACED: f64 = 0.6;
+/// A robot that has not driven farther than this since the log began was always there, in metres.
+const BEGINNING: f64 = 2.0;
 /// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
 const TURN: f64 = 4.0;
 /// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
@@ -132,6 +136,7 @@ impl LaserEvents {
             since: Vec::new(),
             turned_back: false,
             last: None,
+            behind: None,
             way: 0.0,
             source: EventSource::default(),
             to_odometry: Motion::default(),
@@ -143,6 +148,7 @@ impl LaserEvents {
         let Some(view) = self.sensor.see(scan, odometry) else { return };
         self.source = source;
         self.to_odometry = view.to_odometry;
+        self.behind.get_or_insert(wrapped(view.robot.heading + PI));
         let robot = view.robot.position;
         if let Some(&last) = self.since.last() {
             self.way += distance(last, robot);
@@ -286,12 +292,13 @@ impl LaserEvents {
         if self.visit.is_some() {
             return;
         }
-        let Some(here) = self.junctions.nearest(robot, |junction| inside(junction.clearance))
-        else {
+        let within = |junction: &SeenJunction| inside(junction.clearance);
+        let Some(here) = self.junctions.nearest(robot, within) else {
             return;
         };
         let outside = |point: &&[f64; 2]| distance(here.centre, **point) > inside(here.clearance);
-        let before = self.since.iter().rev().find(outside);
+        // Where a log begins shows nothing of where the robot came from.
+        let before = self.since.iter().rev().find(outside).filter(|_| self.way > BEGINNING);
         self.visit = Some(Visit {
             kind: VisitKind::Junction,
             source: self.source,
@@ -376,8 +383,10 @@ impl LaserEvents {
             let off = |door: f64| wrapped(door - way).abs();
             (0..doors.len()).min_by(|&one, &other| off(doors[one]).total_cmp(&off(doors[other])))
         };
-        // A robot whose log begins at the junction came in by any of its doors.
-        let entry = entry.and_then(|entry| nearest(&doors, entry)).unwrap_or_default();
+        // A robot whose log begins at the junction has its back to where it came from.
+        let Some(entry) = nearest(&doors, entry.or(self.behind).unwrap_or_default()) else {
+            return;
+        };
         let entry = doors[entry];
         let clockwise = |door: f64| (entry - door).rem_euclid(TAU);
         doors.sort_by(|&one, &other| clockwise(one).total_cmp(&clockwise(other)));
