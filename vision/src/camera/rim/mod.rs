@@ -10,9 +10,11 @@
 //! of those in the image. If a dark ring is around the mirror, both of its borders are such circles, and
 //! the rim is the inner one.
 //!
-//! The result is checked: the rim must be seen on enough bearings, no other circle may be seen on about
-//! as many, and the circle must stay the same if any part of what is seen of it is left out. If the
-//! image's border crops the rim, arcs are enough.
+//! The result is checked, as no circle is better than a wrong one. The rim must be seen on enough bearings,
+//! also if it is the inner border of a ring: dark furniture just inside of the rim has a border, too. No
+//! other circle may be seen on about as many bearings, also none that shares an arc with this one. And
+//! the circle must stay the same if any part of what is seen of it is left out. If the image's border
+//! crops the rim, arcs are enough.
 
 mod brightness;
 mod circle;
@@ -112,6 +114,9 @@ const SAME: f64 = 0.02;
 /// radius.
 const CERTAIN: f64 = 0.01;
 
+/// The number of directions in which other circles that share an arc are tried.
+const SIDES: usize = 12;
+
 /// The number of parts of which each is left out once.
 const PARTS: usize = 8;
 
@@ -152,24 +157,35 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     if rim.falls() < LEAST_FALLS {
         return Err(RimError::NoRim);
     }
-    let is_other = |fit: &&CircleFit| {
+    let is_ring = rim.circle != best.circle;
+    // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
+    // Of a narrow ring, both borders are near enough.
+    let is_narrow = rim.circle.is_near(&best.circle, SAME);
+    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
+        return Err(ambiguous(&best.circle, &rim.circle));
+    }
+    let is_other = |fit: &CircleFit| {
         !fit.circle.is_near(&rim.circle, SAME)
             && !fit.circle.is_near(&best.circle, SAME)
-            && !fit.circle.is_near(&best.circle, WIDEST_RING / 2.0)
+            && fit.score() > LEAD * best.score()
     };
-    if let Some(other) = fits.iter().find(is_other)
-        && other.score() > LEAD * best.score()
+    if let Some(other) = fits.iter().find(|fit| is_other(fit)) {
+        return Err(ambiguous(&best.circle, &other.circle));
+    }
+    if (!is_ring || is_narrow)
+        && let Some(other) = best.beside(&mean).into_iter().find(is_other)
     {
-        let numbers = |circle: &Circle| [circle.centre[0], circle.centre[1], circle.radius];
-        return Err(RimError::Ambiguous {
-            best: numbers(&rim.circle),
-            other: numbers(&other.circle),
-        });
+        return Err(ambiguous(&best.circle, &other.circle));
     }
     if !best.is_certain() {
         return Err(RimError::Uncertain { radius: rim.circle.radius, seen: best.seen });
     }
     Ok(rim.rim())
+}
+
+fn ambiguous(best: &Circle, other: &Circle) -> RimError {
+    let numbers = |circle: &Circle| [circle.centre[0], circle.centre[1], circle.radius];
+    RimError::Ambiguous { best: numbers(best), other: numbers(other) }
 }
 
 /// What is seen of a rim that is given: its centre and its radius, in pixels.
@@ -289,6 +305,26 @@ impl CircleFit {
         });
         let best = inner.max_by(|one, other| one.seen.total_cmp(&other.seen))?;
         Some(Self::on(image, best.circle, 1))
+    }
+
+    /// The circles that share an arc with this one, and are nearer or farther on the opposite side: if it is
+    /// the inner border of a ring on one side and the outer border on the other, they are the borders.
+    fn beside(&self, image: &Brightness) -> Vec<Self> {
+        let Circle { centre: [u, v], radius } = self.circle;
+        let mut fits = Vec::new();
+        for side in 0..SIDES {
+            let (sine, cosine) = (std::f64::consts::TAU * side as f64 / SIDES as f64).sin_cos();
+            for step in 1..=6 {
+                for sign in [-1.0, 1.0] {
+                    // Half of the difference between the borders, and the same arc on this side.
+                    let shift = 0.01 * f64::from(step) * radius * sign;
+                    let centre = [u - shift * cosine, v - shift * sine];
+                    let circle = Circle { centre, radius: radius + shift };
+                    fits.push(Self::on(image, Self::fitted(image, circle, EVERY).circle, EVERY));
+                }
+            }
+        }
+        fits
     }
 
     /// Whether centre and radius stay the same if any part of the edges is left out.
