@@ -168,6 +168,7 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
         !fit.circle.is_near(&rim.circle, SAME)
             && !fit.circle.is_near(&best.circle, SAME)
             && fit.score() > LEAD * best.score()
+            && !fit.is_outside_of_ring(&mean, &rim.circle)
     };
     if let Some(other) = fits.iter().find(|fit| is_other(fit)) {
         return Err(ambiguous(&best.circle, &other.circle));
@@ -305,6 +306,16 @@ impl CircleFit {
         });
         let best = inner.max_by(|one, other| one.seen.total_cmp(&other.seen))?;
         Some(Self::on(image, best.circle, 1))
+    }
+
+    /// Whether this is the outer border of a dark ring around a circle.
+    fn is_outside_of_ring(&self, image: &Brightness, inner: &Circle) -> bool {
+        let [across, down] = [0, 1].map(|axis| self.circle.centre[axis] - inner.centre[axis]);
+        let width = self.circle.radius - inner.radius;
+        crate::camera::length([across, down]) <= SAME * inner.radius
+            && width > 0.0
+            && width <= WIDEST_RING * self.circle.radius
+            && is_dark_between(image, inner, &self.circle)
     }
 
     /// The circles that share an arc with this one, and are nearer or farther on the opposite side: if it is
