@@ -68,6 +68,9 @@ fn the_documents_show_what_the_commands_print() {
             }
         }
     }
+    // The rim of a cluttered image, as docs/commands.md shows it.
+    let rim = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/rim.jpg");
+    assert!(fs::read(rim).unwrap() == fs::read(folder.join("rim.jpg")).unwrap());
     let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/sensing");
     let drawn = folder.join("steps");
     assert_eq!(file_names(&shown), file_names(&drawn));

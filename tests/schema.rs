@@ -117,6 +117,7 @@ const COMMANDS: [(&str, &[&str]); 17] = [
         &[
             "evaluate vision --size 640x480 --look tiles --views 12 --visits 1",
             "evaluate vision --size 640x480 --look tiles --view 5 --out-dir view",
+            "evaluate vision --size 640x480 --look tiles --views 4 --clutter",
         ],
     ),
 ];

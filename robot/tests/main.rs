@@ -5,5 +5,6 @@
 mod laser;
 mod logs;
 mod renderer;
+mod rim;
 mod scanner;
 mod sensing;

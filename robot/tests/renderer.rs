@@ -298,10 +298,10 @@ fn some_effects() -> Effects {
 #[test]
 fn every_effect_changes_the_image_unless_it_is_plain() {
     let plan = plan("shape-8");
-    let rig = Rig::new(&small_camera());
     let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
     // With glossy tiles and tape, every effect has something to change.
     let picture = |effects: &Effects| {
+        let rig = Rig::new(&effects.camera(&small_camera()).unwrap());
         let building = Building::new(&plan, look("tiles"), None, effects, 6);
         render(&rig, &building, pose, effects, 6)
     };
@@ -314,6 +314,7 @@ fn every_effect_changes_the_image_unless_it_is_plain() {
             "strut-bearing" => 20.0,
             // A random share of lamps might be zero.
             "lamps-out" => 1.0,
+            _ if knob.is_fixed() => *knob.allowed.end(),
             _ => *knob.default.end(),
         };
         effects.set(knob.name, other).unwrap();
@@ -323,6 +324,117 @@ fn every_effect_changes_the_image_unless_it_is_plain() {
             assert!(picture(&effects) == without, "{}", knob.name);
         }
     }
+}
+
+/// The classes of an image with these effects, and the pixels at which they differ from those without.
+fn changed(settings: &[(&str, f64)]) -> (Vec<PixelClass>, Vec<(PixelClass, PixelClass, usize)>) {
+    let plan = plan("shape-8");
+    let rig = Rig::new(&Camera::superscout());
+    let pose = Pose { position: [0.1, 5.3], heading: 1.3 };
+    let classes = |effects: &Effects| {
+        let building = Building::new(&plan, look("tiles"), Some(at_an_l(&plan)), effects, 6);
+        labels(&rig, &building, pose, effects)
+    };
+    let mut effects = Effects::plain();
+    effects.set("body", 1.0).unwrap();
+    let without = classes(&effects);
+    for (name, value) in settings {
+        effects.set(name, *value).unwrap();
+    }
+    let with = classes(&effects);
+    let pairs = without.into_iter().zip(&with).enumerate();
+    let changed = pairs.filter(|(_, (before, after))| before != *after);
+    let changed = changed.map(|(at, (before, after))| (before, *after, at)).collect();
+    (with, changed)
+}
+
+/// The pixel of an image 1280 wide.
+fn pixel(at: usize) -> [f64; 2] {
+    [at % 1280, at / 1280].map(|at| at as f64)
+}
+
+#[test]
+fn furniture_and_cables_hide_floor_and_stripe_and_are_neither() {
+    for (name, value, least) in [("furniture", 6.0, 5_000), ("cables", 10.0, 500)] {
+        let (_, changed) = changed(&[(name, value)]);
+        assert!(changed.len() > least, "{name}: {}", changed.len());
+        for (before, after, at) in changed {
+            assert_eq!(after, PixelClass::Other, "{name}: {before:?} {at}");
+        }
+    }
+}
+
+#[test]
+fn a_wide_strut_hides_the_same_number_of_pixels_at_any_distance_from_the_middle() {
+    let (classes, _) = changed(&[("strut-width", 14.0), ("strut-bearing", 90.0)]);
+    // Left is to the left and right in the image of a camera that looks up with ahead up.
+    for column in [240_usize, 400, 500, 780, 900, 1060] {
+        let hidden = (0..960).filter(|row| {
+            let [u, v] = [column as f64 - 640.0, *row as f64 - 480.0];
+            classes[row * 1280 + column] == PixelClass::Unseen && u.hypot(v) < 448.0
+        });
+        let rows: Vec<usize> = hidden.collect();
+        assert!((13..=15).contains(&rows.len()), "{column}: {}", rows.len());
+        assert!(rows[0].abs_diff(473) <= 1, "{column}: {}", rows[0]);
+    }
+}
+
+#[test]
+fn an_open_laptop_makes_the_outline_of_the_body_irregular() {
+    let camera = Camera::superscout();
+    let farthest = |settings: &[(&str, f64)]| {
+        let mut ranges = [0.0_f64; 36];
+        for (at, class) in changed(settings).0.iter().enumerate() {
+            if let (PixelClass::Unseen, Some([x, y])) = (class, camera.pixel_to_ground(pixel(at))) {
+                let sector = (y.atan2(x).to_degrees().rem_euclid(360.0) / 10.0) as usize;
+                ranges[sector % 36] = ranges[sector % 36].max(x.hypot(y));
+            }
+        }
+        ranges
+    };
+    let closed = farthest(&[]);
+    let open = farthest(&[("laptop", 0.06)]);
+    assert!(closed.iter().all(|range| (0.30..0.32).contains(range)), "{closed:?}");
+    let longer = open.iter().zip(closed).filter(|(open, closed)| **open > closed + 0.15).count();
+    let same =
+        open.iter().zip(closed).filter(|(open, closed)| (*open - closed).abs() < 1e-9).count();
+    assert!(longer >= 5 && same >= 15, "{longer} {same}: {open:?}");
+}
+
+#[test]
+fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_outside() {
+    let plan = plan("shape-8");
+    let pose = Pose { position: [0.1, 5.3], heading: 1.3 };
+    let brighter = |dark: f64, seed: u64| {
+        let mut effects = Effects::plain();
+        for (name, value) in
+            [("dark-rim", dark), ("holder", 0.0), ("zoom", 1.45), ("off-centre", -0.03)]
+        {
+            effects.set(name, value).unwrap();
+        }
+        let camera = effects.camera(&Camera::superscout()).unwrap();
+        let building = Building::new(&plan, look("tiles"), None, &effects, seed);
+        let picture = render(&Rig::new(&camera), &building, pose, &effects, seed);
+        let light = |radius: f64, angle: f64| {
+            let [u, v] = camera.middle();
+            let [u, v] = [u + radius * angle.cos(), v + radius * angle.sin()];
+            let inside = u >= 0.0 && v >= 0.0 && u < 1279.5 && v < 959.5;
+            inside.then(|| {
+                let pixel = picture.get_pixel(u.round() as u32, v.round() as u32).0;
+                pixel.map(u32::from).iter().sum::<u32>()
+            })
+        };
+        let seen: Vec<bool> = (0..720)
+            .filter_map(|step| {
+                let angle = f64::from(step).to_radians() / 2.0;
+                Some(light(645.0, angle)? > light(660.0, angle)?)
+            })
+            .collect();
+        seen.iter().filter(|brighter| **brighter).count() as f64 / seen.len() as f64
+    };
+    let mean = |dark: f64| (0..6).map(|seed| brighter(dark, seed)).sum::<f64>() / 6.0;
+    let [without, with] = [0.0, 0.65].map(mean);
+    assert!(without > 0.95 && (0.2..0.5).contains(&with), "{without} {with}");
 }
 
 #[test]

@@ -6,7 +6,8 @@ use clap::{
 };
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_robot::simulator::{BuildingLook, Effects, LOOKS};
+use toposlam_robot::simulator::{BuildingLook, EffectSettings, Effects, LOOKS};
+use toposlam_vision::camera::Camera;
 
 use super::CliError;
 
@@ -58,8 +59,11 @@ pub(super) struct Appearance {
     effects: EffectsChoice,
     /// Set one effect (repeatable); `toposlam render --help` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
-    effect: Vec<(String, f64)>,
+    effect: Vec<EffectSetting>,
 }
+
+/// An effect's name and value.
+pub(super) type EffectSetting = (String, f64);
 
 impl Appearance {
     /// The options that differ from the defaults.
@@ -73,15 +77,25 @@ impl Appearance {
 
     /// The effects drawn from a seed.
     pub(super) fn effects(&self, seed: u64) -> Result<Effects, CliError> {
-        let mut effects = match self.effects {
+        let effects = match self.effects {
             EffectsChoice::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
             EffectsChoice::None => Effects::plain(),
         };
-        for (name, value) in &self.effect {
-            effects.set(name, *value).map_err(|error| CliError::at("--effect", error))?;
-        }
-        Ok(effects)
+        Ok(settings(&self.effect)?.applied(effects))
     }
+}
+
+/// Settings of effects by name.
+pub(super) fn settings(given: &[EffectSetting]) -> Result<EffectSettings, CliError> {
+    let given = given.iter().map(|(name, value)| (name.as_str(), *value));
+    EffectSettings::new(given).map_err(|error| CliError::at("--effect", error))
+}
+
+/// The camera as effects make it.
+pub(super) fn camera_with(effects: &Effects, camera: &Camera) -> Result<Camera, CliError> {
+    effects.camera(camera).ok_or_else(|| {
+        CliError::at("--effect", "zoom and off-centre need a camera with a spherical mirror")
+    })
 }
 
 /// Parses the name of a look.
@@ -92,7 +106,8 @@ pub(super) fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
     })
 }
 
-fn read_setting(text: &str) -> Result<(String, f64), String> {
+/// Parses the setting of an effect.
+pub(super) fn read_setting(text: &str) -> Result<EffectSetting, String> {
     let setting = text
         .split_once('=')
         .and_then(|(name, value)| Some((name.trim().to_owned(), value.trim().parse().ok()?)));

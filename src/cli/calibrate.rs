@@ -1,4 +1,5 @@
-//! `toposlam calibrate IMAGE...`: finds centre, rim and focal length of a spherical mirror in images.
+//! `toposlam calibrate IMAGE...`: finds centre, rim and focal length of a spherical mirror in images, or
+//! takes the rim that is given.
 //! Section 3.
 
 use std::{
@@ -23,21 +24,24 @@ use super::{
 
 /// Find centre, rim and focal length of a spherical mirror in images
 ///
-/// Use a few images (PNG or JPEG) that one camera took from different places. The mirror must be
-/// brighter than its surroundings. The border of the image may cut off parts of its rim. The focal
-/// length is computed from the rim and from the mirror's radius and distance, which you measure.
+/// Use a few images (PNG or JPEG) that one camera took from different places; often one is enough. The
+/// border of the image may cut off parts of the mirror's rim, and what is seen just inside of the rim may
+/// be as dark as what is outside. If the images leave a doubt, there is no calibration: then take more
+/// images, or set the rim with --rim. The focal length is computed from the rim and from the mirror's
+/// radius and distance, which you measure.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
 Example:
   toposlam calibrate view-*.png --out camera.toml --picture fit.png \\
     --mask-out mask.png
+  toposlam calibrate view.png --rim 611,480,652 --out camera.toml
 
 Missing values are taken from --initial. Without it they are the SuperScout's:
 radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
     &[
-        (0, "the rim was found"),
-        (2, "bad usage or input, or no rim was found"),
+        (0, "the rim was found, or was given"),
+        (2, "bad usage or input, or no rim was found for certain"),
     ],
 ))]
 pub(super) struct CalibrateArguments {
@@ -47,6 +51,10 @@ pub(super) struct CalibrateArguments {
     /// Calibration file to write: .toml [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// The mirror's rim, if the images do not show it: its centre, to the right and down from the image's
+    /// first pixel, and its radius, in pixels. Check it with --picture
+    #[arg(long, value_name = "U,V,R", value_parser = parse_rim, allow_hyphen_values = true)]
+    rim: Option<GivenRim>,
     /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
     initial: Option<PathBuf>,
@@ -77,6 +85,13 @@ pub(super) struct CalibrateArguments {
     json: bool,
 }
 
+/// A rim that is set by hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct GivenRim {
+    centre: [f64; 2],
+    radius: f64,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum From {
     /// Image right is the robot's left
@@ -92,8 +107,10 @@ struct Report {
     image: [u32; 2],
     centre: [f64; 2],
     rim: f64,
+    /// `images` or `option`.
+    rim_from: &'static str,
     focal: f64,
-    /// The share of the full circle on which the rim was seen.
+    /// The share of the full circle on which the rim is seen.
     rim_seen: f64,
     /// Root mean square distance of the rim from the circle, in pixels.
     rim_spread: f64,
@@ -107,7 +124,14 @@ impl CalibrateArguments {
         let known = self.known()?;
         let images = self.read_images()?;
         let grey: Vec<GrayImage> = images.iter().map(grayscale).collect();
-        let rim = rim::find(&grey).map_err(|error| self.no_rim(error))?;
+        let rim = match &self.rim {
+            Some(given) => {
+                given.check(images[0].dimensions().into())?;
+                rim::given(&grey, given.centre, given.radius)
+            }
+            None => rim::find(&grey),
+        };
+        let rim = rim.map_err(|error| self.no_rim(error))?;
         let mask = match &self.mask_out {
             Some(path) => {
                 let found = unchanging::mask(&self.mask_name(path), &images, &rim);
@@ -214,6 +238,14 @@ impl CalibrateArguments {
 
     /// The failure if no rim was found.
     fn no_rim(&self, error: RimError) -> CliError {
+        let error = match error {
+            RimError::NoRim | RimError::Ambiguous { .. } | RimError::Uncertain { .. } => {
+                format!(
+                    "{error}; take more images from different places, or set it with --rim U,V,R"
+                )
+            }
+            RimError::NoImage | RimError::Sizes { .. } | RimError::TooSmall(_) => error.to_string(),
+        };
         match self.images.as_slice() {
             [path] => CliError::in_file(path, error),
             [first, others @ ..] => {
@@ -244,6 +276,7 @@ impl CalibrateArguments {
                     image: camera.image,
                     centre: mirror.centre,
                     rim: hundredth(rim.radius),
+                    rim_from: if self.rim.is_some() { "option" } else { "images" },
                     focal: mirror.focal,
                     rim_seen: hundredth(rim.seen),
                     rim_spread: hundredth(rim.spread),
@@ -256,9 +289,10 @@ impl CalibrateArguments {
         }
         let [u, v] = mirror.centre;
         writeln!(out, "centre  {u:.1}, {v:.1} pixels")?;
+        let from = if self.rim.is_some() { "given, " } else { "" };
         writeln!(
             out,
-            "rim     {:.1} pixels, seen over {:.0} % of the circle, within {:.2} pixels of it",
+            "rim     {:.1} pixels, {from}seen over {:.0} % of the circle, within {:.2} pixels of it",
             rim.radius,
             100.0 * rim.seen,
             rim.spread
@@ -272,6 +306,48 @@ impl CalibrateArguments {
             writeln!(out, "mask    keeps {:.0} % of the mirror", 100.0 * seen)?;
         }
         Ok(())
+    }
+}
+
+impl GivenRim {
+    /// Returns an error if the rim cannot be that of a mirror in an image of this size.
+    fn check(&self, image: [u32; 2]) -> Result<(), CliError> {
+        let [width, height] = image.map(f64::from);
+        let [u, v] = self.centre;
+        let refused = |cause: String| Err(CliError::at("--rim", cause));
+        if !(0.0..=width - 1.0).contains(&u) || !(0.0..=height - 1.0).contains(&v) {
+            return refused(format!(
+                "the centre {u},{v} is outside of the images, which are {width} by {height} pixels"
+            ));
+        }
+        let most = width.hypot(height);
+        if !(8.0..=most).contains(&self.radius) {
+            let radius = self.radius;
+            return refused(format!(
+                "the radius is {radius} pixels; it must be from 8 to {most:.0}"
+            ));
+        }
+        // The farthest corner of the image.
+        let corner = u.max(width - 1.0 - u).hypot(v.max(height - 1.0 - v));
+        if self.radius >= corner {
+            let radius = self.radius;
+            return refused(format!(
+                "the circle of radius {radius} around {u},{v} is nowhere in the images"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Parses a rim: centre and radius.
+fn parse_rim(text: &str) -> Result<GivenRim, String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
+        .collect();
+    match numbers.as_deref() {
+        Some(&[u, v, radius]) => Ok(GivenRim { centre: [u, v], radius }),
+        _ => Err("write three numbers of pixels: U,V,R, as in 611,480,652".to_owned()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `toposlam evaluate WHAT`: compares sensing, driving and whole runs with the ground truth.
 
+mod clutter;
 mod control;
 mod failing;
 mod laser;

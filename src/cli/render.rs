@@ -13,7 +13,7 @@ use toposlam_vision::camera::Camera;
 
 use super::{
     CliError, Outcome,
-    appearance::{Appearance, ImageSize},
+    appearance::{Appearance, ImageSize, camera_with},
     exit_codes::help_end,
     input, output,
     picture_file::encoded,
@@ -61,10 +61,10 @@ impl RenderArguments {
         }
         let world = input::read_world(&self.plan)?;
         let plan = input::floor_plan(&self.plan, &world)?;
-        let camera = self.camera()?;
+        let effects = self.appearance.effects(self.seed)?;
+        let camera = camera_with(&effects, &self.camera()?)?;
         let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
         let marker = if self.with_marker { Some(self.marked(plan, world.start)?) } else { None };
-        let effects = self.appearance.effects(self.seed)?;
         let building = Building::new(plan, self.appearance.look, marker, &effects, self.seed);
         if !building.has_floor(pose.position) {
             let [x, y] = pose.position;
@@ -128,7 +128,8 @@ fn after_help() -> String {
         // Writing to memory does not fail.
         let _ = writeln!(text, "  {title}");
         for knob in KNOBS.iter().filter(|knob| knob.scope == scope) {
-            let range = format!("{}..{}", knob.default.start(), knob.default.end());
+            let (start, end) = (knob.default.start(), knob.default.end());
+            let range = if start < end { format!("{start}..{end}") } else { start.to_string() };
             let _ = print_hanging(
                 &mut text,
                 &format!("    {:<14} {range:<12} ", knob.name),

@@ -32,7 +32,7 @@ use toposlam_vision::camera::Camera;
 
 use super::{
     CliError, Outcome,
-    appearance::{Appearance, ImageSize},
+    appearance::{Appearance, ImageSize, camera_with},
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
     input,
@@ -194,8 +194,8 @@ impl SimulateArguments {
             let log = self.recorder(&simulation, None)?;
             return self.simulate(&simulation, robot, None, Pictures::None, log, out);
         }
-        let camera = self.camera()?;
         let effects = self.appearance.effects(self.seed)?;
+        let camera = camera_with(&effects, &self.camera()?)?;
         let eyes = self.eyes(&camera)?;
         feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
         let robot = equipped(simulation.robot(&eyes, &self.appearance, &effects));

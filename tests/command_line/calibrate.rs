@@ -179,6 +179,60 @@ fn known_values_come_from_the_start_file_and_the_options() {
 }
 
 #[test]
+fn a_rim_that_is_set_by_hand_needs_no_rim_in_the_image() {
+    let folder = folder("calibrate-by-hand");
+    let flat = folder.join("flat.png");
+    RgbImage::from_pixel(640, 480, Rgb([90, 80, 70])).save(&flat).unwrap();
+    let out = folder.join("camera.toml");
+    let [out, flat] = [&out, &flat].map(|path| path.to_str().unwrap());
+    let seen = |image: &str, rim: &str| {
+        let report = stdout_of(["calibrate", image, "--rim", rim, "--json", "--out", out]);
+        let [report]: [Value; 1] = objects(&report).try_into().unwrap();
+        assert_eq!(report["rim_from"], "option");
+        let camera = read(Path::new(out));
+        let found = mirror(&camera);
+        let [u, v] = found.centre;
+        assert_eq!(camera.image, [640, 480]);
+        assert_eq!(format!("{u},{v},{:.1}", found.rim()), rim);
+        report["rim_seen"].as_f64().unwrap()
+    };
+    assert!(seen(flat, "305.5,240.25,326.0").abs() < f64::EPSILON);
+    let SphericalMirror { centre: [u, v], .. } = truth();
+    let rim = format!("{u},{v},{:.1}", truth().rim());
+    assert!(seen(&LABORATORY.files[0], &rim) > 0.6);
+    let text = stdout_of(["calibrate", flat, "--rim", "305.5,240.25,326", "--out", out]);
+    assert!(text.contains("rim     326.0 pixels, given, seen over 0 % of the circle"), "{text}");
+}
+
+#[test]
+fn a_rim_that_cannot_be_that_of_a_mirror_in_the_image_is_refused() {
+    let folder = folder("calibrate-no-rim");
+    let flat = folder.join("flat.png");
+    RgbImage::from_pixel(640, 480, Rgb([90, 80, 70])).save(&flat).unwrap();
+    let cases = [
+        (
+            "640,240,200",
+            "--rim: the centre 640,240 is outside of the images, which are 640 by 480 pixels",
+        ),
+        ("-1,240,200", "--rim: the centre -1,240 is outside of the images"),
+        ("320,240,-5", "--rim: the radius is -5 pixels; it must be from 8 to 800"),
+        ("320,240,900", "--rim: the radius is 900 pixels; it must be from 8 to 800"),
+        ("320,240,500", "--rim: the circle of radius 500 around 320,240 is nowhere in the images"),
+        (
+            "320,240",
+            "invalid value '320,240' for '--rim <U,V,R>': write three numbers of pixels: U,V,R, as in 611,480,652",
+        ),
+        ("320,240,inf", "invalid value '320,240,inf' for '--rim <U,V,R>'"),
+    ];
+    for (rim, message) in cases {
+        let output = run(["calibrate", flat.to_str().unwrap(), "--rim", rim]);
+        assert_eq!(output.status.code(), Some(2), "{rim}");
+        assert!(stderr(&output).contains(message), "{rim}: {}", stderr(&output));
+        assert!(stdout(&output).is_empty(), "{rim}");
+    }
+}
+
+#[test]
 fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
     let folder = folder("calibrate-rejected");
     let inputs = super::folder("calibrate-rejected-inputs");
@@ -214,7 +268,7 @@ fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
     let out = folder.join("camera.toml").to_str().unwrap().to_owned();
     let mask = folder.join("mask.png").to_str().unwrap().to_owned();
     let cases: [(&[&str], String); 21] = [
-        (&[&flat], format!("{flat}: no mirror is seen in the images: no circle is brighter inside than outside over a quarter of its circumference")),
+        (&[&flat], format!("{flat}: no mirror is seen in the images: no circle has an edge along enough of its circumference; take more images from different places, or set it with --rim U,V,R")),
         (&[&flat, &flat], format!("{flat} and 1 more: no mirror is seen")),
         (&[image, &small], format!("{small}: the image is 320 by 240 pixels, but {image} is 640 by 480")),
         (&[&tiny], format!("{tiny}: the image is 4 by 4 pixels; its sides should be from 16 to 16384")),

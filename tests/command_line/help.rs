@@ -27,7 +27,10 @@ const VERBS: [(&str, &[&str]); 19] = [
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
-    ("calibrate", &["--out", "--initial", "--mirror-radius", "--picture", "--mask-out", "--json"]),
+    (
+        "calibrate",
+        &["--out", "--rim", "--initial", "--mirror-radius", "--picture", "--mask-out", "--json"],
+    ),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
     ("evaluate", &["vision", "control", "runs", "laser"]),

@@ -2,6 +2,7 @@
 
 pub mod bound;
 pub mod calibration;
+pub mod clutter;
 mod colour_learning;
 mod equipment;
 pub mod failure_groups;

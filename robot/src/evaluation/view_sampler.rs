@@ -17,7 +17,7 @@ use super::{
     rendered_view::{RenderedView, WhichEffects},
     scene_class::FORMS,
 };
-use crate::simulator::{BuildingLook, Effects, Pose};
+use crate::simulator::{BuildingLook, EffectSettings, Effects, Pose};
 use crate::truth::{JunctionTruth, angle};
 
 /// Views of a junction lie from this distance before its turning point to this distance behind it,
@@ -70,6 +70,8 @@ pub struct ViewSampler {
     pub sizes: Vec<[u32; 2]>,
     /// The effects.
     pub effects: WhichEffects,
+    /// Effects that are set in all views but those to learn from.
+    pub settings: EffectSettings,
 }
 
 /// Why a view cannot be sampled.
@@ -109,6 +111,7 @@ impl ViewSampler {
             looks: looks.into_iter().collect(),
             sizes: vec![size],
             effects: WhichEffects::Default,
+            settings: EffectSettings::default(),
         })
     }
 
@@ -189,14 +192,18 @@ impl ViewSampler {
         let size = number.checked_rem(self.sizes.len() as u64).ok_or(ViewError::NoSize)?;
         let look = self.looks.choose(&mut chance).copied().ok_or(ViewError::NoLook)?;
         let drawn = Effects::drawn(&mut chance);
+        let effects = match self.effects {
+            WhichEffects::Default => drawn,
+            WhichEffects::None => Effects::plain(),
+        };
         let view = RenderedView {
             number,
             plan_name,
             plan,
             look,
-            effects: match self.effects {
-                WhichEffects::Default => drawn,
-                WhichEffects::None => Effects::plain(),
+            effects: match purpose {
+                ViewPurpose::Learning => effects,
+                ViewPurpose::Single | ViewPurpose::Visit => self.settings.applied(effects),
             },
             marker: None,
             pose: Pose { position: [0.0; 2], heading: 0.0 },

@@ -1,14 +1,18 @@
-//! A building: walls with doors and posters, the stripe along them, lamps, and the marker. Section 2.4.
+//! A building: walls with doors and posters, the stripe along them, lamps, furniture, cables, and the marker.
+//! Section 2.4.
 
 use rand::RngExt;
 use toposlam_model::embedded_graph::Dart;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 use toposlam_vision::colour::StripeKind;
 
+use super::cables::Cables;
 use super::effects::Effects;
+use super::furniture::{Block, furniture};
 use super::light_map::LightMap;
 use super::lights::{CEILING, Lamp, Lights};
 use super::looks::{BuildingLook, linear};
+use super::overhead::Overhead;
 use super::random_stream::{StreamPurpose, about, clouds, stream};
 use super::squares::Squares;
 use super::walls::{BuildingWall, walls};
@@ -42,6 +46,9 @@ pub struct Building {
     pub(super) texture: f32,
     pub(super) gloss: f32,
     scuffs: f32,
+    pub(super) furniture: Vec<Block>,
+    pub(super) cables: Cables,
+    pub(super) overhead: Overhead,
 }
 
 /// The look's colours, in linear light.
@@ -161,6 +168,9 @@ impl Building {
             texture: effects.texture as f32,
             gloss: (effects.gloss * look.gloss) as f32,
             scuffs: effects.scuffs as f32,
+            furniture: furniture(&walls, effects.furniture, plan.hallway_width(), seed),
+            cables: Cables::new(&floors, effects.cables, seed),
+            overhead: Overhead::new(effects.dark_rim, seed),
             floors,
             walls,
             faces,

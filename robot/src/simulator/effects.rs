@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use rand::{Rng, RngExt};
 use thiserror::Error;
+use toposlam_vision::camera::{Camera, OpticsModel, SphericalMirror};
 
 /// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum EffectScope {
 }
 
 /// An effect's name, meaning and range.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Knob {
     /// The name on the command line.
     pub name: &'static str,
@@ -29,6 +30,14 @@ pub struct Knob {
     pub allowed: RangeInclusive<f64>,
     /// The range from which [`Effects::drawn`] draws.
     pub default: RangeInclusive<f64>,
+}
+
+impl Knob {
+    /// Whether [`Effects::drawn`] leaves it at its plain value.
+    #[must_use]
+    pub fn is_fixed(&self) -> bool {
+        self.default == (self.plain..=self.plain)
+    }
 }
 
 /// Why an effect cannot be set.
@@ -118,18 +127,34 @@ knobs! {
         "Share of the doors without tape across them.";
     posters "posters" Building 0.0 0.0..=10.0, 0.0..=3.0,
         "Posters per 10 m of wall.";
+    furniture "furniture" Building 0.0 0.0..=10.0, 0.0..=0.0,
+        "Cabinets, tables and chairs per 10 m of wall.";
+    cables "cables" Building 0.0 0.0..=20.0, 0.0..=0.0,
+        "Cables on the floor per 10 m of hallway.";
+    dark_rim "dark-rim" Building 0.0 0.0..=1.0, 0.0..=0.0,
+        "Share of the rim just inside of which dark furniture is seen.";
     body "body" Picture 0.0 0.0..=1.0, 1.0..=1.0,
         "Whether the robot's body is visible: 0.5 or more is yes.";
+    laptop "laptop" Picture 0.0 0.0..=0.15, 0.0..=0.0,
+        "How far an open laptop sticks out of the body, in metres; 0 is a closed one.";
     lens "lens" Picture 0.0 0.0..=0.03, 0.012..=0.016,
         "Radius of the camera visible in the middle of the mirror, in metres.";
     struts "struts" Picture 0.0 0.0..=20.0, 1.5..=4.0,
         "Angle hidden by each of the mirror's two struts, in degrees.";
     strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
         "Direction of the struts, in degrees from ahead to the left.";
+    strut_width "strut-width" Picture 0.0 0.0..=60.0, 0.0..=0.0,
+        "Least width of each strut, in pixels of an image 1280 wide.";
+    holder "holder" Picture 0.03 0.0..=0.2, 0.03..=0.03,
+        "Width of the dark ring around the mirror, as a share of the mirror's radius.";
+    zoom "zoom" Picture 1.0 0.5..=2.0, 1.0..=1.0,
+        "Magnification; from 1.07 the image crops the mirror. 1.45 is a rim of 0.68 of its height.";
+    off_centre "off-centre" Picture 0.0 -0.2..=0.2, 0.0..=0.0,
+        "How far the mirror is right of the image's middle, as a share of the image's height.";
     exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.3,
         "Overexposure, in stops.";
     cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
-        "Yellow cast: missing share of blue; a fifth of it is missing in green.";
+        "Yellow cast: missing share of blue, and a fifth of it of green. 0.77 halves blue's level.";
     tint "tint" Picture 0.0 -0.5..=0.5, -0.08..=0.08,
         "Green tint, or magenta below 0: change of green, as a share.";
     vignetting "vignetting" Picture 0.0 0.0..=1.0, 0.1..=0.5,
@@ -163,6 +188,9 @@ impl Effects {
 
     fn draw(&mut self, rng: &mut impl Rng, which: impl Fn(&Knob) -> bool) {
         for (knob, value) in KNOBS.iter().zip(self.values()) {
+            if knob.is_fixed() {
+                continue;
+            }
             // Always draw, so that the value of one effect does not depend on which others are
             // used.
             let drawn = rng.random_range(knob.default.clone());
@@ -170,6 +198,27 @@ impl Effects {
                 *value = drawn;
             }
         }
+    }
+
+    /// The camera as `zoom` and `off-centre` make it; `None` if it has no mirror that they could crop.
+    #[must_use]
+    pub fn camera(&self, camera: &Camera) -> Option<Camera> {
+        if [self.zoom - 1.0, self.off_centre].into_iter().all(|off| off.abs() < f64::EPSILON) {
+            return Some(camera.clone());
+        }
+        let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return None };
+        let [width, height] = camera.image.map(f64::from);
+        let middle = [(width - 1.0) / 2.0, (height - 1.0) / 2.0];
+        let shift = [self.off_centre * height, 0.0];
+        let zoomed = |axis: usize| {
+            middle[axis] + self.zoom * (mirror.centre[axis] - middle[axis]) + shift[axis]
+        };
+        let optics = OpticsModel::SphericalMirror(SphericalMirror {
+            centre: [zoomed(0), zoomed(1)],
+            focal: self.zoom * mirror.focal,
+            ..*mirror
+        });
+        Some(Camera { optics, mask: None, ..camera.clone() })
     }
 
     /// All effects and their values.
@@ -193,6 +242,44 @@ impl Effects {
         }
         *place = value;
         Ok(())
+    }
+}
+
+/// Values of some effects.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EffectSettings(Vec<(&'static Knob, f64)>);
+
+impl EffectSettings {
+    /// Settings by the names of effects.
+    ///
+    /// # Errors
+    /// Returns an error as [`Effects::set`] does.
+    pub fn new<'n>(settings: impl IntoIterator<Item = (&'n str, f64)>) -> Result<Self, KnobError> {
+        let mut effects = Effects::plain();
+        let settings = settings.into_iter().map(|(name, value)| {
+            effects.set(name, value)?;
+            let knob = KNOBS.iter().find(|knob| knob.name == name);
+            Ok((knob, value))
+        });
+        let settings: Vec<_> = settings.collect::<Result<_, KnobError>>()?;
+        Ok(Self(settings.into_iter().filter_map(|(knob, value)| Some((knob?, value))).collect()))
+    }
+
+    /// These effects with the settings.
+    #[must_use]
+    pub fn applied(&self, mut effects: Effects) -> Effects {
+        for (place, knob) in effects.values().into_iter().zip(KNOBS) {
+            let set = self.0.iter().rev().find(|(other, _)| other.name == knob.name);
+            if let Some(&(_, value)) = set {
+                *place = value;
+            }
+        }
+        effects
+    }
+
+    /// The settings, in order.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+        self.0.iter().map(|(knob, value)| (knob.name, *value))
     }
 }
 
@@ -235,14 +322,38 @@ mod tests {
         let values = effects.values().into_iter().zip(other.values());
         for (knob, (value, other)) in KNOBS.iter().zip(values) {
             let same = value.total_cmp(other).is_eq();
-            // Whether the robot sees itself is not random.
-            assert_eq!(
-                same,
-                knob.scope == EffectScope::Building || knob.name == "body",
-                "{}",
-                knob.name
-            );
+            let random = knob.default.start() < knob.default.end();
+            assert_eq!(same, knob.scope == EffectScope::Building || !random, "{}", knob.name);
         }
+    }
+
+    #[test]
+    fn effects_that_are_off_by_default_take_no_random_numbers() {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+        let mut counted = rng.clone();
+        let _ = Effects::drawn(&mut rng);
+        let fixed = ["furniture", "cables", "dark-rim", "laptop", "strut-width", "holder", "zoom"];
+        let fixed = fixed.into_iter().chain(["off-centre"]);
+        for knob in KNOBS.iter().filter(|knob| fixed.clone().all(|name| name != knob.name)) {
+            let _: f64 = counted.random_range(knob.default.clone());
+        }
+        assert_eq!(rng, counted);
+    }
+
+    #[test]
+    fn zoom_and_offset_place_the_rim_so_that_the_image_crops_it_on_three_sides() {
+        let mut effects = Effects::plain();
+        let camera = Camera::superscout();
+        assert_eq!(effects.camera(&camera), Some(camera.clone()));
+        effects.set("zoom", 1.45).unwrap();
+        effects.set("off-centre", -0.03).unwrap();
+        let cropped = effects.camera(&camera).unwrap();
+        let OpticsModel::SphericalMirror(mirror) = cropped.optics else { panic!() };
+        let ([u, v], rim) = (mirror.centre, mirror.rim());
+        assert!((rim / 960.0 - 0.68).abs() < 0.001, "{rim}");
+        assert!((u - 611.4).abs() < 0.1 && (v - 480.2).abs() < 0.1, "{u} {v}");
+        let sides = [u - rim < 0.0, v - rim < 0.0, u + rim > 1279.0, v + rim > 959.0];
+        assert_eq!(sides, [true, true, false, true]);
     }
 
     #[test]

@@ -305,6 +305,8 @@ mod tests {
         assert_eq!(pixel(&[("exposure", -2.0)]), [response(0.05); 3]);
         let yellow = [0.2, 0.2 * 0.9, 0.2 * 0.5].map(response);
         assert_eq!(pixel(&[("cast", 0.5)]), yellow);
+        let [red, _, blue] = pixel(&[("cast", 0.77)]).map(f64::from);
+        assert!((blue / red - 0.5).abs() < 0.02, "{blue} {red}");
         assert_eq!(pixel(&[("glare", 0.1)]), [response(0.2); 3]);
     }
 

@@ -24,9 +24,13 @@ pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> 
             Surface::Floor => PixelClass::Floor,
             Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => PixelClass::Stripe,
             Surface::Marker => PixelClass::Marker,
-            Surface::Wall(..) | Surface::Ceiling | Surface::Lamp | Surface::Nothing => {
-                PixelClass::Other
-            }
+            Surface::Wall(..)
+            | Surface::Cable
+            | Surface::Furniture(_)
+            | Surface::Overhead(_)
+            | Surface::Ceiling
+            | Surface::Lamp
+            | Surface::Nothing => PixelClass::Other,
             Surface::Robot(_) | Surface::Holder => PixelClass::Unseen,
         })
         .collect()

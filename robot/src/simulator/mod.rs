@@ -10,17 +10,20 @@
 
 mod body;
 mod building;
+mod cables;
 mod cameras;
 mod config;
 mod effects;
 mod exposure;
 mod faults;
+mod furniture;
 mod labels;
 mod light_map;
 mod lights;
 mod looks;
 mod motion;
 mod optics;
+mod overhead;
 mod random_stream;
 mod renderer;
 mod rig;
@@ -31,12 +34,13 @@ mod squares;
 mod surfaces;
 mod surroundings;
 mod walls;
+mod world_ray;
 
 pub use crate::pose::Pose;
 pub use building::Building;
 pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
 pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
-pub use effects::{EffectScope, Effects, KNOBS, Knob, KnobError};
+pub use effects::{EffectScope, EffectSettings, Effects, KNOBS, Knob, KnobError};
 pub use faults::{FAULTS, FaultError, FaultKind, RobotFault};
 pub use labels::{label_mask, labels};
 pub use looks::{BuildingLook, Colour, FloorCovering, LOOKS};

@@ -22,6 +22,9 @@ pub(super) enum StreamPurpose {
     Surfaces,
     People,
     Ranges,
+    Blocks,
+    Cables,
+    Overhead,
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.

@@ -6,10 +6,12 @@ use super::body::Body;
 use super::building::Building;
 use super::effects::Effects;
 use super::exposure::{RowRenderer, compressed, expose};
+use super::furniture::BlocksAround;
 use super::optics::RayPath;
 use super::rig::{PixelRay, Rig};
 use super::sight_lines::SightLines;
-use super::surfaces::{BuildingView, Surface, WorldRay};
+use super::surfaces::{BuildingView, Surface};
+use super::world_ray::WorldRay;
 use crate::pose::Pose;
 
 /// The number of rays along and across a pixel in which several surfaces meet.
@@ -17,9 +19,6 @@ const FINE: usize = 3;
 
 /// The share of the light that reaches the camera past the mirror.
 const BESIDE_MIRROR: f32 = 0.35;
-
-/// Radius of the mirror's holder, as a multiple of the mirror's.
-const HOLDER: f32 = 1.03;
 
 /// The image of a building that a rig takes from a pose.
 ///
@@ -76,25 +75,33 @@ impl<'a> Shot<'a> {
         let turns = (pose.heading / std::f64::consts::TAU).rem_euclid(1.0);
         Self {
             rig,
-            view: BuildingView { building, lines },
-            body: Body::new(rig.optics.height, effects),
+            view: BuildingView {
+                building,
+                lines,
+                blocks: BlocksAround::new(pose.position, rig.off_axis, &building.furniture),
+            },
+            body: Body::new(rig.optics.height, rig.image()[0], effects),
             position,
             heading: [cosine as f32, sine as f32],
             turn: (turns * 65_536.0) as u32 as u16,
             light: building.light.on_floor(position),
-            holder: rig.optics.rim() as f32 * HOLDER,
+            holder: rig.optics.rim() as f32 * (1.0 + effects.holder) as f32,
         }
     }
 
     /// The surface in the middle of a pixel.
     pub(super) fn surface(&self, u: u32, v: u32) -> Surface {
         let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
-        if let Some(part) = self.body.met(ray) {
+        let from_middle = || self.off_middle([u as f32, v as f32]);
+        if let Some(part) = self.body.met(ray, from_middle) {
             Surface::Robot(part)
         } else if ray.by == RayPath::Direct {
             Surface::Holder
         } else {
-            self.view.surface(&self.world(ray))
+            let ray = self.world(ray);
+            let overhead = self.view.building.overhead.met(&ray);
+            overhead
+                .map_or_else(|| self.view.surface(&ray), |piece| Surface::Overhead(piece.number))
         }
     }
 
@@ -102,7 +109,7 @@ impl<'a> Shot<'a> {
     /// this size.
     #[inline]
     fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
-        if let Some(part) = self.body.met(ray) {
+        if let Some(part) = self.body.met(ray, || self.off_middle(place)) {
             let light = self.light;
             return (Surface::Robot(part), part.colour().map(|channel| channel * light));
         }
@@ -113,7 +120,11 @@ impl<'a> Shot<'a> {
             let (surface, colour) = self.view.seen(&self.world(ray), || [0.0; 2]);
             return (surface, colour.map(|channel| channel * BESIDE_MIRROR));
         }
-        self.view.seen(&self.world(ray), || {
+        let world = self.world(ray);
+        if let Some(piece) = self.view.building.overhead.met(&world) {
+            return (Surface::Overhead(piece.number), piece.colour());
+        }
+        self.view.seen(&world, || {
             let from_middle = self.off_middle(place);
             let [x, y, down] = ray.direction;
             let range = -ray.origin[2] / down * (x * x + y * y).sqrt();

@@ -1,9 +1,11 @@
 //! The surface that a ray meets in a building, and its colour there.
 
 use super::building::{Building, HEIGHT, WallPart};
+use super::furniture::{BlocksAround, MetBlock};
 use super::looks::FloorCovering;
 use super::random_stream::{clouds, floor, speckle};
 use super::sight_lines::SightLines;
+use super::world_ray::WorldRay;
 
 /// Light on the ceiling, as a share of that on the floor.
 const CEILING_LIGHT: f32 = 0.6;
@@ -17,7 +19,12 @@ pub(super) enum Surface {
     Floor,
     Tape,
     Marker,
+    Cable,
     Wall(u32, WallPart),
+    /// A face of a piece of furniture.
+    Furniture(u32),
+    /// Dark furniture just inside of the rim.
+    Overhead(u32),
     Ceiling,
     Lamp,
     Robot(super::body::RobotPart),
@@ -39,6 +46,7 @@ impl Surface {
             Self::Lamp => 4,
             Self::Holder => 5,
             Self::Nothing => 6,
+            Self::Cable => 7,
             Self::Robot(part) => 8 + part as u32,
             Self::Wall(wall, part) => {
                 let part = match part {
@@ -51,17 +59,10 @@ impl Surface {
                 };
                 16 + 8 * wall + part
             }
+            Self::Furniture(face) => 1 << 31 | face,
+            Self::Overhead(piece) => 1 << 30 | piece,
         }
     }
-}
-
-/// A ray in the building's coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct WorldRay {
-    pub(super) origin: [f32; 3],
-    pub(super) direction: [f32; 3],
-    /// Direction counter-clockwise from east, in 1/65,536 of a turn.
-    pub(super) turn: u16,
 }
 
 /// The end of a ray.
@@ -76,11 +77,11 @@ pub(super) enum RayEnd {
 /// Size of a pixel on the floor, along the ray seen from above and across it, in metres.
 pub(super) type Footprint = [f32; 2];
 
-/// A building and the sight lines from one place in it.
-#[derive(Clone, Copy)]
+/// A building, and the sight lines and the furniture from one place in it.
 pub(super) struct BuildingView<'a> {
     pub(super) building: &'a Building,
     pub(super) lines: &'a SightLines,
+    pub(super) blocks: BlocksAround<'a>,
 }
 
 impl BuildingView<'_> {
@@ -121,10 +122,27 @@ impl BuildingView<'_> {
         }
     }
 
+    /// The furniture that a ray meets before the first wall on its way.
+    #[inline]
+    fn furniture(&self, ray: &WorldRay, wall: Option<(f32, u32, f32)>) -> Option<MetBlock> {
+        let block = self.blocks.first(ray)?;
+        wall.is_none_or(|(length, ..)| block.length < length).then_some(block)
+    }
+
+    /// The light that comes back from a block.
+    fn block_light(&self, block: &MetBlock) -> [f32; 3] {
+        let light = self.building.light.on_floor(block.place);
+        block.colour.map(|channel| channel * light)
+    }
+
     /// The surface at the end of a ray.
     #[inline]
     pub(super) fn surface(&self, ray: &WorldRay) -> Surface {
-        match Self::end(ray, self.wall(ray)) {
+        let wall = self.wall(ray);
+        if let Some(block) = self.furniture(ray, wall) {
+            return Surface::Furniture(block.face);
+        }
+        match Self::end(ray, wall) {
             RayEnd::Floor { place } => self.on_floor(place),
             RayEnd::Wall { wall, along, height } => {
                 let face = &self.building.faces[wall as usize];
@@ -143,10 +161,14 @@ impl BuildingView<'_> {
         footprint: impl Fn() -> Footprint,
     ) -> (Surface, [f32; 3]) {
         let wall = self.wall(ray);
+        if let Some(block) = self.furniture(ray, wall) {
+            return (Surface::Furniture(block.face), self.block_light(&block));
+        }
         match Self::end(ray, wall) {
             RayEnd::Floor { place } => {
                 let surface = self.on_floor(place);
                 let mut colour = match surface {
+                    Surface::Cable => self.building.cables.at(place).unwrap_or_default(),
                     Surface::Marker => self.building.colours.marker,
                     Surface::Tape => self.building.tape_colour(place),
                     _ => self.floor_colour(place, ray, footprint),
@@ -166,6 +188,9 @@ impl BuildingView<'_> {
 
     #[inline]
     fn on_floor(&self, place: [f32; 2]) -> Surface {
+        if self.building.cables.at(place).is_some() {
+            return Surface::Cable;
+        }
         if self.building.marker.is_some_and(|marker| marker.holds(place.map(f64::from))) {
             return Surface::Marker;
         }
@@ -240,6 +265,23 @@ impl BuildingView<'_> {
         (Surface::Ceiling, ceiling)
     }
 
+    /// The light of the furniture that a ray meets after its reflection on the floor.
+    fn reflected_furniture(
+        &self,
+        ray: &WorldRay,
+        wall: Option<(f32, u32, f32)>,
+    ) -> Option<[f32; 3]> {
+        let [x, y, height] = ray.origin;
+        let length = -height / ray.direction[2];
+        let reflected = WorldRay {
+            origin: [x + length * ray.direction[0], y + length * ray.direction[1], 0.0],
+            direction: [ray.direction[0], ray.direction[1], -ray.direction[2]],
+            turn: ray.turn,
+        };
+        let wall = wall.map(|(before, number, along)| (before - length, number, along));
+        self.furniture(&reflected, wall).map(|block| self.block_light(&block))
+    }
+
     /// Adds the reflection on the floor: the ray continues below it in the mirrored building.
     fn add_reflection(&self, ray: &WorldRay, wall: Option<(f32, u32, f32)>, colour: &mut [f32; 3]) {
         let gloss = self.building.gloss;
@@ -251,11 +293,12 @@ impl BuildingView<'_> {
         let share = gloss * (0.04 + 0.6 * square * square * graze);
         let above = HEIGHT + ray.origin[2];
         let up = above / down;
-        let mirrored = match wall {
-            Some((length, wall, along)) if length < up => {
+        let mirrored = match (self.reflected_furniture(ray, wall), wall) {
+            (Some(light), _) => light,
+            (None, Some((length, wall, along))) if length < up => {
                 self.on_wall(wall, along, length * down - ray.origin[2]).1
             }
-            _ => {
+            (None, _) => {
                 let place = [0, 1].map(|axis| ray.origin[axis] + up * ray.direction[axis]);
                 self.on_ceiling(place, 0.1 + 0.6 * (1.0 - gloss).max(0.0)).1
             }

@@ -20,17 +20,19 @@ use toposlam_robot::{
         report::{TargetStatus, VisionReport},
         view_sampler::ViewSampler,
     },
-    simulator::{BuildingLook, LOOKS},
+    simulator::{BuildingLook, Effects, LOOKS},
 };
 use toposlam_vision::camera::Camera;
 
 use super::{
-    failing,
+    clutter, failing,
     report::{EvaluationHeader, Printer},
 };
 use crate::cli::{
     CliError, Outcome,
-    appearance::{EffectsChoice, ImageSize, looks},
+    appearance::{
+        EffectSetting, EffectsChoice, ImageSize, camera_with, looks, read_setting, settings,
+    },
     exit_codes::help_end,
     input, output,
     progress::Progress,
@@ -54,6 +56,8 @@ Examples:
   toposlam evaluate vision --views 20000 --calibration-errors --json
   toposlam evaluate vision --plan worlds/shape-8.toml --out-dir failing
   toposlam evaluate vision --view 17 -o seventeen  one view, stage by stage
+  toposlam evaluate vision --clutter               right, unknown and wrong
+  toposlam evaluate vision --effect furniture=5 --out-dir failing
 
 A target is met if the 95 % interval of the rate is within it, missed if the
 interval is beyond it, and otherwise not shown: the sample is too small. A target
@@ -87,6 +91,14 @@ pub(super) struct EvaluateVisionArguments {
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
+    /// Set one effect in every view (repeatable); `toposlam render --help` lists them. Colours are learned
+    /// without it
+    #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
+    effect: Vec<EffectSetting>,
+    /// Measure single views without clutter, with each kind of it, and with all kinds: furniture, cables, wide
+    /// struts, an open laptop, a yellow cast, a cropped mirror, a dark rim
+    #[arg(long, conflicts_with_all = ["visits", "effect", "calibration_errors", "view", "out_dir"])]
+    clutter: bool,
     /// Measure everything again with a camera that is 5 pixels, 2 cm and 1 degree off its calibration
     #[arg(long)]
     calibration_errors: bool,
@@ -112,6 +124,7 @@ impl EvaluateVisionArguments {
         }
         let views = self.source()?;
         match self.view {
+            _ if self.clutter => clutter::measure(judge, &views, self.views, self.json, out),
             Some(number) => self.one(&views, number, out),
             None => self.all(&views, out),
         }
@@ -226,13 +239,17 @@ impl EvaluateVisionArguments {
                 EffectsChoice::Default => WhichEffects::Default,
                 EffectsChoice::None => WhichEffects::None,
             },
+            settings: settings(&self.effect)?,
         })
     }
 }
 
+/// The judge of views, with the camera as their effects make it.
 fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, CliError> {
+    let effects = views.settings.applied(Effects::plain());
+    let camera = camera_with(&effects, &Camera::superscout())?;
     let progress = Progress::new("learning colours", "looks")?;
-    let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
+    let judge = Judge::new(&camera, views, calibrations, &progress);
     progress.finish();
     judge.map_err(|error| match error {
         JudgingError::Learning(error) => unlearned(error),

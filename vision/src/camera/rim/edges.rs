@@ -1,0 +1,93 @@
+//! The edges of an image along a circle: on each bearing the steepest one near the circle, of either
+//! sign.
+
+use std::f64::consts::TAU;
+
+use super::{brightness::Brightness, circle::Circle};
+
+/// The number of bearings on which edges are searched for.
+pub(super) const BEARINGS: usize = 1440;
+
+/// An edge is the difference between means over this number of half units, inside and outside.
+const WIDE: usize = 5;
+
+/// The least height of an edge, at a mean brightness of 64.
+const LEAST: f64 = 3.0;
+
+/// The radius at which a unit is a pixel. In a larger image, a unit is more.
+const UNIT_RADIUS: f64 = 450.0;
+
+/// A steep edge near a circle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CircleEdge {
+    pub(super) at: [f64; 2],
+    /// How much brighter it is inside of the circle than outside.
+    pub(super) fall: f64,
+}
+
+/// The edges near a circle.
+pub(super) struct CircleEdges {
+    pub(super) edges: Vec<CircleEdge>,
+    /// The number of bearings on which the circle is in the image.
+    pub(super) visible: usize,
+}
+
+/// The length in pixels that an edge of a circle is measured by.
+pub(super) fn unit(circle: &Circle) -> f64 {
+    (circle.radius / UNIT_RADIUS).max(1.0)
+}
+
+impl CircleEdges {
+    /// On one bearing in `every`, the steepest edge at most `reach` units from a circle.
+    pub(super) fn near(image: &Brightness, circle: &Circle, reach: f64, every: usize) -> Self {
+        let unit = unit(circle);
+        let steps = (2.0 * reach) as usize + WIDE;
+        let (mut edges, mut visible) = (Vec::new(), 0);
+        for bearing in (0..BEARINGS).step_by(every) {
+            let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
+            // The mean over a short arc, from inside to outside in half units.
+            let ring = |step: usize| {
+                let radius = circle.radius + 0.5 * unit * (step as f64 - steps as f64);
+                let sum: Option<f64> = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0]
+                    .iter()
+                    .map(|along| {
+                        let (out, along) = (radius, along * unit);
+                        let place = [out * cosine - along * sine, out * sine + along * cosine];
+                        image.at([circle.centre[0] + place[0], circle.centre[1] + place[1]])
+                    })
+                    .sum();
+                sum.map(|sum| sum / 7.0)
+            };
+            let profile: Vec<Option<f64>> = (0..=2 * steps).map(ring).collect();
+            visible +=
+                usize::from(profile[steps - WIDE..=steps + WIDE].iter().all(Option::is_some));
+            let mean = |from: usize| {
+                let sum: Option<f64> = profile[from..from + WIDE].iter().copied().sum();
+                sum.map(|sum| sum / WIDE as f64)
+            };
+            let fall = |at: usize| Some(mean(at - WIDE)? - mean(at + 1)?);
+            let height = |at: usize| fall(at).map_or(0.0, f64::abs);
+            let steepest = (WIDE..profile.len() - WIDE)
+                .max_by(|&one, &other| height(one).total_cmp(&height(other)));
+            let Some(steepest) = steepest.filter(|&at| height(at) >= LEAST) else { continue };
+            if steepest == WIDE || steepest + WIDE + 1 == profile.len() {
+                continue;
+            }
+            // Interpolated between the half units: the top of a parabola.
+            let [before, top, after] = [steepest - 1, steepest, steepest + 1].map(height);
+            let curve = before - 2.0 * top + after;
+            let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
+            let step = steepest as f64 - steps as f64 + shift.clamp(-1.0, 1.0);
+            let radius = circle.radius + 0.5 * unit * step;
+            let [u, v] = circle.centre;
+            let at = [u + radius * cosine, v + radius * sine];
+            edges.push(CircleEdge { at, fall: fall(steepest).unwrap_or_default() });
+        }
+        Self { edges, visible }
+    }
+
+    /// The places of the edges.
+    pub(super) fn places(&self) -> Vec<[f64; 2]> {
+        self.edges.iter().map(|edge| edge.at).collect()
+    }
+}
