@@ -60,12 +60,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     for [turn, shift] in FRAMES {
         let motion = Motion { turn: turn.to_radians(), shift: [shift; 2] };
         let moved = scans.iter().map(|(scan, odometry)| (scan, motion.pose(odometry)));
-        print_row([turn, shift, 0.0], &marked, &derived(moved, params));
+        print_row([turn, shift, 0.0], &marked, &derived(moved, &params));
     }
     for drift in DRIFTS {
         let drifted = drifted(&scans, drift.to_radians() / 10.0);
         let scans = scans.iter().zip(drifted).map(|((scan, _), odometry)| (scan, odometry));
-        print_row([0.0, 0.0, drift], &marked, &derived(scans, params));
+        print_row([0.0, 0.0, drift], &marked, &derived(scans, &params));
     }
     Ok(())
 }
@@ -117,9 +117,9 @@ fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<Odometry> {
 /// The visits that are decided, and the number of those that are not.
 fn derived<'a>(
     scans: impl Iterator<Item = (&'a Arc<Scan>, Odometry)>,
-    params: LaserParams,
+    params: &LaserParams,
 ) -> (Vec<Visit>, usize) {
-    let mut events = LaserEvents::new(params);
+    let mut events = LaserEvents::new(*params);
     for (number, (scan, odometry)) in scans.enumerate() {
         let source = EventSource { time: number as u64, ..EventSource::default() };
         events.see(source, scan, &odometry);
