@@ -7,7 +7,7 @@ use std::{
     ffi::OsString,
     fs,
     path::{Path, PathBuf},
-    process::Command,
+    process::{Command, Output},
 };
 
 use toposlam::{
@@ -19,12 +19,13 @@ fn read(path: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
 }
 
+fn output_of(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments).output().unwrap()
+}
+
 fn toposlam(arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_toposlam"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(arguments)
-        .output()
-        .unwrap();
+    let output = output_of(arguments);
     assert!(output.status.success(), "{output:?}");
     String::from_utf8(output.stdout).unwrap()
 }
@@ -145,7 +146,10 @@ fn the_pictures_of_real_logs_are_what_the_program_draws() {
         let drawn = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.svg"));
         let options = ["--driver", "anyone", "--marker", "none", "--picture"];
         let paths = [&log, &drawn].map(|path| path.to_str().unwrap());
-        toposlam(&[&["conform", paths[0]], &options[..], &[paths[1]]].concat());
+        let output = output_of(&[&["conform", paths[0]], &options[..], &[paths[1]]].concat());
+        // The log of an office floor diverges.
+        let expected = i32::from(name == "freiburg-079");
+        assert_eq!(output.status.code(), Some(expected), "{output:?}");
         let shown = read(&format!("docs/real-logs/{name}.svg"));
         assert!(fs::read_to_string(&drawn).unwrap() == shown, "{name}");
     }

@@ -174,9 +174,13 @@ fn each_junction_on_the_way_is_visited_once() {
 
 #[test]
 fn a_robot_whose_log_begins_at_a_junction_has_its_back_to_door_0() {
-    // It drives on along the corridor, past a stem on the left.
-    let events = events(&comb(), &[[14.0, 0.0], [24.0, 0.0]], 0.0);
-    assert_eq!(visits(&events), [(Some(3), Some(2))]);
+    // It looks round between the corridor and a stem in the north, and leaves to the east. At first it looks to
+    // the west, or to the east.
+    let [west, east] = [[13.6, 0.0], [14.4, 0.0]];
+    for (way, door) in [(vec![east, west, east], 0), (vec![west, east, west, east], 2)] {
+        let way = [way, vec![[24.0, 0.0]]].concat();
+        assert_eq!(visits(&events(&comb(), &way, 0.0)), [(Some(3), Some(door))]);
+    }
 }
 
 #[test]

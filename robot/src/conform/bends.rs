@@ -12,7 +12,7 @@ use super::events::EventSource;
 
 /// A bend of the robot's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bend {
+pub(super) struct PassedBend {
     /// Where it is sharpest, in metres.
     pub point: [f64; 2],
     /// The directions to where the robot came from and to where it went, in radians.
@@ -32,7 +32,7 @@ pub(super) struct Bends {
     /// How many of them have been judged.
     judged: usize,
     /// The sharpest place of a bend that goes on, and its angle.
-    sharpest: Option<(f64, Bend)>,
+    sharpest: Option<(f64, PassedBend)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ impl Bends {
     }
 
     /// Adds the next point of the way, which has this length. Returns the bends that are over now.
-    pub(super) fn go(&mut self, point: [f64; 2], way: f64, source: EventSource) -> Vec<Bend> {
+    pub(super) fn go(&mut self, point: [f64; 2], way: f64, source: EventSource) -> Vec<PassedBend> {
         self.points.push_back(PassedPoint { point, way, source });
         let arm = self.params.arm;
         let mut bends = Vec::new();
@@ -68,7 +68,7 @@ impl Bends {
             let bend = before.zip(after).map(|(before, after)| {
                 let arms = [before, after].map(|other| direction(middle.point, other.point));
                 let PassedPoint { point, way, source } = middle;
-                (PI - wrapped(arms[0] - arms[1]).abs(), Bend { point, arms, way, source })
+                (PI - wrapped(arms[0] - arms[1]).abs(), PassedBend { point, arms, way, source })
             });
             match bend.filter(|(turn, _)| (self.params.min_turn..BACK).contains(turn)) {
                 None => bends.extend(self.sharpest.take().map(|(_, bend)| bend)),
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     /// The bends of a way along these points, in steps of half a metre.
-    fn bends(corners: &[[f64; 2]]) -> Vec<Bend> {
+    fn bends(corners: &[[f64; 2]]) -> Vec<PassedBend> {
         let mut bends = Bends::new(CornerParams::default());
         let mut found = Vec::new();
         let mut way = 0.0;

@@ -66,6 +66,8 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
+    /// The widest field of view of a scan, in radians.
+    pub field_of_view: f64,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
@@ -208,6 +210,7 @@ pub fn extract(
         laser: LaserEvents::new(laser),
         placing: ScanOdometry::default(),
         scans: 0,
+        field_of_view: 0.0,
         sightings: Vec::new(),
     };
     for entry in log.entries(&bound) {
@@ -231,6 +234,7 @@ pub fn extract(
         unreadable,
         laser,
         scans,
+        field_of_view,
         sightings,
         ..
     } = gathering;
@@ -261,6 +265,7 @@ pub fn extract(
         pictures,
         unreadable,
         scans,
+        field_of_view,
         junctions,
         sightings,
     })
@@ -298,6 +303,7 @@ struct Extraction<'w, W> {
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
     scans: u64,
+    field_of_view: f64,
     sightings: Vec<TimedSighting>,
 }
 
@@ -346,6 +352,7 @@ impl<W: SensingProgress> Extraction<'_, W> {
             }
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
                 self.scans += 1;
+                self.field_of_view = self.field_of_view.max(scan.field_of_view());
                 if let Some(placed) =
                     self.placing.scan(stamp, PlacedScan { source, scan, odometry })
                 {

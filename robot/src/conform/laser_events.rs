@@ -18,7 +18,7 @@ use toposlam_vision::laser::{
 };
 
 use super::{
-    bends::{Bend, Bends},
+    bends::{Bends, PassedBend},
     events::{CheckedEvent, CheckedKind, EventSource},
     marked_visits::VisitedJunction,
     seen_junctions::{SeenArm, SeenJunction, SeenJunctions},
@@ -258,7 +258,7 @@ impl LaserEvents {
     }
 
     /// Adds the visit of a robot that has passed a corner.
-    fn bend(&mut self, bend: &Bend, view: &LaserView) {
+    fn bend(&mut self, bend: &PassedBend, view: &LaserView) {
         let CornerParams { arm, min_way, .. } = self.params.corner;
         let sight = self.params.arm.sight;
         // The log may begin in a room.

@@ -26,6 +26,9 @@ use toposlam_robot::{
 use super::{Judged, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
 use crate::cli::text::{counted, grouped, moment, vertices};
 
+/// A scanner with a field of view of fewer degrees does not see what is behind the robot.
+const ALL_AROUND: f64 = 270.0;
+
 impl Judged<'_> {
     /// The report of a log; with pictures if it is `shown` on a page.
     pub(super) fn report(
@@ -158,6 +161,11 @@ impl Judged<'_> {
             }
         };
         let mut facts = vec![("events", format!("{count}, {made}"))];
+        let field = self.gathered.field_of_view.to_degrees();
+        if self.gathered.evidence == Evidence::Laser && field < ALL_AROUND {
+            let unseen = "arms that point back beside the robot's way are hardly seen";
+            facts.push(("scanner", format!("{field:.0} degrees: {unseen}")));
+        }
         facts.extend(self.added.map(|added| ("marker", added.in_words())));
         match (&self.known, &judgement.poses) {
             (Some(known), Some(poses)) => {

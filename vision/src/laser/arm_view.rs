@@ -5,7 +5,6 @@
 use super::{
     grid::{Cell, Grid},
     plane::{direction, distance},
-    way_graph::{Way, WayNode},
 };
 
 /// The view along an arm.
@@ -47,19 +46,23 @@ struct Ray {
 }
 
 impl ArmView {
-    /// The view along a way that begins at a meet point; it is far from a distance to the meet point on, in
-    /// metres.
-    pub(super) fn new(way: &Way, meet: &WayNode, grid: &Grid, far: f64) -> Self {
+    /// The view along a way by its middle line, which begins at a meet point with this distance from the walls;
+    /// it is far from a distance to the meet point on. All in metres.
+    pub(super) fn new(
+        line: &[([f64; 2], f64)],
+        (meet, clearance): ([f64; 2], f64),
+        grid: &Grid,
+        far: f64,
+    ) -> Self {
         let behind = |least: f64| {
-            let beyond = |(point, _): &&([f64; 2], f64)| {
-                distance(*point, meet.point) >= meet.clearance + least
-            };
-            way.line.iter().find(beyond).or(way.line.last()).map(|&(point, _)| point)
+            let beyond =
+                |(point, _): &&([f64; 2], f64)| distance(*point, meet) >= clearance + least;
+            line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
             return Self::Near { depth: 0.0, walled: [0.0; 2] };
         };
-        let from = if distance(mouth, towards) > 0.5 { mouth } else { meet.point };
+        let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
         let (sine, cosine) = ahead.sin_cos();
         let starts = ASIDE.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
@@ -68,7 +71,7 @@ impl ArmView {
             let angle = ahead + STEP * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
-                let before = distance(from, meet.point);
+                let before = distance(from, meet);
                 let (free, _) = grid.sight(from, angle, far - before);
                 if free + before >= far {
                     return Self::Far;
@@ -80,7 +83,7 @@ impl ArmView {
         }
         let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid));
         walled.sort_by(f64::total_cmp);
-        Self::Near { depth: length + distance(longest.from, meet.point), walled }
+        Self::Near { depth: length + distance(longest.from, meet), walled }
     }
 }
 

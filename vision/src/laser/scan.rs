@@ -106,6 +106,12 @@ impl Scan {
         self.geometry
     }
 
+    /// The angle between the first and the last reading, in radians.
+    #[must_use]
+    pub fn field_of_view(&self) -> f64 {
+        self.ranges.len().saturating_sub(1) as f64 * self.geometry.angle_increment
+    }
+
     /// The ranges as they are recorded, in counter-clockwise order, in metres.
     #[must_use]
     pub fn ranges(&self) -> &[f32] {

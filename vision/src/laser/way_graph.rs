@@ -153,7 +153,9 @@ impl WayGraph {
         if has_robot || is_long {
             return true;
         }
-        let ArmView::Near { depth, walled } = ArmView::new(&way, meet, grid, params.sight) else {
+        let ArmView::Near { depth, walled } =
+            ArmView::new(&way.line, (meet.point, meet.clearance), grid, params.sight)
+        else {
             return true;
         };
         if end.end == WayEnd::Closed || !is_behind {
