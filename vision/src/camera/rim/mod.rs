@@ -5,7 +5,7 @@
 //! the rim may be as dark as what is outside, or darker; so the edge may be of either sign, and on some
 //! bearings there is none.
 //!
-//! The [`search`] collects circles with many edges along them. Each is fitted to the steepest edges near
+//! The `search` collects circles with many edges along them. Each is fitted to the steepest edges near
 //! it, ignoring outliers. The rim is the circle with its steepest edges on the most bearings, and on most
 //! of those in the image. If a dark ring is around the mirror, both of its borders are such circles, and
 //! the rim is the inner one.
