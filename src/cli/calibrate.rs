@@ -20,6 +20,7 @@ use toposlam_vision::camera::{
 
 use super::{
     CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
+    text::three_numbers,
 };
 
 /// Find centre, rim and focal length of a spherical mirror in images
@@ -341,14 +342,9 @@ impl GivenRim {
 
 /// Parses a rim: centre and radius.
 fn parse_rim(text: &str) -> Result<GivenRim, String> {
-    let numbers: Option<Vec<f64>> = text
-        .split(',')
-        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
-        .collect();
-    match numbers.as_deref() {
-        Some(&[u, v, radius]) => Ok(GivenRim { centre: [u, v], radius }),
-        _ => Err("write three numbers of pixels: U,V,R, as in 611,480,652".to_owned()),
-    }
+    let [u, v, radius] =
+        three_numbers(text).ok_or("write three numbers of pixels: U,V,R, as in 611,480,652")?;
+    Ok(GivenRim { centre: [u, v], radius })
 }
 
 /// The calibrated camera with this rim.

@@ -22,7 +22,7 @@ pub(super) struct LaserOptions {
 /// Whether bends of corridors are vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Corners {
-    /// Bends by 60 degrees or more have degree 2, dead ends degree 1
+    /// Bends by 60 to 126 degrees have degree 2, dead ends degree 1
     Yes,
     /// They are parts of their corridors
     No,

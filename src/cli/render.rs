@@ -17,7 +17,7 @@ use super::{
     exit_codes::help_end,
     input, output,
     picture_file::encoded,
-    text::print_hanging,
+    text::{print_hanging, three_numbers},
 };
 
 /// Render the image that the robot's camera takes from a pose in a floor plan
@@ -109,14 +109,9 @@ impl RenderArguments {
 }
 
 fn parse_pose(text: &str) -> Result<Pose, String> {
-    let numbers: Option<Vec<f64>> = text
-        .split(',')
-        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
-        .collect();
-    match numbers.as_deref() {
-        Some(&[x, y, degrees]) => Ok(Pose { position: [x, y], heading: degrees.to_radians() }),
-        _ => Err("write three numbers: x,y,heading, as in 2,4,90".to_owned()),
-    }
+    let [x, y, degrees] =
+        three_numbers(text).ok_or("write three numbers: x,y,heading, as in 2,4,90")?;
+    Ok(Pose { position: [x, y], heading: degrees.to_radians() })
 }
 
 /// The list of effects, and an example.

@@ -20,6 +20,13 @@ const MAX_WIDTH: usize = 80;
 /// Narrower text is not readable.
 const MIN_WIDTH: usize = 40;
 
+/// The three finite numbers in a text, with commas between them.
+pub(super) fn three_numbers(text: &str) -> Option<[f64; 3]> {
+    let number = |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    numbers?.try_into().ok()
+}
+
 /// Prints a text after its head. The lines that follow are indented as far as the head is wide.
 pub(super) fn print_hanging(out: &mut dyn Write, head: &str, text: &str) -> io::Result<()> {
     print_indented(out, head, display_width(head), text)

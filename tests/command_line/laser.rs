@@ -22,6 +22,8 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     let options = ["--events", "laser", "--driver", "anyone", "--marker", "none", "--start", "any"];
     let text = stdout_of([&["conform", log, "--world", world][..], &options].concat());
     assert!(text.contains("conforms"), "{text}");
+    // This scanner looks all around.
+    assert!(!text.contains("hardly"), "{text}");
     // A cross is another world.
     let other = "worlds/figure-1a.toml";
     let output = run([&["conform", log, "--world", other][..], &options].concat());

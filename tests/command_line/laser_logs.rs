@@ -105,6 +105,8 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
     assert_eq!(code, Some(0));
     let verdict = lines.last().unwrap();
     assert_eq!((&verdict["unique"], &verdict["assumed_marker"]), (&false.into(), &Value::Null));
+    let scanner = verdict["facts"]["scanner"].as_str().unwrap();
+    assert!(scanner.starts_with("180 degrees: arms that point back"), "{scanner}");
     // Without a marker the two visits may be of different junctions.
     assert_eq!((lines.len(), &verdict["open_doors"]), (3, &4.into()), "{verdict}");
     let mapping = folder.join("mapping.toml");

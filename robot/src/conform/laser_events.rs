@@ -20,8 +20,9 @@ use toposlam_vision::laser::{
 use super::{
     bends::{Bends, PassedBend},
     events::{CheckedEvent, CheckedKind, EventSource},
+    laser_visit::{Shown, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
-    seen_junctions::{SeenArm, SeenJunction, SeenJunctions},
+    seen_junctions::{SeenJunction, SeenJunctions},
 };
 use crate::record::Arrival;
 
@@ -57,37 +58,6 @@ pub struct LaserEvents {
     to_odometry: Motion,
 }
 
-/// A visit.
-#[derive(Clone, Debug)]
-struct Visit {
-    kind: VisitKind,
-    source: EventSource,
-    centre: [f64; 2],
-    clearance: f64,
-    /// The direction from the centre to where the robot came in; `None` if the log begins there.
-    entry: Option<f64>,
-    /// The direction to where it left, and the length of its way then.
-    exit: Option<(f64, f64)>,
-    /// Where and when it left.
-    left: EventSource,
-    /// Whether the robot turned back on its way to the junction.
-    turned_back: bool,
-    /// From the frame of the local map to that of odometry, in which events are reported.
-    to_odometry: Motion,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum VisitKind {
-    /// Of a junction, or of a corner in which the log begins, ends, or the robot turns back.
-    Junction,
-    DeadEnd,
-    /// Of a corner that the robot passed: the length of its way to there, and whether it is in doubt.
-    Bend {
-        way: f64,
-        in_doubt: bool,
-    },
-}
-
 /// What is known of a junction that was left.
 #[derive(Clone, Copy, Debug)]
 struct PastVisit {
@@ -98,27 +68,12 @@ struct PastVisit {
     left: f64,
 }
 
-/// What the views of a visited place show.
-enum Shown {
-    /// No vertex.
-    Nothing,
-    /// They do not agree.
-    Doubt,
-    /// The directions of its doors.
-    Doors(Vec<f64>),
-}
-
 /// A robot within this distance of where it was before goes back, in metres.
 const RETRACED: f64 = 0.6;
 /// A robot that has not driven farther than this since the log began was always there, in metres.
 const BEGINNING: f64 = 2.0;
 /// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
 const TURN: f64 = 4.0;
-/// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
-const ARM: f64 = 0.8;
-/// An arm by which the robot came or left counts if it is seen in this part of the views.
-const TRAVERSED: f64 = 0.25;
-
 impl LaserEvents {
     /// A robot that has seen nothing yet.
     #[must_use]
@@ -424,50 +379,9 @@ impl LaserEvents {
     }
 }
 
-impl Visit {
-    /// What the views of the place show.
-    fn shown(&self, arms: &[SeenArm], params: &LaserParams) -> Shown {
-        let CornerParams { corners, min_turn, .. } = params.corner;
-        let params = &params.visit;
-        let exit = self.exit.map(|(exit, _)| exit);
-        // Where the robot went on, its own way shows whether there is a corner.
-        let went_on = self.entry.zip(exit).is_some_and(|(entry, exit)| !is_same_arm(entry, exit));
-        let is_corner = |one: f64, other: f64| {
-            corners && !went_on && PI - wrapped(one - other).abs() >= min_turn
-        };
-        let is_traversed = |arm: &SeenArm| {
-            let mut ways = [self.entry, exit].into_iter().flatten();
-            ways.any(|way| is_same_arm(way, arm.direction))
-        };
-        let counts =
-            |arm: &&SeenArm| arm.part >= params.agree || is_traversed(arm) && arm.part >= TRAVERSED;
-        let is_doubtful =
-            |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
-        let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
-        let is_vertex = match (self.kind, &doors[..]) {
-            (VisitKind::DeadEnd, [_]) | (VisitKind::Junction, [_, _, _, ..]) => true,
-            // A corridor goes straight on where no arm of a junction is left.
-            (VisitKind::Junction, &[one, other]) => is_corner(one, other),
-            _ => false,
-        };
-        if !is_vertex {
-            Shown::Nothing
-        } else if arms.iter().any(is_doubtful) {
-            Shown::Doubt
-        } else {
-            Shown::Doors(doors)
-        }
-    }
-}
-
 /// A robot this near to the centre of a junction is inside, in metres.
 fn inside(clearance: f64) -> f64 {
     clearance.max(1.0)
-}
-
-/// Whether two directions are of one arm.
-fn is_same_arm(one: f64, other: f64) -> bool {
-    wrapped(one - other).abs() < ARM
 }
 
 /// The distance from a point to a piece of a way.

@@ -12,6 +12,7 @@ mod inferred_events;
 mod judgement;
 mod known_world;
 mod laser_events;
+mod laser_visit;
 mod marked_visits;
 mod quirks;
 mod recorded_events;

@@ -1,0 +1,98 @@
+//! A visit by laser: where the robot came in and left, and what several views of the place show.
+
+use std::f64::consts::PI;
+
+use toposlam_model::driving::scene::wrapped;
+use toposlam_vision::laser::{
+    params::{CornerParams, LaserParams},
+    plane::Motion,
+};
+
+use super::{events::EventSource, seen_junctions::SeenArm};
+
+/// A visit.
+#[derive(Clone, Debug)]
+pub(super) struct Visit {
+    pub kind: VisitKind,
+    pub source: EventSource,
+    pub centre: [f64; 2],
+    pub clearance: f64,
+    /// The direction from the centre to where the robot came in; `None` if the log begins there.
+    pub entry: Option<f64>,
+    /// The direction to where it left, and the length of its way then.
+    pub exit: Option<(f64, f64)>,
+    /// Where and when it left.
+    pub left: EventSource,
+    /// Whether the robot turned back on its way to the junction.
+    pub turned_back: bool,
+    /// From the frame of the local map to that of odometry, in which events are reported.
+    pub to_odometry: Motion,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum VisitKind {
+    /// Of a junction, or of a corner in which the log begins, ends, or the robot turns back.
+    Junction,
+    DeadEnd,
+    /// Of a corner that the robot passed: the length of its way to there, and whether it is in doubt.
+    Bend {
+        way: f64,
+        in_doubt: bool,
+    },
+}
+
+/// What the views of a visited place show.
+pub(super) enum Shown {
+    /// No vertex.
+    Nothing,
+    /// They do not agree.
+    Doubt,
+    /// The directions of its doors.
+    Doors(Vec<f64>),
+}
+
+/// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
+const ARM: f64 = 0.8;
+/// An arm by which the robot came or left counts if it is seen in this part of the views.
+const TRAVERSED: f64 = 0.25;
+
+impl Visit {
+    /// What the views of the place show.
+    pub(super) fn shown(&self, arms: &[SeenArm], params: &LaserParams) -> Shown {
+        let CornerParams { corners, min_turn, .. } = params.corner;
+        let params = &params.visit;
+        let exit = self.exit.map(|(exit, _)| exit);
+        // Where the robot went on, its own way shows whether there is a corner.
+        let went_on = self.entry.zip(exit).is_some_and(|(entry, exit)| !is_same_arm(entry, exit));
+        let is_corner = |one: f64, other: f64| {
+            corners && !went_on && PI - wrapped(one - other).abs() >= min_turn
+        };
+        let is_traversed = |arm: &SeenArm| {
+            let mut ways = [self.entry, exit].into_iter().flatten();
+            ways.any(|way| is_same_arm(way, arm.direction))
+        };
+        let counts =
+            |arm: &&SeenArm| arm.part >= params.agree || is_traversed(arm) && arm.part >= TRAVERSED;
+        let is_doubtful =
+            |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
+        let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
+        let is_vertex = match (self.kind, &doors[..]) {
+            (VisitKind::DeadEnd, [_]) | (VisitKind::Junction, [_, _, _, ..]) => true,
+            // A corridor goes straight on where no arm of a junction is left.
+            (VisitKind::Junction, &[one, other]) => is_corner(one, other),
+            _ => false,
+        };
+        if !is_vertex {
+            Shown::Nothing
+        } else if arms.iter().any(is_doubtful) {
+            Shown::Doubt
+        } else {
+            Shown::Doors(doors)
+        }
+    }
+}
+
+/// Whether two directions are of one arm.
+pub(super) fn is_same_arm(one: f64, other: f64) -> bool {
+    wrapped(one - other).abs() < ARM
+}
