@@ -109,6 +109,10 @@ const COMMANDS: [(&str, &[&str]); 17] = [
         &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"],
     ),
     (
+        "evaluate-mistakes",
+        &["evaluate mistakes --edges 1..=3", "evaluate mistakes --edges 1..=3 --recover"],
+    ),
+    (
         "evaluate-runs",
         &["evaluate runs --plans 2 --starts 1", "evaluate runs --plans 2 --starts 1 --faults"],
     ),

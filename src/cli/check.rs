@@ -1,6 +1,5 @@
 //! `toposlam check`: an algorithm runs on every start of every world up to a size.
 
-mod edge_range;
 mod report;
 
 use std::{
@@ -20,6 +19,7 @@ use toposlam_model::{
 use super::{
     ChoicesOption, CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    edge_range::EdgeRange,
     exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
@@ -27,7 +27,6 @@ use super::{
     progress::Progress,
     use_threads,
 };
-use edge_range::EdgeRange;
 use report::{AlgorithmInfo, CheckReport, SizeResult};
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map

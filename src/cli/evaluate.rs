@@ -4,6 +4,7 @@ mod clutter;
 mod control;
 mod failing;
 mod laser;
+mod mistakes;
 mod report;
 mod robots;
 mod runs;
@@ -23,7 +24,8 @@ Examples:
   toposlam evaluate vision --views 200   sensing on rendered views
   toposlam evaluate control              every door of every junction
   toposlam evaluate runs                 mapping of whole buildings
-  toposlam evaluate laser                junctions by a laser scanner",
+  toposlam evaluate laser                junctions by a laser scanner
+  toposlam evaluate mistakes --audit     what one mistake does",
     &[
         (0, "all targets are met, everything is right"),
         (1, "a target is missed, or something is wrong"),
@@ -42,6 +44,7 @@ enum What {
     Control(control::EvaluateControlArguments),
     Runs(runs::EvaluateRunsArguments),
     Laser(laser::EvaluateLaserArguments),
+    Mistakes(mistakes::EvaluateMistakesArguments),
 }
 
 impl EvaluateArguments {
@@ -51,6 +54,7 @@ impl EvaluateArguments {
             What::Control(control) => control.run(out),
             What::Runs(runs) => runs.run(out),
             What::Laser(laser) => laser.run(out),
+            What::Mistakes(mistakes) => mistakes.run(out),
         }
     }
 }

@@ -15,6 +15,7 @@ mod conform;
 mod counterexample;
 mod draw;
 mod drive;
+mod edge_range;
 mod evaluate;
 mod exit_codes;
 mod explore;

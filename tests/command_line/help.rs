@@ -33,7 +33,7 @@ const VERBS: [(&str, &[&str]); 19] = [
     ),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision", "control", "runs", "laser"]),
+    ("evaluate", &["vision", "control", "runs", "laser", "mistakes"]),
     (
         "simulate",
         &[
@@ -171,7 +171,13 @@ fn every_shell_has_completions_of_every_verb() {
 
 #[test]
 fn the_help_of_every_verb_ends_with_its_exit_codes() {
-    let parts = ["evaluate vision", "evaluate control", "evaluate runs", "evaluate laser"];
+    let parts = [
+        "evaluate vision",
+        "evaluate control",
+        "evaluate runs",
+        "evaluate laser",
+        "evaluate mistakes",
+    ];
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
     let without_verdict =
@@ -192,7 +198,13 @@ fn the_help_of_every_verb_ends_with_its_exit_codes() {
 fn there_is_a_manual_page_of_every_verb() {
     let folder = folder("man");
     stdout_of(["man", "-o", folder.to_str().unwrap()]);
-    let parts = ["evaluate-vision", "evaluate-control", "evaluate-runs", "evaluate-laser"];
+    let parts = [
+        "evaluate-vision",
+        "evaluate-control",
+        "evaluate-runs",
+        "evaluate-laser",
+        "evaluate-mistakes",
+    ];
     let mut pages: Vec<_> = VERBS.iter().map(|(verb, _)| *verb).chain(parts).collect();
     pages.sort_unstable();
     let mut names: Vec<_> = pages.iter().map(|verb| format!("toposlam-{verb}.1")).collect();

@@ -10,6 +10,7 @@ mod flaw;
 mod folding_explorer;
 mod judge;
 mod mapping_algorithm;
+mod mistakes;
 mod sweep;
 mod tally;
 
@@ -25,6 +26,10 @@ pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
 pub use mapping_algorithm::MappingAlgorithm;
+pub use mistakes::{
+    MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
+    Safeguard, UnnoticedMistake,
+};
 pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
 pub use tally::{FailedStart, Tally, WorstStart};
 

@@ -136,14 +136,21 @@ pub fn certificate_length(graph: &EmbeddedGraph, facing: Dart) -> usize {
     tree.length(graph)
 }
 
+/// The darts by which a shortest walk from a vertex leaves, if the marker lies there and the walk
+/// determines the world.
+pub(crate) fn certificate_darts(graph: &EmbeddedGraph, marked: Vertex) -> Vec<Dart> {
+    let mut walk = CertificateWalk::new(graph, marked);
+    walk.walk();
+    walk.darts
+}
+
 /// The doors of a shortest walk that determines the world of a start.
 #[must_use]
 pub fn certificate(graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
-    let mut walk = CertificateWalk::new(graph, graph.vertex(facing));
-    walk.walk();
+    let darts = certificate_darts(graph, graph.vertex(facing));
     let mut pose = facing;
-    let mut doors = Vec::with_capacity(walk.darts.len());
-    for dart in walk.darts {
+    let mut doors = Vec::with_capacity(darts.len());
+    for dart in darts {
         let degree = graph.degree(graph.vertex(pose));
         doors.push(Door::between(graph.index(pose), graph.index(dart), degree));
         pose = graph.opposite(dart);

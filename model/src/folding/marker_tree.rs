@@ -79,7 +79,7 @@ impl MarkerTree {
     }
 
     /// The dart at a vertex, not the marker's, that leads toward the marker.
-    pub(super) fn up(&self, vertex: Vertex) -> Dart {
+    pub(crate) fn up(&self, vertex: Vertex) -> Dart {
         self.up[vertex.at()]
     }
 

@@ -31,6 +31,7 @@ mod smallest;
 mod smallest_marked;
 mod trail;
 
+pub(crate) use certificate::certificate_darts;
 pub use certificate::{certificate, certificate_length};
 pub use closed::ClosedTrail;
 pub use contradiction::{

@@ -45,6 +45,22 @@ impl FoldedTrail {
         Ok(trail)
     }
 
+    /// Another walk begins, of a robot that may be anywhere in the same world. It is joined to the earlier
+    /// ones when the marker is seen.
+    ///
+    /// # Errors
+    /// See [`step`](Self::step).
+    pub fn begin_walk(&mut self, percept: Percept) -> Result<(), TrailError> {
+        self.moves += usize::from(self.classes.trail_vertex_count() > 0);
+        self.pose = self.add_vertex(percept)?;
+        self.identify_marker(percept)
+    }
+
+    /// The robot stands at a place that it knows, and has come in by this dart.
+    pub fn stand_at(&mut self, pose: Dart) {
+        self.pose = self.classes.find(pose.0);
+    }
+
     /// Whether the robot's vertex has a door.
     pub(super) fn check_door(&self, door: Door) -> Result<(), ContradictionReason> {
         let degree = self.classes.degree(self.pose);
@@ -69,19 +85,24 @@ impl FoldedTrail {
                 let entry = self.add_vertex(percept)?;
                 self.classes.join(leaving, entry);
                 self.pose = entry;
-                // All sightings of the marker are one pose.
-                if let (Sighting::Pointing(Door(door)), Some(marker)) =
-                    (percept.sighting, self.marker)
-                    && marker.0 != entry + door
-                {
-                    self.classes.unite(marker.0, entry + door)?;
-                    self.classes.flatten();
-                }
+                self.identify_marker(percept)?;
             }
             pose => {
                 self.pose = pose;
                 self.classes.compare(pose, percept, self.moves)?;
             }
+        }
+        Ok(())
+    }
+
+    /// All sightings of the marker are one pose. The robot has come in by the first dart of a new vertex.
+    #[inline]
+    fn identify_marker(&mut self, percept: Percept) -> Result<(), TrailError> {
+        if let (Sighting::Pointing(Door(door)), Some(marker)) = (percept.sighting, self.marker)
+            && marker.0 != self.pose + door
+        {
+            self.classes.unite(marker.0, self.pose + door)?;
+            self.classes.flatten();
         }
         Ok(())
     }

@@ -163,6 +163,14 @@ pub enum Contradiction {
         /// The percept on the way back.
         perceived: Percept,
     },
+    /// An audit of the map found another percept than the map predicts.
+    #[error("the audit of the map should find {} but finds {}", Seen(expected), Seen(perceived))]
+    Audit {
+        /// The percept by the map.
+        expected: Percept,
+        /// The percept.
+        perceived: Percept,
+    },
     /// The folded trail contradicts itself.
     #[error("{reason}")]
     Trail {

@@ -96,6 +96,11 @@ impl Journey {
         self.moves
     }
 
+    /// Counts on from earlier moves.
+    pub(super) fn set_moves(&mut self, moves: u64) {
+        self.moves = moves;
+    }
+
     /// Forgets an earlier run.
     pub(super) fn clear(&mut self) {
         self.moves = 0;

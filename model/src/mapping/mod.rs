@@ -2,6 +2,7 @@
 //! Section 2.3.
 
 mod algorithm1;
+mod audit;
 mod choices;
 mod contradiction;
 mod exploration;
@@ -15,10 +16,14 @@ mod partial_map;
 mod tree;
 
 pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
+pub use audit::{Audit, AuditError, audit};
 pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
-pub use folding_explorer::{FoldingExploration, FoldingStep, HypothesisTest, map_by_folding};
+pub use folding_explorer::{
+    FoldingExploration, FoldingStep, HypothesisTest, RecoveredMap, RecoveryConfig, Relocate,
+    map_by_folding, map_with_recovery,
+};
 pub use journey::{Journey, Observer};
 pub use mapping_event::{FoldingEvent, MappingEvent, MovableEvent};
 pub use mapping_run::{DirectionalAlgorithm, MappingRun};

@@ -12,6 +12,7 @@
 
 mod hypotheses;
 mod hypothesis_test;
+mod recovery;
 mod settle;
 mod steps;
 mod walk;
@@ -30,6 +31,7 @@ use crate::{
     world::World,
 };
 use hypotheses::Hypotheses;
+pub use recovery::{RecoveredMap, RecoveryConfig, Relocate, map_with_recovery};
 use ways::Ways;
 
 /// What the robot does next.

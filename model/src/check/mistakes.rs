@@ -1,0 +1,510 @@
+//! What one mistake does to a run: every start, every percept, every way in which it can be false, and every
+//! place to which the robot can be carried.
+
+use std::{borrow::Cow, fmt, ops::ControlFlow};
+
+use super::{ExploredMap, Flaw, judge::judge_map};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{
+        Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
+    },
+    isomorphism::Candidate,
+    mapping::{
+        DirectionalAlgorithm, FACING, FoldingExploration, MappingError, MappingRun, RecoveryConfig,
+        Relocate, audit, map_with_recovery,
+    },
+    percept::{Door, Percept, Sighting},
+    world::{GraphWorld, Refused, State, World},
+};
+
+/// The kind of a mistake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MistakeKind {
+    /// The number of doors is wrong.
+    Degree,
+    /// The marker is seen where it does not lie.
+    MarkerInvented,
+    /// The marker is not seen where it lies.
+    MarkerMissed,
+    /// The marker is seen where it lies, but along another door.
+    MarkerTurned,
+    /// The robot is carried to another place, or turned, and does not feel it. All percepts are true.
+    Carried,
+}
+
+/// All of them.
+pub const MISTAKE_KINDS: [MistakeKind; 5] = [
+    MistakeKind::Degree,
+    MistakeKind::MarkerInvented,
+    MistakeKind::MarkerMissed,
+    MistakeKind::MarkerTurned,
+    MistakeKind::Carried,
+];
+
+impl MistakeKind {
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degree => "wrong degree",
+            Self::MarkerInvented => "marker invented",
+            Self::MarkerMissed => "marker missed",
+            Self::MarkerTurned => "marker turned",
+            Self::Carried => "robot carried",
+        }
+    }
+
+    /// The mistakes of this kind at a place, with degrees up to twice the number of edges.
+    fn mistakes(self, graph: &EmbeddedGraph, pose: Dart, truth: Percept) -> Vec<MistakeEffect> {
+        let Percept { degree, sighting } = truth;
+        let degrees = 1..=graph.dart_count() as u32;
+        let see = |degree, sighting| MistakeEffect::Perceived(Percept { degree, sighting });
+        let point = |door| see(degree, Sighting::Pointing(Door(door)));
+        match (self, sighting) {
+            // A junction with too few doors does not have the one along which the marker points.
+            (Self::Degree, _) => degrees
+                .filter(|&other| other != degree)
+                .filter(|&other| !matches!(sighting, Sighting::Pointing(door) if door.0 >= other))
+                .map(|other| see(other, sighting))
+                .collect(),
+            (Self::MarkerTurned, Sighting::Pointing(door)) => {
+                (0..degree).filter(|&other| other != door.0).map(point).collect()
+            }
+            (Self::MarkerMissed, Sighting::Pointing(_)) => vec![see(degree, Sighting::Nothing)],
+            (Self::MarkerInvented, Sighting::Nothing) => (0..degree).map(point).collect(),
+            (Self::Carried, _) => {
+                graph.darts().filter(|&other| other != pose).map(MistakeEffect::Carried).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl fmt::Display for MistakeKind {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+/// What happens instead of what should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MistakeEffect {
+    /// This is perceived.
+    Perceived(Percept),
+    /// The robot is then at this dart of the world, as if it had come in by it.
+    Carried(Dart),
+}
+
+/// One mistake in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mistake {
+    /// It happens when the robot has made this number of moves, before it perceives its place.
+    pub moves: u64,
+    /// What it would perceive.
+    pub truth: Percept,
+    /// What happens.
+    pub effect: MistakeEffect,
+}
+
+/// What happens, in words: `after 2 moves, 3 doors is perceived instead of 2 doors`.
+impl fmt::Display for Mistake {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { moves, truth, effect } = self;
+        let s = if *moves == 1 { "" } else { "s" };
+        write!(out, "after {moves} move{s}, ")?;
+        match effect {
+            MistakeEffect::Perceived(percept) => {
+                write!(out, "the robot perceives \"{percept}\" instead of \"{truth}\"")
+            }
+            MistakeEffect::Carried(dart) => {
+                write!(out, "the robot is carried to where dart {} comes in", dart.0)
+            }
+        }
+    }
+}
+
+/// A world in which one thing goes wrong.
+struct FaultyWorld<'g> {
+    world: GraphWorld<'g>,
+    mistake: Mistake,
+}
+
+impl<'g> FaultyWorld<'g> {
+    fn new(world: GraphWorld<'g>, mistake: Mistake) -> Self {
+        let mut faulty = Self { world, mistake };
+        faulty.carry();
+        faulty
+    }
+
+    fn is_now(&self) -> bool {
+        self.world.moves() == self.mistake.moves
+    }
+
+    /// Carries the robot, if that happens now.
+    fn carry(&mut self) {
+        if let MistakeEffect::Carried(pose) = self.mistake.effect
+            && self.is_now()
+        {
+            let placed = self.world.state().placed;
+            self.world = self.world.clone().at(State { pose, placed });
+        }
+    }
+}
+
+impl World for FaultyWorld<'_> {
+    type Error = Refused;
+
+    fn percept(&mut self) -> Result<Percept, Refused> {
+        match self.mistake.effect {
+            MistakeEffect::Perceived(percept) if self.is_now() => Ok(percept),
+            _ => self.world.percept(),
+        }
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+        self.world.traverse(door)?;
+        self.carry();
+        Ok(())
+    }
+}
+
+/// A robot that looks for a door that is not there stays where it is.
+impl Relocate for FaultyWorld<'_> {
+    fn relocate(&mut self, error: Refused) -> Result<(), Refused> {
+        match error {
+            Refused::NoSuchDoor { .. } => self.traverse(Door::BACK),
+            error => Err(error),
+        }
+    }
+}
+
+/// How runs with one mistake ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MistakeCounts {
+    /// The map and the pose are right.
+    pub right: u64,
+    /// The robot reports a contradiction, or that a door is not there.
+    pub reported: u64,
+    /// The robot gives up, because its map has more than twice the darts of the world and 20.
+    pub too_large: u64,
+    /// The map is right, the pose is wrong, and the robot does not notice.
+    pub wrong_pose: u64,
+    /// The map is wrong, and the robot does not notice.
+    pub wrong_map: u64,
+    /// The moves of the right runs, beyond those of the runs without a mistake.
+    pub extra_moves: i64,
+}
+
+impl MistakeCounts {
+    /// The number of runs.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.right + self.reported + self.too_large + self.unnoticed()
+    }
+
+    /// The number of runs that end with a wrong map or a wrong pose.
+    #[must_use]
+    pub fn unnoticed(&self) -> u64 {
+        self.wrong_pose + self.wrong_map
+    }
+
+    /// Adds other counts.
+    pub fn add(&mut self, other: Self) {
+        self.right += other.right;
+        self.reported += other.reported;
+        self.too_large += other.too_large;
+        self.wrong_pose += other.wrong_pose;
+        self.wrong_map += other.wrong_map;
+        self.extra_moves += other.extra_moves;
+    }
+}
+
+/// A run that ends with a wrong map or a wrong pose, and the robot does not notice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnnoticedMistake {
+    /// The world.
+    pub graph: EmbeddedGraph,
+    /// The facing dart.
+    pub facing: Dart,
+    /// The mistake.
+    pub mistake: Mistake,
+    /// What is wrong at the end.
+    pub flaw: Flaw,
+}
+
+/// The results of a check.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MistakeTally {
+    /// The number of starts.
+    pub starts: u64,
+    /// For each of the [`MISTAKE_KINDS`], how the runs ended.
+    pub counts: [MistakeCounts; 5],
+    /// For each of them, the first run that ends with a wrong map; if there is none, with a wrong pose.
+    pub first: [Option<UnnoticedMistake>; 5],
+    /// The moves of all runs without a mistake.
+    pub moves: u64,
+    /// Whether the check was interrupted.
+    pub interrupted: bool,
+}
+
+impl MistakeTally {
+    /// Adds the results of a later part of the same check, or of larger worlds.
+    pub fn merge(&mut self, later: Self) {
+        self.starts += later.starts;
+        self.moves += later.moves;
+        self.interrupted |= later.interrupted;
+        for (sum, counts) in self.counts.iter_mut().zip(later.counts) {
+            sum.add(counts);
+        }
+        for (first, other) in self.first.iter_mut().zip(later.first) {
+            if let Some(other) = other {
+                keep_first(first, other);
+            }
+        }
+    }
+
+    /// How all runs ended.
+    #[must_use]
+    pub fn all(&self) -> MistakeCounts {
+        let mut all = MistakeCounts::default();
+        self.counts.iter().for_each(|&counts| all.add(counts));
+        all
+    }
+}
+
+/// A wrong map goes before a wrong pose.
+fn keep_first(first: &mut Option<UnnoticedMistake>, other: UnnoticedMistake) {
+    let is_pose = |mistake: &UnnoticedMistake| matches!(mistake.flaw, Flaw::WrongPose { .. });
+    if first.as_ref().is_none_or(|first| is_pose(first) && !is_pose(&other)) {
+        *first = Some(other);
+    }
+}
+
+/// What the robot does against mistakes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Safeguard {
+    /// Nothing: the algorithm alone.
+    Nothing,
+    /// It [audits](audit) its map.
+    Audit,
+    /// It audits its map, and [recovers](map_with_recovery) after a contradiction. The algorithm is the
+    /// folding explorer.
+    Recovery,
+}
+
+/// A check of every start of every world of a class with a number of edges. From each start, an algorithm
+/// runs once for each mistake that can happen.
+#[derive(Clone, Copy, Debug)]
+pub struct MistakeCheck {
+    starts: Enumeration,
+    algorithm: DirectionalAlgorithm,
+    safeguard: Safeguard,
+}
+
+/// How a run ended.
+enum Ending {
+    /// With so many moves.
+    Right(u64),
+    Reported,
+    TooLarge,
+    Unnoticed(Flaw),
+}
+
+impl MistakeCheck {
+    /// A check of an algorithm.
+    ///
+    /// # Errors
+    /// Returns an error if the starts cannot be enumerated.
+    pub fn new(
+        class: Class,
+        edges: usize,
+        algorithm: DirectionalAlgorithm,
+        safeguard: Safeguard,
+    ) -> Result<Self, SizeError> {
+        let starts = Enumeration::new(Each::Start, class, edges)?;
+        Ok(Self { starts, algorithm, safeguard })
+    }
+
+    /// Makes all runs. The result does not depend on the number of threads.
+    pub fn run(&self, watch: &dyn Watch) -> MistakeTally {
+        let check = |part: &EnumerationPart| {
+            let mut tally = MistakeTally::default();
+            let mut runs = MistakenRuns { check: *self, candidate: Candidate::default() };
+            let ended = part.for_each(&mut |found: EnumeratedGraph| {
+                runs.check_start(found.graph, &mut tally);
+                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            tally.interrupted = ended.is_break();
+            tally
+        };
+        let merge = |mut sum: MistakeTally, later| {
+            sum.merge(later);
+            sum
+        };
+        let runs = |tally: &MistakeTally| tally.all().runs();
+        in_parts(&self.starts.parts(), watch, MistakeTally::default, check, runs, merge)
+    }
+}
+
+/// The runs of one part of a check.
+struct MistakenRuns {
+    check: MistakeCheck,
+    candidate: Candidate,
+}
+
+impl MistakenRuns {
+    fn check_start(&mut self, graph: &EmbeddedGraph, tally: &mut MistakeTally) {
+        let facing = Dart(0);
+        tally.starts += 1;
+        let visits = self.visits(graph, facing);
+        // A percept is one for each number of moves.
+        let least = visits.len() as u64 - 1;
+        tally.moves += least;
+        for (moves, &(pose, truth)) in (0..).zip(&visits) {
+            for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+                for effect in kind.mistakes(graph, pose, truth) {
+                    let mistake = Mistake { moves, truth, effect };
+                    let counts = &mut tally.counts[at];
+                    match self.ending(graph, facing, mistake) {
+                        Ending::Right(moves) => {
+                            counts.right += 1;
+                            counts.extra_moves += moves as i64 - least as i64;
+                        }
+                        Ending::Reported => counts.reported += 1,
+                        Ending::TooLarge => counts.too_large += 1,
+                        Ending::Unnoticed(flaw) => {
+                            match flaw {
+                                Flaw::WrongPose { .. } => counts.wrong_pose += 1,
+                                _ => counts.wrong_map += 1,
+                            }
+                            let graph = graph.clone();
+                            let unnoticed = UnnoticedMistake { graph, facing, mistake, flaw };
+                            keep_first(&mut tally.first[at], unnoticed);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The poses and percepts of a run without a mistake.
+    fn visits(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Vec<(Dart, Percept)> {
+        let mut world = VisitedWorld::new(GraphWorld::new(graph, facing));
+        // A flaw of a run without a mistake is found by a sweep.
+        let _ = self.map(&mut world, graph);
+        world.visits
+    }
+
+    fn ending(&mut self, graph: &EmbeddedGraph, facing: Dart, mistake: Mistake) -> Ending {
+        let mut world = FaultyWorld::new(GraphWorld::new(graph, facing), mistake);
+        let explored = match self.map(&mut world, graph) {
+            Ok(explored) => explored,
+            Err(MappingError::Bound { .. }) => return Ending::TooLarge,
+            Err(_) => return Ending::Reported,
+        };
+        let (moves, pose) = (world.world.moves(), world.world.pose());
+        match judge_map(&explored, (graph, facing), pose, &mut self.candidate) {
+            Ok(_) => Ending::Right(moves),
+            Err(flaw) => Ending::Unnoticed(flaw),
+        }
+    }
+
+    /// Maps a world, with the safeguard of the check.
+    fn map<W: Relocate<Error = Refused>>(
+        &self,
+        world: &mut W,
+        graph: &EmbeddedGraph,
+    ) -> Result<ExploredMap<'static>, MappingError<Refused>> {
+        let MistakeCheck { algorithm, safeguard, .. } = self.check;
+        let bound = 2 * graph.dart_count() + 20;
+        let owned = |map: &EmbeddedGraph, pose| ExploredMap {
+            graph: Cow::Owned(map.clone()),
+            facing: FACING,
+            pose,
+        };
+        if safeguard == Safeguard::Recovery {
+            let mut exploration = FoldingExploration::new(bound);
+            let config = RecoveryConfig::default();
+            let found = map_with_recovery(world, &mut exploration, config, &mut ())?;
+            let map = exploration.map().complete().ok_or(MappingError::Bound { bound })?;
+            return Ok(owned(map, found.pose));
+        }
+        let mut mapping = MappingRun::new(algorithm, bound);
+        mapping.map_world(world, &mut ())?;
+        let map = mapping.map().complete().ok_or(MappingError::Bound { bound })?;
+        let mut pose = mapping.robot();
+        if safeguard == Safeguard::Audit {
+            pose = audit(world, map, FACING, pose)?.pose;
+        }
+        Ok(owned(map, pose))
+    }
+}
+
+/// A world that remembers each visit.
+struct VisitedWorld<'g> {
+    world: GraphWorld<'g>,
+    visits: Vec<(Dart, Percept)>,
+}
+
+impl<'g> VisitedWorld<'g> {
+    fn new(world: GraphWorld<'g>) -> Self {
+        let visits = vec![(world.pose(), world.sensed())];
+        Self { world, visits }
+    }
+}
+
+impl World for VisitedWorld<'_> {
+    type Error = Refused;
+
+    fn percept(&mut self) -> Result<Percept, Refused> {
+        self.world.percept()
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+        self.world.traverse(door)?;
+        self.visits.push((self.world.pose(), self.world.sensed()));
+        Ok(())
+    }
+}
+
+impl Relocate for VisitedWorld<'_> {
+    fn relocate(&mut self, error: Refused) -> Result<(), Refused> {
+        Err(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tally(edges: usize, algorithm: DirectionalAlgorithm, safeguard: Safeguard) -> MistakeTally {
+        MistakeCheck::new(Class::Multigraph, edges, algorithm, safeguard).unwrap().run(&())
+    }
+
+    #[test]
+    fn with_an_audit_no_mistake_leaves_a_wrong_map() {
+        for algorithm in DirectionalAlgorithm::ALL {
+            for edges in 1..=4 {
+                let [with, without] = [Safeguard::Audit, Safeguard::Nothing]
+                    .map(|safeguard| tally(edges, algorithm, safeguard));
+                assert_eq!(with.all().wrong_map, 0, "{algorithm}, {edges}: {:?}", with.first);
+                assert!(edges == 1 || without.all().wrong_map > 0, "{algorithm}, {edges}");
+                // A pose is wrong only if the robot was carried, on the audit.
+                let percepts = &with.counts[..MISTAKE_KINDS.len() - 1];
+                assert!(percepts.iter().all(|counts| counts.wrong_pose == 0), "{algorithm}");
+            }
+        }
+    }
+
+    #[test]
+    fn after_one_mistake_the_folding_explorer_recovers_and_maps_every_small_start() {
+        for edges in 1..=3 {
+            let tally = tally(edges, DirectionalAlgorithm::Folding, Safeguard::Recovery);
+            let all = tally.all();
+            assert_eq!(all.right + all.wrong_pose, all.runs(), "{edges}: {all:?}");
+            // The robot was carried on the last way of the audit.
+            assert_eq!(all.wrong_pose, tally.counts[MISTAKE_KINDS.len() - 1].wrong_pose);
+        }
+    }
+}

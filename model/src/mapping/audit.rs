@@ -1,0 +1,120 @@
+//! The audit of a map: a walk that finds every mistake of a map, if the robot perceives rightly on it.
+//!
+//! The robot goes to the marker and walks a [certificate](crate::folding::certificate) of the map. It
+//! compares each percept with the map. If it is already where it believes the marker to be, it first leaves
+//! and returns, because the percept that it has of the place is one of those with which the map was made. If all agree, the folded trail of the walk is the map. It is
+//! complete, so it is the world, however the map was made. No shorter walk from the marker can show that.
+//!
+//! A map is wrong only if a percept was false while it was made. So if at most k percepts of a run are
+//! false, at most k - 1 of them are in audits of a wrong map, and k audits find it.
+
+use thiserror::Error;
+
+use super::{Contradiction, MappingError};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    folding::{MarkerTree, certificate_darts},
+    percept::{Door, Percept},
+    world::{GraphWorld, State, World},
+};
+
+/// An audit in which every percept agreed with the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Audit {
+    /// The moves of the audit.
+    pub moves: u64,
+    /// The robot's pose in the map at its end.
+    pub pose: Dart,
+}
+
+/// Why an audit ended early.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum AuditError<E> {
+    /// Sensing or moving failed.
+    #[error(transparent)]
+    World(E),
+    /// The map, the robot's pose in it, or a percept is wrong.
+    #[error(
+        "after {moves} moves of the audit, the map predicts {expected}; perceived: {perceived}"
+    )]
+    Mismatch {
+        /// The moves of the audit until then.
+        moves: u64,
+        /// The percept by the map.
+        expected: Percept,
+        /// The percept.
+        perceived: Percept,
+    },
+}
+
+/// Walks through a world and compares it with a map.
+struct AuditWalk<'m, 'w, W> {
+    /// The world as the map has it.
+    believed: GraphWorld<'m>,
+    world: &'w mut W,
+}
+
+/// A mismatch is a contradiction of the percepts.
+impl<E> From<AuditError<E>> for MappingError<E> {
+    fn from(error: AuditError<E>) -> Self {
+        match error {
+            AuditError::World(error) => Self::World(error),
+            AuditError::Mismatch { expected, perceived, .. } => {
+                Contradiction::Audit { expected, perceived }.into()
+            }
+        }
+    }
+}
+
+impl<W: World> AuditWalk<'_, '_, W> {
+    fn compare(&mut self) -> Result<(), AuditError<W::Error>> {
+        let perceived = self.world.percept().map_err(AuditError::World)?;
+        let (moves, expected) = (self.believed.moves(), self.believed.sensed());
+        if perceived == expected {
+            Ok(())
+        } else {
+            Err(AuditError::Mismatch { moves, expected, perceived })
+        }
+    }
+
+    /// Leaves by a dart of the map at the robot's vertex.
+    fn leave_by(&mut self, dart: Dart) -> Result<(), AuditError<W::Error>> {
+        let (map, pose) = (self.believed.graph(), self.believed.pose());
+        let door = Door::between(map.index(pose), map.index(dart), map.degree_around(pose));
+        self.world.traverse(door).map_err(AuditError::World)?;
+        // The map has each of its doors.
+        let _ = self.believed.traverse(door);
+        self.compare()
+    }
+}
+
+/// Audits a map that the robot has made of a world, with a directional marker.
+///
+/// # Errors
+/// Returns an error if the world does, or at the first percept that is not as the map predicts.
+pub fn audit<W: World>(
+    world: &mut W,
+    map: &EmbeddedGraph,
+    facing: Dart,
+    pose: Dart,
+) -> Result<Audit, AuditError<W::Error>> {
+    let believed = GraphWorld::new(map, facing);
+    let placed = believed.state().placed;
+    let mut walk = AuditWalk { believed: believed.at(State { pose, placed }), world };
+    walk.compare()?;
+    let mut tree = MarkerTree::default();
+    let marked = map.vertex(facing);
+    tree.grow(map, marked);
+    let at = |walk: &AuditWalk<W>| map.vertex(walk.believed.pose());
+    if at(&walk) == marked {
+        walk.leave_by(facing)?;
+    }
+    while at(&walk) != marked {
+        let up = tree.up(at(&walk));
+        walk.leave_by(up)?;
+    }
+    for dart in certificate_darts(map, marked) {
+        walk.leave_by(dart)?;
+    }
+    Ok(Audit { moves: walk.believed.moves(), pose: walk.believed.pose() })
+}

@@ -1,0 +1,275 @@
+//! `toposlam evaluate mistakes`: what one mistake does to the map of every small start.
+
+use std::{io::Write, path::PathBuf, time::Instant};
+
+use serde_json::json;
+use toposlam_model::{
+    check::{
+        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, Safeguard,
+        UnnoticedMistake,
+    },
+    enumerate::Class,
+    format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
+};
+
+use crate::cli::{
+    CliError, Outcome,
+    edge_range::EdgeRange,
+    exit_codes::help_end,
+    json::print_line,
+    mapping_marker::AlgorithmOption,
+    output,
+    progress::Progress,
+    text::{capital, counted, grouped, print_paragraph, print_rows},
+    use_threads,
+};
+
+/// Measure what one mistake does: is the map right, or does the robot notice?
+///
+/// From each start of every world of a size, the robot explores once for each place of its run and for each
+/// mistake that can happen there: another degree (from 1 to twice the number of edges), a marker where none
+/// lies, a marker that is not seen, one along another door, or that somebody carries the robot to another
+/// place. Everything else is true.
+///
+/// With --audit, the robot walks once more when its map is complete. The walk is the shortest one that can
+/// show that the map is right. With --recover, it also goes on after a contradiction, with what it still
+/// believes.
+#[derive(clap::Args)]
+#[command(after_help = help_end(
+    "\
+Examples:
+  toposlam evaluate mistakes                      Algorithm 1 alone
+  toposlam evaluate mistakes --audit              and with an audit
+  toposlam evaluate mistakes --recover --edges 1..=4
+  toposlam evaluate mistakes --out-dir mistakes   the smallest ones, as worlds
+
+A wrong pose is no violation if the robot was carried to a place that looks the
+same.",
+    &[
+        (0, "each run ends with the right map, or the robot notices"),
+        (1, "a wrong map is not noticed"),
+        (2, "bad usage or input"),
+        (3, "not all runs were made"),
+    ],
+))]
+pub(super) struct EvaluateMistakesArguments {
+    /// Number of edges, as in 4, or a range, as in 1..=5
+    #[arg(long, default_value = "1..=5", value_name = "SIZES", allow_hyphen_values = true)]
+    edges: EdgeRange,
+    /// Class of worlds: multigraph, simple, corridor or planar
+    #[arg(long, default_value_t = Class::Multigraph)]
+    class: Class,
+    /// The algorithm that makes the map: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
+    /// Audit each map before it counts as right
+    #[arg(long)]
+    audit: bool,
+    /// Audit each map, and go on after a contradiction; with the folding explorer
+    #[arg(long, conflicts_with_all = ["audit", "algorithm"])]
+    recover: bool,
+    /// Write the smallest start with an unnoticed mistake of each kind into this folder
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print JSON objects, one per line
+    #[arg(long)]
+    json: bool,
+}
+
+impl EvaluateMistakesArguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        use_threads(self.threads)?;
+        let check = |edges| {
+            let check = MistakeCheck::new(self.class, edges, self.algorithm(), self.safeguard());
+            check.map_err(|error| CliError::at("--edges", error))
+        };
+        let checks = self.edges.iter().map(check).collect::<Result<Vec<_>, _>>()?;
+        if let Some(folder) = &self.out_dir {
+            output::make_folder(folder)?;
+        }
+        let begun = Instant::now();
+        let mut tally = MistakeTally::default();
+        for (edges, check) in self.edges.iter().zip(checks) {
+            let progress = Progress::new(&format!("{edges} edges"), "runs")?;
+            tally.merge(check.run(&progress));
+            progress.finish();
+            if tally.interrupted {
+                break;
+            }
+        }
+        let outcome = match () {
+            () if violations(&tally) > 0 => Outcome::Violated,
+            () if tally.interrupted || tally.all().runs() == 0 => Outcome::Incomplete,
+            () => Outcome::Holds,
+        };
+        if self.json {
+            self.print_json(&tally, outcome, out)?;
+        } else {
+            self.print(&tally, outcome, out)?;
+        }
+        self.write_mistakes(&tally)?;
+        remark!("{:.1} s", begun.elapsed().as_secs_f64());
+        Ok(outcome)
+    }
+
+    fn algorithm(&self) -> DirectionalAlgorithm {
+        if self.recover { DirectionalAlgorithm::Folding } else { self.algorithm.directional() }
+    }
+
+    fn safeguard(&self) -> Safeguard {
+        match (self.recover, self.audit) {
+            (true, _) => Safeguard::Recovery,
+            (false, true) => Safeguard::Audit,
+            (false, false) => Safeguard::Nothing,
+        }
+    }
+
+    fn print(
+        &self,
+        tally: &MistakeTally,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let safeguard = match self.safeguard() {
+            Safeguard::Nothing => "alone",
+            Safeguard::Audit => "with an audit",
+            Safeguard::Recovery => "with audit and recovery",
+        };
+        let algorithm = capital(self.algorithm().in_words());
+        writeln!(out, "{algorithm} {safeguard}, one mistake a run, class {}", self.class)?;
+        let starts = grouped(tally.starts.into());
+        let mean = tally.moves as f64 / tally.starts.max(1) as f64;
+        writeln!(out, "  {starts} starts, {mean:.1} moves on average without a mistake\n")?;
+        let heads = [
+            "mistake",
+            "     runs",
+            "    right",
+            " reported",
+            "gave up",
+            "wrong pose",
+            "wrong map",
+        ];
+        let mut rows: Vec<_> = MISTAKE_KINDS
+            .into_iter()
+            .zip(tally.counts)
+            .map(|(kind, counts)| row(kind.name(), counts))
+            .collect();
+        rows.push(row("all", tally.all()));
+        print_rows(out, heads, &rows)?;
+        let all = tally.all();
+        if self.recover {
+            let extra = all.extra_moves as f64 / all.right.max(1) as f64;
+            writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
+        }
+        for (kind, mistake) in self.mistakes(tally) {
+            writeln!(out)?;
+            print_paragraph(out, &told(kind, mistake))?;
+        }
+        let verdict = match outcome {
+            Outcome::Holds => {
+                "holds: each run ends with the right map, or the robot notices".to_owned()
+            }
+            Outcome::Violated => format!(
+                "violated: {} of {} runs end with a mistake that the robot could notice, and does not",
+                grouped(violations(tally).into()),
+                grouped(all.runs().into()),
+            ),
+            Outcome::Incomplete if tally.interrupted => "incomplete, interrupted".to_owned(),
+            Outcome::Incomplete => "incomplete: there is nothing to check".to_owned(),
+        };
+        writeln!(out)?;
+        Ok(print_paragraph(out, &verdict)?)
+    }
+
+    /// The first unnoticed mistake of each kind.
+    fn mistakes<'t>(
+        &self,
+        tally: &'t MistakeTally,
+    ) -> impl Iterator<Item = (MistakeKind, &'t UnnoticedMistake)> + use<'t> {
+        let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
+        first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
+    }
+
+    fn write_mistakes(&self, tally: &MistakeTally) -> Result<(), CliError> {
+        let Some(folder) = &self.out_dir else { return Ok(()) };
+        for (kind, mistake) in self.mistakes(tally) {
+            let name = kind.name().replace(' ', "-");
+            let UnnoticedMistake { graph, facing, .. } = mistake;
+            let world = NamedWorld::discovered(&name, &told(kind, mistake), graph, *facing);
+            output::write_world(&folder.join(format!("{name}.toml")), &world)?;
+        }
+        Ok(())
+    }
+
+    fn print_json(
+        &self,
+        tally: &MistakeTally,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+            let counts = tally.counts[at];
+            let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, extra_moves } =
+                counts;
+            let first = tally.first[at].as_ref().map(|first| {
+                json!({
+                    "edges": first.graph.edge_count(), "moves": first.mistake.moves,
+                    "what": first.mistake.to_string(), "flaw": first.flaw.to_string(),
+                })
+            });
+            let line = json!({
+                "mistake": kind.name(), "runs": counts.runs(), "right": right,
+                "reported": reported, "gave_up": too_large, "wrong_pose": wrong_pose,
+                "wrong_map": wrong_map, "extra_moves": extra_moves, "first": first,
+            });
+            print_line(out, "mistake", &line)?;
+        }
+        let all = tally.all();
+        let line = json!({
+            "class": self.class.name(), "algorithm": self.algorithm().name(),
+            "audit": self.audit || self.recover, "recover": self.recover,
+            "starts": tally.starts, "runs": all.runs(), "right": all.right,
+            "unnoticed": all.unnoticed(), "moves_total": tally.moves,
+            "interrupted": tally.interrupted, "holds": outcome == Outcome::Holds,
+        });
+        print_line(out, "mistakes", &line)
+    }
+}
+
+/// The number of runs with a mistake that the robot could notice, and did not. That it was carried to a place
+/// that looks the same, it cannot notice; but an audit finds a wrong map.
+fn violations(tally: &MistakeTally) -> u64 {
+    let of = |(kind, counts): (MistakeKind, MistakeCounts)| match kind {
+        MistakeKind::Carried => counts.wrong_map,
+        _ => counts.unnoticed(),
+    };
+    MISTAKE_KINDS.into_iter().zip(tally.counts).map(of).sum()
+}
+
+fn row(name: &str, counts: MistakeCounts) -> [String; 7] {
+    let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, .. } = counts;
+    let number = |number: u64, width: usize| format!("{:>width$}", grouped(number.into()));
+    [
+        name.to_owned(),
+        number(counts.runs(), 9),
+        number(right, 9),
+        number(reported, 9),
+        number(too_large, 7),
+        number(wrong_pose, 10),
+        number(wrong_map, 9),
+    ]
+}
+
+/// An unnoticed mistake in words.
+fn told(kind: MistakeKind, unnoticed: &UnnoticedMistake) -> String {
+    let UnnoticedMistake { graph, mistake, flaw, .. } = unnoticed;
+    let edges = counted(graph.edge_count(), "edge");
+    format!(
+        "{}, the smallest that is not noticed: in a world with {edges}, {mistake}; {flaw}.",
+        capital(kind.name())
+    )
+}
