@@ -1,14 +1,16 @@
 //! A robot as a world: a mapping algorithm chooses doors, and Algorithm 2 drives the robot through them.
 //! Sections 4.3 and 5.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{Lost, PathExecution, Standing, Step},
-        scene::Scene,
+        algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
+        scene::{Scene, wrapped},
     },
-    mapping::{Journey, MappingError, MappingEvent, MappingRun},
-    percept::{Door, Percept},
+    mapping::{Journey, MappingError, MappingEvent, MappingRun, Relocate},
+    percept::{Door, Percept, Sighting},
     world::World,
 };
 
@@ -62,6 +64,34 @@ pub enum ExplorerError {
     },
 }
 
+impl ExplorerError {
+    /// Whether something is in the robot's way.
+    fn is_stalled(&self) -> bool {
+        matches!(self, Self::Lost { lost: Lost { why: LostReason::Stalled { .. }, .. }, .. })
+    }
+}
+
+/// Where the robot stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// At the turning point of a junction.
+    Junction(Standing),
+    /// In a hallway, before an obstacle. The way back is in this direction, in the frame of odometry.
+    Obstacle { back: f64 },
+}
+
+/// What a robot does at an obstacle that it cannot pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Obstacles {
+    /// It gives up.
+    Fail,
+    /// It returns, as from a dead end.
+    DeadEnds,
+}
+
+/// The percept at an obstacle.
+const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };
+
 fn by_door(door: Option<Door>) -> String {
     door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
 }
@@ -76,9 +106,10 @@ pub struct RobotExplorer<R, S, O = ()> {
     robot: R,
     sensor: S,
     observer: O,
-    standing: Option<Standing>,
+    place: Option<Place>,
     moves: u64,
     door: Option<Door>,
+    obstacles: Obstacles,
     /// The last frame that was used.
     last: Option<Frame>,
     /// The number of events so far.
@@ -113,7 +144,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             robot,
             sensor,
             observer,
-            standing: None,
+            place: None,
+            obstacles: Obstacles::Fail,
             moves: 0,
             door: None,
             last: None,
@@ -126,13 +158,32 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// The same robot, if it is already known where it stands.
     #[must_use]
     pub fn standing_at(mut self, standing: Standing) -> Self {
-        self.standing = Some(standing);
+        self.place = Some(Place::Junction(standing));
+        self
+    }
+
+    /// The same robot, for which an obstacle in a hallway is a dead end.
+    #[must_use]
+    pub fn returning_at_obstacles(mut self) -> Self {
+        self.obstacles = Obstacles::DeadEnds;
         self
     }
 
     /// The robot.
     pub fn robot(&self) -> &R {
         &self.robot
+    }
+
+    /// The moves so far.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.moves
+    }
+
+    /// Whether the robot stands before an obstacle.
+    #[must_use]
+    pub fn is_at_obstacle(&self) -> bool {
+        matches!(self.place, Some(Place::Obstacle { .. }))
     }
 
     /// The robot and the observer.
@@ -261,7 +312,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// Where the robot stands. At the very start, it finds out.
     fn standing(&mut self) -> Result<Standing, ExplorerError> {
-        if let Some(standing) = self.standing {
+        if let Some(Place::Junction(standing)) = self.place {
             return Ok(standing);
         }
         let odometry = self.robot.odometry().odometry;
@@ -274,7 +325,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     fn arrive(&mut self, standing: Standing) {
-        self.standing = Some(standing);
+        self.place = Some(Place::Junction(standing));
         self.emit(EventKind::Arrival(Arrival::new(self.moves, &standing)));
     }
 }
@@ -283,28 +334,71 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     type Error = ExplorerError;
 
     fn percept(&mut self) -> Result<Percept, ExplorerError> {
-        Ok(self.standing()?.percept)
+        match self.place {
+            Some(Place::Obstacle { .. }) => Ok(DEAD_END),
+            _ => Ok(self.standing()?.percept),
+        }
     }
 
     // paper: validation.traverse, validation.motion, drive.path
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
-        let from = self.standing()?;
+        let from = match self.place {
+            Some(at) => at,
+            None => Place::Junction(self.standing()?),
+        };
         self.moves += 1;
         self.door = Some(door);
         // Until the robot arrives, it does not know where it is.
-        self.standing = None;
+        self.place = None;
         let number = u32::try_from(self.moves).ok();
         self.emit(EventKind::Door { number, door });
-        let standing = self.drive(PathExecution::new(&[door], &from))?;
-        self.arrive(standing);
+        let driven = match &from {
+            Place::Junction(from) => self.drive(PathExecution::new(&[door], from)),
+            Place::Obstacle { back } => self.drive(PathExecution::onwards_to_junction(*back)),
+        };
+        match driven {
+            Ok(standing) => self.arrive(standing),
+            Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
+                let heading = self.robot.odometry().odometry.heading;
+                self.place = Some(Place::Obstacle { back: wrapped(heading + PI) });
+            }
+            Err(error) => return Err(error),
+        }
         Ok(())
+    }
+}
+
+/// A robot that got lost tries these directions, relative to its heading, until it comes to a junction; in the
+/// dark it looks again.
+const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];
+/// How often it tries them.
+const TRIES: usize = 4;
+
+impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, O> {
+    fn relocate(&mut self, error: ExplorerError) -> Result<(), ExplorerError> {
+        if matches!(error, ExplorerError::Stopped { .. } | ExplorerError::Robot(_)) {
+            return Err(error);
+        }
+        let heading = self.robot.odometry().odometry.heading;
+        for direction in DIRECTIONS.repeat(TRIES) {
+            let direction = wrapped(heading + direction);
+            match self.drive(PathExecution::onwards_to_junction(direction)) {
+                Ok(standing) => {
+                    self.arrive(standing);
+                    return Ok(());
+                }
+                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
+                    return Err(error);
+                }
+                Err(_) => {}
+            }
+        }
+        Err(error)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, PI};
-
     use toposlam_model::driving::{
         odometry::Odometry,
         scene::{CentreLine, JunctionView, Place},

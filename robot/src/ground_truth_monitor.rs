@@ -46,6 +46,8 @@ pub struct CheckedArrival {
     pub perceived: Percept,
     /// The robot's true pose.
     pub pose: Pose,
+    /// The true entry dart, also if the specification says that the robot could not come there.
+    truly: Option<Dart>,
 }
 
 impl CheckedArrival {
@@ -105,7 +107,8 @@ impl<'p> GroundTruthMonitor<'p> {
         let door = self.door.take();
         // A door that does not exist leads nowhere; the robot is then somewhere else.
         let refused = door.is_some_and(|door| self.world.traverse(door).is_err());
-        let reached = self.dart_at(pose, entry).filter(|_| !refused);
+        let truly = self.dart_at(pose, entry);
+        let reached = truly.filter(|_| !refused);
         let arrival = CheckedArrival {
             door,
             expected: self.world.pose(),
@@ -113,6 +116,7 @@ impl<'p> GroundTruthMonitor<'p> {
             expected_percept: self.world.sensed(),
             perceived,
             pose,
+            truly,
         };
         self.arrivals.push(arrival);
     }
@@ -161,6 +165,12 @@ impl<'p> GroundTruthMonitor<'p> {
         };
         let reached = arrival.reached.map_or_else(|| "no junction".to_owned(), name);
         Some(TruthDivergence { moves, names: [name(arrival.expected), reached], arrival })
+    }
+
+    /// The robot's true entry dart, whatever happened before.
+    #[must_use]
+    pub fn truly_reached(&self) -> Option<Dart> {
+        self.arrivals.last()?.truly
     }
 
     /// The robot's true entry dart.

@@ -13,6 +13,7 @@ pub mod log;
 pub mod pose;
 pub mod record;
 pub mod recording;
+pub mod recovered_run;
 pub mod replay;
 pub mod robot;
 #[cfg(feature = "ros1")]

@@ -93,7 +93,8 @@ fn among_furniture_doors_and_people_a_robot_errs_by_giving_up() {
 #[test]
 fn buildings_are_mapped_by_laser() {
     for algorithm in DirectionalAlgorithm::ALL {
-        let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
+        let runs =
+            RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm, Recovery::None);
         for run in runs.judged(0..4, &laser_robots(ScannerParams::PLAIN), &()) {
             assert_eq!(run.ending, RunOutcome::Right, "{}", run.case.plan_name);
             assert_eq!(run.moves[0], run.moves[1]);

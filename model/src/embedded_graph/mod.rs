@@ -5,6 +5,7 @@
 //! allowed.
 
 mod construct;
+mod cut;
 mod fault;
 mod grow;
 mod list_error;

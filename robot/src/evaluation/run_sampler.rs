@@ -15,6 +15,7 @@ use super::{RobotEquipment, parallel::made_in_turn};
 use crate::{
     explorer::ExplorerError,
     record::StoppedBy,
+    recovered_run::run_with_recovery,
     run::{RunOutcome, explored, run},
     simulator::{FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
@@ -29,6 +30,16 @@ pub struct RunSampler {
     noise: f64,
     faults: Faults,
     algorithm: DirectionalAlgorithm,
+    recovery: Recovery,
+}
+
+/// What a robot does after a contradiction, or if it gets lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recovery {
+    /// It gives up.
+    None,
+    /// It [recovers](toposlam_model::mapping::map_with_recovery), and audits its map.
+    Full,
 }
 
 /// Whether faults are injected.
@@ -36,8 +47,8 @@ pub struct RunSampler {
 pub enum Faults {
     /// No faults.
     None,
-    /// One fault in each run, of each kind in turn.
-    Each,
+    /// This number of faults in each run. The kinds take turns.
+    Each(u32),
 }
 
 /// A run to make.
@@ -60,10 +71,23 @@ pub struct JudgedRun {
     pub ending: RunOutcome,
     /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
+    /// What recovery did, if the robot recovers and has a map.
+    pub recovered: Option<Recovered>,
     /// Simulated time, in seconds.
     pub seconds: f64,
     /// The number of images that were requested.
     pub pictures: u64,
+}
+
+/// What recovery did in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recovered {
+    /// The number of recoveries.
+    pub recoveries: u32,
+    /// The moves of the audit.
+    pub audit_moves: u64,
+    /// Whether the map is right but for a hallway that the robot could not pass.
+    pub is_cut: bool,
 }
 
 impl JudgedRun {
@@ -97,6 +121,7 @@ impl RunSampler {
         seed: u64,
         noise: f64,
         algorithm: DirectionalAlgorithm,
+        recovery: Recovery,
     ) -> Self {
         let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
             let all = starts_of(plan);
@@ -106,7 +131,7 @@ impl RunSampler {
             (0..wanted).map(nth).collect::<Vec<_>>()
         };
         let starts = plans.iter().enumerate().flat_map(some).collect();
-        Self { plans, starts, seed, noise, faults, algorithm }
+        Self { plans, starts, seed, noise, faults, algorithm, recovery }
     }
 
     /// The number of starts.
@@ -124,11 +149,13 @@ impl RunSampler {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
         let mut config = SimulationConfig::at_start(plan, facing, chance.next_u64());
         config.noise = self.noise;
-        if self.faults == Faults::Each {
-            let (kind, ..) = FAULTS[(number % FAULTS.len() as u64) as usize];
+        if let Faults::Each(count) = self.faults {
             let moves = explored(&config.plan, facing, self.algorithm, DEFAULT_DART_BOUND);
-            let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
-            config.faults.push(RobotFault::at(kind, picture));
+            for nth in 0..u64::from(count) {
+                let (kind, ..) = FAULTS[((number + nth * nth) % FAULTS.len() as u64) as usize];
+                let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
+                config.faults.push(RobotFault::at(kind, picture));
+            }
         }
         Some(RunCase { number, plan_name, config })
     }
@@ -146,7 +173,7 @@ impl RunSampler {
             numbers,
             watch,
             |number| self.case(number),
-            |case| judged(case, equipment, self.algorithm, watch),
+            |case| judged(case, equipment, self.algorithm, self.recovery, watch),
         )
     }
 }
@@ -156,12 +183,36 @@ fn judged(
     case: RunCase,
     equipment: &RobotEquipment,
     algorithm: DirectionalAlgorithm,
+    recovery: Recovery,
     watch: &dyn Watch,
 ) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, .. } = case.config.clone();
     // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = equipment.robot(&case.config, case.number);
+    if recovery == Recovery::Full {
+        let run = run_with_recovery(&plan, marker, robot, sensor, StoppedBy(watch), bound);
+        if matches!(
+            &run.outcome,
+            RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. }))
+        ) {
+            return None;
+        }
+        let explore_moves = explored(&plan, marker, algorithm, bound);
+        let recovered = run.map.map(|map| Recovered {
+            recoveries: map.recoveries,
+            audit_moves: map.audit_moves,
+            is_cut: run.is_cut,
+        });
+        return Some(JudgedRun {
+            case,
+            ending: run.outcome,
+            moves: [run.moves, explore_moves],
+            recovered,
+            seconds: run.seconds,
+            pictures: run.pictures,
+        });
+    }
     let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, bound);
     if matches!(run.error, Some(MappingError::World(ExplorerError::Stopped { .. }))) {
         return None;
@@ -170,6 +221,7 @@ fn judged(
         case,
         ending: run.outcome(),
         moves: [run.mapping.moves(), run.explore_moves],
+        recovered: None,
         seconds: run.seconds,
         pictures: run.pictures,
     })

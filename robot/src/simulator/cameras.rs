@@ -40,8 +40,8 @@ pub trait SimulatedCamera: Debug + Send {
     /// time and odometry.
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
 
-    /// Turns the lights out.
-    fn lights_out(&mut self);
+    /// Turns the lights on or out.
+    fn set_lights(&mut self, on: bool);
 }
 
 /// Damages the frame with this number.
@@ -75,6 +75,7 @@ pub struct RenderingCamera {
     seed: u64,
     /// Exposure below that of its effects, in stops.
     less: f64,
+    dark: bool,
 }
 
 /// Change of the exposure when the lights are out, in stops.
@@ -98,7 +99,7 @@ impl RenderingCamera {
     /// A camera in a building. The noise of its images follows from the seed.
     #[must_use]
     pub fn new(rig: Arc<Rig>, building: Building, effects: Effects, seed: u64) -> Self {
-        Self { rig, building, effects, seed, less: 0.0 }
+        Self { rig, building, effects, seed, less: 0.0, dark: false }
     }
 
     /// Sets the exposure of the next image from this one.
@@ -122,7 +123,8 @@ impl RenderingCamera {
 
 impl SimulatedCamera for RenderingCamera {
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
-        let exposure = self.effects.exposure - self.less + stops;
+        let lights = if self.dark { OUT } else { 0.0 };
+        let exposure = self.effects.exposure - self.less + stops + lights;
         let effects = Effects { exposure, ..self.effects.clone() };
         let seed = self.seed.wrapping_add(number);
         let image = exposed(&self.rig, &self.building, pose, &effects, seed);
@@ -131,8 +133,8 @@ impl SimulatedCamera for RenderingCamera {
         Frame { id: number, image: Some(image), ..Frame::default() }
     }
 
-    fn lights_out(&mut self) {
-        self.effects.exposure += OUT;
+    fn set_lights(&mut self, on: bool) {
+        self.dark = !on;
     }
 }
 
@@ -231,8 +233,8 @@ impl SimulatedCamera for MarkerDetector {
         Frame { marker: frame.scene.and_then(|scene| scene.marker), scene: None, ..frame }
     }
 
-    fn lights_out(&mut self) {
-        self.0.lights_out();
+    fn set_lights(&mut self, on: bool) {
+        self.0.set_lights(on);
     }
 }
 
@@ -325,8 +327,8 @@ impl SimulatedCamera for SceneCamera {
         Frame { id: number, scene: Some(scene), ..Frame::default() }
     }
 
-    fn lights_out(&mut self) {
-        self.dark = true;
+    fn set_lights(&mut self, on: bool) {
+        self.dark = !on;
     }
 }
 

@@ -38,7 +38,7 @@ kinds! {
     Corrupt "corrupt" 3 "Image files are damaged.";
     Ignored "ignored" 2 "Commands are ignored.";
     Blocked "blocked" 1 "An obstacle ahead, unseen by the camera, stops the robot.";
-    LightsOut "lights-out" 1 "The lights go out.";
+    LightsOut "lights-out" 40 "The lights go out.";
     Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
 

@@ -37,6 +37,8 @@ pub struct SimulatedRobot {
     seed: u64,
     pictures: u64,
     last: Option<Frame>,
+    /// What a fault has put in its way.
+    obstacle: Option<Rectangle>,
 }
 
 /// How much an overexposed image is overexposed, in stops.
@@ -92,14 +94,33 @@ impl SimulatedRobot {
             base.keep_track();
         }
         let camera = Box::new(camera);
-        let (scanner, last) = (None, None);
-        Self { plan, base, camera, scanner, picture_time, faults, seed, pictures: 0, last }
+        let (scanner, last, obstacle) = (None, None, None);
+        Self {
+            plan,
+            base,
+            camera,
+            scanner,
+            picture_time,
+            faults,
+            seed,
+            pictures: 0,
+            last,
+            obstacle,
+        }
     }
 
     /// The same robot with a laser scanner.
     #[must_use]
     pub fn with_scanner(self, scanner: LaserScanner) -> Self {
         Self { scanner: Some(scanner), ..self }
+    }
+
+    /// The middle of the obstacle in its way, if a fault has put one there, in metres.
+    #[must_use]
+    pub fn obstacle(&self) -> Option<[f64; 2]> {
+        self.obstacle.map(|obstacle| {
+            [0, 1].map(|axis| f64::midpoint(obstacle.least[axis], obstacle.greatest[axis]))
+        })
     }
 
     /// The true pose.
@@ -130,6 +151,7 @@ impl SimulatedRobot {
             self.begin(fault);
         }
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
+        self.camera.set_lights(!spoilt(FaultKind::LightsOut));
         let taken = self.base.time();
         let stops = if spoilt(FaultKind::OverExposed) { BURNT_OUT } else { 0.0 };
         let odometry = self.base.reading().odometry;
@@ -168,8 +190,11 @@ impl SimulatedRobot {
     fn begin(&mut self, fault: &RobotFault) {
         match fault.kind {
             FaultKind::Ignored => self.base.ignore(fault.lasting),
-            FaultKind::LightsOut => self.camera.lights_out(),
-            FaultKind::Blocked => self.base.put(across_hallway(self.pose(), &self.plan)),
+            FaultKind::Blocked => {
+                let obstacle = across_hallway(self.pose(), &self.plan);
+                self.obstacle = Some(obstacle);
+                self.base.put(obstacle);
+            }
             FaultKind::Carried => {
                 let pose = elsewhere(&self.plan, self.seed, fault.picture);
                 self.base.carry(pose);

@@ -13,6 +13,7 @@ use toposlam_model::{
     mapping::DirectionalAlgorithm,
 };
 
+use super::only_folding_recovers;
 use crate::cli::{
     CliError, Outcome,
     edge_range::EdgeRange,
@@ -41,7 +42,7 @@ use crate::cli::{
 Examples:
   toposlam evaluate mistakes                      Algorithm 1 alone
   toposlam evaluate mistakes --audit              and with an audit
-  toposlam evaluate mistakes --recover --edges 1..=4
+  toposlam evaluate mistakes --algorithm folding --recover --edges 1..=4
   toposlam evaluate mistakes --out-dir mistakes   the smallest ones, as worlds
 
 A wrong pose is no violation if the robot was carried to a place that looks the
@@ -66,8 +67,8 @@ pub(super) struct EvaluateMistakesArguments {
     /// Audit each map before it counts as right
     #[arg(long)]
     audit: bool,
-    /// Audit each map, and go on after a contradiction; with the folding explorer
-    #[arg(long, conflicts_with_all = ["audit", "algorithm"])]
+    /// Audit each map, and go on after a contradiction; with --algorithm folding
+    #[arg(long, conflicts_with = "audit")]
     recover: bool,
     /// Write the smallest start with an unnoticed mistake of each kind into this folder
     #[arg(long, value_name = "DIR")]
@@ -83,6 +84,9 @@ pub(super) struct EvaluateMistakesArguments {
 impl EvaluateMistakesArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
+        if self.recover && self.algorithm() != DirectionalAlgorithm::Folding {
+            return Err(only_folding_recovers());
+        }
         let check = |edges| {
             let check = MistakeCheck::new(self.class, edges, self.algorithm(), self.safeguard());
             check.map_err(|error| CliError::at("--edges", error))
@@ -117,7 +121,7 @@ impl EvaluateMistakesArguments {
     }
 
     fn algorithm(&self) -> DirectionalAlgorithm {
-        if self.recover { DirectionalAlgorithm::Folding } else { self.algorithm.directional() }
+        self.algorithm.directional()
     }
 
     fn safeguard(&self) -> Safeguard {
@@ -144,15 +148,7 @@ impl EvaluateMistakesArguments {
         let starts = grouped(tally.starts.into());
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
         writeln!(out, "  {starts} starts, {mean:.1} moves on average without a mistake\n")?;
-        let heads = [
-            "mistake",
-            "     runs",
-            "    right",
-            " reported",
-            "gave up",
-            "wrong pose",
-            "wrong map",
-        ];
+        let heads = ["mistake", "     runs", "    right", "  noticed", "wrong pose", "wrong map"];
         let mut rows: Vec<_> = MISTAKE_KINDS
             .into_iter()
             .zip(tally.counts)
@@ -250,15 +246,14 @@ fn violations(tally: &MistakeTally) -> u64 {
     MISTAKE_KINDS.into_iter().zip(tally.counts).map(of).sum()
 }
 
-fn row(name: &str, counts: MistakeCounts) -> [String; 7] {
+fn row(name: &str, counts: MistakeCounts) -> [String; 6] {
     let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, .. } = counts;
     let number = |number: u64, width: usize| format!("{:>width$}", grouped(number.into()));
     [
         name.to_owned(),
         number(counts.runs(), 9),
         number(right, 9),
-        number(reported, 9),
-        number(too_large, 7),
+        number(reported + too_large, 9),
         number(wrong_pose, 10),
         number(wrong_map, 9),
     ]

@@ -7,13 +7,16 @@ use toposlam_model::mapping::DirectionalAlgorithm;
 use toposlam_robot::{
     evaluation::{
         RobotEquipment,
-        run_sampler::{Faults, JudgedRun, RunSampler},
+        run_sampler::{Faults, JudgedRun, Recovery, RunSampler},
     },
     run::RunOutcome,
     simulator::{FAULTS, FaultKind},
 };
 
-use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
+use super::{
+    only_folding_recovers,
+    robots::{RandomPlans, RobotArguments, print_failure, share, share_json},
+};
 use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
@@ -38,6 +41,7 @@ Examples:
                                                          takes 15 minutes
   toposlam evaluate runs --sensor laser --plans 40       by a laser scanner
   toposlam evaluate runs --faults --plans 100            one fault in each run
+  toposlam evaluate runs --faults --algorithm folding --recover
   toposlam evaluate runs --algorithm folding             fewer moves
 
 With --faults, a run may also be given up if the robot reports a contradiction.
@@ -63,9 +67,13 @@ pub(super) struct EvaluateRunsArguments {
     /// The algorithm that makes the map: algorithm1 or folding
     #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
     algorithm: AlgorithmOption,
-    /// Inject one fault into each run
+    /// Inject this number of faults into each run; 1 if there is no number
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    faults: Option<u32>,
+    /// Audit each map, and go on after a contradiction; with --algorithm folding
     #[arg(long)]
-    faults: bool,
+    recover: bool,
     #[command(flatten)]
     robots: RobotArguments,
 }
@@ -83,10 +91,11 @@ impl EvaluateRunsArguments {
         };
         let plans = self.robots.plans(random, most)?;
         let count = plans.len();
-        let faults = if self.faults { Faults::Each } else { Faults::None };
+        let faults = self.faults.map_or(Faults::None, Faults::Each);
         let algorithm = self.algorithm.directional();
+        let recovery = self.recovery()?;
         let RobotArguments { seed, noise, json, .. } = self.robots;
-        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, algorithm);
+        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, algorithm, recovery);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
@@ -117,9 +126,21 @@ impl EvaluateRunsArguments {
         Ok(outcome)
     }
 
+    fn recovery(&self) -> Result<Recovery, CliError> {
+        match (self.recover, self.algorithm.directional()) {
+            (false, _) => Ok(Recovery::None),
+            (true, DirectionalAlgorithm::Folding) => Ok(Recovery::Full),
+            (true, DirectionalAlgorithm::Algorithm1) => Err(only_folding_recovers()),
+        }
+    }
+
     /// Whether a run fails: without faults it must be right, with faults it must not be wrong unnoticed.
     fn violates(&self, run: &JudgedRun) -> bool {
-        if self.faults { run.is_violation() } else { run.ending != RunOutcome::Right }
+        match self.faults {
+            None => run.ending != RunOutcome::Right,
+            Some(_) if self.recover => matches!(run.ending, RunOutcome::Wrong(_)),
+            Some(_) => run.is_violation(),
+        }
     }
 
     fn print(
@@ -128,14 +149,15 @@ impl EvaluateRunsArguments {
         outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        for run in
-            judged.iter().filter(|run| !self.faults || matches!(run.ending, RunOutcome::Wrong(_)))
+        for run in judged
+            .iter()
+            .filter(|run| self.faults.is_none() || matches!(run.ending, RunOutcome::Wrong(_)))
         {
             if run.ending != RunOutcome::Right {
                 print_failure(out, named(run), &run.ending)?;
             }
         }
-        if self.faults {
+        if self.faults.is_some() {
             let heads = ["fault", " runs", "right", "given up", "wrong"];
             let rows: Vec<_> = FAULTS.iter().map(|&(kind, ..)| row(judged, kind)).collect();
             print_rows(out, heads, &rows)?;
@@ -145,16 +167,22 @@ impl EvaluateRunsArguments {
         writeln!(out, "  right    {} of {}", grouped(right as u128), grouped(all as u128))?;
         writeln!(out, "  gave up  {}", share(gave_up, all))?;
         writeln!(out, "  wrong    {}", share(wrong, all))?;
+        if self.recover {
+            print_recovery(judged, out)?;
+        }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
         let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
         writeln!(out, "  {moves} moves, {pictures} images, {hours:.1} hours of simulated time")?;
-        let verdict = match (outcome, self.faults) {
+        let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
             (Outcome::Holds, false) => {
                 "holds in these runs: every map is right, and every move is as specified"
+            }
+            (Outcome::Holds, true) if self.recover => {
+                "holds in these runs: every map is right, or the robot gave up"
             }
             (Outcome::Holds, true) => {
                 "holds in these runs: every map is right, or the robot gave up or was carried"
@@ -182,6 +210,9 @@ impl EvaluateRunsArguments {
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
+                "recoveries": run.recovered.map(|recovered| recovered.recoveries),
+                "audit_moves": run.recovered.map(|recovered| recovered.audit_moves),
+                "blocked": run.recovered.map(|recovered| recovered.is_cut),
             });
             print_line(out, "run", &line)?;
         }
@@ -192,10 +223,33 @@ impl EvaluateRunsArguments {
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
             "algorithm": self.algorithm.directional().name(),
+            "recover": self.recover,
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
     }
+}
+
+/// What recovery did in all runs.
+fn print_recovery(judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliError> {
+    let right = || judged.iter().filter(|run| run.ending == RunOutcome::Right);
+    let all = || right().filter_map(|run| run.recovered);
+    let cut = all().filter(|recovered| recovered.is_cut).count();
+    let recoveries: u32 = all().map(|recovered| recovered.recoveries).sum();
+    let audits: u64 = all().map(|recovered| recovered.audit_moves).sum();
+    let [made, explored] = [0, 1].map(|at| right().map(|run| run.moves[at]).sum::<u64>());
+    let extra = made.saturating_sub(audits).saturating_sub(explored);
+    let number = |number: u64| grouped(number.into());
+    writeln!(out, "  right but for a hallway that is blocked  {cut}")?;
+    writeln!(
+        out,
+        "  moves of right runs: {} without faults, {} for audits, {} for {}",
+        number(explored),
+        number(audits),
+        number(extra),
+        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") },
+    )?;
+    Ok(())
 }
 
 /// The number of runs that were right, given up, wrong.

@@ -20,6 +20,9 @@ pub const IDLE: u32 = 16;
 /// or after this distance without a junction, in metres.
 pub const LEG: f64 = 100.0;
 
+/// A robot that does not know how far it is from the last junction supposes this distance, in metres. So a
+/// junction where it stands is not the one that it has left.
+const ON_THE_WAY: f64 = 1.2;
 /// The step by which the robot turns to look around, to one side and the other: ten degrees.
 const LITTLE: f64 = 10.0 / 180.0 * PI;
 /// The largest difference between a view and odometry.
@@ -77,6 +80,17 @@ impl DeadReckoning {
             stalls: 0,
             idle: 0,
             leg_bound: LEG,
+        }
+    }
+
+    /// In a hallway, on the way in a direction of the frame of odometry.
+    pub(super) fn on_the_way(direction: f64) -> Self {
+        let known = wrapped(direction);
+        Self {
+            stage: Stage::OnTheWay,
+            leg: known,
+            since_turn: ON_THE_WAY,
+            ..Self::at_junction(known)
         }
     }
 

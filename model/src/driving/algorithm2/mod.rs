@@ -123,6 +123,19 @@ impl<'a> PathExecution<'a> {
         Self::at_junction(&[], JunctionEstimate::at_marker(), odometry.whither(PI))
     }
 
+    /// The empty path of a robot that does not know where it is. It goes on in a direction, given in the frame
+    /// of odometry, and identifies the next junction.
+    #[must_use]
+    pub fn onwards_to_junction(direction: f64) -> Self {
+        Self {
+            queue: &[],
+            state: PathState::Hallway,
+            visit: JunctionEstimate::default(),
+            door: None,
+            reckoning: DeadReckoning::on_the_way(direction),
+        }
+    }
+
     fn at_junction(queue: &'a [Door], visit: JunctionEstimate, entry: f64) -> Self {
         // 1
         let state = PathState::Leaving;

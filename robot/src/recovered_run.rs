@@ -1,0 +1,122 @@
+//! A whole run of a robot that recovers from faults, and the judgement of its map.
+//!
+//! A hallway with an obstacle is two dead ends. So the map of a robot that could not pass is right if it is
+//! isomorphic to the floor plan with that hallway cut, as far as the robot can come.
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    floor_plan::FloorPlan,
+    isomorphism::Bijection,
+    mapping::{FACING, FoldingExploration, RecoveredMap, RecoveryConfig, map_with_recovery},
+};
+
+use crate::{
+    explorer::RobotExplorer,
+    ground_truth_monitor::GroundTruthMonitor,
+    record::{FrameSensor, RunObserver},
+    run::RunOutcome,
+    simulator::SimulatedRobot,
+};
+
+/// A run of a robot that recovers.
+#[derive(Clone, Debug)]
+pub struct RecoveredRun {
+    /// How it ended.
+    pub outcome: RunOutcome,
+    /// What the map took; `None` if the robot gave up.
+    pub map: Option<RecoveredMap>,
+    /// The moves.
+    pub moves: u64,
+    /// Whether the map has a hallway that the robot could not pass.
+    pub is_cut: bool,
+    /// The simulated time, in seconds.
+    pub seconds: f64,
+    /// The number of pictures that the robot asked for.
+    pub pictures: u64,
+}
+
+/// A simulated robot that stands at a dart's junction maps its building with the folding explorer, audits its map,
+/// and recovers from faults.
+pub fn run_with_recovery(
+    plan: &FloorPlan,
+    facing: Dart,
+    robot: SimulatedRobot,
+    sensor: impl FrameSensor,
+    observer: impl RunObserver,
+    dart_bound: usize,
+) -> RecoveredRun {
+    let monitor = GroundTruthMonitor::new(plan, facing);
+    let mut explorer =
+        RobotExplorer::new(robot, sensor, (monitor, observer)).returning_at_obstacles();
+    let mut exploration = FoldingExploration::new(dart_bound);
+    let config = RecoveryConfig::default();
+    let mapped = map_with_recovery(&mut explorer, &mut exploration, config, &mut ());
+    let moves = explorer.moves();
+    let is_at_obstacle = explorer.is_at_obstacle();
+    let (robot, (monitor, _)) = explorer.into_parts();
+    let (outcome, map, is_cut) = match mapped {
+        Err(error) => (RunOutcome::GaveUp(error), None, false),
+        Ok(found) => {
+            let reached = monitor.truly_reached().filter(|_| !is_at_obstacle);
+            let graph = exploration.map().complete();
+            let judged = graph.and_then(|graph| {
+                judge(plan, facing, (graph, found.pose), reached, robot.obstacle())
+            });
+            let wrong = || RunOutcome::Wrong("the map or the pose is wrong".to_owned());
+            let outcome = judged.map_or_else(wrong, |_| RunOutcome::Right);
+            (outcome, Some(found), judged == Some(Passage::Blocked))
+        }
+    };
+    let (seconds, pictures) = (robot.time(), robot.pictures());
+    RecoveredRun { outcome, map, moves, is_cut, seconds, pictures }
+}
+
+/// Of which building a map is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Passage {
+    /// Of the plan.
+    Free,
+    /// Of the plan with the hallway of the obstacle cut.
+    Blocked,
+}
+
+/// Of which building a map is, if the map and the robot's pose in it are right. The true pose is compared if the
+/// robot is at a junction.
+fn judge(
+    plan: &FloorPlan,
+    facing: Dart,
+    (map, pose): (&EmbeddedGraph, Dart),
+    reached: Option<Dart>,
+    obstacle: Option<[f64; 2]>,
+) -> Option<Passage> {
+    let is_right = |world: &EmbeddedGraph, facing, reached: Option<Dart>| {
+        let bijection = Bijection::of_starts((map, FACING), (world, facing));
+        let is_there = reached.is_none_or(|reached| bijection.image(pose) == Some(reached));
+        bijection.verify(map, world) && is_there
+    };
+    if is_right(plan.graph(), facing, reached) {
+        return Some(Passage::Free);
+    }
+    let (cut, numbers) = plan.graph().cut(blocked(plan, obstacle?)?, facing)?;
+    let number = |dart: Dart| numbers[dart.at()];
+    let reached = reached.and_then(number);
+    is_right(&cut, number(facing)?, reached).then_some(Passage::Blocked)
+}
+
+/// The dart of the hallway in which an obstacle lies.
+fn blocked(plan: &FloorPlan, obstacle: [f64; 2]) -> Option<Dart> {
+    let graph = plan.graph();
+    let ends = |dart: Dart| {
+        [dart, graph.opposite(dart)].map(|dart| plan.junction(graph.vertex(dart)).position)
+    };
+    let off = |&dart: &Dart| {
+        let [from, to] = ends(dart);
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let offset = [obstacle[0] - from[0], obstacle[1] - from[1]];
+        let length = along[0].hypot(along[1]);
+        let part = (offset[0] * along[0] + offset[1] * along[1]) / (length * length);
+        let near = part.clamp(0.0, 1.0);
+        (offset[0] - near * along[0]).hypot(offset[1] - near * along[1])
+    };
+    graph.darts().min_by(|one, other| off(one).total_cmp(&off(other)))
+}
