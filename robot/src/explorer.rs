@@ -7,7 +7,7 @@ use thiserror::Error;
 use toposlam_model::{
     driving::{
         algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
-        scene::{Scene, wrapped},
+        scene::{Place as ScenePlace, Scene, wrapped},
     },
     mapping::{Journey, MappingError, MappingEvent, MappingRun, Relocate},
     percept::{Door, Percept, Sighting},
@@ -368,17 +368,37 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     }
 }
 
-/// A robot that got lost tries these directions, relative to its heading, until it comes to a junction; in the
-/// dark it looks again.
+/// A robot that got lost tries these directions, relative to its heading, until it comes to a junction.
 const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];
 /// How often it tries them.
 const TRIES: usize = 4;
+
+/// A robot that sees nothing waits for this number of images.
+const PATIENCE: usize = 600;
+
+impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
+    /// Waits until an image shows a place, without moving.
+    fn wait_for_sight(&mut self) -> Result<(), ExplorerError> {
+        for _ in 0..PATIENCE {
+            if self.observer.stop() {
+                return Err(ExplorerError::Stopped { moves: self.moves });
+            }
+            match self.frame() {
+                Ok((_, scene)) if !matches!(scene.place, ScenePlace::Unknown(_)) => return Ok(()),
+                Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
+                Ok(_) | Err(_) => {}
+            }
+        }
+        Ok(())
+    }
+}
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, O> {
     fn relocate(&mut self, error: ExplorerError) -> Result<(), ExplorerError> {
         if matches!(error, ExplorerError::Stopped { .. } | ExplorerError::Robot(_)) {
             return Err(error);
         }
+        self.wait_for_sight()?;
         let heading = self.robot.odometry().odometry.heading;
         for direction in DIRECTIONS.repeat(TRIES) {
             let direction = wrapped(heading + direction);

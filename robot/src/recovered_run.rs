@@ -1,7 +1,8 @@
 //! A whole run of a robot that recovers from faults, and the judgement of its map.
 //!
 //! A hallway with an obstacle is two dead ends. So the map of a robot that could not pass is right if it is
-//! isomorphic to the floor plan with that hallway cut, as far as the robot can come.
+//! isomorphic to the floor plan with that hallway cut, as far as the robot can come. An obstacle at a junction
+//! cuts all its hallways.
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -76,7 +77,7 @@ pub fn run_with_recovery(
 enum Passage {
     /// Of the plan.
     Free,
-    /// Of the plan with the hallway of the obstacle cut.
+    /// Of the plan with the hallways at the obstacle cut.
     Blocked,
 }
 
@@ -87,7 +88,7 @@ fn judge(
     facing: Dart,
     (map, pose): (&EmbeddedGraph, Dart),
     reached: Option<Dart>,
-    obstacle: Option<[f64; 2]>,
+    obstacle: Option<[[f64; 2]; 2]>,
 ) -> Option<Passage> {
     let is_right = |world: &EmbeddedGraph, facing, reached: Option<Dart>| {
         let bijection = Bijection::of_starts((map, FACING), (world, facing));
@@ -97,26 +98,22 @@ fn judge(
     if is_right(plan.graph(), facing, reached) {
         return Some(Passage::Free);
     }
-    let (cut, numbers) = plan.graph().cut(blocked(plan, obstacle?)?, facing)?;
+    let (cut, numbers) = plan.graph().cut(&blocked(plan, obstacle?), facing)?;
     let number = |dart: Dart| numbers[dart.at()];
     let reached = reached.and_then(number);
     is_right(&cut, number(facing)?, reached).then_some(Passage::Blocked)
 }
 
-/// The dart of the hallway in which an obstacle lies.
-fn blocked(plan: &FloorPlan, obstacle: [f64; 2]) -> Option<Dart> {
+/// The darts of the hallways whose middle line runs through an obstacle.
+fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2]) -> Vec<Dart> {
     let graph = plan.graph();
-    let ends = |dart: Dart| {
-        [dart, graph.opposite(dart)].map(|dart| plan.junction(graph.vertex(dart)).position)
+    let position = |dart: Dart| plan.junction(graph.vertex(dart)).position;
+    // Hallways run along the axes.
+    let is_blocked = |&dart: &Dart| {
+        let [from, to] = [position(dart), position(graph.opposite(dart))];
+        (0..2).all(|axis| {
+            from[axis].min(to[axis]) <= greatest[axis] && from[axis].max(to[axis]) >= least[axis]
+        })
     };
-    let off = |&dart: &Dart| {
-        let [from, to] = ends(dart);
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let offset = [obstacle[0] - from[0], obstacle[1] - from[1]];
-        let length = along[0].hypot(along[1]);
-        let part = (offset[0] * along[0] + offset[1] * along[1]) / (length * length);
-        let near = part.clamp(0.0, 1.0);
-        (offset[0] - near * along[0]).hypot(offset[1] - near * along[1])
-    };
-    graph.darts().min_by(|one, other| off(one).total_cmp(&off(other)))
+    graph.darts().filter(is_blocked).collect()
 }

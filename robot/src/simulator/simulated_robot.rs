@@ -115,12 +115,10 @@ impl SimulatedRobot {
         Self { scanner: Some(scanner), ..self }
     }
 
-    /// The middle of the obstacle in its way, if a fault has put one there, in metres.
+    /// The least and the greatest corner of the obstacle that a fault has put on the floor, in metres.
     #[must_use]
-    pub fn obstacle(&self) -> Option<[f64; 2]> {
-        self.obstacle.map(|obstacle| {
-            [0, 1].map(|axis| f64::midpoint(obstacle.least[axis], obstacle.greatest[axis]))
-        })
+    pub fn obstacle(&self) -> Option<[[f64; 2]; 2]> {
+        self.obstacle.map(|obstacle| [obstacle.least, obstacle.greatest])
     }
 
     /// The true pose.

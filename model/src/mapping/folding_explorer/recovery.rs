@@ -222,11 +222,15 @@ impl FoldingExploration {
         let mut percept = world.percept().map_err(MappingError::World)?;
         let mut search = MarkerWalk::new(known);
         let mut step = search.trail.begin_walk(percept);
+        let most = LEAST_SEARCH + MOVES_A_DART * search.known as u64;
+        let begun = self.journey.moves();
         while !sees_marker(&percept) {
             step?;
+            if self.journey.moves() - begun >= most {
+                return Err(Contradiction::NoMarker.into());
+            }
             let Some(door) = search.next_door() else {
-                // A tree without the marker, all of which was seen.
-                return Err(Contradiction::Start { perceived: percept }.into());
+                return Err(Contradiction::NoMarker.into());
             };
             percept = self.journey.go(door, world, observer)?;
             step = search.trail.step(door, percept);
@@ -234,6 +238,11 @@ impl FoldingExploration {
         Ok(percept)
     }
 }
+
+/// The robot gives up the search for the marker after so many moves, and so many more for each dart that it
+/// knows: perhaps it is cut off from the marker.
+const LEAST_SEARCH: u64 = 400;
+const MOVES_A_DART: u64 = 20;
 
 /// A walk of a robot that does not know where it is, to the marker.
 struct MarkerWalk {
