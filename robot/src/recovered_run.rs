@@ -17,6 +17,7 @@ use crate::{
     record::{FrameSensor, RunObserver},
     run::RunOutcome,
     simulator::SimulatedRobot,
+    superscout::RADIUS,
 };
 
 /// A run of a robot that recovers.
@@ -98,21 +99,30 @@ fn judge(
     if is_right(plan.graph(), facing, reached) {
         return Some(Passage::Free);
     }
-    let (cut, numbers) = plan.graph().cut(&blocked(plan, obstacle?), facing)?;
-    let number = |dart: Dart| numbers[dart.at()];
-    let reached = reached.and_then(number);
-    is_right(&cut, number(facing)?, reached).then_some(Passage::Blocked)
+    let obstacle = obstacle?;
+    let is_cut = |margin: f64| {
+        let (cut, numbers) = plan.graph().cut(&blocked(plan, obstacle, margin), facing)?;
+        let number = |dart: Dart| numbers[dart.at()];
+        Some(is_right(&cut, number(facing)?, reached.and_then(number)))
+    };
+    // A robot does not drive exactly along the middle, so beside the obstacle it may pass or not.
+    let is_cut = MARGINS.into_iter().any(|margin| is_cut(margin) == Some(true));
+    is_cut.then_some(Passage::Blocked)
 }
 
-/// The darts of the hallways whose middle line runs through an obstacle.
-fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2]) -> Vec<Dart> {
+/// Hallways are blocked whose middle line is in an obstacle or so near to it, in metres.
+const MARGINS: [f64; 2] = [0.0, RADIUS];
+
+/// The darts of the hallways whose middle line comes nearer to an obstacle than a margin, in metres.
+fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2], margin: f64) -> Vec<Dart> {
     let graph = plan.graph();
     let position = |dart: Dart| plan.junction(graph.vertex(dart)).position;
     // Hallways run along the axes.
     let is_blocked = |&dart: &Dart| {
         let [from, to] = [position(dart), position(graph.opposite(dart))];
         (0..2).all(|axis| {
-            from[axis].min(to[axis]) <= greatest[axis] && from[axis].max(to[axis]) >= least[axis]
+            from[axis].min(to[axis]) <= greatest[axis] + margin
+                && from[axis].max(to[axis]) >= least[axis] - margin
         })
     };
     graph.darts().filter(is_blocked).collect()
