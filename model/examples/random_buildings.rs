@@ -4,11 +4,15 @@
 //!
 //! A building has its junctions on a square grid. Its hallways join neighbours on the grid, at most three
 //! at a junction: a random tree, and a quarter as many more as there are junctions. With seed 7 these are
-//! the buildings of the table in `worlds/README.md`.
+//! the buildings of the table in `worlds/README.md`. An argument is another number of hallways besides the
+//! tree, for 100 junctions.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "an example may panic, and prints")]
 
-use std::time::{Duration, Instant};
+use std::{
+    env,
+    time::{Duration, Instant},
+};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -19,6 +23,8 @@ use toposlam_model::{
 
 /// The number of buildings of each size.
 const BUILDINGS: usize = 10;
+/// Hallways besides the tree, for 100 junctions.
+const MORE_HALLWAYS: usize = 25;
 /// The most hallways at a junction.
 const DOORS: usize = 3;
 
@@ -40,7 +46,7 @@ fn part(parents: &[usize], junction: usize) -> usize {
 }
 
 /// A building with at most this number of junctions: those that the tree has reached from the first.
-fn building(junctions: usize, random: &mut Random) -> EmbeddedGraph {
+fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> EmbeddedGraph {
     let width = (1..=junctions).find(|width| width * width >= junctions).unwrap();
     let right = |at: usize| (at % width + 1 < width).then_some(at + 1);
     let below = |at: usize| Some(at + width);
@@ -63,7 +69,7 @@ fn building(junctions: usize, random: &mut Random) -> EmbeddedGraph {
             more.push((from, to));
         }
     }
-    let mut left = junctions / 4;
+    let mut left = junctions * more_hallways / 100;
     for (from, to) in more {
         if left > 0 && [from, to].iter().all(|&at| around[at].len() < DOORS) {
             around[from].push(to);
@@ -103,13 +109,14 @@ fn moves(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph) -> (u64, Durati
 }
 
 fn main() {
+    let more_hallways = env::args().nth(1).map_or(MORE_HALLWAYS, |more| more.parse().unwrap());
     println!("junctions  edges  certificate  folding  ratio  Algorithm 1  ratio  computation");
     for junctions in [25, 50, 100, 200] {
         let mut random = Random(7);
         let (mut edges, mut certificate) = (0, 0);
         let ([mut folding, mut algorithm1], mut time) = ([0; 2], Duration::ZERO);
         for _ in 0..BUILDINGS {
-            let graph = building(junctions, &mut random);
+            let graph = building(junctions, more_hallways, &mut random);
             edges += graph.edge_count();
             certificate += certificate_length(&graph, Dart(0));
             let (moved, computed) = moves(DirectionalAlgorithm::Folding, &graph);

@@ -7,8 +7,8 @@ use crate::{embedded_graph::Dart, folding::FoldedTrail, mapping::partial_map::ST
 
 impl FoldingExploration {
     /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
-    /// marker. Of walks of one cost it is that with the nearest open dart, then the first hypothesis, and
-    /// the first open dart of the trail.
+    /// marker. Of walks of one cost it is that of the hypothesis nearest to the marker, then with the nearest
+    /// open dart, then of the first hypothesis, and with the first open dart of the trail.
     pub(super) fn cheapest_test(
         &mut self,
         pending: Pending,
@@ -35,13 +35,15 @@ impl FoldingExploration {
             if hypotheses.is_refuted(edge, hypothesis) || trail.degree(target) != degree {
                 continue;
             }
+            let distance = to_marker.hops(journey.map.vertex(hypothesis));
             let mut list = |trail: &FoldedTrail, open, entry: Option<u32>| {
                 let Some(entry) = entry.map(Dart) else { return };
                 let rest = to_marker.hops(journey.map.vertex(entry)) as usize;
                 let approach = from_robot.moves_to_vertex(trail.trail_vertex(open));
                 let cost = approach + 1 + rest;
                 if cost <= most {
-                    let test = HypothesisTest { cost, approach, hypothesis, open, edge, entry };
+                    let test =
+                        HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry };
                     tests.push(Reverse(test));
                 }
             };
@@ -85,6 +87,7 @@ impl FoldingExploration {
         let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
         self.unexplored = all;
         let hypothesis = hypothesis?;
+        let distance = self.to_marker.hops(self.map().vertex(hypothesis));
         let (mut pose, mut believed) = (far, hypothesis);
         loop {
             let cost = self.to_marker.hops(self.map().vertex(believed)) as usize;
@@ -93,7 +96,9 @@ impl FoldingExploration {
             match self.trail.opposite(open) {
                 None => {
                     let approach = self.from_robot.moves_to(&self.trail, open);
-                    return Some(HypothesisTest { cost, approach, hypothesis, open, edge, entry });
+                    let test =
+                        HypothesisTest { cost, distance, approach, hypothesis, open, edge, entry };
+                    return Some(test);
                 }
                 Some(next) => (pose, believed) = (next, entry),
             }

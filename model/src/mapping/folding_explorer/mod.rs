@@ -7,8 +7,9 @@
 //! as long as the trail with the two poses united does not contradict itself.
 //!
 //! Ties are broken by the order in which darts were numbered: of open darts and pending places equally
-//! near, the one of the lowest dart of the map; of tests of equal cost, the one with the nearest open
-//! dart, then with the lowest hypothesis, then with the open dart that was seen first.
+//! near, the one of the lowest dart of the map; of tests of equal cost, the one whose hypothesis is
+//! nearest to the marker, then with the nearest open dart, then with the lowest hypothesis, then with the
+//! open dart that was seen first.
 
 mod hypotheses;
 mod hypothesis_test;
@@ -48,6 +49,8 @@ pub enum FoldingStep {
 pub struct HypothesisTest {
     /// The moves to the marker.
     pub cost: usize,
+    /// The moves from the place of the hypothesis to the marker, through the map.
+    distance: u32,
     /// The moves to the open dart. The rest of the way is through the map.
     approach: usize,
     /// The dart of the map by which the pending place is entered, if the hypothesis is true.
