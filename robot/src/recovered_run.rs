@@ -100,20 +100,24 @@ fn judge(
         return Some(Passage::Free);
     }
     let obstacle = obstacle?;
-    let is_cut = |margin: f64| {
-        let (cut, numbers) = plan.graph().cut(&blocked(plan, obstacle, margin), facing)?;
+    let is_right_if_cut = |edges: &[Dart]| {
+        let (cut, numbers) = plan.graph().cut(edges, facing)?;
         let number = |dart: Dart| numbers[dart.at()];
         Some(is_right(&cut, number(facing)?, reached.and_then(number)))
     };
-    // A robot does not drive exactly along the middle, so beside the obstacle it may pass or not.
-    let is_cut = MARGINS.into_iter().any(|margin| is_cut(margin) == Some(true));
+    // A robot does not drive exactly along the middle, so it may pass beside the obstacle or not.
+    let surely = blocked(plan, obstacle, 0.0);
+    let perhaps = blocked(plan, obstacle, RADIUS).into_iter().filter(|dart| !surely.contains(dart));
+    let mut cuts = vec![surely.clone()];
+    for dart in perhaps {
+        let more: Vec<_> = cuts.iter().map(|edges| [&edges[..], &[dart]].concat()).collect();
+        cuts.extend(more);
+    }
+    let is_cut = cuts.iter().any(|edges| is_right_if_cut(edges) == Some(true));
     is_cut.then_some(Passage::Blocked)
 }
 
-/// Hallways are blocked whose middle line is in an obstacle or so near to it, in metres.
-const MARGINS: [f64; 2] = [0.0, RADIUS];
-
-/// The darts of the hallways whose middle line comes nearer to an obstacle than a margin, in metres.
+/// A dart of each hallway whose middle line comes nearer to an obstacle than a margin, in metres.
 fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2], margin: f64) -> Vec<Dart> {
     let graph = plan.graph();
     let position = |dart: Dart| plan.junction(graph.vertex(dart)).position;
@@ -125,5 +129,46 @@ fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2], margin: f64) -> V
                 && from[axis].max(to[axis]) >= least[axis] - margin
         })
     };
-    graph.darts().filter(is_blocked).collect()
+    let edges = graph.edges().map(|(dart, _)| dart);
+    edges.filter(is_blocked).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::mapping::DirectionalAlgorithm;
+
+    use super::*;
+    use crate::evaluation::{
+        RobotEquipment, plans,
+        run_sampler::{Faults, JudgedRun, Recovery, RunSampler},
+    };
+
+    fn runs(faults: Faults, count: u64) -> Vec<JudgedRun> {
+        let algorithm = DirectionalAlgorithm::Folding;
+        let runs = RunSampler::new(plans().unwrap(), 4, faults, 1, 1.0, algorithm, Recovery::Full);
+        runs.judged(0..count, &RobotEquipment::Scenes, &())
+    }
+
+    #[test]
+    fn without_faults_a_robot_makes_the_same_moves_and_audits_its_map() {
+        for run in runs(Faults::None, 16) {
+            assert_eq!(run.ending, RunOutcome::Right);
+            let recovered = run.recovered.unwrap();
+            assert_eq!((recovered.recoveries, recovered.is_cut), (0, false));
+            assert_eq!(run.moves[0], run.moves[1] + recovered.audit_moves);
+        }
+    }
+
+    #[test]
+    fn after_one_or_two_faults_no_map_is_wrong_and_most_are_right() {
+        for (count, most_given_up) in [(1, 5), (2, 8)] {
+            let runs = runs(Faults::Each(count), 54);
+            let is_wrong = |run: &&JudgedRun| matches!(run.ending, RunOutcome::Wrong(_));
+            let wrong = runs.iter().find(is_wrong);
+            assert!(wrong.is_none(), "{wrong:?}");
+            let gave_up = runs.iter().filter(|run| run.ending != RunOutcome::Right).count();
+            assert!(gave_up <= most_given_up, "{gave_up} of {}", runs.len());
+            assert!(runs.iter().any(|run| run.recovered.is_some_and(|run| run.is_cut)));
+        }
+    }
 }

@@ -16,7 +16,7 @@ use toposlam_robot::{
     evaluation::{
         RobotEquipment, plans,
         random_plan::random_plan,
-        run_sampler::{Faults, RunSampler},
+        run_sampler::{Faults, Recovery, RunSampler},
         traversals::{TraversalOutcome, TraversalSampler},
     },
     log::{messages, reader::Log, recorder::Recorder, topic_map::TopicMap},

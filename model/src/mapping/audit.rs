@@ -118,3 +118,43 @@ pub fn audit<W: World>(
     }
     Ok(Audit { moves: walk.believed.moves(), pose: walk.believed.pose() })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::{
+        enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+        folding::certificate_length,
+    };
+
+    fn starts(edges: usize) -> Vec<EmbeddedGraph> {
+        let mut starts = Vec::new();
+        let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        let _: ControlFlow<()> = all.for_each(&mut |found: EnumeratedGraph| {
+            starts.push(found.graph.clone());
+            ControlFlow::Continue(())
+        });
+        starts
+    }
+
+    /// Of different starts, each is enumerated once, so no two of them are isomorphic.
+    #[test]
+    fn an_audit_accepts_the_map_of_the_world_and_no_other() {
+        let starts: Vec<_> = (1..=3).flat_map(starts).collect();
+        assert_eq!(starts.len(), 86);
+        for (number, graph) in starts.iter().enumerate() {
+            for (other, map) in starts.iter().enumerate() {
+                let mut world = GraphWorld::new(graph, Dart(0));
+                let audited = audit(&mut world, map, Dart(0), Dart(0));
+                assert_eq!(audited.is_ok(), number == other, "{graph:?} {map:?}");
+                if let Ok(audited) = audited {
+                    assert_eq!(audited.pose, world.pose());
+                    let certificate = certificate_length(map, Dart(0)) as u64;
+                    assert!((certificate + 1..=certificate + 2).contains(&audited.moves));
+                }
+            }
+        }
+    }
+}

@@ -212,7 +212,7 @@ mod tests {
     use crate::evaluation::{
         impatient::Impatient,
         plans,
-        run_sampler::{Faults, RunSampler},
+        run_sampler::{Faults, Recovery, RunSampler},
     };
 
     type Count<'a> = &'a dyn Fn(&Impatient) -> usize;

@@ -373,6 +373,7 @@ pub fn map_with_recovery<W: Relocate>(
     let mut pieces: Vec<Piece> = Vec::new();
     let mut audit_moves = 0;
     let mut recoveries = 0;
+    let mut was_found = true;
     let mut ended = super::map_by_folding(&mut world, exploration, &mut observer);
     loop {
         if ended.is_ok() {
@@ -412,6 +413,16 @@ pub fn map_with_recovery<W: Relocate>(
         }
         let known = fold_most(&pieces, 0);
         let found = exploration.find_marker(known, &mut world, &mut observer);
+        // Two searches in vain, one after the other, do not come from one false percept.
+        if let Err(error @ MappingError::Contradiction(Contradiction::NoMarker)) = found {
+            if !was_found {
+                return Err(error);
+            }
+            was_found = false;
+            ended = Err(error);
+            continue;
+        }
+        was_found = true;
         ended = match found {
             Ok(seen) => {
                 pieces.extend(world.end_walk());
