@@ -45,6 +45,9 @@ pub struct LaserEvents {
     visit: Option<Visit>,
     /// The visit that goes on of a possible junction.
     possible_visit: Option<Visit>,
+    /// The last points of the way since the last visit of a possible junction, each with the length of the way
+    /// to there. An arm in doubt may be noticed only behind the junction.
+    passed: VecDeque<(f64, [f64; 2], EventSource)>,
     /// Visits that are over and not decided yet.
     waiting: VecDeque<Visit>,
     /// The way since the last visit, or since the robot turned back after it.
@@ -93,6 +96,7 @@ impl LaserEvents {
             bends: Bends::new(params.corner),
             visit: None,
             possible_visit: None,
+            passed: VecDeque::new(),
             waiting: VecDeque::new(),
             since: Vec::new(),
             turned_back: false,
@@ -187,6 +191,7 @@ impl LaserEvents {
         visit.exit = Some((direction(visit.centre, robot), self.way));
         visit.left = self.source;
         self.waiting.push_back(visit);
+        self.passed.clear();
     }
 
     /// Notices that the robot goes back along its way, and whether it was at a dead end.
@@ -275,21 +280,25 @@ impl LaserEvents {
         self.visit = self.visit_at(VisitKind::Junction, &self.junctions, robot);
     }
 
-    /// Begins a visit of a robot that is within a possible junction.
+    /// Begins a visit of a robot that is within a possible junction, or was there a short way ago.
     fn enter_possible_junction(&mut self, robot: [f64; 2]) {
-        if self.possible_visit.is_none() {
-            let kind = VisitKind::PossibleJunction;
-            self.possible_visit = self.visit_at(kind, &self.possible_junctions, robot);
+        self.passed.push_back((self.way, robot, self.source));
+        let memory = 2.0 * self.params.visit.settle;
+        while self.passed.front().is_some_and(|(way, ..)| self.way - way > memory) {
+            self.passed.pop_front();
         }
+        if self.possible_visit.is_some() {
+            return;
+        }
+        let kind = VisitKind::PossibleJunction;
+        self.possible_visit = self.passed.iter().find_map(|&(_, point, source)| {
+            let visit = self.visit_at(kind, &self.possible_junctions, point)?;
+            Some(Visit { source, ..visit })
+        });
     }
 
     /// The visit of a robot that is within one of these places.
-    fn visit_at(
-        &self,
-        kind: VisitKind,
-        places: &SeenJunctions,
-        robot: [f64; 2],
-    ) -> Option<Visit> {
+    fn visit_at(&self, kind: VisitKind, places: &SeenJunctions, robot: [f64; 2]) -> Option<Visit> {
         let here = places.nearest(robot, |place| inside(place.clearance))?;
         let outside = |point: &&[f64; 2]| distance(here.centre, **point) > inside(here.clearance);
         // Where a log begins shows nothing of where the robot came from.
@@ -312,12 +321,15 @@ impl LaserEvents {
     fn shown(&self, visit: &Visit) -> Option<(Shown, f64)> {
         let seen = self.seen(visit);
         let doors = match (visit.kind, &seen) {
+            (VisitKind::PossibleJunction, Some((Shown::Doubt(_), _))) => return None,
             (VisitKind::DeadEnd, _) | (_, Some((Shown::Doubt(_), _))) => return seen,
             (_, Some((Shown::Doors(doors), _))) => doors.len(),
             (VisitKind::Bend { .. }, _) => return seen,
             (_, Some((Shown::Nothing, _)) | None) => 0,
         };
         let possible = self.possible_junctions.at(visit.centre);
+        // Without an arm in doubt a possible junction is no visit of its own.
+        let seen = seen.filter(|_| visit.kind != VisitKind::PossibleJunction);
         let visit = Visit { kind: VisitKind::PossibleJunction, ..visit.clone() };
         let in_doubt = possible.and_then(|known| {
             let is_more = match visit.shown(&known.arms_of_meet(&self.params.visit), &self.params) {
@@ -406,7 +418,7 @@ impl LaserEvents {
 
     /// Whether a visit of a possible junction is also one of a junction, which is decided on its own.
     fn is_visited_otherwise(&self, visit: &Visit) -> bool {
-        let reach = self.params.visit.settle;
+        let reach = 2.0 * self.params.visit.settle;
         let is_near = |centre: [f64; 2], extent: f64| {
             distance(centre, visit.centre) < inside(visit.clearance).max(extent)
         };

@@ -82,7 +82,8 @@ impl Visit {
             |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
         let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
         let is_vertex = match (self.kind, &doors[..]) {
-            (VisitKind::DeadEnd, [_]) | (VisitKind::Junction | VisitKind::PossibleJunction, [_, _, _, ..]) => true,
+            (VisitKind::DeadEnd, [_])
+            | (VisitKind::Junction | VisitKind::PossibleJunction, [_, _, _, ..]) => true,
             // A corridor goes straight on where no arm of a junction is left.
             (VisitKind::Junction, &[one, other]) => is_corner(one, other),
             _ => false,

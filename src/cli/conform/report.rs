@@ -17,8 +17,7 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, Quirks,
-        UndecidedCause,
-        ReachedLimit,
+        ReachedLimit, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
     record::{Arrival, RunEnding},
@@ -397,6 +396,6 @@ pub(super) fn what(kind: &CheckedKind) -> String {
         CheckedKind::Undecided(UndecidedCause::Unclear) => "junction not recognised".to_owned(),
         CheckedKind::Undecided(UndecidedCause::UnseenArm) => {
             "junction not recognised: the scanner did not look into an arm".to_owned()
-        },
+        }
     }
 }

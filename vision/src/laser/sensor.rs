@@ -115,15 +115,7 @@ impl LaserSensor {
             junctions.clone()
         };
         let to_odometry = self.matcher.correction().inverse();
-        Some(LaserView {
-            robot,
-            to_odometry,
-            grid,
-            skeleton,
-            graph,
-            junctions,
-            possible_junctions,
-        })
+        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions, possible_junctions })
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
