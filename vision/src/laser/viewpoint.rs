@@ -59,7 +59,7 @@ mod tests {
             range_max: 80.0,
         };
         let scan = Scan::new(geometry, vec![1.0; readings], ScannerPose::default()).unwrap();
-        let robot = Odometry { position: [5.0, 5.0], heading: 0.0 };
+        let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
         let cells = vec![Cell::Free; 100 * 100];
         let grid = Grid { columns: 100, cell: 0.1, origin: [0.0; 2], cells };
         (Viewpoint::new(&scan, &robot), grid)
@@ -68,12 +68,12 @@ mod tests {
     #[test]
     fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
         let (viewpoint, mut grid) = viewpoint(181);
-        assert_eq!(viewpoint.turn_to([6.0, 6.0], &grid), None, "ahead");
-        let turn = viewpoint.turn_to([4.0, 6.0], &grid).unwrap();
+        assert_eq!(viewpoint.turn_to([6.05, 6.05], &grid), None, "ahead");
+        let turn = viewpoint.turn_to([4.05, 6.05], &grid).unwrap();
         assert!((turn - FRAC_PI_4).abs() < 1e-9, "{turn}");
-        let wall = grid.index([4.5, 5.5]).unwrap();
+        let wall = grid.index([4.55, 5.55]).unwrap();
         grid.cells[wall] = Cell::Occupied;
-        assert_eq!(viewpoint.turn_to([4.0, 6.0], &grid), None, "behind a wall");
+        assert_eq!(viewpoint.turn_to([4.05, 6.05], &grid), None, "behind a wall");
     }
 
     #[test]
