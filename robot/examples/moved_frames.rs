@@ -133,7 +133,7 @@ fn derived<'a>(
                     last.1 = Some(door.into());
                 }
             }
-            CheckedKind::Undecided => undecided += 1,
+            CheckedKind::Undecided(_) => undecided += 1,
             CheckedKind::TurnedBack | CheckedKind::Aside { .. } => {}
         }
     }

@@ -8,7 +8,7 @@ use std::{
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
 use toposlam_robot::{
-    conform::{CheckedKind, EventSource, LaserEvents, RunEvents},
+    conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause},
     log::{entries::Content, reader::Log, topic_map::TopicMap},
     record::{EventKind, Frame},
 };
@@ -61,12 +61,14 @@ pub(crate) fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64
     )
 }
 
-fn scan(corridors: &[Corridor], at: &Odometry) -> Scan {
-    let ranges = (0..=180).map(|degree| {
-        range(corridors, at.position, at.heading - FRAC_PI_2 + f64::from(degree).to_radians())
+/// A scan that covers so many degrees, one from reading to reading.
+fn scan(corridors: &[Corridor], at: &Odometry, degrees: u32) -> Scan {
+    let first = -f64::from(degrees).to_radians() / 2.0;
+    let ranges = (0..=degrees).map(|degree| {
+        range(corridors, at.position, at.heading + first + f64::from(degree).to_radians())
     });
     let geometry = ScanGeometry {
-        angle_min: -FRAC_PI_2,
+        angle_min: first,
         angle_increment: PI / 180.0,
         range_min: 0.0,
         range_max: 80.0,
@@ -86,6 +88,17 @@ fn events_with(
     way: &[[f64; 2]],
     drift: f64,
 ) -> RunEvents {
+    events_of_scanner(180, params, corridors, way, drift)
+}
+
+/// The events for a scanner that covers so many degrees.
+fn events_of_scanner(
+    degrees: u32,
+    params: &LaserParams,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> RunEvents {
     let mut inferred = LaserEvents::new(*params);
     let (mut believed, mut driven) = (way[0], 0.0);
     let mut heading = f64::NAN;
@@ -93,7 +106,7 @@ fn events_with(
     let mut see = |truth: Odometry, believed: Odometry| {
         number += 1;
         let source = EventSource { time: number * 1_000_000_000, ..EventSource::default() };
-        inferred.see(source, &scan(corridors, &truth), &believed);
+        inferred.see(source, &scan(corridors, &truth, degrees), &believed);
     };
     for leg in way.windows(2) {
         let off = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
@@ -201,6 +214,38 @@ fn the_arms_of_a_junction_can_have_any_angle() {
     let ahead = [12.0 * 36_f64.to_radians().cos(), 12.0 * 36_f64.to_radians().sin()];
     let events = events(&star, &[[-12.0, 0.0], [0.0, 0.0], ahead], 0.0);
     assert_eq!(visits(&events), [(Some(5), Some(2))]);
+}
+
+/// A corridor along x, and others that leave it at the same place, at these angles to its direction.
+fn branches(degrees: &[f64]) -> Vec<Corridor> {
+    let branch = |degrees: &f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        ([22.0, 0.0], [22.0 + 15.0 * cosine, 15.0 * sine], 2.0)
+    };
+    let corridor = ([0.0, 0.0], [44.0, 0.0], 2.0);
+    std::iter::once(corridor).chain(degrees.iter().map(branch)).collect()
+}
+
+#[test]
+fn an_arm_that_the_scanner_did_not_look_into_makes_the_visit_undecided() {
+    let way = [[2.0, 0.0], [42.0, 0.0]];
+    let params = LaserParams::default();
+    // One arm points back on the left; and another one goes off at a right angle on the right.
+    for (angles, door) in [(&[120.0][..], 2), (&[125.0], 2), (&[120.0, -90.0], 2)] {
+        let plan = branches(angles);
+        let half = events(&plan, &way, 0.0);
+        let causes: Vec<_> = half.events.iter().map(|event| &event.kind).collect();
+        let undecided = CheckedKind::Undecided(UndecidedCause::UnseenArm);
+        assert_eq!(causes, [&undecided], "{angles:?}");
+        // Whoever looks all around sees it, ...
+        let around = events_of_scanner(360, &params, &plan, &way, 0.0);
+        let degree = Some(angles.len() as u32 + 2);
+        assert_eq!(visits(&around), [(degree, Some(door))], "{angles:?}");
+        // ... and whoever comes the other way.
+        let back: Vec<_> = way.into_iter().rev().collect();
+        assert_eq!(visits(&events(&plan, &back, 0.0)).len(), 1);
+        assert_eq!(visits(&events(&plan, &back, 0.0))[0].0, degree, "{angles:?}");
+    }
 }
 
 #[test]

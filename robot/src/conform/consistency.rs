@@ -57,7 +57,7 @@ impl RunEvents {
                         fault(cause);
                     }
                 }
-                CheckedKind::Undecided => fault(DivergenceCause::Undecided),
+                CheckedKind::Undecided(cause) => fault(DivergenceCause::Undecided(*cause)),
             }
         }
         faults

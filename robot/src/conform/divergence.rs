@@ -7,7 +7,7 @@ use toposlam_model::{
     trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
-use super::impossible::Impossibility;
+use super::{events::UndecidedCause, impossible::Impossibility};
 
 /// The first event that the specification does not allow.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,8 +96,8 @@ pub enum DivergenceCause {
         /// The number of doors after it.
         now: u32,
     },
-    /// The robot was at a junction that could not be recognised in its images.
-    Undecided,
+    /// The robot was at a junction that could not be recognised.
+    Undecided(UndecidedCause),
     /// It does not fit the known world.
     World(Misfit),
     /// No world of any size explains it together with all before it.
@@ -139,7 +139,7 @@ impl DivergenceCause {
                 FaultClass::Log
             }
             Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
-            Self::Return { .. } | Self::Entry { .. } | Self::Undecided => FaultClass::Perception,
+            Self::Return { .. } | Self::Entry { .. } | Self::Undecided(_) => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map { .. } | Self::WrongMap => FaultClass::Algorithm,
             Self::World(Misfit { event, .. })
             | Self::Algorithm(Departure { event, .. })
@@ -161,7 +161,7 @@ impl DivergenceCause {
             Self::Entry { .. } => "entry",
             Self::TurnedBack => "turned-back",
             Self::Return { .. } => "return",
-            Self::Undecided => "undecided",
+            Self::Undecided(_) => "undecided",
             Self::World(misfit) => match misfit.event.kind {
                 TraceEventKind::Percept(_) => "percept",
                 TraceEventKind::Door(_) => "no-such-door",
@@ -232,8 +232,14 @@ impl fmt::Display for DivergenceCause {
                 out,
                 "the robot turned back and entered the junction that it had left: {before} doors, now {now}"
             ),
-            Self::Undecided => {
+            Self::Undecided(UndecidedCause::Unclear) => {
                 write!(out, "the robot was at a junction that its images do not show clearly")
+            }
+            Self::Undecided(UndecidedCause::UnseenArm) => {
+                write!(
+                    out,
+                    "the robot was at a junction that may have an arm that its scanner did not look into"
+                )
             }
             Self::World(misfit) => match misfit.candidates.len() {
                 1 => write!(out, "it does not fit the known world"),

@@ -58,8 +58,17 @@ pub enum CheckedKind {
     },
     /// The robot turned back without having been at a junction.
     TurnedBack,
-    /// The robot was at a junction that could not be recognised in its images.
-    Undecided,
+    /// The robot was at a junction that could not be recognised.
+    Undecided(UndecidedCause),
+}
+
+/// Why a visit is undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UndecidedCause {
+    /// Its images or scans do not show the junction clearly.
+    Unclear,
+    /// There may be an arm that the laser scanner did not look into.
+    UnseenArm,
 }
 
 /// The part of a run that is checked.
@@ -128,7 +137,7 @@ impl RunEvents {
                     TraceEventKind::Percept(Percept { degree: *degree, sighting })
                 }
                 CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
-                CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {
+                CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {
                     return None;
                 }
             };

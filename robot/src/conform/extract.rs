@@ -8,7 +8,7 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
     InferredEvents, LaserEvents, RecordedEvents,
-    events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
+    events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
@@ -325,7 +325,11 @@ impl<W: SensingProgress> Extraction<'_, W> {
             }
             Content::TurnedBack | Content::Undecided => {
                 let turned = content == Content::TurnedBack;
-                let kind = if turned { CheckedKind::TurnedBack } else { CheckedKind::Undecided };
+                let kind = if turned {
+                    CheckedKind::TurnedBack
+                } else {
+                    CheckedKind::Undecided(UndecidedCause::Unclear)
+                };
                 self.recorded.note(source, kind);
                 return Ok(());
             }

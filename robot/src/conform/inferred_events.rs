@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::{
-    events::{CheckedEvent, CheckedKind, EventSource},
+    events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
     recorded_events::direction,
 };
 use crate::record::Arrival;
@@ -118,7 +118,7 @@ impl InferredEvents {
         } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
             self.push(source, CheckedKind::TurnedBack);
         } else {
-            self.push(approach.source, CheckedKind::Undecided);
+            self.push(approach.source, CheckedKind::Undecided(UndecidedCause::Unclear));
         }
     }
 
@@ -160,7 +160,7 @@ impl InferredEvents {
     fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
         let Approach { visit, entry, visited, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
-            self.push(*visited, CheckedKind::Undecided);
+            self.push(*visited, CheckedKind::Undecided(UndecidedCause::Unclear));
             return None;
         };
         let Percept { degree, sighting } = percept;
@@ -254,7 +254,7 @@ mod tests {
             CheckedKind::Door { .. } => "door",
             CheckedKind::Aside { .. } => "aside",
             CheckedKind::TurnedBack => "turned back",
-            CheckedKind::Undecided => "undecided",
+            CheckedKind::Undecided(_) => "undecided",
         };
         infer_events(&seen(places), marked).iter().map(name).collect()
     }

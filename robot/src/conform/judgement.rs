@@ -163,7 +163,7 @@ pub fn judge(
         let judgement = Judgement::new(tolerance.events(), question, tolerance.noted(), watch)?;
         if !tolerance.grows(judgement.divergence.as_ref()) {
             let judgement = match judgement.divergence {
-                Some(Divergence { event, cause: DivergenceCause::Undecided, .. }) => {
+                Some(Divergence { event, cause: DivergenceCause::Undecided(_), .. }) => {
                     judgement.up_to(event, question, tolerance.noted(), watch)?
                 }
                 _ => judgement,

@@ -19,7 +19,7 @@ use toposlam_vision::laser::{
 
 use super::{
     bends::{Bends, PassedBend},
-    events::{CheckedEvent, CheckedKind, EventSource},
+    events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
     laser_visit::{Shown, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
     seen_junctions::{SeenJunction, SeenJunctions},
@@ -36,11 +36,18 @@ pub struct LaserEvents {
     visited: Vec<VisitedJunction>,
     /// Junctions, and corners if they are vertices.
     junctions: SeenJunctions,
+    /// What are junctions if arms in doubt count.
+    possible_junctions: SeenJunctions,
     dead_ends: SeenJunctions,
     /// Bends of the robot's way, which are corners.
     bends: Bends,
     /// The visit that goes on.
     visit: Option<Visit>,
+    /// The visit that goes on of a possible junction.
+    possible_visit: Option<Visit>,
+    /// The last points of the way since the last visit of a possible junction, each with the length of the way
+    /// to there. An arm in doubt may be noticed only behind the junction.
+    passed: VecDeque<(f64, [f64; 2], EventSource)>,
     /// Visits that are over and not decided yet.
     waiting: VecDeque<Visit>,
     /// The way since the last visit, or since the robot turned back after it.
@@ -84,9 +91,12 @@ impl LaserEvents {
             events: Vec::new(),
             visited: Vec::new(),
             junctions: SeenJunctions::new(params.visit),
+            possible_junctions: SeenJunctions::new(params.visit),
             dead_ends: SeenJunctions::new(params.visit),
             bends: Bends::new(params.corner),
             visit: None,
+            possible_visit: None,
+            passed: VecDeque::new(),
             waiting: VecDeque::new(),
             since: Vec::new(),
             turned_back: false,
@@ -112,7 +122,11 @@ impl LaserEvents {
             view.junctions.iter().partition(|junction| junction.arms.len() == 1);
         self.junctions.look(junctions.into_iter(), robot, self.way);
         self.dead_ends.look(dead_ends.into_iter(), robot, self.way);
+        let possible = view.possible_junctions.iter();
+        let possible = possible.filter(|junction| junction.arms.len() >= 3);
+        self.possible_junctions.look(possible, robot, self.way);
         self.leave(robot);
+        self.leave_possible_junction(robot);
         self.turn(robot);
         self.since.push(robot);
         if self.params.corner.corners {
@@ -121,6 +135,7 @@ impl LaserEvents {
             }
         }
         self.enter(robot);
+        self.enter_possible_junction(robot);
         while let Some(visit) = self.waiting.pop_front() {
             if visit.exit.is_some_and(|(_, left)| self.way - left < self.params.visit.settle) {
                 self.waiting.push_front(visit);
@@ -139,8 +154,9 @@ impl LaserEvents {
     /// The events, and the junctions of those that are visits.
     #[must_use]
     pub fn finish_with_junctions(mut self) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
-        let visits = std::mem::take(&mut self.waiting).into_iter().chain(self.visit.take());
-        for visit in visits.collect::<Vec<_>>() {
+        let visits = [self.visit.take(), self.possible_visit.take()];
+        self.waiting.extend(visits.into_iter().flatten());
+        while let Some(visit) = self.waiting.pop_front() {
             self.decide(&visit);
         }
         (self.events, self.visited)
@@ -162,6 +178,20 @@ impl LaserEvents {
         self.waiting.push_back(visit);
         self.since.clear();
         self.turned_back = false;
+    }
+
+    /// Ends the visit of a robot that is outside of a possible junction.
+    fn leave_possible_junction(&mut self, robot: [f64; 2]) {
+        let Some(mut visit) = self.possible_visit.take() else { return };
+        visit.to_odometry = self.to_odometry;
+        if distance(visit.centre, robot) <= inside(visit.clearance) + self.params.visit.leave {
+            self.possible_visit = Some(visit);
+            return;
+        }
+        visit.exit = Some((direction(visit.centre, robot), self.way));
+        visit.left = self.source;
+        self.waiting.push_back(visit);
+        self.passed.clear();
     }
 
     /// Notices that the robot goes back along its way, and whether it was at a dead end.
@@ -247,15 +277,34 @@ impl LaserEvents {
         if self.visit.is_some() {
             return;
         }
-        let within = |junction: &SeenJunction| inside(junction.clearance);
-        let Some(here) = self.junctions.nearest(robot, within) else {
+        self.visit = self.visit_at(VisitKind::Junction, &self.junctions, robot);
+    }
+
+    /// Begins a visit of a robot that is within a possible junction, or was there a short way ago.
+    fn enter_possible_junction(&mut self, robot: [f64; 2]) {
+        self.passed.push_back((self.way, robot, self.source));
+        let memory = 2.0 * self.params.visit.settle;
+        while self.passed.front().is_some_and(|(way, ..)| self.way - way > memory) {
+            self.passed.pop_front();
+        }
+        if self.possible_visit.is_some() {
             return;
-        };
+        }
+        let kind = VisitKind::PossibleJunction;
+        self.possible_visit = self.passed.iter().find_map(|&(_, point, source)| {
+            let visit = self.visit_at(kind, &self.possible_junctions, point)?;
+            Some(Visit { source, ..visit })
+        });
+    }
+
+    /// The visit of a robot that is within one of these places.
+    fn visit_at(&self, kind: VisitKind, places: &SeenJunctions, robot: [f64; 2]) -> Option<Visit> {
+        let here = places.nearest(robot, |place| inside(place.clearance))?;
         let outside = |point: &&[f64; 2]| distance(here.centre, **point) > inside(here.clearance);
         // Where a log begins shows nothing of where the robot came from.
         let before = self.since.iter().rev().find(outside).filter(|_| self.way > BEGINNING);
-        self.visit = Some(Visit {
-            kind: VisitKind::Junction,
+        Some(Visit {
+            kind,
             source: self.source,
             centre: here.centre,
             clearance: here.clearance,
@@ -264,14 +313,41 @@ impl LaserEvents {
             left: self.source,
             turned_back: self.turned_back,
             to_odometry: self.to_odometry,
-        });
+        })
     }
 
-    /// What the views show of a visited place, and its extent in metres.
+    /// What the views show of a visited place, and its extent in metres. If there are more doors with the arms
+    /// in doubt than without them, the visit is undecided.
     fn shown(&self, visit: &Visit) -> Option<(Shown, f64)> {
+        let seen = self.seen(visit);
+        let doors = match (visit.kind, &seen) {
+            (VisitKind::PossibleJunction, Some((Shown::Doubt(_), _))) => return None,
+            (VisitKind::DeadEnd, _) | (_, Some((Shown::Doubt(_), _))) => return seen,
+            (_, Some((Shown::Doors(doors), _))) => doors.len(),
+            (VisitKind::Bend { .. }, _) => return seen,
+            (_, Some((Shown::Nothing, _)) | None) => 0,
+        };
+        let possible = self.possible_junctions.at(visit.centre);
+        // Without an arm in doubt a possible junction is no visit of its own.
+        let seen = seen.filter(|_| visit.kind != VisitKind::PossibleJunction);
+        let visit = Visit { kind: VisitKind::PossibleJunction, ..visit.clone() };
+        let in_doubt = possible.and_then(|known| {
+            let is_more = match visit.shown(&known.arms_of_meet(&self.params.visit), &self.params) {
+                Shown::Nothing => false,
+                Shown::Doubt(_) => true,
+                Shown::Doors(possible) => possible.len() > doors.max(2),
+            };
+            let doubt = Shown::Doubt(UndecidedCause::UnseenArm);
+            is_more.then(|| (doubt, known.extent(&self.params.visit)))
+        });
+        in_doubt.or(seen)
+    }
+
+    /// What the views show of a visited place without the arms in doubt, and its extent in metres.
+    fn seen(&self, visit: &Visit) -> Option<(Shown, f64)> {
         let params = &self.params.visit;
         let places = match visit.kind {
-            VisitKind::Junction => &self.junctions,
+            VisitKind::Junction | VisitKind::PossibleJunction => &self.junctions,
             VisitKind::DeadEnd => &self.dead_ends,
             VisitKind::Bend { way, in_doubt } => {
                 // A junction where the robot turned is no corner.
@@ -282,7 +358,7 @@ impl LaserEvents {
                 let exit = visit.exit.map(|(exit, _)| exit);
                 let shown = match (is_junction, in_doubt) {
                     (true, _) => Shown::Nothing,
-                    (_, true) => Shown::Doubt,
+                    (_, true) => Shown::Doubt(UndecidedCause::Unclear),
                     _ => Shown::Doors(visit.entry.into_iter().chain(exit).collect()),
                 };
                 return Some((shown, params.same));
@@ -299,6 +375,9 @@ impl LaserEvents {
     /// Adds the events of a visit that is over.
     fn decide(&mut self, visit: &Visit) {
         let exit = visit.exit.map(|(exit, _)| exit);
+        if visit.kind == VisitKind::PossibleJunction && self.is_visited_otherwise(visit) {
+            return;
+        }
         let Some((shown, extent)) = self.shown(visit) else { return };
         if matches!(shown, Shown::Nothing) {
             // It went on, or it turned back there.
@@ -320,16 +399,36 @@ impl LaserEvents {
         }
         let past = |(exit, left)| (PastVisit { centre: visit.centre, extent, exit, left }, false);
         self.last = visit.exit.map(past).or(self.last);
+        if visit.kind == VisitKind::PossibleJunction {
+            // The next visit does not report it again.
+            self.turned_back &= !visit.turned_back;
+        }
         if turned_back {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
         match shown {
             Shown::Doors(doors) => self.arrive(visit, doors, entry),
-            Shown::Doubt | Shown::Nothing => {
+            Shown::Doubt(cause) => {
                 self.push_junction(visit, &[]);
-                self.push(visit.source, CheckedKind::Undecided);
+                self.push(visit.source, CheckedKind::Undecided(cause));
             }
+            Shown::Nothing => {}
         }
+    }
+
+    /// Whether a visit of a possible junction is also one of a junction, which is decided on its own.
+    fn is_visited_otherwise(&self, visit: &Visit) -> bool {
+        let reach = 2.0 * self.params.visit.settle;
+        let is_near = |centre: [f64; 2], extent: f64| {
+            distance(centre, visit.centre) < inside(visit.clearance).max(extent)
+        };
+        let left = visit.exit.map_or(self.way, |(_, left)| left);
+        let others = self.waiting.iter().chain(&self.visit);
+        let is_last = self.last.is_some_and(|(last, _)| {
+            is_near(last.centre, last.extent) && (last.left - left).abs() < reach
+        });
+        let mut others = others.filter(|other| other.kind != VisitKind::PossibleJunction);
+        is_last || others.any(|other| is_near(other.centre, inside(other.clearance)))
     }
 
     /// Adds an arrival at a junction with doors in these directions, and the door taken.

@@ -8,7 +8,10 @@ use toposlam_vision::laser::{
     plane::Motion,
 };
 
-use super::{events::EventSource, seen_junctions::SeenArm};
+use super::{
+    events::{EventSource, UndecidedCause},
+    seen_junctions::SeenArm,
+};
 
 /// A visit.
 #[derive(Clone, Debug)]
@@ -33,6 +36,8 @@ pub(super) struct Visit {
 pub(super) enum VisitKind {
     /// Of a junction, or of a corner in which the log begins, ends, or the robot turns back.
     Junction,
+    /// Of a place that is a junction only if arms in doubt count.
+    PossibleJunction,
     DeadEnd,
     /// Of a corner that the robot passed: the length of its way to there, and whether it is in doubt.
     Bend {
@@ -45,8 +50,8 @@ pub(super) enum VisitKind {
 pub(super) enum Shown {
     /// No vertex.
     Nothing,
-    /// They do not agree.
-    Doubt,
+    /// They do not decide what it is.
+    Doubt(UndecidedCause),
     /// The directions of its doors.
     Doors(Vec<f64>),
 }
@@ -77,7 +82,8 @@ impl Visit {
             |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
         let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
         let is_vertex = match (self.kind, &doors[..]) {
-            (VisitKind::DeadEnd, [_]) | (VisitKind::Junction, [_, _, _, ..]) => true,
+            (VisitKind::DeadEnd, [_])
+            | (VisitKind::Junction | VisitKind::PossibleJunction, [_, _, _, ..]) => true,
             // A corridor goes straight on where no arm of a junction is left.
             (VisitKind::Junction, &[one, other]) => is_corner(one, other),
             _ => false,
@@ -85,7 +91,7 @@ impl Visit {
         if !is_vertex {
             Shown::Nothing
         } else if arms.iter().any(is_doubtful) {
-            Shown::Doubt
+            Shown::Doubt(UndecidedCause::Unclear)
         } else {
             Shown::Doors(doors)
         }

@@ -28,6 +28,7 @@ pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{
     CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
+    UndecidedCause,
 };
 pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract,

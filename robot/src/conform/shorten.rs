@@ -93,7 +93,7 @@ pub fn shorten_frames<'s>(
 ) -> Option<&'s [SensedScene]> {
     let alone = matches!(
         event.kind,
-        CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided
+        CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_)
     );
     let end = seen.partition_point(|seen| seen.source <= event.source);
     let shows = |first: &usize| {

@@ -156,7 +156,7 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
                 let leads = entered.and_then(|(form, entry)| direction(form, entry, *door));
                 last.left = leads.zip(*off);
             }
-            CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {}
+            CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {}
         }
     }
     log.finish()

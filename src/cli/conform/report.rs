@@ -17,7 +17,7 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, Quirks,
-        ReachedLimit,
+        ReachedLimit, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
     record::{Arrival, RunEnding},
@@ -393,6 +393,9 @@ pub(super) fn what(kind: &CheckedKind) -> String {
             format!("left {:.0} degrees off the nearest door", off.to_degrees())
         }
         CheckedKind::TurnedBack => "turned back".to_owned(),
-        CheckedKind::Undecided => "junction not recognised".to_owned(),
+        CheckedKind::Undecided(UndecidedCause::Unclear) => "junction not recognised".to_owned(),
+        CheckedKind::Undecided(UndecidedCause::UnseenArm) => {
+            "junction not recognised: the scanner did not look into an arm".to_owned()
+        }
     }
 }

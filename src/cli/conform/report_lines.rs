@@ -111,7 +111,7 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
                 let visit = visit(Some(arrival.degree), marker);
                 lines.push(visit);
             }
-            CheckedKind::Undecided => {
+            CheckedKind::Undecided(_) => {
                 let visit = visit(None, None);
                 lines.push(visit);
             }

@@ -10,7 +10,7 @@
 //! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall;
 //! * [`ends`]: where the ways around the robot go on unseen, and where they end;
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
-//! * `arm_view`: how far one sees along an arm, and beside which walls;
+//! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`]: junctions, corners and dead ends;
 //! * [`sensor`]: all of these steps, and [`pictures`] of them.
 //!
@@ -34,4 +34,5 @@ pub mod scan;
 pub mod scene;
 pub mod sensor;
 pub mod skeleton;
+mod viewpoint;
 pub mod way_graph;

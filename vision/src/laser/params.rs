@@ -122,6 +122,15 @@ params! {
         /// ... at most this many times its width: it is a room otherwise, of which one sees a part
         /// through a door. Logs.
         max_gap: f64 = 2.1,
+        /// An arm that does not count is in doubt if it is not seen to end because the scanner did not look
+        /// there: with an unobstructed view of its gap, the gap lay this far beyond the field of view, ...
+        /// Logs and simulated buildings.
+        unseen_turn: f64 = 0.82,
+        /// ... the gap is this many times as wide as the arm, because the edge of the field of view cuts the
+        /// arm obliquely, ... Simulated buildings.
+        unseen_gap: f64 = 1.3,
+        /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
+        unseen_width: f64 = 1.76,
         /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this
         /// long is unknown, within [`Self::border_near`] of the end. Logs.
         border: f64 = 0.6,

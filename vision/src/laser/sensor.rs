@@ -14,7 +14,8 @@ use super::{
     ray_counts::{RayCounts, Rays},
     scan::{Reading, Scan},
     skeleton::Skeleton,
-    way_graph::WayGraph,
+    viewpoint::Viewpoint,
+    way_graph::{ArmJudge, CountedArms, WayGraph},
 };
 
 /// Senses junctions with a laser scanner.
@@ -25,6 +26,8 @@ pub struct LaserSensor {
     counts: Option<RayCounts>,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
+    /// Where they were taken, in the same order.
+    viewpoints: VecDeque<Viewpoint>,
     /// The length of the robot's way, in metres.
     way: f64,
     /// Where the last scan was taken that was used.
@@ -46,6 +49,8 @@ pub struct LaserView {
     pub graph: WayGraph,
     /// Where they meet.
     pub junctions: Vec<LaserJunction>,
+    /// Where they meet if the arms in doubt are arms, too: those that the scanner did not look into.
+    pub possible_junctions: Vec<LaserJunction>,
 }
 
 /// Odometry beyond this is wrong, in metres; cells near it would have no place.
@@ -58,7 +63,15 @@ impl LaserSensor {
     #[must_use]
     pub fn new(params: LaserParams) -> Self {
         let matcher = ScanMatcher::new(params.matching);
-        Self { params, matcher, counts: None, scans: VecDeque::new(), way: 0.0, last: None }
+        Self {
+            params,
+            matcher,
+            counts: None,
+            scans: VecDeque::new(),
+            viewpoints: VecDeque::new(),
+            way: 0.0,
+            last: None,
+        }
     }
 
     /// Takes the next scan, and the odometry at its time. Returns what is seen now, or `None` if the robot
@@ -81,16 +94,28 @@ impl LaserSensor {
         let robot = self.matcher.see(scan, odometry, self.way, self.way - params.memory);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, &robot, &params), robot.position, side);
+        self.viewpoints.push_back(Viewpoint::new(scan, &robot));
         let counts = self.counts.as_ref()?;
         let mut grid = counts.window(robot.position, side, &params);
         grid.clean(&params);
         let skeleton = Skeleton::new(&grid, robot.position, &self.params);
-        let graph = skeleton.as_ref().map_or_else(WayGraph::default, |skeleton| {
-            WayGraph::new(skeleton, &grid).pruned(robot.position, &grid, &self.params.arm)
-        });
+        let ways = skeleton.as_ref().map(|skeleton| WayGraph::new(skeleton, &grid));
+        let ways = ways.unwrap_or_default();
+        let judge = ArmJudge {
+            robot: robot.position,
+            grid: &grid,
+            viewpoints: self.viewpoints.make_contiguous(),
+            params: &self.params.arm,
+        };
+        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
         let junctions = graph.junctions(&self.params);
+        let possible_junctions = if any_in_doubt {
+            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.junctions(&self.params)
+        } else {
+            junctions.clone()
+        };
         let to_odometry = self.matcher.correction().inverse();
-        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions })
+        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions, possible_junctions })
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
@@ -102,6 +127,7 @@ impl LaserSensor {
                 counts.remove(old);
             }
             self.scans.pop_front();
+            self.viewpoints.pop_front();
         }
         self.scans.push_back((self.way, rays));
         if moved {

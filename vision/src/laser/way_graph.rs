@@ -10,6 +10,7 @@ use super::{
     params::ArmParams,
     plane::distance,
     skeleton::Skeleton,
+    viewpoint::Viewpoint,
 };
 
 /// A meet point, or the end of a way.
@@ -42,6 +43,39 @@ pub struct WayGraph {
     pub nodes: Vec<WayNode>,
     /// The ways between them.
     pub ways: Vec<Way>,
+}
+
+/// Which ways from a meet point to an end count as arms of the junction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CountedArms {
+    /// Those that are seen well enough.
+    Seen,
+    /// Also those that are in doubt.
+    SeenOrInDoubt,
+}
+
+/// Whether a way from a meet point to an end is an arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ArmStatus {
+    /// It is an arm.
+    Arm,
+    /// It may be one: the scanner did not look into it.
+    InDoubt,
+    /// It is an alcove, or too little of it is seen.
+    None,
+}
+
+/// What the arms of a graph are judged by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ArmJudge<'a> {
+    /// Where the robot is.
+    pub robot: [f64; 2],
+    /// The local map.
+    pub grid: &'a Grid,
+    /// Where its scans were taken.
+    pub viewpoints: &'a [Viewpoint],
+    /// The limits.
+    pub params: &'a ArmParams,
 }
 
 /// The length of a line of neighbouring cells, without its steps.
@@ -96,24 +130,30 @@ impl WayGraph {
         all.filter(|&(end, _)| end == node).map(|(_, index)| index).collect()
     }
 
-    /// The graph with those arms only that count, for a robot at a point of a local map. The shortest is
+    /// The graph with those arms only that count, and whether any of the others is in doubt. The shortest is
     /// removed first, because others become longer by it.
     #[must_use]
-    pub fn pruned(mut self, robot: [f64; 2], grid: &Grid, params: &ArmParams) -> Self {
+    pub(super) fn pruned(mut self, judge: &ArmJudge<'_>, counted: CountedArms) -> (Self, bool) {
         let mut ways: Vec<usize> = (0..self.ways.len()).collect();
         // Whether arms count, by their meet point and their end. Most are the same in the next round.
         let mut known = BTreeMap::new();
+        let mut any_in_doubt = false;
         loop {
             ways.truncate(self.ways.len());
             ways.iter_mut().enumerate().for_each(|(index, way)| *way = index);
             ways.sort_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
             let shortest = ways.iter().find(|&&way| {
                 let Some([meet, leaf]) = self.arm(way) else { return false };
-                !*known
+                let status = *known
                     .entry([meet, leaf])
-                    .or_insert_with(|| self.counts(way, [meet, leaf], robot, grid, params))
+                    .or_insert_with(|| self.arm_status(way, [meet, leaf], judge));
+                any_in_doubt |= status == ArmStatus::InDoubt;
+                match counted {
+                    CountedArms::Seen => status != ArmStatus::Arm,
+                    CountedArms::SeenOrInDoubt => status == ArmStatus::None,
+                }
             });
-            let Some(&shortest) = shortest else { return self };
+            let Some(&shortest) = shortest else { return (self, any_in_doubt) };
             for node in self.ways.swap_remove(shortest).nodes {
                 self.join_at(node);
             }
@@ -131,17 +171,11 @@ impl WayGraph {
     }
 
     /// Whether a way from a meet point to an end is an arm, and no alcove.
-    fn counts(
-        &self,
-        way: usize,
-        [meet, leaf]: [usize; 2],
-        robot: [f64; 2],
-        grid: &Grid,
-        params: &ArmParams,
-    ) -> bool {
+    fn arm_status(&self, way: usize, [meet, leaf]: [usize; 2], judge: &ArmJudge<'_>) -> ArmStatus {
+        let ArmJudge { robot, grid, viewpoints, params } = *judge;
         let way = self.ways[way].clone().from_node(meet);
         let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
-        let Some(end) = leaf.end else { return true };
+        let Some(end) = leaf.end else { return ArmStatus::Arm };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
         let known = way.length + end.beyond;
@@ -151,15 +185,15 @@ impl WayGraph {
             WayEnd::Open => is_behind && known >= params.min_arm,
         };
         if has_robot || is_long {
-            return true;
+            return ArmStatus::Arm;
         }
         let ArmView::Near { depth, walled } =
             ArmView::new(&way.line, (meet.point, meet.clearance), grid, params.sight)
         else {
-            return true;
+            return ArmStatus::Arm;
         };
         if end.end == WayEnd::Closed || !is_behind {
-            return false;
+            return ArmStatus::None;
         }
         let mut widths: Vec<f64> = way
             .line
@@ -175,12 +209,27 @@ impl WayGraph {
         let widest = widths.last().copied().unwrap_or(width);
         let [less, more] = walled;
         let is_walled = more >= params.min_wall || less >= params.min_walls;
-        depth >= params.min_sight
+        let is_arm = depth >= params.min_sight
             && (is_walled || known >= params.long)
             && known >= params.min_known
             && width >= params.min_width
             && widest <= params.max_width
-            && (params.min_gap..=params.max_gap).contains(&(end.gap / width))
+            && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
+        let is_unseen = || {
+            let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid);
+            viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
+        };
+        if is_arm {
+            ArmStatus::Arm
+        } else if width <= params.max_width
+            && 2.0 * leaf.clearance >= params.unseen_width
+            && end.gap >= params.unseen_gap * width
+            && is_unseen()
+        {
+            ArmStatus::InDoubt
+        } else {
+            ArmStatus::None
+        }
     }
 
     /// Makes one way of two that end at a node.

@@ -69,10 +69,16 @@ fn each_cause_has_a_name_a_class_and_words() {
             "the robot turned back and entered the junction that it had left: 3 doors, now 4",
         ),
         (
-            Undecided,
+            Undecided(UndecidedCause::Unclear),
             "undecided",
             Perception,
             "the robot was at a junction that its images do not show clearly",
+        ),
+        (
+            Undecided(UndecidedCause::UnseenArm),
+            "undecided",
+            Perception,
+            "the robot was at a junction that may have an arm that its scanner did not look into",
         ),
         (misfit(percept, 1), "percept", Perception, "it does not fit the known world"),
         (

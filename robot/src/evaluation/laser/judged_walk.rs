@@ -292,7 +292,7 @@ fn derived(walk: &LaserWalk, events: &[CheckedEvent]) -> Vec<Derived> {
         };
         match &event.kind {
             CheckedKind::Arrival { arrival, .. } => visit(Some(arrival.degree)),
-            CheckedKind::Undecided => visit(None),
+            CheckedKind::Undecided(_) => visit(None),
             CheckedKind::Door { door: Door(door), .. } => {
                 if let Some(last) = all.last_mut() {
                     last.door = Some(*door);

@@ -157,7 +157,7 @@ impl ScannedWorld<'_> {
         let events = self.events.clone().finish();
         match events.last().map(|event| &event.kind) {
             Some(CheckedKind::Arrival { arrival, .. }) => Ok(arrival.degree),
-            Some(CheckedKind::Undecided) => Err(ScanFailure::Undecided),
+            Some(CheckedKind::Undecided(_)) => Err(ScanFailure::Undecided),
             _ => Err(ScanFailure::Missed),
         }
     }

@@ -1,0 +1,86 @@
+//! Where a scan was taken, and in which directions: what a scanner that does not look all around cannot see.
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::{
+    grid::Grid,
+    plane::{Motion, direction, distance},
+    scan::Scan,
+};
+
+/// Where a scan was taken, and the sector that it covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Viewpoint {
+    /// The place of the scanner, in metres in the frame of the local map.
+    point: [f64; 2],
+    /// The direction of the sector's middle, and half of its angle, in radians.
+    middle: f64,
+    half: f64,
+}
+
+impl Viewpoint {
+    /// The viewpoint of a scan that a robot took.
+    pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
+        let half = scan.field_of_view() / 2.0;
+        let mount = scan.mount();
+        Self {
+            point: Motion::from_robot(robot).point(mount.position),
+            middle: robot.heading + mount.heading + scan.geometry().angle_min + half,
+            half,
+        }
+    }
+
+    /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
+    pub(super) fn turn_to(&self, point: [f64; 2], grid: &Grid) -> Option<f64> {
+        let towards = direction(self.point, point);
+        let turn = wrapped(towards - self.middle).abs() - self.half;
+        let range = distance(self.point, point);
+        let is_free = || grid.sight(self.point, towards, range).0 >= range - grid.cell;
+        (turn > 0.0 && is_free()).then_some(turn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+    use super::*;
+    use crate::laser::{
+        grid::Cell,
+        scan::{ScanGeometry, ScannerPose},
+    };
+
+    /// The viewpoint of a robot that looks east from the middle of a free square of 10 m.
+    fn viewpoint(readings: usize) -> (Viewpoint, Grid) {
+        let geometry = ScanGeometry {
+            angle_min: -FRAC_PI_2,
+            angle_increment: PI / 180.0,
+            range_min: 0.0,
+            range_max: 80.0,
+        };
+        let scan = Scan::new(geometry, vec![1.0; readings], ScannerPose::default()).unwrap();
+        let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
+        let cells = vec![Cell::Free; 100 * 100];
+        let grid = Grid { columns: 100, cell: 0.1, origin: [0.0; 2], cells };
+        (Viewpoint::new(&scan, &robot), grid)
+    }
+
+    #[test]
+    fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
+        let (viewpoint, mut grid) = viewpoint(181);
+        assert_eq!(viewpoint.turn_to([6.05, 6.05], &grid), None, "ahead");
+        let turn = viewpoint.turn_to([4.05, 6.05], &grid).unwrap();
+        assert!((turn - FRAC_PI_4).abs() < 1e-9, "{turn}");
+        let wall = grid.index([4.55, 5.55]).unwrap();
+        grid.cells[wall] = Cell::Occupied;
+        assert_eq!(viewpoint.turn_to([4.05, 6.05], &grid), None, "behind a wall");
+    }
+
+    #[test]
+    fn nothing_is_beyond_a_sector_that_goes_all_around() {
+        let (viewpoint, grid) = viewpoint(361);
+        for point in [[4.0, 6.0], [4.0, 5.0], [4.0, 4.0]] {
+            assert_eq!(viewpoint.turn_to(point, &grid), None);
+        }
+    }
+}
