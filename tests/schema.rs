@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 17] = [
+const COMMANDS: [(&str, &[&str]); 18] = [
     ("paper", &["paper --section 2.3"]),
     (
         "proofs",
@@ -110,11 +110,18 @@ const COMMANDS: [(&str, &[&str]); 17] = [
     ),
     (
         "evaluate-mistakes",
-        &["evaluate mistakes --edges 1..=3", "evaluate mistakes --edges 1..=3 --recover"],
+        &[
+            "evaluate mistakes --edges 1..=3",
+            "evaluate mistakes --edges 1..=2 --algorithm folding --recover",
+        ],
     ),
     (
         "evaluate-runs",
-        &["evaluate runs --plans 2 --starts 1", "evaluate runs --plans 2 --starts 1 --faults"],
+        &[
+            "evaluate runs --plans 2 --starts 1",
+            "evaluate runs --plans 2 --starts 1 --faults",
+            "evaluate runs --plans 2 --starts 1 --faults 2 --algorithm folding --recover",
+        ],
     ),
     (
         "evaluate-vision",

@@ -23,7 +23,7 @@ use crate::cli::{
     json::print_line,
     mapping_marker::AlgorithmOption,
     progress::Progress,
-    text::{counted, grouped, print_rows},
+    text::{counted, grouped, print_hanging, print_rows},
     use_threads,
 };
 
@@ -240,15 +240,15 @@ fn print_recovery(judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliEr
     let [made, explored] = [0, 1].map(|at| right().map(|run| run.moves[at]).sum::<u64>());
     let extra = made.saturating_sub(audits).saturating_sub(explored);
     let number = |number: u64| grouped(number.into());
-    writeln!(out, "  right but for a hallway that is blocked  {cut}")?;
-    writeln!(
-        out,
-        "  moves of right runs: {} without faults, {} for audits, {} for {}",
+    let text = format!(
+        "{} in the right runs without faults, {} more for audits, {} more for {}",
         number(explored),
         number(audits),
         number(extra),
         if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") },
-    )?;
+    );
+    print_hanging(out, "  moves    ", &text)?;
+    writeln!(out, "  blocked  {cut} of the right runs are right but for a hallway")?;
     Ok(())
 }
 
