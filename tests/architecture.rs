@@ -47,7 +47,7 @@ const INDEPENDENT: [(&[&str], &[&str]); 4] = [
 ];
 
 /// In the robot's crate, the modules that may import the simulator.
-const SIMULATES: [&str; 4] = ["evaluation", "ros1::simulated", "run", "simulator"];
+const SIMULATES: [&str; 5] = ["evaluation", "recovered_run", "ros1::simulated", "run", "simulator"];
 
 /// A token of Rust source; of literals only that there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -147,8 +147,8 @@ fn the_pictures_of_real_logs_are_what_the_program_draws() {
         let options = ["--driver", "anyone", "--marker", "none", "--picture"];
         let paths = [&log, &drawn].map(|path| path.to_str().unwrap());
         let output = output_of(&[&["conform", paths[0]], &options[..], &[paths[1]]].concat());
-        // The log of an office floor diverges.
-        let expected = i32::from(name == "freiburg-079");
+        // On an office floor a visit is undecided.
+        let expected = if name == "freiburg-079" { 3 } else { 0 };
         assert_eq!(output.status.code(), Some(expected), "{output:?}");
         let shown = read(&format!("docs/real-logs/{name}.svg"));
         assert!(fs::read_to_string(&drawn).unwrap() == shown, "{name}");

@@ -1,10 +1,7 @@
 //! Junctions from laser scans, in plans of corridors: what a scanner measures is computed here, by another way
 //! than sensing uses it.
 
-use std::{
-    f64::consts::{FRAC_PI_2, PI},
-    sync::Arc,
-};
+use std::{f64::consts::PI, sync::Arc};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
 use toposlam_robot::{

@@ -369,7 +369,7 @@ impl MistakenRuns {
                     match self.ending(graph, facing, mistake) {
                         Ending::Right(moves) => {
                             counts.right += 1;
-                            counts.extra_moves += moves as i64 - least as i64;
+                            counts.extra_moves += moves.cast_signed() - least.cast_signed();
                         }
                         Ending::Reported => counts.reported += 1,
                         Ending::TooLarge => counts.too_large += 1,

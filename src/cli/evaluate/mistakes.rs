@@ -161,7 +161,7 @@ impl EvaluateMistakesArguments {
             let extra = all.extra_moves as f64 / all.right.max(1) as f64;
             writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
         }
-        for (kind, mistake) in self.mistakes(tally) {
+        for (kind, mistake) in first_mistakes(tally) {
             writeln!(out)?;
             print_paragraph(out, &told(kind, mistake))?;
         }
@@ -181,18 +181,9 @@ impl EvaluateMistakesArguments {
         Ok(print_paragraph(out, &verdict)?)
     }
 
-    /// The first unnoticed mistake of each kind.
-    fn mistakes<'t>(
-        &self,
-        tally: &'t MistakeTally,
-    ) -> impl Iterator<Item = (MistakeKind, &'t UnnoticedMistake)> + use<'t> {
-        let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
-        first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
-    }
-
     fn write_mistakes(&self, tally: &MistakeTally) -> Result<(), CliError> {
         let Some(folder) = &self.out_dir else { return Ok(()) };
-        for (kind, mistake) in self.mistakes(tally) {
+        for (kind, mistake) in first_mistakes(tally) {
             let name = kind.name().replace(' ', "-");
             let UnnoticedMistake { graph, facing, .. } = mistake;
             let world = NamedWorld::discovered(&name, &told(kind, mistake), graph, *facing);
@@ -234,6 +225,14 @@ impl EvaluateMistakesArguments {
         });
         print_line(out, "mistakes", &line)
     }
+}
+
+/// The first unnoticed mistake of each kind.
+fn first_mistakes(
+    tally: &MistakeTally,
+) -> impl Iterator<Item = (MistakeKind, &UnnoticedMistake)> + '_ {
+    let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
+    first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
 }
 
 /// The number of runs with a mistake that the robot could notice, and did not. That it was carried to a place

@@ -409,7 +409,7 @@ pub fn map_with_recovery<W: Relocate>(
             MappingError::World(error) => {
                 world.world.relocate(error).map_err(MappingError::World)?;
             }
-            error => return Err(error),
+            error @ MappingError::InvalidStep(_) => return Err(error),
         }
         let known = fold_most(&pieces, 0);
         let found = exploration.find_marker(known, &mut world, &mut observer);

@@ -40,6 +40,7 @@ fn each_cause_has_a_name_a_class_and_words() {
     use FaultClass::{Algorithm as Chosen, Log, Motion, Perception};
     let [percept, door] = percept_and_door();
     let why = Impossibility::Marker;
+    let no_world = "no world of any size explains the log up to here: the robot has no marker, and perceived one";
     let table = [
         (
             NotInTurn(TraceOrderError::NoDoor { event: 1 }),
@@ -87,18 +88,8 @@ fn each_cause_has_a_name_a_class_and_words() {
             Chosen,
             "it fits none of the 2 candidate poses in the known world",
         ),
-        (
-            NoWorld { event: percept, why },
-            "no-world",
-            Perception,
-            "no world of any size explains the log up to here: the robot has no marker, and perceived one",
-        ),
-        (
-            NoWorld { event: door, why },
-            "no-world",
-            Chosen,
-            "no world of any size explains the log up to here: the robot has no marker, and perceived one",
-        ),
+        (NoWorld { event: percept, why }, "no-world", Perception, no_world),
+        (NoWorld { event: door, why }, "no-world", Chosen, no_world),
         (
             departure(percept, Algorithm1),
             "contradiction",
