@@ -17,7 +17,7 @@ use crate::{
     record::{FrameSensor, RunObserver},
     run::RunOutcome,
     simulator::SimulatedRobot,
-    superscout::RADIUS,
+    superscout::{CLEARANCE, RADIUS},
 };
 
 /// A run of a robot that recovers.
@@ -105,9 +105,12 @@ fn judge(
         let number = |dart: Dart| numbers[dart.at()];
         Some(is_right(&cut, number(facing)?, reached.and_then(number)))
     };
-    // A robot does not drive exactly along the middle, so it may pass beside the obstacle or not.
+    // The robot stops before an obstacle, and does not drive exactly along the middle. So it may pass beside
+    // the obstacle or not.
     let surely = blocked(plan, obstacle, 0.0);
-    let perhaps = blocked(plan, obstacle, RADIUS).into_iter().filter(|dart| !surely.contains(dart));
+    let perhaps = blocked(plan, obstacle, RADIUS + CLEARANCE)
+        .into_iter()
+        .filter(|dart| !surely.contains(dart));
     let mut cuts = vec![surely.clone()];
     for dart in perhaps {
         let more: Vec<_> = cuts.iter().map(|edges| [&edges[..], &[dart]].concat()).collect();

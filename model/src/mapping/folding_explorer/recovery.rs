@@ -166,8 +166,8 @@ fn fold_newest_first(pieces: &[Piece], suspect: Option<usize>) -> (FoldedTrail, 
     (trail, kept)
 }
 
-/// Folds the largest set of pieces that agree, of those that are tried: of sets of the same size, the one
-/// without the newest piece but for the `sure` newest ones, which are no suspects.
+/// Folds the largest set of pieces that agree, of those that are found with each piece as the suspect. Of sets
+/// of the same size it is the one with the newest suspect. The `sure` newest pieces are no suspects.
 fn fold_most(pieces: &[Piece], sure: usize) -> FoldedTrail {
     let suspects = (0..pieces.len().saturating_sub(sure)).rev().map(Some);
     let mut best = (FoldedTrail::default(), 0);
