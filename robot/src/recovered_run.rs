@@ -4,6 +4,7 @@
 //! isomorphic to the floor plan with that hallway cut, as far as the robot can come. An obstacle at a junction
 //! cuts all its hallways.
 
+use thiserror::Error;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
@@ -14,10 +15,13 @@ use toposlam_model::{
 use crate::{
     explorer::RobotExplorer,
     ground_truth_monitor::GroundTruthMonitor,
+    pose::Pose,
     record::{FrameSensor, RunObserver},
+    robot::Robot as _,
     run::RunOutcome,
     simulator::SimulatedRobot,
     superscout::{CLEARANCE, RADIUS},
+    truth::angle,
 };
 
 /// A run of a robot that recovers.
@@ -59,19 +63,27 @@ pub fn run_with_recovery(
     let (outcome, map, is_cut) = match mapped {
         Err(error) => (RunOutcome::GaveUp(error), None, false),
         Ok(found) => {
-            let reached = monitor.truly_reached().filter(|_| !is_at_obstacle);
-            let graph = exploration.map().complete();
-            let judged = graph.and_then(|graph| {
-                judge(plan, facing, (graph, found.pose), reached, robot.obstacle())
-            });
-            let wrong = || RunOutcome::Wrong("the map or the pose is wrong".to_owned());
-            let outcome = judged.map_or_else(wrong, |_| RunOutcome::Right);
-            (outcome, Some(found), judged == Some(Passage::Blocked))
+            let place = match robot.truth() {
+                Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
+                _ => TruePlace::Junction(monitor.truly_reached()),
+            };
+            let judged = match exploration.map().complete() {
+                Some(map) => judge(plan, facing, (map, found.pose), place, robot.obstacle()),
+                None => Err(WrongAnswer::Map),
+            };
+            let outcome = match judged {
+                Ok(_) => RunOutcome::Right,
+                Err(wrong) => RunOutcome::Wrong(wrong.to_string()),
+            };
+            (outcome, Some(found), judged == Ok(Passage::Blocked))
         }
     };
     let (seconds, pictures) = (robot.time(), robot.pictures());
     RecoveredRun { outcome, map, moves, is_cut, seconds, pictures }
 }
+
+/// The least and the greatest coordinates of an obstacle, in metres.
+type Obstacle = [[f64; 2]; 2];
 
 /// Of which building a map is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,28 +94,58 @@ enum Passage {
     Blocked,
 }
 
-/// Of which building a map is, if the map and the robot's pose in it are right. The true pose is compared if the
-/// robot is at a junction.
+/// What is wrong with the answer of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Error)]
+enum WrongAnswer {
+    #[error("the robot is not where its map says")]
+    Pose,
+    #[error("the map is not isomorphic to the building")]
+    Map,
+}
+
+/// Where a robot truly stands.
+#[derive(Clone, Copy, Debug)]
+enum TruePlace {
+    /// At a junction, with this entry dart if it is known.
+    Junction(Option<Dart>),
+    /// In a hallway, before an obstacle.
+    BeforeObstacle(Pose),
+}
+
+/// Of which building a map is, if the map and the robot's pose in it are right.
 fn judge(
     plan: &FloorPlan,
     facing: Dart,
     (map, pose): (&EmbeddedGraph, Dart),
-    reached: Option<Dart>,
-    obstacle: Option<[[f64; 2]; 2]>,
-) -> Option<Passage> {
-    let is_right = |world: &EmbeddedGraph, facing, reached: Option<Dart>| {
+    place: TruePlace,
+    obstacle: Option<Obstacle>,
+) -> Result<Passage, WrongAnswer> {
+    let compare = |world: &EmbeddedGraph, facing, reached: Option<Dart>| {
         let bijection = Bijection::of_starts((map, FACING), (world, facing));
+        if !bijection.verify(map, world) {
+            return Err(WrongAnswer::Map);
+        }
         let is_there = reached.is_none_or(|reached| bijection.image(pose) == Some(reached));
-        bijection.verify(map, world) && is_there
+        if is_there { Ok(()) } else { Err(WrongAnswer::Pose) }
     };
-    if is_right(plan.graph(), facing, reached) {
-        return Some(Passage::Free);
-    }
-    let obstacle = obstacle?;
-    let is_right_if_cut = |edges: &[Dart]| {
-        let (cut, numbers) = plan.graph().cut(edges, facing)?;
+    let reached = match place {
+        TruePlace::Junction(reached) => reached,
+        TruePlace::BeforeObstacle(_) => None,
+    };
+    let free = compare(plan.graph(), facing, reached).map(|()| Passage::Free);
+    let Some(obstacle) = obstacle else { return free };
+    let cut = |edges: &[Dart]| {
+        let (cut, numbers) = plan.graph().cut(edges, facing).ok_or(WrongAnswer::Map)?;
         let number = |dart: Dart| numbers[dart.at()];
-        Some(is_right(&cut, number(facing)?, reached.and_then(number)))
+        let reached = match place {
+            TruePlace::Junction(reached) => reached.and_then(number),
+            TruePlace::BeforeObstacle(pose) => {
+                let hallway = hallway_behind(plan, edges, pose, obstacle);
+                hallway.and_then(number).map(|dart| cut.opposite(dart))
+            }
+        };
+        let facing = number(facing).ok_or(WrongAnswer::Map)?;
+        compare(&cut, facing, reached).map(|()| Passage::Blocked)
     };
     // The robot stops before an obstacle, and does not drive exactly along the middle. So it may pass beside
     // the obstacle or not.
@@ -116,12 +158,41 @@ fn judge(
         let more: Vec<_> = cuts.iter().map(|edges| [&edges[..], &[dart]].concat()).collect();
         cuts.extend(more);
     }
-    let is_cut = cuts.iter().any(|edges| is_right_if_cut(edges) == Some(true));
-    is_cut.then_some(Passage::Blocked)
+    cuts.iter().fold(free, |best, edges| {
+        best.or_else(|wrong| cut(edges).map_err(|other| wrong.min(other)))
+    })
+}
+
+/// The dart by which a robot that stands before an obstacle left the last junction: of the hallways that are cut, the one
+/// in which the robot is.
+fn hallway_behind(
+    plan: &FloorPlan,
+    edges: &[Dart],
+    pose: Pose,
+    [least, greatest]: Obstacle,
+) -> Option<Dart> {
+    let graph = plan.graph();
+    let centre = [0, 1].map(|axis| f64::midpoint(least[axis], greatest[axis]));
+    let both_ways = edges.iter().flat_map(|&dart| [dart, graph.opposite(dart)]);
+    let aside_and_before = |dart: Dart| {
+        let angle = angle(plan.direction(dart));
+        let [x, y] = plan.junction(graph.vertex(dart)).position;
+        let along = |[to_x, to_y]: [f64; 2]| {
+            let (dx, dy) = (to_x - x, to_y - y);
+            [dx * angle.cos() + dy * angle.sin(), dy * angle.cos() - dx * angle.sin()]
+        };
+        let ([robot, aside], [obstacle, _]) = (along(pose.position), along(centre));
+        (robot <= obstacle).then_some((aside.abs(), robot))
+    };
+    let in_hallway = both_ways.filter_map(|dart| Some((dart, aside_and_before(dart)?)));
+    let nearest = in_hallway.min_by(|(_, one), (_, other)| {
+        one.0.total_cmp(&other.0).then(one.1.abs().total_cmp(&other.1.abs()))
+    });
+    nearest.map(|(dart, _)| dart)
 }
 
 /// A dart of each hallway whose middle line comes nearer to an obstacle than a margin, in metres.
-fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2], margin: f64) -> Vec<Dart> {
+fn blocked(plan: &FloorPlan, [least, greatest]: Obstacle, margin: f64) -> Vec<Dart> {
     let graph = plan.graph();
     let position = |dart: Dart| plan.junction(graph.vertex(dart)).position;
     // Hallways run along the axes.
@@ -138,17 +209,15 @@ fn blocked(plan: &FloorPlan, [least, greatest]: [[f64; 2]; 2], margin: f64) -> V
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::mapping::DirectionalAlgorithm;
-
     use super::*;
     use crate::evaluation::{
         RobotEquipment, plans,
-        run_sampler::{Faults, JudgedRun, Recovery, RunSampler},
+        run_sampler::{Faults, JudgedRun, RobotMapping, RunSampler},
     };
 
     fn runs(faults: Faults, count: u64) -> Vec<JudgedRun> {
-        let algorithm = DirectionalAlgorithm::Folding;
-        let runs = RunSampler::new(plans().unwrap(), 4, faults, 1, 1.0, algorithm, Recovery::Full);
+        let plans = plans().unwrap();
+        let runs = RunSampler::new(plans, 4, faults, 1, 1.0, RobotMapping::WithRecovery);
         runs.judged(0..count, &RobotEquipment::Scenes, &())
     }
 

@@ -16,7 +16,7 @@ use clap::Subcommand;
 
 use super::{CliError, Outcome, exit_codes::help_end};
 
-/// Measure sensing, driving or whole runs against the ground truth
+/// Measure sensing, driving, whole runs and single mistakes against the ground truth
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\

@@ -281,15 +281,14 @@ fn keep_first(first: &mut Option<UnnoticedMistake>, other: UnnoticedMistake) {
     }
 }
 
-/// What the robot does against mistakes.
+/// How the robot maps, and what it does against mistakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Safeguard {
-    /// Nothing: the algorithm alone.
-    Nothing,
-    /// It [audits](audit) its map.
-    Audit,
-    /// It audits its map, and [recovers](map_with_recovery) after a contradiction. The algorithm is the
-    /// folding explorer.
+    /// An algorithm alone.
+    Nothing(DirectionalAlgorithm),
+    /// An algorithm, and an [audit] of its map.
+    Audit(DirectionalAlgorithm),
+    /// The folding explorer with an audit. It [recovers](map_with_recovery) after a contradiction.
     Recovery,
 }
 
@@ -298,7 +297,6 @@ pub enum Safeguard {
 #[derive(Clone, Copy, Debug)]
 pub struct MistakeCheck {
     starts: Enumeration,
-    algorithm: DirectionalAlgorithm,
     safeguard: Safeguard,
 }
 
@@ -312,18 +310,13 @@ enum Ending {
 }
 
 impl MistakeCheck {
-    /// A check of an algorithm.
+    /// A check of one way to map.
     ///
     /// # Errors
     /// Returns an error if the starts cannot be enumerated.
-    pub fn new(
-        class: Class,
-        edges: usize,
-        algorithm: DirectionalAlgorithm,
-        safeguard: Safeguard,
-    ) -> Result<Self, SizeError> {
+    pub fn new(class: Class, edges: usize, safeguard: Safeguard) -> Result<Self, SizeError> {
         let starts = Enumeration::new(Each::Start, class, edges)?;
-        Ok(Self { starts, algorithm, safeguard })
+        Ok(Self { starts, safeguard })
     }
 
     /// Makes all runs. The result does not depend on the number of threads.
@@ -416,28 +409,31 @@ impl MistakenRuns {
         world: &mut W,
         graph: &EmbeddedGraph,
     ) -> Result<ExploredMap<'static>, MappingError<Refused>> {
-        let MistakeCheck { algorithm, safeguard, .. } = self.check;
         let bound = 2 * graph.dart_count() + 20;
         let owned = |map: &EmbeddedGraph, pose| ExploredMap {
             graph: Cow::Owned(map.clone()),
             facing: FACING,
             pose,
         };
-        if safeguard == Safeguard::Recovery {
-            let mut exploration = FoldingExploration::new(bound);
-            let config = RecoveryConfig::default();
-            let found = map_with_recovery(world, &mut exploration, config, &mut ())?;
-            let map = exploration.map().complete().ok_or(MappingError::Bound { bound })?;
-            return Ok(owned(map, found.pose));
+        match self.check.safeguard {
+            Safeguard::Nothing(algorithm) | Safeguard::Audit(algorithm) => {
+                let mut mapping = MappingRun::new(algorithm, bound);
+                mapping.map_world(world, &mut ())?;
+                let map = mapping.map().complete().ok_or(MappingError::Bound { bound })?;
+                let mut pose = mapping.robot();
+                if self.check.safeguard == Safeguard::Audit(algorithm) {
+                    pose = audit(world, map, FACING, pose)?.pose;
+                }
+                Ok(owned(map, pose))
+            }
+            Safeguard::Recovery => {
+                let mut exploration = FoldingExploration::new(bound);
+                let config = RecoveryConfig::default();
+                let found = map_with_recovery(world, &mut exploration, config, &mut ())?;
+                let map = exploration.map().complete().ok_or(MappingError::Bound { bound })?;
+                Ok(owned(map, found.pose))
+            }
         }
-        let mut mapping = MappingRun::new(algorithm, bound);
-        mapping.map_world(world, &mut ())?;
-        let map = mapping.map().complete().ok_or(MappingError::Bound { bound })?;
-        let mut pose = mapping.robot();
-        if safeguard == Safeguard::Audit {
-            pose = audit(world, map, FACING, pose)?.pose;
-        }
-        Ok(owned(map, pose))
     }
 }
 
@@ -478,16 +474,16 @@ impl Relocate for VisitedWorld<'_> {
 mod tests {
     use super::*;
 
-    fn tally(edges: usize, algorithm: DirectionalAlgorithm, safeguard: Safeguard) -> MistakeTally {
-        MistakeCheck::new(Class::Multigraph, edges, algorithm, safeguard).unwrap().run(&())
+    fn tally(edges: usize, safeguard: Safeguard) -> MistakeTally {
+        MistakeCheck::new(Class::Multigraph, edges, safeguard).unwrap().run(&())
     }
 
     #[test]
     fn with_an_audit_no_mistake_leaves_a_wrong_map() {
         for algorithm in DirectionalAlgorithm::ALL {
             for edges in 1..=4 {
-                let [with, without] = [Safeguard::Audit, Safeguard::Nothing]
-                    .map(|safeguard| tally(edges, algorithm, safeguard));
+                let [with, without] = [Safeguard::Audit(algorithm), Safeguard::Nothing(algorithm)]
+                    .map(|safeguard| tally(edges, safeguard));
                 assert_eq!(with.all().wrong_map, 0, "{algorithm}, {edges}: {:?}", with.first);
                 assert!(edges == 1 || without.all().wrong_map > 0, "{algorithm}, {edges}");
                 // A pose is wrong only if the robot was carried, on the audit.
@@ -500,7 +496,7 @@ mod tests {
     #[test]
     fn after_one_mistake_the_folding_explorer_recovers_and_maps_every_small_start() {
         for edges in 1..=3 {
-            let tally = tally(edges, DirectionalAlgorithm::Folding, Safeguard::Recovery);
+            let tally = tally(edges, Safeguard::Recovery);
             let all = tally.all();
             assert_eq!(all.right + all.wrong_pose, all.runs(), "{edges}: {all:?}");
             // The robot was carried on the last way of the audit.

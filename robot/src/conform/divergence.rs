@@ -233,7 +233,7 @@ impl fmt::Display for DivergenceCause {
                 "the robot turned back and entered the junction that it had left: {before} doors, now {now}"
             ),
             Self::Undecided(UndecidedCause::Unclear) => {
-                write!(out, "the robot was at a junction that its images do not show clearly")
+                write!(out, "the robot was at a junction that was not seen clearly")
             }
             Self::Undecided(UndecidedCause::UnseenArm) => {
                 write!(

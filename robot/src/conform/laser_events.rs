@@ -81,6 +81,7 @@ const RETRACED: f64 = 0.6;
 const BEGINNING: f64 = 2.0;
 /// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
 const TURN: f64 = 4.0;
+
 impl LaserEvents {
     /// A robot that has seen nothing yet.
     #[must_use]

@@ -29,17 +29,27 @@ pub struct RunSampler {
     seed: u64,
     noise: f64,
     faults: Faults,
-    algorithm: DirectionalAlgorithm,
-    recovery: Recovery,
+    mapping: RobotMapping,
 }
 
-/// What a robot does after a contradiction, or if it gets lost.
+/// How a robot maps its building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Recovery {
-    /// It gives up.
-    None,
-    /// It [recovers](toposlam_model::mapping::map_with_recovery), and audits its map.
-    Full,
+pub enum RobotMapping {
+    /// By an algorithm. It gives up at a contradiction, or if it gets lost.
+    By(DirectionalAlgorithm),
+    /// By the folding explorer. It [recovers](toposlam_model::mapping::map_with_recovery), and audits its map.
+    WithRecovery,
+}
+
+impl RobotMapping {
+    /// The algorithm.
+    #[must_use]
+    pub fn algorithm(self) -> DirectionalAlgorithm {
+        match self {
+            Self::By(algorithm) => algorithm,
+            Self::WithRecovery => DirectionalAlgorithm::Folding,
+        }
+    }
 }
 
 /// Whether faults are injected.
@@ -91,17 +101,17 @@ pub struct Recovered {
 }
 
 impl JudgedRun {
-    /// The injected fault.
+    /// Whether a fault of this kind was injected.
     #[must_use]
-    pub fn fault(&self) -> Option<FaultKind> {
-        self.case.config.faults.first().map(|fault| fault.kind)
+    pub fn has_fault(&self, kind: FaultKind) -> bool {
+        self.case.config.faults.iter().any(|fault| fault.kind == kind)
     }
 
     /// Whether the map or the pose is wrong and the robot did not notice. A robot that was carried
     /// to a place that looks the same cannot notice.
     #[must_use]
     pub fn is_violation(&self) -> bool {
-        matches!(self.ending, RunOutcome::Wrong(_)) && self.fault() != Some(FaultKind::Carried)
+        matches!(self.ending, RunOutcome::Wrong(_)) && !self.has_fault(FaultKind::Carried)
     }
 }
 
@@ -120,8 +130,7 @@ impl RunSampler {
         faults: Faults,
         seed: u64,
         noise: f64,
-        algorithm: DirectionalAlgorithm,
-        recovery: Recovery,
+        mapping: RobotMapping,
     ) -> Self {
         let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
             let all = starts_of(plan);
@@ -131,7 +140,7 @@ impl RunSampler {
             (0..wanted).map(nth).collect::<Vec<_>>()
         };
         let starts = plans.iter().enumerate().flat_map(some).collect();
-        Self { plans, starts, seed, noise, faults, algorithm, recovery }
+        Self { plans, starts, seed, noise, faults, mapping }
     }
 
     /// The number of starts.
@@ -150,7 +159,8 @@ impl RunSampler {
         let mut config = SimulationConfig::at_start(plan, facing, chance.next_u64());
         config.noise = self.noise;
         if let Faults::Each(count) = self.faults {
-            let moves = explored(&config.plan, facing, self.algorithm, DEFAULT_DART_BOUND);
+            let moves =
+                explored(&config.plan, facing, self.mapping.algorithm(), DEFAULT_DART_BOUND);
             for nth in 0..u64::from(count) {
                 let (kind, ..) = FAULTS[((number + nth * nth) % FAULTS.len() as u64) as usize];
                 let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
@@ -173,7 +183,10 @@ impl RunSampler {
             numbers,
             watch,
             |number| self.case(number),
-            |case| judged(case, equipment, self.algorithm, self.recovery, watch),
+            |case| match self.mapping {
+                RobotMapping::By(algorithm) => judged(case, equipment, algorithm, watch),
+                RobotMapping::WithRecovery => judged_with_recovery(case, equipment, watch),
+            },
         )
     }
 }
@@ -183,48 +196,54 @@ fn judged(
     case: RunCase,
     equipment: &RobotEquipment,
     algorithm: DirectionalAlgorithm,
-    recovery: Recovery,
     watch: &dyn Watch,
 ) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, .. } = case.config.clone();
-    // The bound stops a robot that maps places that do not exist.
-    let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = equipment.robot(&case.config, case.number);
-    if recovery == Recovery::Full {
-        let run = run_with_recovery(&plan, marker, robot, sensor, StoppedBy(watch), bound);
-        if matches!(
-            &run.outcome,
-            RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. }))
-        ) {
-            return None;
-        }
-        let explore_moves = explored(&plan, marker, algorithm, bound);
-        let recovered = run.map.map(|map| Recovered {
-            recoveries: map.recoveries,
-            audit_moves: map.audit_moves,
-            is_cut: run.is_cut,
-        });
-        return Some(JudgedRun {
-            case,
-            ending: run.outcome,
-            moves: [run.moves, explore_moves],
-            recovered,
-            seconds: run.seconds,
-            pictures: run.pictures,
-        });
-    }
-    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, bound);
-    if matches!(run.error, Some(MappingError::World(ExplorerError::Stopped { .. }))) {
-        return None;
-    }
-    Some(JudgedRun {
+    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, dart_bound(&plan));
+    let ending = run.outcome();
+    (!is_stopped(&ending)).then_some(JudgedRun {
         case,
-        ending: run.outcome(),
+        ending,
         moves: [run.mapping.moves(), run.explore_moves],
         recovered: None,
         seconds: run.seconds,
         pictures: run.pictures,
     })
+}
+
+/// Makes a run of a robot that recovers. Returns `None` if the watch stops.
+fn judged_with_recovery(
+    case: RunCase,
+    equipment: &RobotEquipment,
+    watch: &dyn Watch,
+) -> Option<JudgedRun> {
+    let SimulationConfig { plan, marker, .. } = case.config.clone();
+    let bound = dart_bound(&plan);
+    let (robot, sensor) = equipment.robot(&case.config, case.number);
+    let run = run_with_recovery(&plan, marker, robot, sensor, StoppedBy(watch), bound);
+    let recovered = run.map.map(|map| Recovered {
+        recoveries: map.recoveries,
+        audit_moves: map.audit_moves,
+        is_cut: run.is_cut,
+    });
+    (!is_stopped(&run.outcome)).then(|| JudgedRun {
+        case,
+        ending: run.outcome,
+        moves: [run.moves, explored(&plan, marker, DirectionalAlgorithm::Folding, bound)],
+        recovered,
+        seconds: run.seconds,
+        pictures: run.pictures,
+    })
+}
+
+/// The bound on the darts of a map, which stops a robot that maps places that do not exist.
+fn dart_bound(plan: &FloorPlan) -> usize {
+    2 * plan.graph().dart_count() + SPARE_DARTS
+}
+
+fn is_stopped(ending: &RunOutcome) -> bool {
+    matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })))
 }
 
 /// The possible starts in a plan: the darts of its Ls.

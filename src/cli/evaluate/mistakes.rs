@@ -84,11 +84,9 @@ pub(super) struct EvaluateMistakesArguments {
 impl EvaluateMistakesArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
-        if self.recover && self.algorithm() != DirectionalAlgorithm::Folding {
-            return Err(only_folding_recovers());
-        }
+        let safeguard = self.safeguard()?;
         let check = |edges| {
-            let check = MistakeCheck::new(self.class, edges, self.algorithm(), self.safeguard());
+            let check = MistakeCheck::new(self.class, edges, safeguard);
             check.map_err(|error| CliError::at("--edges", error))
         };
         let checks = self.edges.iter().map(check).collect::<Result<Vec<_>, _>>()?;
@@ -120,15 +118,12 @@ impl EvaluateMistakesArguments {
         Ok(outcome)
     }
 
-    fn algorithm(&self) -> DirectionalAlgorithm {
-        self.algorithm.directional()
-    }
-
-    fn safeguard(&self) -> Safeguard {
-        match (self.recover, self.audit) {
-            (true, _) => Safeguard::Recovery,
-            (false, true) => Safeguard::Audit,
-            (false, false) => Safeguard::Nothing,
+    fn safeguard(&self) -> Result<Safeguard, CliError> {
+        match (self.recover, self.audit, self.algorithm.directional()) {
+            (true, _, DirectionalAlgorithm::Folding) => Ok(Safeguard::Recovery),
+            (true, _, DirectionalAlgorithm::Algorithm1) => Err(only_folding_recovers()),
+            (false, true, algorithm) => Ok(Safeguard::Audit(algorithm)),
+            (false, false, algorithm) => Ok(Safeguard::Nothing(algorithm)),
         }
     }
 
@@ -138,12 +133,12 @@ impl EvaluateMistakesArguments {
         outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        let safeguard = match self.safeguard() {
-            Safeguard::Nothing => "alone",
-            Safeguard::Audit => "with an audit",
-            Safeguard::Recovery => "with audit and recovery",
+        let safeguard = match (self.recover, self.audit) {
+            (true, _) => "with audit and recovery",
+            (false, true) => "with an audit",
+            (false, false) => "alone",
         };
-        let algorithm = capital(self.algorithm().in_words());
+        let algorithm = capital(self.algorithm.directional().in_words());
         writeln!(out, "{algorithm} {safeguard}, one mistake a run, class {}", self.class)?;
         let starts = grouped(tally.starts.into());
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
@@ -163,7 +158,7 @@ impl EvaluateMistakesArguments {
         }
         for (kind, mistake) in first_mistakes(tally) {
             writeln!(out)?;
-            print_paragraph(out, &told(kind, mistake))?;
+            print_paragraph(out, &in_words(kind, mistake))?;
         }
         let verdict = match outcome {
             Outcome::Holds => {
@@ -186,7 +181,7 @@ impl EvaluateMistakesArguments {
         for (kind, mistake) in first_mistakes(tally) {
             let name = kind.name().replace(' ', "-");
             let UnnoticedMistake { graph, facing, .. } = mistake;
-            let world = NamedWorld::discovered(&name, &told(kind, mistake), graph, *facing);
+            let world = NamedWorld::discovered(&name, &in_words(kind, mistake), graph, *facing);
             output::write_world(&folder.join(format!("{name}.toml")), &world)?;
         }
         Ok(())
@@ -217,7 +212,7 @@ impl EvaluateMistakesArguments {
         }
         let all = tally.all();
         let line = json!({
-            "class": self.class.name(), "algorithm": self.algorithm().name(),
+            "class": self.class.name(), "algorithm": self.algorithm.directional().name(),
             "audit": self.audit || self.recover, "recover": self.recover,
             "starts": tally.starts, "runs": all.runs(), "right": all.right,
             "unnoticed": all.unnoticed(), "moves_total": tally.moves,
@@ -259,7 +254,7 @@ fn row(name: &str, counts: MistakeCounts) -> [String; 6] {
 }
 
 /// An unnoticed mistake in words.
-fn told(kind: MistakeKind, unnoticed: &UnnoticedMistake) -> String {
+fn in_words(kind: MistakeKind, unnoticed: &UnnoticedMistake) -> String {
     let UnnoticedMistake { graph, mistake, flaw, .. } = unnoticed;
     let edges = counted(graph.edge_count(), "edge");
     format!(

@@ -7,7 +7,7 @@ use toposlam_model::mapping::DirectionalAlgorithm;
 use toposlam_robot::{
     evaluation::{
         RobotEquipment,
-        run_sampler::{Faults, JudgedRun, Recovery, RunSampler},
+        run_sampler::{Faults, JudgedRun, RobotMapping, RunSampler},
     },
     run::RunOutcome,
     simulator::{FAULTS, FaultKind},
@@ -46,7 +46,7 @@ Examples:
 
 With --faults, a run may also be given up if the robot reports a contradiction.
 A wrong map is no violation if the robot was carried to a place that it cannot
-distinguish from the right one.",
+distinguish from the right one. With --recover it is: an audit finds it.",
     &[
         (0, "every run is right"),
         (1, "a run is wrong"),
@@ -93,9 +93,9 @@ impl EvaluateRunsArguments {
         let count = plans.len();
         let faults = self.faults.map_or(Faults::None, Faults::Each);
         let algorithm = self.algorithm.directional();
-        let recovery = self.recovery()?;
+        let mapping = self.mapping()?;
         let RobotArguments { seed, noise, json, .. } = self.robots;
-        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, algorithm, recovery);
+        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, mapping);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
@@ -126,10 +126,10 @@ impl EvaluateRunsArguments {
         Ok(outcome)
     }
 
-    fn recovery(&self) -> Result<Recovery, CliError> {
+    fn mapping(&self) -> Result<RobotMapping, CliError> {
         match (self.recover, self.algorithm.directional()) {
-            (false, _) => Ok(Recovery::None),
-            (true, DirectionalAlgorithm::Folding) => Ok(Recovery::Full),
+            (false, algorithm) => Ok(RobotMapping::By(algorithm)),
+            (true, DirectionalAlgorithm::Folding) => Ok(RobotMapping::WithRecovery),
             (true, DirectionalAlgorithm::Algorithm1) => Err(only_folding_recovers()),
         }
     }
@@ -200,11 +200,12 @@ impl EvaluateRunsArguments {
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         for run in judged {
-            let fault = run.case.config.faults.first();
+            let faults = run.case.config.faults.iter();
+            let faults: Vec<_> = faults
+                .map(|fault| json!({ "fault": fault.kind.name(), "picture": fault.picture }))
+                .collect();
             let line = json!({
-                "run": run.case.number, "plan": run.case.plan_name,
-                "fault": fault.map(|fault| fault.kind.name()),
-                "fault_picture": fault.map(|fault| fault.picture),
+                "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
                 "moves": run.moves[0], "explore_moves": run.moves[1],
                 "right": run.ending == RunOutcome::Right,
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
@@ -266,7 +267,7 @@ fn tally<'r>(runs: impl Iterator<Item = &'r JudgedRun>) -> [usize; 3] {
 }
 
 fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
-    let runs = || judged.iter().filter(|run| run.fault() == Some(kind));
+    let runs = || judged.iter().filter(|run| run.has_fault(kind));
     let [right, gave_up, wrong] = tally(runs());
     [
         kind.name().to_owned(),
@@ -278,8 +279,8 @@ fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
 }
 
 fn named(run: &JudgedRun) -> String {
-    let fault = run.case.config.faults.first();
-    let fault = fault
-        .map_or_else(String::new, |fault| format!(", {}@{}", fault.kind.name(), fault.picture));
-    format!("run {}, {}{fault}", run.case.number, run.case.plan_name)
+    let faults = run.case.config.faults.iter();
+    let faults: String =
+        faults.map(|fault| format!(", {}@{}", fault.kind.name(), fault.picture)).collect();
+    format!("run {}, {}{faults}", run.case.number, run.case.plan_name)
 }

@@ -57,7 +57,8 @@ impl Default for RecoveryConfig {
 pub struct RecoveredMap {
     /// The robot's pose in the map.
     pub pose: Dart,
-    /// All moves, with those of recoveries and audits.
+    /// All moves, with those of recoveries and audits. What a robot that got lost drives until it comes to a
+    /// junction is no move.
     pub moves: u64,
     /// The moves of audits.
     pub audit_moves: u64,
@@ -401,9 +402,9 @@ pub fn map_with_recovery<W: Relocate>(
             // The percept that contradicts the others may be the false one, so the walk begins at the
             // next place.
             MappingError::Contradiction(_) | MappingError::Bound { .. } => {
-                world.moves += 1;
-                if let Err(error) = world.world.traverse(Door::BACK) {
-                    world.world.relocate(error).map_err(MappingError::World)?;
+                match world.world.traverse(Door::BACK) {
+                    Ok(()) => world.moves += 1,
+                    Err(error) => world.world.relocate(error).map_err(MappingError::World)?,
                 }
             }
             MappingError::World(error) => {

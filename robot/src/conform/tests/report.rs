@@ -73,7 +73,7 @@ fn each_cause_has_a_name_a_class_and_words() {
             Undecided(UndecidedCause::Unclear),
             "undecided",
             Perception,
-            "the robot was at a junction that its images do not show clearly",
+            "the robot was at a junction that was not seen clearly",
         ),
         (
             Undecided(UndecidedCause::UnseenArm),
