@@ -9,7 +9,9 @@ use toposlam_model::{
         algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
         scene::{Place as ScenePlace, Scene, wrapped},
     },
-    mapping::{Journey, MappingError, MappingEvent, MappingRun, Relocate},
+    mapping::{
+        Journey, MappedWorld, MappingError, MappingEvent, MappingMethod, MappingRun, Relocate, Walk,
+    },
     percept::{Door, Percept, Sighting},
     world::World,
 };
@@ -110,6 +112,8 @@ pub struct RobotExplorer<R, S, O = ()> {
     moves: u64,
     door: Option<Door>,
     obstacles: Obstacles,
+    /// Whether the robot may stand anywhere at its start, and not only at an L.
+    begins_anywhere: bool,
     /// The last frame that was used.
     last: Option<Frame>,
     /// The number of events so far.
@@ -146,6 +150,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             observer,
             place: None,
             obstacles: Obstacles::Fail,
+            begins_anywhere: false,
             moves: 0,
             door: None,
             last: None,
@@ -159,13 +164,6 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     #[must_use]
     pub fn standing_at(mut self, standing: Standing) -> Self {
         self.place = Some(Place::Junction(standing));
-        self
-    }
-
-    /// The same robot, for which an obstacle in a hallway is a dead end.
-    #[must_use]
-    pub fn returning_at_obstacles(mut self) -> Self {
-        self.obstacles = Obstacles::DeadEnds;
         self
     }
 
@@ -191,22 +189,34 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         (self.robot, self.observer)
     }
 
-    /// Maps the building by the algorithm of the run.
+    /// Maps the building. A robot that recovers returns at an obstacle, as from a dead end. With earlier walks it may
+    /// stand anywhere at its start. Returns the state of the algorithm, too.
     ///
     /// # Errors
     /// Returns an error if the run ended before the map was complete.
-    pub fn map(&mut self, mapping: &mut MappingRun) -> Result<(), MappingError<ExplorerError>> {
+    pub fn map(
+        &mut self,
+        method: MappingMethod,
+        dart_bound: usize,
+        earlier: &[Walk],
+    ) -> (MappingRun, Result<MappedWorld, MappingError<ExplorerError>>) {
+        if method.recovers() {
+            self.obstacles = Obstacles::DeadEnds;
+        }
+        self.begins_anywhere = !earlier.is_empty();
         let mut observer = |explorer: &mut Self, journey: &Journey, event: MappingEvent| {
             explorer.mapping_event(journey, event);
         };
-        let result = mapping.map_world(self, &mut observer);
-        let ending = match &result {
-            Ok(()) => RunEnding::Mapped,
-            Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
-            Err(error) => RunEnding::GaveUp(error.to_string()),
+        let (run, mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
+        let (moves, ending) = match &mapped {
+            Ok(mapped) => (mapped.moves, RunEnding::Mapped),
+            Err(MappingError::World(ExplorerError::Stopped { .. })) => {
+                (run.moves(), RunEnding::Stopped)
+            }
+            Err(error) => (run.moves(), RunEnding::GaveUp(error.to_string())),
         };
-        self.emit(EventKind::End(RunEnd { moves: mapping.moves(), ending }));
-        result
+        self.emit(EventKind::End(RunEnd { moves, ending }));
+        (run, mapped)
     }
 
     fn mapping_event(&mut self, journey: &Journey, event: MappingEvent) {
@@ -315,6 +325,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if let Some(Place::Junction(standing)) = self.place {
             return Ok(standing);
         }
+        if self.begins_anywhere {
+            return self.find_junction();
+        }
         let odometry = self.robot.odometry().odometry;
         let standing = self.drive(PathExecution::at_start(&odometry))?;
         if !standing.form.is_l() {
@@ -359,8 +372,12 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         match driven {
             Ok(standing) => self.arrive(standing),
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
-                let heading = self.robot.odometry().odometry.heading;
-                self.place = Some(Place::Obstacle { back: wrapped(heading + PI) });
+                let back = wrapped(self.robot.odometry().odometry.heading + PI);
+                self.place = Some(Place::Obstacle { back });
+                let number = Some(u32::try_from(self.moves).unwrap_or(u32::MAX));
+                let Percept { degree, sighting } = DEAD_END;
+                let (sighting, form, entry) = (Some(sighting), None, Some(back));
+                self.emit(EventKind::Arrival(Arrival { number, degree, sighting, form, entry }));
             }
             Err(error) => return Err(error),
         }
@@ -384,36 +401,50 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 return Err(ExplorerError::Stopped { moves: self.moves });
             }
             match self.frame() {
-                Ok((_, scene)) if !matches!(scene.place, ScenePlace::Unknown(_)) => return Ok(()),
+                Ok((frame, scene)) => {
+                    let sees = !matches!(scene.place, ScenePlace::Unknown(_));
+                    self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
+                    if sees {
+                        return Ok(());
+                    }
+                }
                 Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
-                Ok(_) | Err(_) => {}
+                Err(_) => {}
             }
         }
         Ok(())
+    }
+
+    /// Drives until the robot is at a junction, wherever it stands.
+    fn find_junction(&mut self) -> Result<Standing, ExplorerError> {
+        self.wait_for_sight()?;
+        let heading = self.robot.odometry().odometry.heading;
+        let mut directions = DIRECTIONS.repeat(TRIES).into_iter();
+        loop {
+            let direction = wrapped(heading + directions.next().unwrap_or_default());
+            let is_last = directions.len() == 0;
+            match self.drive(PathExecution::onwards_to_junction(direction)) {
+                Ok(standing) => {
+                    self.arrive(standing);
+                    return Ok(standing);
+                }
+                Err(ExplorerError::Lost { .. } | ExplorerError::NoPicture { .. }) if !is_last => {}
+                Err(error) => return Err(error),
+            }
+        }
     }
 }
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, O> {
     fn relocate(&mut self, error: ExplorerError) -> Result<(), ExplorerError> {
-        if matches!(error, ExplorerError::Stopped { .. } | ExplorerError::Robot(_)) {
-            return Err(error);
+        match error {
+            error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_)) => Err(error),
+            _ => self.find_junction().map(|_| ()),
         }
-        self.wait_for_sight()?;
-        let heading = self.robot.odometry().odometry.heading;
-        for direction in DIRECTIONS.repeat(TRIES) {
-            let direction = wrapped(heading + direction);
-            match self.drive(PathExecution::onwards_to_junction(direction)) {
-                Ok(standing) => {
-                    self.arrive(standing);
-                    return Ok(());
-                }
-                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
-                    return Err(error);
-                }
-                Err(_) => {}
-            }
-        }
-        Err(error)
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.is_at_obstacle()
     }
 }
 

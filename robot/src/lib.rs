@@ -9,11 +9,11 @@ pub mod evaluation;
 pub mod explorer;
 pub mod fuzz;
 pub mod ground_truth_monitor;
+mod judge_cut;
 pub mod log;
 pub mod pose;
 pub mod record;
 pub mod recording;
-pub mod recovered_run;
 pub mod replay;
 pub mod robot;
 #[cfg(feature = "ros1")]

@@ -6,7 +6,7 @@ use std::{collections::HashMap, fmt};
 use thiserror::Error;
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
-    mapping::{DirectionalAlgorithm, MappingError, MappingRun},
+    mapping::{MappingError, MappingMethod, MappingRun},
     percept::{Door, Percept},
 };
 use toposlam_vision::sensing::{Sensor, WrongSize};
@@ -132,7 +132,7 @@ pub fn replay(
     log: &Log,
     topics: &TopicMap,
     sensor: Option<Sensor>,
-    algorithm: DirectionalAlgorithm,
+    method: impl Into<MappingMethod>,
     dart_bound: usize,
 ) -> Result<Replay, ReplayError> {
     let has = |role| topics.carrier(role).is_some();
@@ -156,8 +156,8 @@ pub fn replay(
         check_size(sensor.as_ref().ok_or(ReplayError::NoSensor)?, image)?;
     }
     let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
-    let mut mapping = MappingRun::new(algorithm, dart_bound);
-    let error = explorer.map(&mut mapping).err();
+    let (mapping, mapped) = explorer.map(method.into(), dart_bound, &[]);
+    let error = mapped.err();
     let (mut robot, results) = explorer.into_parts();
     // The results after the last frame that was used are compared, too.
     while robot.failure.is_none() && robot.next.is_some() {
@@ -351,6 +351,8 @@ impl ReplayComparison {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::mapping::DirectionalAlgorithm;
+
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},

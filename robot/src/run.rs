@@ -1,29 +1,37 @@
 //! A whole run: a simulated robot maps its building, and the result is checked against the specification.
 //! Section 6.
 
+use std::borrow::Cow;
+
 use thiserror::Error;
 use toposlam_model::{
-    check::{Algorithm1, Flaw, Folding, judge},
+    check::{Algorithm, Algorithm1, ExploredMap, Flaw, Folding, judge_map},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     isomorphism::Candidate,
-    mapping::{DirectionalAlgorithm, MappingError, MappingRun},
-    world::{GraphWorld, State},
+    mapping::{DirectionalAlgorithm, FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
+    world::GraphWorld,
 };
 
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
+    judge_cut::{TruePlace, judge_cut},
     record::{FrameSensor, RunObserver},
     recording::Recording,
+    robot::Robot as _,
     simulator::SimulatedRobot,
 };
 
 /// A whole run, and its checks.
 #[derive(Debug)]
 pub struct Run<'p> {
-    /// The robot's map and its pose in it.
+    /// How the robot mapped.
+    pub method: MappingMethod,
+    /// The state of the algorithm: its map, and the robot's pose in it.
     pub mapping: MappingRun,
+    /// What the complete map took; `None` if the run ended early.
+    pub mapped: Option<MappedWorld>,
     /// Why it ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// What is wrong with the map or the pose of a complete run.
@@ -41,7 +49,8 @@ pub struct Run<'p> {
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunOutcome {
-    /// The map and the pose are right, and each move is as specified.
+    /// The map and the pose are right, and each move is as specified. The map of a robot that recovers may lack
+    /// hallways that are blocked.
     #[error("the map is right")]
     Right,
     /// The robot gave up, for this reason.
@@ -53,6 +62,18 @@ pub enum RunOutcome {
 }
 
 impl Run<'_> {
+    /// The moves, with those of recoveries and audits.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.mapped.as_ref().map_or(self.mapping.moves(), |mapped| mapped.moves)
+    }
+
+    /// The darts of the map whose hallways are blocked.
+    #[must_use]
+    pub fn blocked(&self) -> &[Dart] {
+        self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
+    }
+
     /// The first arrival that is not as expected.
     #[must_use]
     pub fn divergence(&self) -> Option<TruthDivergence> {
@@ -75,16 +96,19 @@ impl Run<'_> {
     /// How it ended.
     #[must_use]
     pub fn outcome(&self) -> RunOutcome {
-        match (&self.error, &self.flaw, self.divergence()) {
+        // A robot that recovers may have made mistakes on its way.
+        let divergence = self.divergence().filter(|_| !self.method.recovers());
+        let audit_moves = self.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
+        let (moves, expected) = (self.moves(), self.explore_moves + audit_moves);
+        match (&self.error, &self.flaw, divergence) {
             (Some(error), ..) => RunOutcome::GaveUp(error.clone()),
             (None, Some(flaw), Some(divergence)) => {
                 RunOutcome::Wrong(format!("{flaw}; {divergence}"))
             }
             (None, Some(flaw), None) => RunOutcome::Wrong(flaw.to_string()),
             (None, None, Some(divergence)) => RunOutcome::Wrong(divergence.to_string()),
-            (None, None, None) if self.mapping.moves() != self.explore_moves => {
-                let (moves, explore) = (self.mapping.moves(), self.explore_moves);
-                RunOutcome::Wrong(format!("it took {moves} moves instead of {explore}"))
+            (None, None, None) if !self.method.recovers() && moves != expected => {
+                RunOutcome::Wrong(format!("it took {moves} moves instead of {expected}"))
             }
             (None, None, None) => RunOutcome::Right,
         }
@@ -99,41 +123,62 @@ pub fn run(
     robot: SimulatedRobot,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
-    algorithm: DirectionalAlgorithm,
+    method: impl Into<MappingMethod>,
     dart_bound: usize,
 ) -> Run<'_> {
+    let method = method.into();
     let monitor = GroundTruthMonitor::new(plan, facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
-    let mut mapping = MappingRun::new(algorithm, dart_bound);
-    let error = explorer.map(&mut mapping).err();
+    let (mapping, mapped) = explorer.map(method, dart_bound, &[]);
+    let is_at_obstacle = explorer.is_at_obstacle();
     let (robot, (monitor, _)) = explorer.into_parts();
-    let flaw = match error {
-        Some(_) => None,
-        None => flaw(plan, facing, &mapping, monitor.reached()),
+    let (mapped, error) = match mapped {
+        Ok(mapped) => (Some(mapped), None),
+        Err(error) => (None, Some(error)),
     };
-    let explore_moves = explored(plan, facing, algorithm, dart_bound);
+    let flaw = mapped.as_ref().and_then(|mapped| {
+        if method.recovers() {
+            let place = match robot.truth() {
+                Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
+                _ => TruePlace::Junction(monitor.truly_reached()),
+            };
+            let map = mapping.map().complete();
+            let judge = |map| judge_cut(plan, facing, (map, mapped.pose), place, robot.obstacle());
+            map.map_or(Err(Flaw::WrongMap), judge).err()
+        } else {
+            flaw(plan, facing, &mapping, mapped.pose, monitor.reached())
+        }
+    });
+    let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
     let (seconds, pictures) = (robot.time(), robot.pictures());
-    Run { mapping, error, flaw, monitor, explore_moves, seconds, pictures }
+    Run { method, mapping, mapped, error, flaw, monitor, explore_moves, seconds, pictures }
 }
 
-/// What is wrong with the map or the pose.
+/// What is wrong with the map, the pose or the number of moves.
 fn flaw(
     plan: &FloorPlan,
     facing: Dart,
     mapping: &MappingRun,
+    pose: Dart,
     reached: Option<Dart>,
 ) -> Option<Flaw> {
-    let world = GraphWorld::new(plan.graph(), facing);
-    let placed = world.state().placed;
+    let Some(map) = mapping.map().complete() else {
+        return Some(Flaw::Unfinished { unexplored: mapping.map().unexplored_count() });
+    };
+    let map = ExploredMap { graph: Cow::Borrowed(map), facing: FACING, pose };
     // A robot at no junction is not at its pose in the map.
-    let nowhere = Dart(u32::MAX);
-    let world = world.at(State { pose: reached.unwrap_or(nowhere), placed });
+    let truly = reached.unwrap_or(Dart(u32::MAX));
     let mut candidate = Candidate::default();
-    match mapping {
-        MappingRun::Algorithm1(state) => judge(&Algorithm1, state, facing, &world, &mut candidate),
-        MappingRun::Folding(state) => judge(&Folding, state, facing, &world, &mut candidate),
+    if let Err(flaw) = judge_map(&map, (plan.graph(), facing), truly, &mut candidate) {
+        return Some(flaw);
     }
-    .err()
+    let (edges, vertices) = (plan.graph().edge_count(), plan.graph().vertex_count());
+    let bound = match mapping {
+        MappingRun::Algorithm1(_) => Algorithm1.move_bound(edges, vertices),
+        MappingRun::Folding(_) => Folding.move_bound(edges, vertices),
+    };
+    let moves = mapping.moves();
+    (moves > bound).then_some(Flaw::TooManyMoves { moves, bound })
 }
 
 /// The number of moves that an algorithm makes in the plan's embedded graph.
@@ -160,20 +205,24 @@ pub fn offline(
     recording: &Recording,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
-    algorithm: DirectionalAlgorithm,
+    method: impl Into<MappingMethod>,
     dart_bound: usize,
 ) -> Result<MappingRun, MappingError<ExplorerError>> {
     let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
-    let mut mapping = MappingRun::new(algorithm, dart_bound);
-    explorer.map(&mut mapping)?;
-    Ok(mapping)
+    let (mapping, mapped) = explorer.map(method.into(), dart_bound, &[]);
+    mapped.map(|_| mapping)
 }
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::mapping::RecoveryConfig;
+
     use super::*;
     use crate::{
-        evaluation::{plans, run_sampler::starts_of},
+        evaluation::{
+            RobotEquipment, plans,
+            run_sampler::{Faults, JudgedRun, RunSampler, starts_of},
+        },
         record::NoSensor,
         simulator::{FaultKind, RobotFault, SimulationConfig},
     };
@@ -246,6 +295,39 @@ mod tests {
         for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
             setting.faults = vec![RobotFault::at(kind, 20)];
             assert_eq!(outcome(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
+        }
+    }
+
+    fn recovering() -> MappingMethod {
+        MappingMethod::Recovering(RecoveryConfig::default())
+    }
+
+    fn runs(faults: Faults, count: u64) -> Vec<JudgedRun> {
+        let plans = plans().unwrap();
+        let runs = RunSampler::new(plans, 4, faults, 1, 1.0, recovering());
+        runs.judged(0..count, &RobotEquipment::Scenes, &())
+    }
+
+    #[test]
+    fn without_faults_a_robot_makes_the_same_moves_and_audits_its_map() {
+        for run in runs(Faults::None, 16) {
+            assert_eq!(run.ending, RunOutcome::Right);
+            let mapped = run.mapped.unwrap();
+            assert_eq!((mapped.recoveries, mapped.blocked.len()), (0, 0));
+            assert_eq!(run.moves[0], run.moves[1] + mapped.audit_moves);
+        }
+    }
+
+    #[test]
+    fn after_one_or_two_faults_no_map_is_wrong_and_most_are_right() {
+        for (count, most_given_up) in [(1, 5), (2, 8)] {
+            let runs = runs(Faults::Each(count), 54);
+            let is_wrong = |run: &&JudgedRun| matches!(run.ending, RunOutcome::Wrong(_));
+            let wrong = runs.iter().find(is_wrong);
+            assert!(wrong.is_none(), "{wrong:?}");
+            let gave_up = runs.iter().filter(|run| run.ending != RunOutcome::Right).count();
+            assert!(gave_up <= most_given_up, "{gave_up} of {}", runs.len());
+            assert!(runs.iter().any(|run| !run.blocked().is_empty()));
         }
     }
 }

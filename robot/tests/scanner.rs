@@ -16,7 +16,7 @@ use toposlam_robot::{
     evaluation::{
         RobotEquipment, plans,
         random_plan::random_plan,
-        run_sampler::{Faults, RobotMapping, RunSampler},
+        run_sampler::{Faults, RunSampler},
         traversals::{TraversalOutcome, TraversalSampler},
     },
     log::{messages, reader::Log, recorder::Recorder, topic_map::TopicMap},
@@ -93,8 +93,7 @@ fn among_furniture_doors_and_people_a_robot_errs_by_giving_up() {
 #[test]
 fn buildings_are_mapped_by_laser() {
     for algorithm in DirectionalAlgorithm::ALL {
-        let runs =
-            RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, RobotMapping::By(algorithm));
+        let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
         for run in runs.judged(0..4, &laser_robots(ScannerParams::PLAIN), &()) {
             assert_eq!(run.ending, RunOutcome::Right, "{}", run.case.plan_name);
             assert_eq!(run.moves[0], run.moves[1]);

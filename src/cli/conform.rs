@@ -28,7 +28,7 @@ use toposlam_model::{
     enumerate::{Class, Watch},
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::{DirectionalAlgorithm, MappingMethod},
     marker::{Directional, Marker},
     percept::Sighting,
 };
@@ -45,6 +45,7 @@ use super::{
     input,
     laser_options::LaserOptions,
     mapping_marker::AlgorithmOption,
+    method_options::safeguards_in_words,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
     output,
@@ -204,6 +205,7 @@ struct Judged<'w> {
     /// smallest.
     twin: Option<OtherWorld>,
     /// The algorithm with which the doors are compared, unless anyone may have chosen them.
+    driver: RunDriver,
     algorithm: DirectionalAlgorithm,
     /// The limits of the check.
     search: WorldSearch,
@@ -352,9 +354,22 @@ impl ConformArguments {
             Some(marker) => marker.marker(),
             None => opened.marker()?,
         };
-        let algorithm = match self.driver {
-            Who::Algorithm => opened.algorithm(path, self.algorithm)?,
-            Who::Anyone => DirectionalAlgorithm::default(),
+        let method = match self.driver {
+            Who::Algorithm => opened.method(path, self.algorithm)?,
+            Who::Anyone => MappingMethod::default(),
+        };
+        let algorithm = method.algorithm();
+        let driver = match self.driver {
+            Who::Algorithm if method.audits() == 0 => RunDriver::Algorithm(algorithm),
+            Who::Algorithm => {
+                let safeguards = safeguards_in_words(method);
+                let path = path.display();
+                remark!(
+                    "{path}: its robot maps {safeguards}; its doors are compared with no algorithm"
+                );
+                RunDriver::Anyone
+            }
+            Who::Anyone => RunDriver::Anyone,
         };
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
@@ -377,16 +392,16 @@ impl ConformArguments {
         })?;
         let added = self.add_marker(path, &opened, &mut gathered, marker)?;
         let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
-        if assumed && self.driver == Who::Algorithm && !shows_marker(&gathered.events) {
+        if assumed && driver != RunDriver::Anyone && !shows_marker(&gathered.events) {
             let needs = algorithm.in_words();
             let cause = format!("no percept in it shows a marker, which {needs} needs");
             return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
-        let question = self.question(known.as_ref(), marker, algorithm);
+        let question = self.question(known.as_ref(), marker, driver);
         // Whoever drives may turn back between junctions. The algorithms do not.
-        let events = match self.driver {
-            Who::Algorithm => gathered.events.clone(),
-            Who::Anyone => gathered.events.without_excursions(),
+        let events = match driver {
+            RunDriver::Algorithm(_) => gathered.events.clone(),
+            RunDriver::Anyone => gathered.events.without_excursions(),
         };
         let judgement = judge(events, &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
@@ -414,6 +429,7 @@ impl ConformArguments {
             marker,
             added,
             twin,
+            driver,
             algorithm,
             search,
             dart_bound,
@@ -424,15 +440,12 @@ impl ConformArguments {
         &self,
         known: Option<&'k Known>,
         marker: &'static dyn Marker,
-        algorithm: DirectionalAlgorithm,
+        driver: RunDriver,
     ) -> ConformConfig<'k> {
         ConformConfig {
             world: known.map(Known::question),
             marker,
-            driver: match self.driver {
-                Who::Algorithm => RunDriver::Algorithm(algorithm),
-                Who::Anyone => RunDriver::Anyone,
-            },
+            driver,
             search: WorldSearch {
                 class: self.class,
                 max_edges: self.max_edges,

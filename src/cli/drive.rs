@@ -12,7 +12,7 @@ use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
-    mapping_marker::AlgorithmOption,
+    method_options::{BlockedOptions, MethodOptions},
     robot_sensor::{SensorChoice, one_sensor},
     simulate::MAX_DARTS,
 };
@@ -25,6 +25,9 @@ use super::{
 ///
 /// With --sensor laser it reads a laser scanner in the robot's centre that looks ahead. A scanner does not see
 /// the marker: a detector of its own must publish the marker's pose in the robot's frame, x along the marker.
+///
+/// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
+/// is a dead end: it maps everything else, and reports the doors that are blocked.
 ///
 /// The last command to the wheels is always a stop: at the end, after an error, if odometry or images
 /// do not come, and after Ctrl-C. The sonars are not used. Keep the robot's bumpers on and its stop
@@ -41,7 +44,7 @@ toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
             (0, "the building is mapped"),
             (1, "the robot gave up"),
             (2, "bad usage or input, or there is no robot"),
-            (3, "ended by Ctrl-C or at --max-darts"),
+            (3, "ended by Ctrl-C or at --max-darts, or a door is blocked"),
         ],
     )
 )]
@@ -59,9 +62,10 @@ pub(super) struct DriveArguments {
     /// The colours of the building, as `toposlam train` writes them
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
-    /// The algorithm that makes the map: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
+    #[command(flatten)]
+    method: MethodOptions,
+    #[command(flatten)]
+    blocked: BlockedOptions,
     /// The topic of images: sensor_msgs/CompressedImage
     #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
     image_topic: String,

@@ -47,11 +47,6 @@ enum What {
     Mistakes(mistakes::EvaluateMistakesArguments),
 }
 
-/// The error if another algorithm is to recover.
-fn only_folding_recovers() -> CliError {
-    CliError::at("--recover", "only the folding explorer recovers; use --algorithm folding")
-}
-
 impl EvaluateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         match self.what {

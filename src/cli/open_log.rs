@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use toposlam_model::{
-    mapping::DirectionalAlgorithm,
+    mapping::MappingMethod,
     marker::{self, Marker},
 };
 use toposlam_robot::{
@@ -159,16 +159,16 @@ impl OpenLog {
         marker::named(name).map_err(|error| CliError::at("the log", error))
     }
 
-    /// The algorithm that was asked for, or that of the log; without either Algorithm 1.
-    pub(super) fn algorithm(
+    /// The algorithm that was asked for, or how the robot of the log maps; without either Algorithm 1.
+    pub(super) fn method(
         &self,
         path: &Path,
         option: Option<AlgorithmOption>,
-    ) -> Result<DirectionalAlgorithm, CliError> {
+    ) -> Result<MappingMethod, CliError> {
         let recorded = self.run.as_ref().map_or("", |run| &run.algorithm);
         match (option, recorded) {
-            (Some(option), _) => Ok(option.directional()),
-            (None, "") => Ok(DirectionalAlgorithm::Algorithm1),
+            (Some(option), _) => Ok(option.directional().into()),
+            (None, "") => Ok(MappingMethod::default()),
             (None, name) => name.parse().map_err(|_| {
                 let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
                 CliError::in_file(path, cause)

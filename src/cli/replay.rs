@@ -93,9 +93,9 @@ impl ReplayArguments {
         }
         let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
-        let algorithm = opened.algorithm(&self.log, self.algorithm)?;
+        let method = opened.method(&self.log, self.algorithm)?;
         let (log, topics) = (&opened.log, &opened.mapping);
-        let replay = replay(log, topics, opened.sensor(), algorithm, self.max_darts);
+        let replay = replay(log, topics, opened.sensor(), method, self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),

@@ -19,6 +19,7 @@ use std::{
 use toposlam::{journal::Journal, page, picture};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
+    mapping::MappingMethod,
 };
 use toposlam_robot::{
     evaluation::{LearnedSensors, LearningError},
@@ -36,7 +37,7 @@ use super::{
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
     input,
-    mapping_marker::AlgorithmOption,
+    method_options::{BlockedOptions, MethodOptions},
     noise, output,
     progress::{Progress, StopSignal},
     robot_sensor::SensorChoice,
@@ -56,6 +57,9 @@ pub(super) use log::MAX_DARTS;
 /// the folding explorer makes the map. Each move, each percept and the map are checked against the floor
 /// plan's embedded graph.
 ///
+/// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
+/// is a dead end: it maps everything else, and reports the doors that are blocked.
+///
 /// With --sensor laser, laser scans take the place of the images, and a detector of its own reports the marker.
 /// With --sensor both, the robot drives by its camera, and the log has the scans, too.
 #[derive(clap::Args)]
@@ -66,9 +70,10 @@ pub(super) struct SimulateArguments {
     /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// The algorithm that makes the map: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
+    #[command(flatten)]
+    method: MethodOptions,
+    #[command(flatten)]
+    blocked: BlockedOptions,
     /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
@@ -141,8 +146,19 @@ const OF_IMAGES: [&str; 7] =
     ["calibration", "size", "colours", "frames", "look", "effects", "effect"];
 
 /// Options that need a run; --ros serves the robot instead.
-const NOT_DRIVEN: [&str; 9] =
-    ["algorithm", "by_scene", "log", "svg", "html", "frames", "map", "json", "max_darts"];
+const NOT_DRIVEN: [&str; 11] = [
+    "algorithm",
+    "audit",
+    "recover",
+    "by_scene",
+    "log",
+    "svg",
+    "html",
+    "frames",
+    "map",
+    "json",
+    "max_darts",
+];
 
 /// A simulation that is ready to run.
 struct Simulation {
@@ -150,6 +166,7 @@ struct Simulation {
     plan: Arc<FloorPlan>,
     facing: Dart,
     setting: SimulationConfig,
+    method: MappingMethod,
     /// Before colours were learned.
     begun: Instant,
 }
@@ -160,6 +177,7 @@ impl SimulateArguments {
         if self.ros.is_some() {
             return Err(super::without_ros());
         }
+        let method = self.blocked.method(&self.method)?;
         let scanner = self.scanner_params()?;
         self.check_places()?;
         let begun = Instant::now();
@@ -174,7 +192,7 @@ impl SimulateArguments {
             faults: self.fault.clone(),
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
-        let simulation = Simulation { world, plan, facing, setting, begun };
+        let simulation = Simulation { world, plan, facing, setting, method, begun };
         if let (SensorChoice::Laser, Some(scanner)) = (self.sensor, &scanner) {
             let robot = simulation.setting.by_laser(scanner);
             #[cfg(feature = "ros1")]
@@ -277,31 +295,30 @@ impl SimulateArguments {
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let Simulation { world, plan, facing, .. } = simulation;
+        let &Simulation { ref world, ref plan, facing, method, .. } = simulation;
         let progress = Progress::endless("exploring", "pictures")?;
         // On a terminal the story shows how far the run is.
         let hidden = !self.json && io::stdout().is_terminal();
         let progress = if hidden { progress.hidden() } else { progress };
         let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = Story::new(StoryLines::new(terminal), world, *facing, detail);
+        let story = Story::new(StoryLines::new(terminal), world, facing, detail);
         let mut capture = RunCapture::new(story, progress, pictures);
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
-        let algorithm = self.algorithm.directional();
-        let run = run(plan, *facing, robot, sensor.clone(), observer, algorithm, self.max_darts);
+        let run = run(plan, facing, robot, sensor.clone(), observer, method, self.max_darts);
         let logged = log.map_or(Ok(()), Recorder::finish);
-        let mut journal = capture.finish(&world.name, plan, *facing, &run)?;
+        let mut journal = capture.finish(&world.name, plan, facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
         let stop = StoppedBy(&StopSignal);
-        let replayed = offline(&recording, sensor, stop, algorithm, self.max_darts);
+        let replayed = offline(&recording, sensor, stop, method, self.max_darts);
         let compute_seconds = computed.elapsed().as_secs_f64();
         let result = SimulationResult {
             world,
-            facing: *facing,
+            facing,
             seed: self.seed,
-            algorithm,
+            allows_blocked: self.blocked.allows(),
             frames: if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" },
             run: &run,
             missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),
@@ -380,6 +397,7 @@ Examples:
   toposlam simulate worlds/building-12.toml --by-scene --algorithm folding
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
+  toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 ";
     help_end(
@@ -388,7 +406,7 @@ Examples:
             (0, "the map is right"),
             (1, "the map is wrong, or the robot gave up"),
             (2, "bad usage or input"),
-            (3, "ended by Ctrl-C or at --max-darts, or a fault did not happen"),
+            (3, "ended by Ctrl-C or at --max-darts, a door is blocked, or a fault did not happen"),
         ],
     )
 }

@@ -73,7 +73,10 @@ pub fn judge<'c, A: Algorithm>(
 
 /// Judges a map: it is isomorphic to the world as a start, by a bijection that is verified and
 /// returned, and the robot's pose in the world, `truly`, is what it believes.
-pub(super) fn judge_map<'c>(
+///
+/// # Errors
+/// Returns what is wrong.
+pub fn judge_map<'c>(
     map: &ExploredMap,
     (graph, facing): (&EmbeddedGraph, Dart),
     truly: Dart,

@@ -10,10 +10,7 @@ use crate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
     isomorphism::Candidate,
-    mapping::{
-        DirectionalAlgorithm, FACING, FoldingExploration, MappingError, MappingRun, RecoveryConfig,
-        Relocate, audit, map_with_recovery,
-    },
+    mapping::{FACING, MappingError, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused, State, World},
 };
@@ -281,23 +278,12 @@ fn keep_first(first: &mut Option<UnnoticedMistake>, other: UnnoticedMistake) {
     }
 }
 
-/// How the robot maps, and what it does against mistakes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Safeguard {
-    /// An algorithm alone.
-    Nothing(DirectionalAlgorithm),
-    /// An algorithm, and an [audit] of its map.
-    Audit(DirectionalAlgorithm),
-    /// The folding explorer with an audit. It [recovers](map_with_recovery) after a contradiction.
-    Recovery,
-}
-
 /// A check of every start of every world of a class with a number of edges. From each start, an algorithm
 /// runs once for each mistake that can happen.
 #[derive(Clone, Copy, Debug)]
 pub struct MistakeCheck {
     starts: Enumeration,
-    safeguard: Safeguard,
+    method: MappingMethod,
 }
 
 /// How a run ended.
@@ -314,9 +300,9 @@ impl MistakeCheck {
     ///
     /// # Errors
     /// Returns an error if the starts cannot be enumerated.
-    pub fn new(class: Class, edges: usize, safeguard: Safeguard) -> Result<Self, SizeError> {
+    pub fn new(class: Class, edges: usize, method: MappingMethod) -> Result<Self, SizeError> {
         let starts = Enumeration::new(Each::Start, class, edges)?;
-        Ok(Self { starts, safeguard })
+        Ok(Self { starts, method })
     }
 
     /// Makes all runs. The result does not depend on the number of threads.
@@ -403,37 +389,17 @@ impl MistakenRuns {
         }
     }
 
-    /// Maps a world, with the safeguard of the check.
+    /// Maps a world, by the method of the check.
     fn map<W: Relocate<Error = Refused>>(
         &self,
         world: &mut W,
         graph: &EmbeddedGraph,
     ) -> Result<ExploredMap<'static>, MappingError<Refused>> {
         let bound = 2 * graph.dart_count() + 20;
-        let owned = |map: &EmbeddedGraph, pose| ExploredMap {
-            graph: Cow::Owned(map.clone()),
-            facing: FACING,
-            pose,
-        };
-        match self.check.safeguard {
-            Safeguard::Nothing(algorithm) | Safeguard::Audit(algorithm) => {
-                let mut mapping = MappingRun::new(algorithm, bound);
-                mapping.map_world(world, &mut ())?;
-                let map = mapping.map().complete().ok_or(MappingError::Bound { bound })?;
-                let mut pose = mapping.robot();
-                if self.check.safeguard == Safeguard::Audit(algorithm) {
-                    pose = audit(world, map, FACING, pose)?.pose;
-                }
-                Ok(owned(map, pose))
-            }
-            Safeguard::Recovery => {
-                let mut exploration = FoldingExploration::new(bound);
-                let config = RecoveryConfig::default();
-                let found = map_with_recovery(world, &mut exploration, config, &mut ())?;
-                let map = exploration.map().complete().ok_or(MappingError::Bound { bound })?;
-                Ok(owned(map, found.pose))
-            }
-        }
+        let (run, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
+        let pose = mapped?.pose;
+        let map = run.map().complete().ok_or(MappingError::Bound { bound })?;
+        Ok(ExploredMap { graph: Cow::Owned(map.clone()), facing: FACING, pose })
     }
 }
 
@@ -464,26 +430,23 @@ impl World for VisitedWorld<'_> {
     }
 }
 
-impl Relocate for VisitedWorld<'_> {
-    fn relocate(&mut self, error: Refused) -> Result<(), Refused> {
-        Err(error)
-    }
-}
+impl Relocate for VisitedWorld<'_> {}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mapping::{DirectionalAlgorithm, RecoveryConfig};
 
-    fn tally(edges: usize, safeguard: Safeguard) -> MistakeTally {
-        MistakeCheck::new(Class::Multigraph, edges, safeguard).unwrap().run(&())
+    fn tally(edges: usize, method: MappingMethod) -> MistakeTally {
+        MistakeCheck::new(Class::Multigraph, edges, method).unwrap().run(&())
     }
 
     #[test]
     fn with_an_audit_no_mistake_leaves_a_wrong_map() {
         for algorithm in DirectionalAlgorithm::ALL {
             for edges in 1..=4 {
-                let [with, without] = [Safeguard::Audit(algorithm), Safeguard::Nothing(algorithm)]
-                    .map(|safeguard| tally(edges, safeguard));
+                let [with, without] =
+                    [1, 0].map(|audits| tally(edges, MappingMethod::By { algorithm, audits }));
                 assert_eq!(with.all().wrong_map, 0, "{algorithm}, {edges}: {:?}", with.first);
                 assert!(edges == 1 || without.all().wrong_map > 0, "{algorithm}, {edges}");
                 // A pose is wrong only if the robot was carried, on the audit.
@@ -496,7 +459,7 @@ mod tests {
     #[test]
     fn after_one_mistake_the_folding_explorer_recovers_and_maps_every_small_start() {
         for edges in 1..=3 {
-            let tally = tally(edges, Safeguard::Recovery);
+            let tally = tally(edges, MappingMethod::Recovering(RecoveryConfig::default()));
             let all = tally.all();
             assert_eq!(all.right + all.wrong_pose, all.runs(), "{edges}: {all:?}");
             // The robot was carried on the last way of the audit.

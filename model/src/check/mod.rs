@@ -24,11 +24,11 @@ pub use every_way::every_way;
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
-pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
+pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
 pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
-    Safeguard, UnnoticedMistake,
+    UnnoticedMistake,
 };
 pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
 pub use tally::{FailedStart, Tally, WorstStart};

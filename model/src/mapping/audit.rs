@@ -2,8 +2,9 @@
 //!
 //! The robot goes to the marker and walks a [certificate](crate::folding::certificate) of the map. It
 //! compares each percept with the map. If it is already where it believes the marker to be, it first leaves
-//! and returns, because the percept that it has of the place is one of those with which the map was made. If all agree, the folded trail of the walk is the map. It is
-//! complete, so it is the world, however the map was made. No shorter walk from the marker can show that.
+//! and returns, because the percept that it has of the place is one of those with which the map was made.
+//! If all agree, the folded trail of the walk is the map. It is complete, so it is the world, however the
+//! map was made. No shorter walk from the marker can show that.
 //!
 //! A map is wrong only if a percept was false while it was made. So if at most k percepts of a run are
 //! false, at most k - 1 of them are in audits of a wrong map, and k audits find it.
@@ -12,7 +13,7 @@ use thiserror::Error;
 
 use super::{Contradiction, MappingError};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     folding::{MarkerTree, certificate_darts},
     percept::{Door, Percept},
     world::{GraphWorld, State, World},
@@ -48,10 +49,11 @@ pub enum AuditError<E> {
 }
 
 /// Walks through a world and compares it with a map.
-struct AuditWalk<'m, 'w, W> {
+struct AuditWalk<'m, 'w, W, V> {
     /// The world as the map has it.
     believed: GraphWorld<'m>,
     world: &'w mut W,
+    visit: V,
 }
 
 /// A mismatch is a contradiction of the percepts.
@@ -66,7 +68,7 @@ impl<E> From<AuditError<E>> for MappingError<E> {
     }
 }
 
-impl<W: World> AuditWalk<'_, '_, W> {
+impl<W: World, V: FnMut(&mut W, Dart)> AuditWalk<'_, '_, W, V> {
     fn compare(&mut self) -> Result<(), AuditError<W::Error>> {
         let perceived = self.world.percept().map_err(AuditError::World)?;
         let (moves, expected) = (self.believed.moves(), self.believed.sensed());
@@ -84,11 +86,26 @@ impl<W: World> AuditWalk<'_, '_, W> {
         self.world.traverse(door).map_err(AuditError::World)?;
         // The map has each of its doors.
         let _ = self.believed.traverse(door);
-        self.compare()
+        self.compare()?;
+        (self.visit)(self.world, self.believed.pose());
+        Ok(())
+    }
+
+    /// Goes to a vertex of the map by a shortest way.
+    fn go_up(&mut self, tree: &mut MarkerTree, to: Vertex) -> Result<(), AuditError<W::Error>> {
+        let map = self.believed.graph();
+        tree.grow(map, to);
+        let mut at = map.vertex(self.believed.pose());
+        while at != to {
+            self.leave_by(tree.up(at))?;
+            at = map.vertex(self.believed.pose());
+        }
+        Ok(())
     }
 }
 
-/// Audits a map that the robot has made of a world, with a directional marker.
+/// Audits a map that the robot has made of a world, with a directional marker. After each move that agrees,
+/// `visit` gets the robot's pose in the map.
 ///
 /// # Errors
 /// Returns an error if the world does, or at the first percept that is not as the map predicts.
@@ -97,26 +114,44 @@ pub fn audit<W: World>(
     map: &EmbeddedGraph,
     facing: Dart,
     pose: Dart,
+    visit: impl FnMut(&mut W, Dart),
 ) -> Result<Audit, AuditError<W::Error>> {
     let believed = GraphWorld::new(map, facing);
     let placed = believed.state().placed;
-    let mut walk = AuditWalk { believed: believed.at(State { pose, placed }), world };
+    let mut walk = AuditWalk { believed: believed.at(State { pose, placed }), world, visit };
     walk.compare()?;
-    let mut tree = MarkerTree::default();
     let marked = map.vertex(facing);
-    tree.grow(map, marked);
-    let at = |walk: &AuditWalk<W>| map.vertex(walk.believed.pose());
-    if at(&walk) == marked {
+    if map.vertex(pose) == marked {
         walk.leave_by(facing)?;
     }
-    while at(&walk) != marked {
-        let up = tree.up(at(&walk));
-        walk.leave_by(up)?;
-    }
+    walk.go_up(&mut MarkerTree::default(), marked)?;
     for dart in certificate_darts(map, marked) {
         walk.leave_by(dart)?;
     }
     Ok(Audit { moves: walk.believed.moves(), pose: walk.believed.pose() })
+}
+
+/// Goes to some darts of a map, one after the other, and takes each. Returns the robot's pose in the map.
+///
+/// # Errors
+/// Returns an error if the world does, or at the first percept that is not as the map predicts.
+pub(super) fn try_doors<W: World>(
+    world: &mut W,
+    map: &EmbeddedGraph,
+    facing: Dart,
+    pose: Dart,
+    doors: &[Dart],
+) -> Result<Dart, AuditError<W::Error>> {
+    let believed = GraphWorld::new(map, facing);
+    let placed = believed.state().placed;
+    let believed = believed.at(State { pose, placed });
+    let mut walk = AuditWalk { believed, world, visit: |_: &mut W, _| {} };
+    let mut tree = MarkerTree::default();
+    for &dart in doors {
+        walk.go_up(&mut tree, map.vertex(dart))?;
+        walk.leave_by(dart)?;
+    }
+    Ok(walk.believed.pose())
 }
 
 #[cfg(test)]
@@ -147,7 +182,7 @@ mod tests {
         for (number, graph) in starts.iter().enumerate() {
             for (other, map) in starts.iter().enumerate() {
                 let mut world = GraphWorld::new(graph, Dart(0));
-                let audited = audit(&mut world, map, Dart(0), Dart(0));
+                let audited = audit(&mut world, map, Dart(0), Dart(0), |_, _| {});
                 assert_eq!(audited.is_ok(), number == other, "{graph:?} {map:?}");
                 if let Ok(audited) = audited {
                     assert_eq!(audited.pose, world.pose());

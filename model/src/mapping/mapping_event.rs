@@ -1,5 +1,6 @@
 //! The events of a run.
 
+use super::Contradiction;
 use crate::{
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept},
@@ -68,13 +69,21 @@ pub enum MappingEvent {
     Movable(MovableEvent),
     /// An event of the folding explorer.
     Folding(FoldingEvent),
+    /// An audit, or a recovery.
+    Safeguard(SafeguardEvent),
 }
 
 impl MappingEvent {
-    /// Whether the map has grown.
+    /// Whether the map has changed.
     #[must_use]
     pub fn grows_map(&self) -> bool {
-        matches!(self, Self::Started { .. } | Self::LoopClosed { .. } | Self::VertexAdded { .. })
+        matches!(
+            self,
+            Self::Started { .. }
+                | Self::LoopClosed { .. }
+                | Self::VertexAdded { .. }
+                | Self::Safeguard(SafeguardEvent::MarkerFound { .. })
+        )
     }
 
     /// The robot's action, if the event is one.
@@ -174,5 +183,38 @@ pub enum FoldingEvent {
         before: usize,
         /// The number of vertices afterwards.
         after: usize,
+    },
+}
+
+/// An event that only runs with audits or recoveries have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SafeguardEvent {
+    /// The map is complete, and the robot begins an audit.
+    AuditBegun,
+    /// Every percept of the audit agreed with the map.
+    AuditPassed {
+        /// The moves of the audit.
+        moves: u64,
+    },
+    /// The robot has noticed a contradiction, and looks for the marker.
+    Contradicted(Contradiction),
+    /// The robot has noticed that its map becomes too large. It forgets everything, and looks for the marker.
+    TooLarge {
+        /// The bound on darts.
+        bound: usize,
+    },
+    /// The robot got lost or was switched off. It has found a junction, and looks for the marker.
+    Relocated,
+    /// The robot has found the marker. It folds its walks, and goes on with those that agree.
+    MarkerFound {
+        /// The number of walks that agree.
+        kept: usize,
+        /// The number of walks.
+        walks: usize,
+    },
+    /// The robot goes to the doors that are blocked, to see whether they still are.
+    BlockedRetried {
+        /// The number of doors.
+        doors: usize,
     },
 }

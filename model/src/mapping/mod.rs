@@ -9,6 +9,7 @@ mod exploration;
 mod folding_explorer;
 mod journey;
 mod mapping_event;
+mod mapping_method;
 mod mapping_run;
 mod marker_search;
 mod movable_marker;
@@ -21,11 +22,12 @@ pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
 pub use folding_explorer::{
-    FoldingExploration, FoldingStep, HypothesisTest, RecoveredMap, RecoveryConfig, Relocate,
+    FoldingExploration, FoldingStep, HypothesisTest, MappedWorld, RecoveryConfig, Relocate, Walk,
     map_by_folding, map_with_recovery,
 };
 pub use journey::{Journey, Observer};
-pub use mapping_event::{FoldingEvent, MappingEvent, MovableEvent};
+pub use mapping_event::{FoldingEvent, MappingEvent, MovableEvent, SafeguardEvent};
+pub use mapping_method::MappingMethod;
 pub use mapping_run::{DirectionalAlgorithm, MappingRun};
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{

@@ -119,7 +119,8 @@ impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
             MappingEvent::Started { .. }
             | MappingEvent::Confirmed { .. }
             | MappingEvent::Movable(_)
-            | MappingEvent::Folding(_) => {}
+            | MappingEvent::Folding(_)
+            | MappingEvent::Safeguard(_) => {}
         }
     }
 }

@@ -8,14 +8,13 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::{FloorPlan, JunctionKind},
-    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, MappingError},
+    mapping::{DEFAULT_DART_BOUND, MappedWorld, MappingError, MappingMethod},
 };
 
 use super::{RobotEquipment, parallel::made_in_turn};
 use crate::{
     explorer::ExplorerError,
     record::StoppedBy,
-    recovered_run::run_with_recovery,
     run::{RunOutcome, explored, run},
     simulator::{FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
@@ -29,27 +28,7 @@ pub struct RunSampler {
     seed: u64,
     noise: f64,
     faults: Faults,
-    mapping: RobotMapping,
-}
-
-/// How a robot maps its building.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RobotMapping {
-    /// By an algorithm. It gives up at a contradiction, or if it gets lost.
-    By(DirectionalAlgorithm),
-    /// By the folding explorer. It [recovers](toposlam_model::mapping::map_with_recovery), and audits its map.
-    WithRecovery,
-}
-
-impl RobotMapping {
-    /// The algorithm.
-    #[must_use]
-    pub fn algorithm(self) -> DirectionalAlgorithm {
-        match self {
-            Self::By(algorithm) => algorithm,
-            Self::WithRecovery => DirectionalAlgorithm::Folding,
-        }
-    }
+    method: MappingMethod,
 }
 
 /// Whether faults are injected.
@@ -81,23 +60,12 @@ pub struct JudgedRun {
     pub ending: RunOutcome,
     /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
-    /// What recovery did, if the robot recovers and has a map.
-    pub recovered: Option<Recovered>,
+    /// What the map took, if the robot has one.
+    pub mapped: Option<MappedWorld>,
     /// Simulated time, in seconds.
     pub seconds: f64,
     /// The number of images that were requested.
     pub pictures: u64,
-}
-
-/// What recovery did in a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Recovered {
-    /// The number of recoveries.
-    pub recoveries: u32,
-    /// The moves of the audit.
-    pub audit_moves: u64,
-    /// Whether the map is right but for a hallway that the robot could not pass.
-    pub is_cut: bool,
 }
 
 impl JudgedRun {
@@ -107,11 +75,19 @@ impl JudgedRun {
         self.case.config.faults.iter().any(|fault| fault.kind == kind)
     }
 
-    /// Whether the map or the pose is wrong and the robot did not notice. A robot that was carried
-    /// to a place that looks the same cannot notice.
+    /// The darts of the map whose hallways are blocked.
+    #[must_use]
+    pub fn blocked(&self) -> &[Dart] {
+        self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
+    }
+
+    /// Whether the map or the pose is wrong and the robot did not notice, though it could have. Without an audit, a
+    /// robot that was carried to a place that looks the same cannot notice.
     #[must_use]
     pub fn is_violation(&self) -> bool {
-        matches!(self.ending, RunOutcome::Wrong(_)) && !self.has_fault(FaultKind::Carried)
+        let audits = self.mapped.as_ref().is_some_and(|mapped| mapped.audit_moves > 0);
+        matches!(self.ending, RunOutcome::Wrong(_))
+            && (audits || !self.has_fault(FaultKind::Carried))
     }
 }
 
@@ -130,7 +106,7 @@ impl RunSampler {
         faults: Faults,
         seed: u64,
         noise: f64,
-        mapping: RobotMapping,
+        method: impl Into<MappingMethod>,
     ) -> Self {
         let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
             let all = starts_of(plan);
@@ -140,7 +116,7 @@ impl RunSampler {
             (0..wanted).map(nth).collect::<Vec<_>>()
         };
         let starts = plans.iter().enumerate().flat_map(some).collect();
-        Self { plans, starts, seed, noise, faults, mapping }
+        Self { plans, starts, seed, noise, faults, method: method.into() }
     }
 
     /// The number of starts.
@@ -159,8 +135,7 @@ impl RunSampler {
         let mut config = SimulationConfig::at_start(plan, facing, chance.next_u64());
         config.noise = self.noise;
         if let Faults::Each(count) = self.faults {
-            let moves =
-                explored(&config.plan, facing, self.mapping.algorithm(), DEFAULT_DART_BOUND);
+            let moves = explored(&config.plan, facing, self.method.algorithm(), DEFAULT_DART_BOUND);
             for nth in 0..u64::from(count) {
                 let (kind, ..) = FAULTS[((number + nth * nth) % FAULTS.len() as u64) as usize];
                 let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
@@ -183,10 +158,7 @@ impl RunSampler {
             numbers,
             watch,
             |number| self.case(number),
-            |case| match self.mapping {
-                RobotMapping::By(algorithm) => judged(case, equipment, algorithm, watch),
-                RobotMapping::WithRecovery => judged_with_recovery(case, equipment, watch),
-            },
+            |case| judged(case, equipment, self.method, watch),
         )
     }
 }
@@ -195,55 +167,25 @@ impl RunSampler {
 fn judged(
     case: RunCase,
     equipment: &RobotEquipment,
-    algorithm: DirectionalAlgorithm,
+    method: MappingMethod,
     watch: &dyn Watch,
 ) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, .. } = case.config.clone();
+    // The bound stops a robot that maps places that do not exist.
+    let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, dart_bound(&plan));
+    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), method, bound);
     let ending = run.outcome();
-    (!is_stopped(&ending)).then_some(JudgedRun {
+    let stopped =
+        matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })));
+    (!stopped).then(|| JudgedRun {
         case,
         ending,
-        moves: [run.mapping.moves(), run.explore_moves],
-        recovered: None,
+        moves: [run.moves(), run.explore_moves],
+        mapped: run.mapped,
         seconds: run.seconds,
         pictures: run.pictures,
     })
-}
-
-/// Makes a run of a robot that recovers. Returns `None` if the watch stops.
-fn judged_with_recovery(
-    case: RunCase,
-    equipment: &RobotEquipment,
-    watch: &dyn Watch,
-) -> Option<JudgedRun> {
-    let SimulationConfig { plan, marker, .. } = case.config.clone();
-    let bound = dart_bound(&plan);
-    let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let run = run_with_recovery(&plan, marker, robot, sensor, StoppedBy(watch), bound);
-    let recovered = run.map.map(|map| Recovered {
-        recoveries: map.recoveries,
-        audit_moves: map.audit_moves,
-        is_cut: run.is_cut,
-    });
-    (!is_stopped(&run.outcome)).then(|| JudgedRun {
-        case,
-        ending: run.outcome,
-        moves: [run.moves, explored(&plan, marker, DirectionalAlgorithm::Folding, bound)],
-        recovered,
-        seconds: run.seconds,
-        pictures: run.pictures,
-    })
-}
-
-/// The bound on the darts of a map, which stops a robot that maps places that do not exist.
-fn dart_bound(plan: &FloorPlan) -> usize {
-    2 * plan.graph().dart_count() + SPARE_DARTS
-}
-
-fn is_stopped(ending: &RunOutcome) -> bool {
-    matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })))
 }
 
 /// The possible starts in a plan: the darts of its Ls.

@@ -212,7 +212,7 @@ mod tests {
     use crate::evaluation::{
         impatient::Impatient,
         plans,
-        run_sampler::{Faults, RobotMapping, RunSampler},
+        run_sampler::{Faults, RunSampler},
     };
 
     type Count<'a> = &'a dyn Fn(&Impatient) -> usize;
@@ -223,7 +223,7 @@ mod tests {
         let plans = plans().unwrap();
         let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
         let algorithm = DirectionalAlgorithm::Algorithm1;
-        let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0, RobotMapping::By(algorithm));
+        let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0, algorithm);
         let counts: [Count<'_>; 2] =
             [&|watch| traversals.judged(0..1, &RobotEquipment::Scenes, watch).len(), &|watch| {
                 runs.judged(0..1, &RobotEquipment::Scenes, watch).len()

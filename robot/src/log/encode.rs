@@ -12,7 +12,7 @@ use toposlam_model::{
         visit::JunctionShape,
     },
     embedded_graph::{Dart, Vertex},
-    mapping::{FoldingEvent, MappingEvent},
+    mapping::{FoldingEvent, MappingEvent, SafeguardEvent},
     percept::{self, Sighting},
 };
 
@@ -226,6 +226,21 @@ pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Optio
             FoldingEvent::Folded { after, .. } => {
                 Hypothesis { other: i32::try_from(after).unwrap_or(NONE), ..step("folded", None) }
             }
+        },
+        MappingEvent::Safeguard(event) => match event {
+            SafeguardEvent::AuditBegun => step("audit-begun", None),
+            SafeguardEvent::AuditPassed { moves } => {
+                Hypothesis { followed: count(moves), ..step("audit-passed", None) }
+            }
+            SafeguardEvent::Contradicted(_) => step("contradicted", None),
+            SafeguardEvent::TooLarge { .. } => step("too-large", None),
+            SafeguardEvent::Relocated => step("relocated", None),
+            SafeguardEvent::MarkerFound { kept, walks } => Hypothesis {
+                hypotheses: count(walks as u64),
+                contradicted: count((walks - kept) as u64),
+                ..step("marker-found", None)
+            },
+            SafeguardEvent::BlockedRetried { .. } => step("blocked-retried", None),
         },
         MappingEvent::Moved { .. } | MappingEvent::Movable(_) => return None,
     })

@@ -181,7 +181,7 @@ mod tests {
     use mcap::MessageStream;
     use toposlam_model::{
         driving::scene::Scene,
-        mapping::{DirectionalAlgorithm, MappingError, MappingRun},
+        mapping::{DirectionalAlgorithm, MappingError, MappingMethod},
     };
 
     use super::*;
@@ -326,7 +326,8 @@ mod tests {
         let mut page = Pixels::default();
         let decoded = DECODED.get();
         let mut explorer = RobotExplorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
-        explorer.map(&mut MappingRun::new(DirectionalAlgorithm::Algorithm1, 200)).unwrap();
+        let (_, mapped) = explorer.map(MappingMethod::default(), 200, &[]);
+        mapped.unwrap();
         assert!(page.0 > 60, "{}", page.0);
         assert_eq!(DECODED.get() - decoded, page.0);
         recorder.finish().unwrap();

@@ -10,7 +10,7 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
-        RunEvents, SensedScene, ShortenedRun, direction, extract, infer_events, judge,
+        RunDriver, RunEvents, SensedScene, ShortenedRun, direction, extract, infer_events, judge,
         shorten_frames, shorten_run,
     },
     log::{
@@ -41,7 +41,7 @@ const DISTANCE: f64 = 2.0;
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, CliError> {
-        let question = self.question(judged.known.as_ref(), judged.marker, judged.algorithm);
+        let question = self.question(judged.known.as_ref(), judged.marker, judged.driver);
         let shorter = shorten_run(&judged.judgement, &question, &());
         let Some(path) = &self.minimise else {
             return Ok(
@@ -95,7 +95,7 @@ impl ConformArguments {
             words.extend(["--world".to_owned(), quoted(&world.display().to_string())]);
             words.extend(["--start".to_owned(), quoted(&start)]);
         }
-        if self.driver == super::Who::Anyone {
+        if judged.driver == RunDriver::Anyone {
             words.extend(["--driver", "anyone"].map(str::to_owned));
         }
         if self.algorithm.is_some() {

@@ -11,7 +11,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun, Observer},
+    mapping::{Journey, MappingEvent, MappingMethod, Observer},
 };
 use toposlam_robot::{
     explorer::RobotExplorer,
@@ -34,7 +34,9 @@ use toposlam_vision::{
 use super::{CliError, DriveArguments, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
     explore::story::{Story, StoryDetail},
-    input, output,
+    input,
+    method_options::words_of,
+    output,
     progress::Progress,
     robot_sensor::{SensorChoice, needs_camera},
     story_lines::StoryLines,
@@ -50,6 +52,7 @@ impl DriveArguments {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
+        let method = self.blocked.method(&self.method)?;
         let eyes = self.eyes()?;
         let (sensor, live) = match &eyes {
             Some((camera, colours)) => {
@@ -85,8 +88,8 @@ impl DriveArguments {
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
             Err(error) => return Err(CliError::at("--ros", error)),
         };
-        let log = self.recorder(world.as_ref(), eyes.as_ref())?;
-        self.explore(robot, sensor, world.as_ref(), log, &progress, out)
+        let log = self.recorder(method, world.as_ref(), eyes.as_ref())?;
+        self.explore(method, robot, sensor, world.as_ref(), log, &progress, out)
     }
 
     /// The camera and the colours of the building; `None` with a laser scanner.
@@ -115,8 +118,10 @@ impl DriveArguments {
         }
     }
 
+    #[expect(clippy::too_many_arguments, reason = "these are the parts of one run")]
     fn explore(
         &self,
+        method: MappingMethod,
         robot: LiveRobot,
         sensor: RobotSensor,
         world: Option<&(NamedWorld, Dart)>,
@@ -133,8 +138,7 @@ impl DriveArguments {
         };
         let mut narrator = Narrator { story, progress };
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
-        let mut mapping = MappingRun::new(self.algorithm.directional(), self.max_darts);
-        let error = explorer.map(&mut mapping).err();
+        let (mapping, mapped) = explorer.map(method, self.max_darts, &[]);
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
@@ -144,10 +148,17 @@ impl DriveArguments {
         narrator.story.finish()?;
         logged.map_err(|error| self.unwritten(&error))?;
         let name = world.map_or("", |(world, _)| &world.name);
-        let error = error.as_ref();
         let frames = if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" };
-        let result =
-            DriveResult { world: name, mapping: &mapping, error, seconds, pictures, frames };
+        let result = DriveResult {
+            world: name,
+            method,
+            mapping: &mapping,
+            mapped: mapped.as_ref(),
+            allows_blocked: self.blocked.allows(),
+            seconds,
+            pictures,
+            frames,
+        };
         if self.json {
             result.print_json(out)?;
         } else {
@@ -165,6 +176,7 @@ impl DriveArguments {
     /// Opens the log, if one is wanted. Unknown fields of its head are empty.
     fn recorder(
         &self,
+        method: MappingMethod,
         world: Option<&(NamedWorld, Dart)>,
         eyes: Option<&(Camera, ColourModel)>,
     ) -> Result<Option<Recorder<File>>, CliError> {
@@ -184,8 +196,8 @@ impl DriveArguments {
             seed: 0,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(),
-            algorithm: self.algorithm.directional().name().to_owned(),
+            command: self.command(method),
+            algorithm: method.to_string(),
         };
         let camera = eyes.map(|(camera, _)| camera.clone());
         let recorder = Recorder::new(output::create_growing(path)?, &run, camera);
@@ -198,17 +210,14 @@ impl DriveArguments {
     }
 
     /// The command of this run, without the options for its outputs.
-    fn command(&self) -> String {
+    fn command(&self, method: MappingMethod) -> String {
         let path = |path: &std::path::PathBuf| path.display().to_string();
         let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
-        let algorithm = self.algorithm.directional();
-        let is_default = algorithm == DirectionalAlgorithm::default();
         let options = [
             ("--ros", Some(self.ros.clone())),
             ("--sensor", (self.sensor == SensorChoice::Laser).then(|| "laser".to_owned())),
             ("--calibration", self.calibration.as_ref().map(path)),
             ("--colours", self.colours.as_ref().map(path)),
-            ("--algorithm", (!is_default).then(|| algorithm.name().to_owned())),
             ("--image-topic", unless(&self.image_topic, recorder::IMAGE)),
             ("--scan-topic", unless(&self.scan_topic, recorder::SCAN)),
             ("--marker-topic", unless(&self.marker_topic, recorder::MARKER)),
@@ -221,7 +230,7 @@ impl DriveArguments {
         let options =
             options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
-        let words = words.into_iter().chain(options.flatten());
+        let words = words.into_iter().chain(words_of(method)).chain(options.flatten());
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
     }
 }

@@ -5,13 +5,14 @@ use std::io::Write;
 use serde::Serialize;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{FACING, MappingError, MappingRun},
+    mapping::{FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
 };
 use toposlam_robot::explorer::ExplorerError;
 
 use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
+    safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
     text::{print_paragraph, sentence},
 };
 
@@ -19,8 +20,11 @@ use crate::cli::{
 pub(super) struct DriveResult<'a> {
     /// The name of the world, or an empty string.
     pub(super) world: &'a str,
+    pub(super) method: MappingMethod,
     pub(super) mapping: &'a MappingRun,
-    pub(super) error: Option<&'a MappingError<ExplorerError>>,
+    pub(super) mapped: Result<&'a MappedWorld, &'a MappingError<ExplorerError>>,
+    /// Whether the map may lack what is behind blocked doors.
+    pub(super) allows_blocked: bool,
     /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
     pub(super) pictures: u64,
@@ -35,6 +39,8 @@ struct Line<'a> {
     ending: &'a str,
     error: Option<String>,
     moves: u64,
+    #[serde(flatten)]
+    safeguards: SafeguardFields,
     vertices: usize,
     edges: usize,
     seconds: f64,
@@ -43,19 +49,24 @@ struct Line<'a> {
 
 impl DriveResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
-        match self.error {
-            None => Outcome::Holds,
-            Some(
+        match self.mapped {
+            Ok(mapped) if mapped.blocked.is_empty() || self.allows_blocked => Outcome::Holds,
+            Ok(_)
+            | Err(
                 MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }),
             ) => Outcome::Incomplete,
-            Some(_) => Outcome::Violated,
+            Err(_) => Outcome::Violated,
         }
+    }
+
+    fn moves(&self) -> u64 {
+        self.mapped.map_or(self.mapping.moves(), |mapped| mapped.moves)
     }
 
     /// The map as a world, if it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let graph = self.mapping.map().complete()?;
-        let moves = self.mapping.moves();
+        let moves = self.moves();
         let (name, of) = match self.world {
             "" => ("map".to_owned(), "an unknown world"),
             world => (format!("{world}-map"), world),
@@ -71,14 +82,21 @@ impl DriveResult<'_> {
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let (moves, vertices) = (self.mapping.moves(), self.mapping.map().vertex_count());
-        let ended = match self.error {
-            None => format!("the map is complete, after {moves} moves"),
-            Some(error) => format!("the robot gave up: {error}"),
+        let (moves, vertices) = (self.moves(), self.mapping.map().vertex_count());
+        let ended = match self.mapped {
+            Ok(mapped) if !mapped.blocked.is_empty() => {
+                let doors = blocked_in_words(mapped.blocked.len());
+                format!("the map is complete but for {doors}, after {moves} moves")
+            }
+            Ok(_) => format!("the map is complete, after {moves} moves"),
+            Err(error) => format!("the robot gave up: {error}"),
         };
         writeln!(out)?;
         print_paragraph(out, &sentence(&ended))?;
         writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
+        if let Ok(mapped) = self.mapped {
+            print_safeguards(out, self.method, mapped, self.mapping.map())?;
+        }
         let minutes = self.seconds / 60.0;
         writeln!(out, "  {:<17} {}", self.frames, self.pictures)?;
         writeln!(out, "  robot time        {minutes:.1} minutes")?;
@@ -86,16 +104,17 @@ impl DriveResult<'_> {
     }
 
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let ending = match (self.outcome(), self.error) {
-            (Outcome::Holds, _) => "mapped",
-            (_, Some(MappingError::World(ExplorerError::Stopped { .. }))) => "stopped",
-            _ => "gave-up",
+        let ending = match self.mapped {
+            Ok(_) => "mapped",
+            Err(MappingError::World(ExplorerError::Stopped { .. })) => "stopped",
+            Err(_) => "gave-up",
         };
         let line = Line {
             world: self.world,
             ending,
-            error: self.error.map(ToString::to_string),
-            moves: self.mapping.moves(),
+            error: self.mapped.err().map(ToString::to_string),
+            moves: self.moves(),
+            safeguards: SafeguardFields::new(self.mapped.ok(), self.mapping.map()),
             vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),
             seconds: (self.seconds * 1e3).round() / 1e3,

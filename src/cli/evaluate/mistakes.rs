@@ -5,21 +5,19 @@ use std::{io::Write, path::PathBuf, time::Instant};
 use serde_json::json;
 use toposlam_model::{
     check::{
-        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, Safeguard,
-        UnnoticedMistake,
+        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UnnoticedMistake,
     },
     enumerate::Class,
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingMethod,
 };
 
-use super::only_folding_recovers;
 use crate::cli::{
     CliError, Outcome,
     edge_range::EdgeRange,
     exit_codes::help_end,
     json::print_line,
-    mapping_marker::AlgorithmOption,
+    method_options::{MethodOptions, safeguards_in_words},
     output,
     progress::Progress,
     text::{capital, counted, grouped, print_paragraph, print_rows},
@@ -61,15 +59,8 @@ pub(super) struct EvaluateMistakesArguments {
     /// Class of worlds: multigraph, simple, corridor or planar
     #[arg(long, default_value_t = Class::Multigraph)]
     class: Class,
-    /// The algorithm that makes the map: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
-    /// Audit each map before it counts as right
-    #[arg(long)]
-    audit: bool,
-    /// Audit each map, and go on after a contradiction; with --algorithm folding
-    #[arg(long, conflicts_with = "audit")]
-    recover: bool,
+    #[command(flatten)]
+    method: MethodOptions,
     /// Write the smallest start with an unnoticed mistake of each kind into this folder
     #[arg(long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
@@ -84,9 +75,9 @@ pub(super) struct EvaluateMistakesArguments {
 impl EvaluateMistakesArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
-        let safeguard = self.safeguard()?;
+        let method = self.method.method()?;
         let check = |edges| {
-            let check = MistakeCheck::new(self.class, edges, safeguard);
+            let check = MistakeCheck::new(self.class, edges, method);
             check.map_err(|error| CliError::at("--edges", error))
         };
         let checks = self.edges.iter().map(check).collect::<Result<Vec<_>, _>>()?;
@@ -109,37 +100,28 @@ impl EvaluateMistakesArguments {
             () => Outcome::Holds,
         };
         if self.json {
-            self.print_json(&tally, outcome, out)?;
+            self.print_json(method, &tally, outcome, out)?;
         } else {
-            self.print(&tally, outcome, out)?;
+            self.print(method, &tally, outcome, out)?;
         }
         self.write_mistakes(&tally)?;
         remark!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
-    fn safeguard(&self) -> Result<Safeguard, CliError> {
-        match (self.recover, self.audit, self.algorithm.directional()) {
-            (true, _, DirectionalAlgorithm::Folding) => Ok(Safeguard::Recovery),
-            (true, _, DirectionalAlgorithm::Algorithm1) => Err(only_folding_recovers()),
-            (false, true, algorithm) => Ok(Safeguard::Audit(algorithm)),
-            (false, false, algorithm) => Ok(Safeguard::Nothing(algorithm)),
-        }
-    }
-
     fn print(
         &self,
+        method: MappingMethod,
         tally: &MistakeTally,
         outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        let safeguard = match (self.recover, self.audit) {
-            (true, _) => "with audit and recovery",
-            (false, true) => "with an audit",
-            (false, false) => "alone",
+        let algorithm = capital(method.algorithm().in_words());
+        let safeguards = match safeguards_in_words(method) {
+            none if none.is_empty() => "alone".to_owned(),
+            safeguards => safeguards,
         };
-        let algorithm = capital(self.algorithm.directional().in_words());
-        writeln!(out, "{algorithm} {safeguard}, one mistake a run, class {}", self.class)?;
+        writeln!(out, "{algorithm} {safeguards}, one mistake a run, class {}", self.class)?;
         let starts = grouped(tally.starts.into());
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
         writeln!(out, "  {starts} starts, {mean:.1} moves on average without a mistake\n")?;
@@ -152,7 +134,7 @@ impl EvaluateMistakesArguments {
         rows.push(row("all", tally.all()));
         print_rows(out, heads, &rows)?;
         let all = tally.all();
-        if self.recover {
+        if method.recovers() {
             let extra = all.extra_moves as f64 / all.right.max(1) as f64;
             writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
         }
@@ -189,6 +171,7 @@ impl EvaluateMistakesArguments {
 
     fn print_json(
         &self,
+        method: MappingMethod,
         tally: &MistakeTally,
         outcome: Outcome,
         out: &mut dyn Write,
@@ -212,8 +195,8 @@ impl EvaluateMistakesArguments {
         }
         let all = tally.all();
         let line = json!({
-            "class": self.class.name(), "algorithm": self.algorithm.directional().name(),
-            "audit": self.audit || self.recover, "recover": self.recover,
+            "class": self.class.name(), "algorithm": method.algorithm().name(),
+            "audit": method.audits() > 0, "recover": method.recovers(),
             "starts": tally.starts, "runs": all.runs(), "right": all.right,
             "unnoticed": all.unnoticed(), "moves_total": tally.moves,
             "interrupted": tally.interrupted, "holds": outcome == Outcome::Holds,

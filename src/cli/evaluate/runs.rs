@@ -3,25 +3,22 @@
 use std::{io::Write, time::Instant};
 
 use serde_json::json;
-use toposlam_model::mapping::DirectionalAlgorithm;
+use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod};
 use toposlam_robot::{
     evaluation::{
         RobotEquipment,
-        run_sampler::{Faults, JudgedRun, RobotMapping, RunSampler},
+        run_sampler::{Faults, JudgedRun, RunSampler},
     },
     run::RunOutcome,
     simulator::{FAULTS, FaultKind},
 };
 
-use super::{
-    only_folding_recovers,
-    robots::{RandomPlans, RobotArguments, print_failure, share, share_json},
-};
+use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
-    mapping_marker::AlgorithmOption,
+    method_options::MethodOptions,
     progress::Progress,
     text::{counted, grouped, print_hanging, print_rows},
     use_threads,
@@ -64,16 +61,12 @@ pub(super) struct EvaluateRunsArguments {
     /// Number of runs [default: one from each start]
     #[arg(long, value_name = "N")]
     runs: Option<u64>,
-    /// The algorithm that makes the map: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
+    #[command(flatten)]
+    method: MethodOptions,
     /// Inject this number of faults into each run; 1 if there is no number
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "1")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     faults: Option<u32>,
-    /// Audit each map, and go on after a contradiction; with --algorithm folding
-    #[arg(long)]
-    recover: bool,
     #[command(flatten)]
     robots: RobotArguments,
 }
@@ -92,10 +85,9 @@ impl EvaluateRunsArguments {
         let plans = self.robots.plans(random, most)?;
         let count = plans.len();
         let faults = self.faults.map_or(Faults::None, Faults::Each);
-        let algorithm = self.algorithm.directional();
-        let mapping = self.mapping()?;
+        let method = self.method.method()?;
         let RobotArguments { seed, noise, json, .. } = self.robots;
-        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, mapping);
+        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, method);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
@@ -110,41 +102,33 @@ impl EvaluateRunsArguments {
             Outcome::Holds
         };
         if json {
-            self.print_json(&judged, violations, outcome, out)?;
+            self.print_json(method, &judged, (violations, outcome), out)?;
         } else {
             let sensing = self.robots.sensing();
-            let by = match algorithm {
+            let by = match method.algorithm() {
                 DirectionalAlgorithm::Algorithm1 => "",
                 DirectionalAlgorithm::Folding => ", folding explorer",
             };
             writeln!(out, "Whole runs by {sensing}{by}, seed {seed}")?;
             let plans = counted(count, "floor plan");
             writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
-            self.print(&judged, outcome, out)?;
+            self.print(method, &judged, outcome, out)?;
         }
         remark!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(outcome)
-    }
-
-    fn mapping(&self) -> Result<RobotMapping, CliError> {
-        match (self.recover, self.algorithm.directional()) {
-            (false, algorithm) => Ok(RobotMapping::By(algorithm)),
-            (true, DirectionalAlgorithm::Folding) => Ok(RobotMapping::WithRecovery),
-            (true, DirectionalAlgorithm::Algorithm1) => Err(only_folding_recovers()),
-        }
     }
 
     /// Whether a run fails: without faults it must be right, with faults it must not be wrong unnoticed.
     fn violates(&self, run: &JudgedRun) -> bool {
         match self.faults {
             None => run.ending != RunOutcome::Right,
-            Some(_) if self.recover => matches!(run.ending, RunOutcome::Wrong(_)),
             Some(_) => run.is_violation(),
         }
     }
 
     fn print(
         &self,
+        method: MappingMethod,
         judged: &[JudgedRun],
         outcome: Outcome,
         out: &mut dyn Write,
@@ -167,7 +151,7 @@ impl EvaluateRunsArguments {
         writeln!(out, "  right    {} of {}", grouped(right as u128), grouped(all as u128))?;
         writeln!(out, "  gave up  {}", share(gave_up, all))?;
         writeln!(out, "  wrong    {}", share(wrong, all))?;
-        if self.recover {
+        if method.recovers() {
             print_recovery(judged, out)?;
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
@@ -181,7 +165,7 @@ impl EvaluateRunsArguments {
             (Outcome::Holds, false) => {
                 "holds in these runs: every map is right, and every move is as specified"
             }
-            (Outcome::Holds, true) if self.recover => {
+            (Outcome::Holds, true) if method.recovers() => {
                 "holds in these runs: every map is right, or the robot gave up"
             }
             (Outcome::Holds, true) => {
@@ -194,9 +178,9 @@ impl EvaluateRunsArguments {
 
     fn print_json(
         &self,
+        method: MappingMethod,
         judged: &[JudgedRun],
-        violations: usize,
-        outcome: Outcome,
+        (violations, outcome): (usize, Outcome),
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         for run in judged {
@@ -211,9 +195,9 @@ impl EvaluateRunsArguments {
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
-                "recoveries": run.recovered.map(|recovered| recovered.recoveries),
-                "audit_moves": run.recovered.map(|recovered| recovered.audit_moves),
-                "blocked": run.recovered.map(|recovered| recovered.is_cut),
+                "recoveries": run.mapped.as_ref().map(|mapped| mapped.recoveries),
+                "audit_moves": run.mapped.as_ref().map(|mapped| mapped.audit_moves),
+                "blocked": run.mapped.as_ref().map(|mapped| mapped.blocked.len()),
             });
             print_line(out, "run", &line)?;
         }
@@ -223,8 +207,8 @@ impl EvaluateRunsArguments {
         }
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
-            "algorithm": self.algorithm.directional().name(),
-            "recover": self.recover,
+            "algorithm": method.algorithm().name(),
+            "recover": method.recovers(),
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
@@ -234,10 +218,10 @@ impl EvaluateRunsArguments {
 /// What recovery did in all runs.
 fn print_recovery(judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliError> {
     let right = || judged.iter().filter(|run| run.ending == RunOutcome::Right);
-    let all = || right().filter_map(|run| run.recovered);
-    let cut = all().filter(|recovered| recovered.is_cut).count();
-    let recoveries: u32 = all().map(|recovered| recovered.recoveries).sum();
-    let audits: u64 = all().map(|recovered| recovered.audit_moves).sum();
+    let all = || right().filter_map(|run| run.mapped.as_ref());
+    let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
+    let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
+    let audits: u64 = all().map(|mapped| mapped.audit_moves).sum();
     let [made, explored] = [0, 1].map(|at| right().map(|run| run.moves[at]).sum::<u64>());
     let extra = made.saturating_sub(audits).saturating_sub(explored);
     let number = |number: u64| grouped(number.into());
@@ -249,7 +233,27 @@ fn print_recovery(judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliEr
         if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") },
     );
     print_hanging(out, "  moves    ", &text)?;
-    writeln!(out, "  blocked  {cut} of the right runs are right but for a hallway")?;
+    let recovered = || {
+        let is_one = |run: &&JudgedRun| run.mapped.as_ref().is_some_and(|map| map.recoveries > 0);
+        right().filter(is_one)
+    };
+    let count = recovered().count();
+    if count > 0 {
+        let mean = |moves: &dyn Fn(&JudgedRun) -> u64| {
+            recovered().map(moves).sum::<u64>() as f64 / count as f64
+        };
+        let audits = |run: &JudgedRun| run.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
+        let extra =
+            mean(&|run| run.moves[0].saturating_sub(audits(run)).saturating_sub(run.moves[1]));
+        let over = mean(&|run| run.moves[1]);
+        let text = format!(
+            "{extra:.1} more moves on average in the {} right runs that recovered; to start over, \
+             {over:.1}",
+            grouped(count as u128)
+        );
+        print_hanging(out, "  cost     ", &text)?;
+    }
+    writeln!(out, "  blocked  {blocked} of the right runs are right but for a hallway")?;
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 mod folding;
 mod movable;
+mod safeguard;
 
 use std::{
     fmt::Display,
@@ -117,6 +118,7 @@ impl<W: Write> Story<W> {
             }
             MappingEvent::Movable(event) => self.print_movable(journey, event),
             MappingEvent::Folding(event) => self.print_folding(journey, event),
+            MappingEvent::Safeguard(event) => self.print_safeguard(journey, event),
         }
     }
 

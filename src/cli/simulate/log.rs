@@ -2,7 +2,7 @@
 
 use std::fs::File;
 
-use toposlam_model::mapping::DirectionalAlgorithm;
+use toposlam_model::mapping::MappingMethod;
 use toposlam_robot::{
     log::{messages, recorder::Recorder, world_hash, writer::LogWriteError},
     simulator::PICTURE_TIME,
@@ -13,7 +13,9 @@ use toposlam_vision::{
 };
 
 use super::{CliError, SimulateArguments, Simulation};
-use crate::cli::{output, robot_sensor::SensorChoice, text::quoted, version};
+use crate::cli::{
+    method_options::words_of, output, robot_sensor::SensorChoice, text::quoted, version,
+};
 
 impl SimulateArguments {
     /// Opens the log, if one is wanted. Its head has the camera and the colours.
@@ -33,8 +35,8 @@ impl SimulateArguments {
             seed: self.seed,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(),
-            algorithm: self.algorithm.directional().name().to_owned(),
+            command: self.command(simulation.method),
+            algorithm: simulation.method.to_string(),
         };
         let file = output::create_growing(path)?;
         let recorder = Recorder::new(file, &run, eyes.map(|(camera, _)| camera.clone()));
@@ -48,19 +50,19 @@ impl SimulateArguments {
     }
 
     /// The command that repeats this run, without the options for its outputs.
-    fn command(&self) -> String {
+    fn command(&self, method: MappingMethod) -> String {
         let mut words = vec!["toposlam".to_owned(), "simulate".to_owned()];
         words.push(self.plan.display().to_string());
+        let path = |path: &std::path::PathBuf| path.display().to_string();
+        if let Some(start) = &self.start {
+            words.extend(["--start".to_owned(), start.clone()]);
+        }
+        words.extend(words_of(method));
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 words.extend([name.to_owned(), value]);
             }
         };
-        let path = |path: &std::path::PathBuf| path.display().to_string();
-        option("--start", self.start.clone());
-        let algorithm = self.algorithm.directional();
-        let is_default = algorithm == DirectionalAlgorithm::default();
-        option("--algorithm", (!is_default).then(|| algorithm.name().to_owned()));
         option("--seed", Some(self.seed.to_string()));
         option("--calibration", self.calibration.as_ref().map(path));
         option("--size", self.size.map(|size| size.name().to_owned()));
@@ -103,7 +105,7 @@ mod tests {
 
     fn command_of(line: &[&str]) -> String {
         let arguments = Line::try_parse_from([&["simulate"][..], line].concat()).unwrap().arguments;
-        arguments.command()
+        arguments.command(arguments.blocked.method(&arguments.method).unwrap())
     }
 
     #[test]

@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{DirectionalAlgorithm, FACING, MappingError, MappingRun},
+    mapping::{FACING, MappingError, MappingRun},
 };
 use toposlam_robot::{
     explorer::ExplorerError,
@@ -17,6 +17,7 @@ use toposlam_robot::{
 use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
+    safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
     text::{print_paragraph, sentence},
 };
 
@@ -25,7 +26,8 @@ pub(super) struct SimulationResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) seed: u64,
-    pub(super) algorithm: DirectionalAlgorithm,
+    /// Whether the map may lack what is behind blocked doors.
+    pub(super) allows_blocked: bool,
     /// What its frames are called.
     pub(super) frames: &'static str,
     pub(super) run: &'a Run<'a>,
@@ -52,6 +54,8 @@ struct Line {
     moves: u64,
     edges: usize,
     explore_moves: u64,
+    #[serde(flatten)]
+    safeguards: SafeguardFields,
     isomorphic: bool,
     pose_true: bool,
     conforms: bool,
@@ -72,8 +76,14 @@ impl SimulationResult<'_> {
             Some(MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }))
         );
         match self.run.outcome() {
-            RunOutcome::Right if self.missed.is_empty() => Outcome::Holds,
-            RunOutcome::Right => Outcome::Incomplete,
+            RunOutcome::Right => {
+                let is_whole = self.run.blocked().is_empty() || self.allows_blocked;
+                if is_whole && self.missed.is_empty() {
+                    Outcome::Holds
+                } else {
+                    Outcome::Incomplete
+                }
+            }
             _ if incomplete => Outcome::Incomplete,
             RunOutcome::GaveUp(_) | RunOutcome::Wrong(_) => Outcome::Violated,
         }
@@ -82,7 +92,7 @@ impl SimulationResult<'_> {
     /// The map as a world, if it is complete.
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
-        let (name, moves) = (&self.world.name, self.run.mapping.moves());
+        let (name, moves) = (&self.world.name, self.run.moves());
         let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
         let graph = self.run.mapping.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
@@ -90,8 +100,15 @@ impl SimulationResult<'_> {
 
     /// The result in words.
     pub(super) fn in_words(&self) -> String {
-        let moves = self.run.mapping.moves();
+        let moves = self.run.moves();
         match self.run.outcome() {
+            RunOutcome::Right if !self.run.blocked().is_empty() => {
+                let doors = blocked_in_words(self.run.blocked().len());
+                format!("the map is right, and complete but for {doors}, after {moves} moves")
+            }
+            RunOutcome::Right if self.run.method.recovers() => {
+                format!("the map is right, after {moves} moves")
+            }
             RunOutcome::Right => {
                 format!("the map is right, after {moves} moves, all as specified")
             }
@@ -117,8 +134,11 @@ impl SimulationResult<'_> {
         }
         let map = run.mapping.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
-        let (moves, expected) = (run.mapping.moves(), run.explore_moves);
+        let (moves, expected) = (run.moves(), run.explore_moves);
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
+        if let Some(mapped) = &run.mapped {
+            print_safeguards(out, run.method, mapped, map)?;
+        }
         writeln!(out, "  edges             {edges}")?;
         writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
@@ -143,10 +163,11 @@ impl SimulationResult<'_> {
             plan: self.world.name.clone(),
             start: self.world.start_text(self.facing),
             seed: self.seed,
-            algorithm: self.algorithm.name(),
-            moves: run.mapping.moves(),
+            algorithm: run.method.algorithm().name(),
+            moves: run.moves(),
             edges: self.world.graph.edge_count(),
             explore_moves: run.explore_moves,
+            safeguards: SafeguardFields::new(run.mapped.as_ref(), run.mapping.map()),
             isomorphic: run.isomorphic(),
             pose_true: run.pose_true(),
             conforms: divergence.is_none(),

@@ -13,10 +13,12 @@
 
 mod hypotheses;
 mod hypothesis_test;
+mod marker_walk;
 mod recovery;
 mod settle;
 mod steps;
 mod walk;
+mod walks;
 mod ways;
 
 use std::cmp::Reverse;
@@ -32,7 +34,8 @@ use crate::{
     world::World,
 };
 use hypotheses::Hypotheses;
-pub use recovery::{RecoveredMap, RecoveryConfig, Relocate, map_with_recovery};
+pub use recovery::{MappedWorld, RecoveryConfig, Relocate, map_with_recovery};
+pub use walks::Walk;
 use ways::Ways;
 
 /// What the robot does next.

@@ -1,0 +1,144 @@
+//! The walk of a robot that does not know where it is, to the marker.
+
+use std::collections::VecDeque;
+
+use super::ways::Ways;
+use crate::{
+    embedded_graph::Dart,
+    folding::{FoldedTrail, TrailError},
+    percept::{Door, Percept},
+};
+
+/// The robot gives up the search for the marker after so many moves, and so many more for each dart that it
+/// knows: perhaps it is cut off from the marker.
+const LEAST_SEARCH: u64 = 400;
+const MOVES_A_DART: u64 = 20;
+
+/// A walk of a robot that does not know where it is, to the marker.
+pub(super) struct MarkerWalk {
+    /// What is known, and the walk.
+    trail: FoldedTrail,
+    /// The number of darts of what is known. The darts of the walk are later ones.
+    known: usize,
+    /// The darts by which it leaves on its way to an open dart and over it, the last one first.
+    way: Vec<Dart>,
+    /// The moves that are left to the marker, if the robot is where it supposes.
+    left: Option<usize>,
+    /// The suppositions that were refuted, and the open darts that were taken instead.
+    refuted: usize,
+    explored: usize,
+    ways: Ways,
+}
+
+/// After this many refuted suppositions for each open dart, the robot takes the next open dart. If it never
+/// did, it could suppose for ever.
+const SUPPOSITIONS: usize = 4;
+
+impl MarkerWalk {
+    /// A walk of a robot that knows this.
+    pub(super) fn new(known: FoldedTrail) -> Self {
+        Self {
+            known: known.dart_count(),
+            trail: known,
+            way: Vec::new(),
+            left: None,
+            refuted: 0,
+            explored: 0,
+            ways: Ways::default(),
+        }
+    }
+
+    /// The walk begins with a percept.
+    pub(super) fn begin(&mut self, percept: Percept) -> Result<(), TrailError> {
+        self.trail.begin_walk(percept)
+    }
+
+    /// One move, and the percept behind it.
+    pub(super) fn step(&mut self, door: Door, percept: Percept) -> Result<(), TrailError> {
+        self.trail.step(door, percept)
+    }
+
+    /// The most moves of the walk.
+    pub(super) fn most_moves(&self) -> u64 {
+        LEAST_SEARCH + MOVES_A_DART * self.known as u64
+    }
+
+    /// The door to take: to the marker, if the robot is where that is nearest, of all known poses that agree
+    /// with the walk. If there is none, or too many were refuted, to the open dart of the walk that is nearest
+    /// to its beginning: so the robot comes to every place in the end. `None` if there is none either.
+    pub(super) fn next_door(&mut self) -> Option<Door> {
+        if self.way.is_empty() {
+            let supposed = self.nearest_marker();
+            let moves = supposed.map(|(moves, _)| moves);
+            if self.left.is_some_and(|left| moves.is_none_or(|moves| moves > left)) {
+                self.refuted += 1;
+            }
+            let patient = self.refuted <= SUPPOSITIONS * (self.explored + 1);
+            self.left = moves.filter(|_| patient).map(|moves| moves - 1);
+            if let Some((_, door)) = supposed.filter(|_| patient) {
+                return Some(door);
+            }
+            self.explored += 1;
+            self.find_way_to_open()?;
+        }
+        let dart = self.way.pop()?;
+        Some(self.trail.door(self.trail.pose(), dart))
+    }
+
+    /// The fewest moves to the marker, over all known poses that agree with the walk, and the first door.
+    fn nearest_marker(&mut self) -> Option<(usize, Door)> {
+        let pose = self.trail.pose();
+        let vertices: Vec<Dart> = self.trail.vertices().collect();
+        let darts = vertices.iter().flat_map(|&first| self.trail.darts_around(first));
+        let known: Vec<Dart> = darts.filter(|dart| dart.at() < self.known).collect();
+        let mut nearest: Option<(usize, Door)> = None;
+        let mut darts = Vec::new();
+        for supposed in known {
+            let ways = &mut self.ways;
+            let way = self.trail.with_united(pose, supposed, |trail| {
+                ways.clear();
+                ways.find(trail);
+                ways.darts_to(trail, trail.marker()?, &mut darts);
+                Some((darts.len(), trail.door(trail.pose(), *darts.first()?)))
+            });
+            if let Ok(Some(way)) = way
+                && nearest.is_none_or(|(moves, _)| way.0 < moves)
+            {
+                nearest = Some(way);
+            }
+        }
+        nearest
+    }
+
+    fn find_way_to_open(&mut self) -> Option<()> {
+        self.ways.clear();
+        self.ways.find(&self.trail);
+        let depths = self.depths();
+        let open = self.trail.open_darts().filter(|dart| dart.at() >= self.known);
+        let near = open.min_by_key(|&dart| {
+            (depths[self.trail.vertex(dart)], self.ways.moves_to(&self.trail, dart))
+        })?;
+        self.ways.darts_to(&self.trail, near, &mut self.way);
+        self.way.push(near);
+        self.way.reverse();
+        Some(())
+    }
+
+    /// The moves from the beginning of the walk to each vertex of it.
+    fn depths(&self) -> Vec<usize> {
+        let start = self.trail.root_of(Dart(self.known as u32));
+        let mut depths = vec![usize::MAX; self.trail.trail_vertex_count()];
+        depths[self.trail.vertex(start)] = 0;
+        let mut queue = VecDeque::from([start]);
+        while let Some(dart) = queue.pop_front() {
+            let depth = depths[self.trail.vertex(dart)] + 1;
+            self.trail.for_each_neighbour(dart, |entry, vertex| {
+                if depths[vertex] == usize::MAX {
+                    depths[vertex] = depth;
+                    queue.push_back(entry);
+                }
+            });
+        }
+        depths
+    }
+}

@@ -1,0 +1,263 @@
+//! How a robot maps: by which algorithm, and what it does for a map that is right.
+
+use std::{fmt, str::FromStr};
+
+use super::{
+    DirectionalAlgorithm, FACING, FoldingExploration, InvalidStep, MappedWorld, MappingError,
+    MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent, Walk, audit,
+    map_with_recovery,
+};
+
+/// How a robot maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MappingMethod {
+    /// By an algorithm. It gives up at a contradiction, or if it gets lost.
+    By {
+        /// The algorithm.
+        algorithm: DirectionalAlgorithm,
+        /// The number of [audits](audit) of the complete map.
+        audits: u32,
+    },
+    /// By the folding explorer. It audits its map, and [recovers](map_with_recovery).
+    Recovering(RecoveryConfig),
+}
+
+impl Default for MappingMethod {
+    fn default() -> Self {
+        Self::from(DirectionalAlgorithm::default())
+    }
+}
+
+/// The algorithm alone.
+impl From<DirectionalAlgorithm> for MappingMethod {
+    fn from(algorithm: DirectionalAlgorithm) -> Self {
+        Self::By { algorithm, audits: 0 }
+    }
+}
+
+impl MappingMethod {
+    /// The algorithm.
+    #[must_use]
+    pub fn algorithm(self) -> DirectionalAlgorithm {
+        match self {
+            Self::By { algorithm, .. } => algorithm,
+            Self::Recovering(_) => DirectionalAlgorithm::Folding,
+        }
+    }
+
+    /// The number of audits of a complete map.
+    #[must_use]
+    pub fn audits(self) -> u32 {
+        match self {
+            Self::By { audits, .. } | Self::Recovering(RecoveryConfig { audits, .. }) => audits,
+        }
+    }
+
+    /// Whether the robot recovers from mistakes.
+    #[must_use]
+    pub fn recovers(self) -> bool {
+        matches!(self, Self::Recovering(_))
+    }
+
+    /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing door. A robot that
+    /// recovers may also go on from earlier walks, wherever it stands. Returns the state of the algorithm, too.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, if it contradicts itself, or if the map has more than `bound` darts.
+    /// The state then holds what is known so far. A robot that recovers only returns errors from which it
+    /// cannot.
+    pub fn map_world<W: Relocate>(
+        self,
+        world: &mut W,
+        bound: usize,
+        earlier: &[Walk],
+        observer: &mut impl Observer<W>,
+    ) -> (MappingRun, Result<MappedWorld, MappingError<W::Error>>) {
+        match self {
+            Self::By { algorithm, audits } => {
+                let mut run = MappingRun::new(algorithm, bound);
+                let mapped = run.map_world(world, observer);
+                let mapped = mapped.and_then(|()| audited(&run, audits, world, observer));
+                (run, mapped)
+            }
+            Self::Recovering(config) => {
+                let mut exploration = FoldingExploration::new(bound);
+                let mapped = map_with_recovery(world, &mut exploration, config, earlier, observer);
+                (MappingRun::Folding(Box::new(exploration)), mapped)
+            }
+        }
+    }
+}
+
+/// Audits a complete map.
+fn audited<W: Relocate>(
+    run: &MappingRun,
+    audits: u32,
+    world: &mut W,
+    observer: &mut impl Observer<W>,
+) -> Result<MappedWorld, MappingError<W::Error>> {
+    let Some(map) = run.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
+    let mut tell = |world: &mut W, event| {
+        observer.event(world, run.journey(), MappingEvent::Safeguard(event));
+    };
+    let (mut pose, mut audit_moves) = (run.robot(), 0);
+    for _ in 0..audits {
+        tell(world, SafeguardEvent::AuditBegun);
+        let audited = audit(world, map, FACING, pose, |_, _| {})?;
+        pose = audited.pose;
+        audit_moves += audited.moves;
+        tell(world, SafeguardEvent::AuditPassed { moves: audited.moves });
+    }
+    let moves = run.moves() + audit_moves;
+    Ok(MappedWorld { pose, moves, audit_moves, recoveries: 0, blocked: Vec::new() })
+}
+
+/// The name in logs.
+impl fmt::Display for MappingMethod {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let algorithm = self.algorithm();
+        match (self.recovers(), self.audits()) {
+            (true, audits) => write!(out, "{algorithm} recovering audits={audits}"),
+            (false, 0) => write!(out, "{algorithm}"),
+            (false, audits) => write!(out, "{algorithm} audits={audits}"),
+        }
+    }
+}
+
+impl FromStr for MappingMethod {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let mut words = name.split(' ');
+        let algorithm = words.next().unwrap_or_default().parse()?;
+        let (mut recovers, mut audits) = (false, 0);
+        for word in words {
+            let count = word.strip_prefix("audits=").and_then(|count| count.parse().ok());
+            match (word, count) {
+                ("recovering", _) if algorithm == DirectionalAlgorithm::Folding => recovers = true,
+                (_, Some(count)) => audits = count,
+                _ => return Err(format!("`{word}` does not follow the name of an algorithm")),
+            }
+        }
+        Ok(if recovers {
+            Self::Recovering(RecoveryConfig { audits, ..RecoveryConfig::default() })
+        } else {
+            Self::By { algorithm, audits }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        embedded_graph::{Dart, EmbeddedGraph},
+        isomorphism::Bijection,
+        percept::Percept,
+        world::{GraphWorld, State, World},
+    };
+
+    /// Two triangles that share a vertex, and a dead end at it.
+    fn bow_tie() -> EmbeddedGraph {
+        let list = |name: &str, others: &str| {
+            (name.to_owned(), others.split(' ').map(str::to_owned).collect())
+        };
+        EmbeddedGraph::from_neighbour_lists(&[
+            list("shared", "a b c d end"),
+            list("a", "shared b"),
+            list("b", "a shared"),
+            list("c", "shared d"),
+            list("d", "c shared"),
+            list("end", "shared"),
+        ])
+        .unwrap()
+    }
+
+    const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+
+    #[test]
+    fn audits_and_recovery_do_not_change_how_a_map_is_made() {
+        let graph = bow_tie();
+        let facing = Dart(0);
+        let mapped = |method: MappingMethod| {
+            let mut world = GraphWorld::new(&graph, facing);
+            let (run, mapped) = method.map_world(&mut world, 100, &[], &mut ());
+            let mapped = mapped.unwrap();
+            assert_eq!(mapped.moves, world.moves());
+            assert_eq!(mapped.moves, run.moves() + mapped.audit_moves);
+            let map = run.map().complete().unwrap();
+            let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
+            assert!(bijection.verify(map, &graph));
+            assert_eq!(bijection.image(mapped.pose), Some(world.pose()));
+            (run.moves(), mapped.audit_moves)
+        };
+        for algorithm in DirectionalAlgorithm::ALL {
+            let [none, one, two] =
+                [0, 1, 2].map(|audits| mapped(MappingMethod::By { algorithm, audits }));
+            assert_eq!([none.0, none.1, one.0, two.0], [none.0, 0, none.0, none.0]);
+            assert!(one.1 > 0 && two.1 > one.1);
+        }
+        let one = mapped(MappingMethod::By { algorithm: FOLDING, audits: 1 });
+        assert_eq!(mapped(MappingMethod::Recovering(RecoveryConfig::default())), one);
+    }
+
+    #[test]
+    fn a_robot_goes_on_from_an_earlier_walk_wherever_it_is_switched_on() {
+        let graph = bow_tie();
+        let facing = Dart(0);
+        // The first moves of the folding explorer.
+        let mut first: Option<Percept> = None;
+        let mut moves = Vec::new();
+        let mut world = GraphWorld::new(&graph, facing);
+        let (run, _) = MappingMethod::from(FOLDING).map_world(
+            &mut world,
+            100,
+            &[],
+            &mut |_: &mut GraphWorld, _: &super::super::Journey, event| match event {
+                MappingEvent::Started { percept } => first = Some(percept),
+                MappingEvent::Moved { door, percept } => moves.push((door, percept)),
+                _ => {}
+            },
+        );
+        assert_eq!(run.moves() as usize, moves.len());
+        for known in [3, moves.len() / 2, moves.len()] {
+            let earlier = [Walk::new(first.unwrap(), moves[..known].iter().copied())];
+            for pose in graph.darts() {
+                let world = GraphWorld::new(&graph, facing);
+                let placed = world.state().placed;
+                let mut world = world.at(State { pose, placed });
+                let method = MappingMethod::Recovering(RecoveryConfig::default());
+                let (run, mapped) = method.map_world(&mut world, 100, &earlier, &mut ());
+                let map = run.map().complete().unwrap();
+                let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
+                assert!(bijection.verify(map, &graph));
+                assert_eq!(bijection.image(mapped.unwrap().pose), Some(world.pose()));
+                if known == moves.len() {
+                    // It only goes to the marker, and audits what it knows.
+                    assert!(world.percept().is_ok() && run.moves() <= 3, "{}", run.moves());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_method_is_read_from_its_name() {
+        for name in [
+            "algorithm1",
+            "folding",
+            "algorithm1 audits=2",
+            "folding audits=1",
+            "folding recovering audits=1",
+        ] {
+            assert_eq!(name.parse::<MappingMethod>().unwrap().to_string(), name);
+        }
+        for (name, error) in [
+            ("depth-first", "`depth-first` is not algorithm1 or folding"),
+            ("folding slowly", "`slowly` does not follow the name of an algorithm"),
+            ("algorithm1 recovering", "`recovering` does not follow the name of an algorithm"),
+            ("folding audits=-1", "`audits=-1` does not follow the name of an algorithm"),
+        ] {
+            assert_eq!(name.parse::<MappingMethod>(), Err(error.to_owned()));
+        }
+    }
+}

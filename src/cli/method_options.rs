@@ -1,0 +1,114 @@
+//! The options of how a robot maps, which several commands share.
+
+use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig};
+
+use super::{CliError, mapping_marker::AlgorithmOption, text::counted};
+
+/// How a robot maps.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(super) struct MethodOptions {
+    /// The algorithm that makes the map: algorithm1 or folding [default: algorithm1; with --recover: folding]
+    #[arg(long, hide_possible_values = true)]
+    algorithm: Option<AlgorithmOption>,
+    /// When the map is complete, walk once more and check it; with a number, so often
+    #[arg(
+        long,
+        value_name = "N",
+        num_args = 0..=1,
+        default_missing_value = "1",
+        require_equals = true,
+        value_parser = clap::value_parser!(u32).range(1..=100)
+    )]
+    audit: Option<u32>,
+    /// Go on after a contradiction, and if the robot gets lost; the map is audited
+    #[arg(long)]
+    recover: bool,
+}
+
+impl MethodOptions {
+    /// The method.
+    ///
+    /// # Errors
+    /// Returns an error if Algorithm 1 is to recover.
+    pub(super) fn method(&self) -> Result<MappingMethod, CliError> {
+        let algorithm = self.algorithm.map(AlgorithmOption::directional);
+        match (self.recover, algorithm) {
+            (true, Some(DirectionalAlgorithm::Algorithm1)) => {
+                let cause = "only the folding explorer recovers; use --algorithm folding";
+                Err(CliError::at("--recover", cause))
+            }
+            (true, Some(DirectionalAlgorithm::Folding) | None) => {
+                let audits = self.audit.unwrap_or(1);
+                Ok(MappingMethod::Recovering(RecoveryConfig {
+                    audits,
+                    ..RecoveryConfig::default()
+                }))
+            }
+            (false, algorithm) => Ok(MappingMethod::By {
+                algorithm: algorithm.unwrap_or_default(),
+                audits: self.audit.unwrap_or(0),
+            }),
+        }
+    }
+}
+
+/// What a robot that recovers does about doors that are blocked.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(super) struct BlockedOptions {
+    /// With --recover: try the blocked doors once more at the end
+    #[arg(long, requires = "recover")]
+    retry_blocked: bool,
+    /// With --recover: a map that is complete but for blocked doors is enough for exit code 0
+    #[arg(long, requires = "recover")]
+    allow_blocked: bool,
+}
+
+impl BlockedOptions {
+    /// The method of a robot that may find blocked doors.
+    ///
+    /// # Errors
+    /// Returns an error if Algorithm 1 is to recover.
+    pub(super) fn method(self, options: &MethodOptions) -> Result<MappingMethod, CliError> {
+        Ok(match options.method()? {
+            MappingMethod::Recovering(config) => MappingMethod::Recovering(RecoveryConfig {
+                retries_blocked: self.retry_blocked,
+                ..config
+            }),
+            method @ MappingMethod::By { .. } => method,
+        })
+    }
+
+    /// Whether a map may lack what is behind blocked doors.
+    pub(super) fn allows(self) -> bool {
+        self.allow_blocked
+    }
+}
+
+/// The options that give a method again.
+pub(super) fn words_of(method: MappingMethod) -> Vec<String> {
+    let mut words = Vec::new();
+    let is_default = method.algorithm() == DirectionalAlgorithm::default();
+    if !is_default && !method.recovers() {
+        words.extend(["--algorithm".to_owned(), method.algorithm().name().to_owned()]);
+    }
+    let usual = u32::from(method.recovers());
+    if method.audits() != usual {
+        words.push(format!("--audit={}", method.audits()));
+    }
+    if let MappingMethod::Recovering(RecoveryConfig { retries_blocked, .. }) = method {
+        words.push("--recover".to_owned());
+        words.extend(retries_blocked.then(|| "--retry-blocked".to_owned()));
+    }
+    words
+}
+
+/// What a robot does besides its algorithm: `with 2 audits and recovery`, or nothing.
+pub(super) fn safeguards_in_words(method: MappingMethod) -> String {
+    let audits = match method.audits() {
+        0 => return String::new(),
+        1 => "an audit".to_owned(),
+        more => counted(more as usize, "audit"),
+    };
+    let recovery = if method.recovers() { " and recovery" } else { "" };
+    format!("with {audits}{recovery}")
+}
