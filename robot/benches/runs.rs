@@ -15,6 +15,7 @@ use toposlam_robot::{
     record::NoSensor,
     recording::Recording,
     run::{Run, RunOutcome, offline, run},
+    run_settings::RunSettings,
     simulator::{BuildingLook, Effects, LOOKS, SimulationConfig},
 };
 use toposlam_vision::camera::Camera;
@@ -50,7 +51,7 @@ fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: DirectionalAlgo
     let (plan, facing) = random(JUNCTIONS);
     bencher.bench(|| {
         let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-        right(&run(&plan, facing, robot, NoSensor, (), algorithm, DARTS));
+        right(&run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS)));
     });
 }
 
@@ -65,7 +66,14 @@ fn shape_6_with_images(bencher: Bencher) {
             look,
             &Effects::plain(),
         );
-        right(&run(&plan, facing, robot, eyes.sensor(look), (), Algorithm1, DARTS));
+        right(&run(
+            &plan,
+            facing,
+            robot,
+            eyes.sensor(look),
+            (),
+            &RunSettings::new(Algorithm1, DARTS),
+        ));
     });
 }
 
@@ -78,10 +86,17 @@ fn shape_6_off_line(bencher: Bencher) {
     let robot =
         SimulationConfig::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
     let mut recording = Recording::default();
-    right(&run(&plan, facing, robot, eyes.sensor(look), &mut recording, Algorithm1, DARTS));
-    bencher
-        .with_inputs(|| eyes.sensor(look))
-        .bench_local_values(|sensor| offline(&recording, sensor, (), Algorithm1, DARTS).unwrap());
+    right(&run(
+        &plan,
+        facing,
+        robot,
+        eyes.sensor(look),
+        &mut recording,
+        &RunSettings::new(Algorithm1, DARTS),
+    ));
+    bencher.with_inputs(|| eyes.sensor(look)).bench_local_values(|sensor| {
+        offline(&recording, sensor, (), &RunSettings::new(Algorithm1, DARTS)).unwrap()
+    });
 }
 
 fn eyes() -> (LearnedSensors, &'static BuildingLook) {

@@ -9,19 +9,19 @@ use toposlam_model::{
         algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
         scene::{Place as ScenePlace, Scene, wrapped},
     },
-    mapping::{
-        Journey, MappedWorld, MappingError, MappingEvent, MappingMethod, MappingRun, Relocate, Walk,
-    },
+    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Relocate},
     percept::{Door, Percept, Sighting},
     world::World,
 };
 
 use crate::{
+    budget::{Allowance, Budget, BudgetLimit, Spent},
     record::{
         Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
         RunObserver, SensingError, nanoseconds,
     },
     robot::{Robot, RobotError, Sample},
+    run_settings::RunSettings,
 };
 
 /// Why a run ended early.
@@ -58,6 +58,16 @@ pub enum ExplorerError {
     /// The robot failed.
     #[error(transparent)]
     Robot(#[from] RobotError),
+    /// The robot could not go on and still return to its marker within its budget.
+    #[error("{}", budget_in_words(*.moves, *.limit, *.is_at_marker))]
+    Budget {
+        /// The moves, with those of the way back.
+        moves: u64,
+        /// The limit.
+        limit: BudgetLimit,
+        /// Whether it is back at its marker.
+        is_at_marker: bool,
+    },
     /// The user or an observer stopped the run.
     #[error("the run was ended on move {moves}")]
     Stopped {
@@ -98,6 +108,15 @@ fn by_door(door: Option<Door>) -> String {
     door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
 }
 
+fn budget_in_words(moves: u64, limit: BudgetLimit, is_at_marker: bool) -> String {
+    let place = if is_at_marker {
+        "it is back at its marker"
+    } else {
+        "it did not find back to its marker"
+    };
+    format!("the robot turned back to keep within {limit}; after {moves} moves {place}")
+}
+
 /// A robot that explores. Everything that happens goes to one observer.
 ///
 /// At its start it stands at the turning point of an L, its back to the facing hallway, and has put
@@ -114,6 +133,9 @@ pub struct RobotExplorer<R, S, O = ()> {
     obstacles: Obstacles,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
     begins_anywhere: bool,
+    allowance: Allowance,
+    /// The way that was commanded, in metres.
+    metres: f64,
     /// The last frame that was used.
     last: Option<Frame>,
     /// The number of events so far.
@@ -151,6 +173,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             place: None,
             obstacles: Obstacles::Fail,
             begins_anywhere: false,
+            allowance: Allowance::new(Budget::default()),
+            metres: 0.0,
             moves: 0,
             door: None,
             last: None,
@@ -196,10 +220,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// Returns an error if the run ended before the map was complete.
     pub fn map(
         &mut self,
-        method: MappingMethod,
-        dart_bound: usize,
-        earlier: &[Walk],
+        settings: &RunSettings,
     ) -> (MappingRun, Result<MappedWorld, MappingError<ExplorerError>>) {
+        let RunSettings { method, dart_bound, budget, ref earlier } = *settings;
+        self.allowance = Allowance::new(budget);
         if method.recovers() {
             self.obstacles = Obstacles::DeadEnds;
         }
@@ -207,16 +231,43 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         let mut observer = |explorer: &mut Self, journey: &Journey, event: MappingEvent| {
             explorer.mapping_event(journey, event);
         };
-        let (run, mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
+        let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
+        if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
+            mapped = Err(MappingError::World(self.return_to_marker(limit)));
+        }
         let (moves, ending) = match &mapped {
             Ok(mapped) => (mapped.moves, RunEnding::Mapped),
             Err(MappingError::World(ExplorerError::Stopped { .. })) => {
                 (run.moves(), RunEnding::Stopped)
             }
+            Err(error @ MappingError::World(ExplorerError::Budget { moves, .. })) => {
+                (*moves, RunEnding::OutOfBudget(error.to_string()))
+            }
             Err(error) => (run.moves(), RunEnding::GaveUp(error.to_string())),
         };
         self.emit(EventKind::End(RunEnd { moves, ending }));
         (run, mapped)
+    }
+
+    /// Returns to the marker, and tells why.
+    fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
+        while let Some(door) = self.allowance.door_back() {
+            match self.traverse(door) {
+                Ok(()) => {}
+                Err(error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_))) => {
+                    return error;
+                }
+                Err(_) => break,
+            }
+        }
+        let is_at_marker = self.allowance.is_at_marker();
+        ExplorerError::Budget { moves: self.moves, limit, is_at_marker }
+    }
+
+    /// What the run has spent.
+    fn spent(&self) -> Spent {
+        let seconds = self.robot.odometry().time;
+        Spent { moves: self.moves, seconds, metres: self.metres }
     }
 
     fn mapping_event(&mut self, journey: &Journey, event: MappingEvent) {
@@ -274,6 +325,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 self.robot.turn(command.turn).map_err(|error| self.robot_error(error))?;
             }
             if command.forward != 0.0 {
+                self.metres += command.forward.abs();
                 self.robot.forward(command.forward).map_err(|error| self.robot_error(error))?;
             }
         }
@@ -325,21 +377,36 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if let Some(Place::Junction(standing)) = self.place {
             return Ok(standing);
         }
-        if self.begins_anywhere {
-            return self.find_junction();
-        }
         let odometry = self.robot.odometry().odometry;
-        let standing = self.drive(PathExecution::at_start(&odometry))?;
-        if !standing.form.is_l() {
+        let standing = match self.drive(PathExecution::at_start(&odometry)) {
+            Err(ExplorerError::Lost { .. }) if self.begins_anywhere => return self.find_junction(),
+            standing => standing?,
+        };
+        if !self.begins_anywhere && !standing.form.is_l() {
             return Err(ExplorerError::NotAnL { degree: standing.form.degree() });
         }
         self.arrive(standing);
         Ok(standing)
     }
 
+    fn allow_for(&mut self, Percept { degree, sighting }: Percept) {
+        let (sees_marker, spent) = (matches!(sighting, Sighting::Pointing(_)), self.spent());
+        self.allowance.arrive(degree, sees_marker, spent);
+    }
+
     fn arrive(&mut self, standing: Standing) {
+        self.stand(standing, Arrival::new(self.moves, &standing));
+    }
+
+    /// A robot that was lost has come to a junction. How many moves lead there is not known.
+    fn arrive_from_nowhere(&mut self, standing: Standing) {
+        self.stand(standing, Arrival { number: None, ..Arrival::new(self.moves, &standing) });
+    }
+
+    fn stand(&mut self, standing: Standing, arrival: Arrival) {
         self.place = Some(Place::Junction(standing));
-        self.emit(EventKind::Arrival(Arrival::new(self.moves, &standing)));
+        self.allow_for(standing.percept);
+        self.emit(EventKind::Arrival(arrival));
     }
 }
 
@@ -359,6 +426,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             Some(at) => at,
             None => Place::Junction(self.standing()?),
         };
+        if let Some(limit) = self.allowance.forbids(door, self.spent()) {
+            return Err(ExplorerError::Budget { moves: self.moves, limit, is_at_marker: false });
+        }
+        self.allowance.leave(door, self.spent());
         self.moves += 1;
         self.door = Some(door);
         // Until the robot arrives, it does not know where it is.
@@ -374,12 +445,16 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
                 let back = wrapped(self.robot.odometry().odometry.heading + PI);
                 self.place = Some(Place::Obstacle { back });
+                self.allow_for(DEAD_END);
                 let number = Some(u32::try_from(self.moves).unwrap_or(u32::MAX));
                 let Percept { degree, sighting } = DEAD_END;
                 let (sighting, form, entry) = (Some(sighting), None, Some(back));
                 self.emit(EventKind::Arrival(Arrival { number, degree, sighting, form, entry }));
             }
-            Err(error) => return Err(error),
+            Err(error) => {
+                self.allowance.lose_way();
+                return Err(error);
+            }
         }
         Ok(())
     }
@@ -425,7 +500,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             let is_last = directions.len() == 0;
             match self.drive(PathExecution::onwards_to_junction(direction)) {
                 Ok(standing) => {
-                    self.arrive(standing);
+                    self.arrive_from_nowhere(standing);
                     return Ok(standing);
                 }
                 Err(ExplorerError::Lost { .. } | ExplorerError::NoPicture { .. }) if !is_last => {}
@@ -438,7 +513,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, O> {
     fn relocate(&mut self, error: ExplorerError) -> Result<(), ExplorerError> {
         match error {
-            error @ (ExplorerError::Stopped { .. } | ExplorerError::Robot(_)) => Err(error),
+            error @ (ExplorerError::Stopped { .. }
+            | ExplorerError::Robot(_)
+            | ExplorerError::Budget { .. }) => Err(error),
             _ => self.find_junction().map(|_| ()),
         }
     }

@@ -4,7 +4,9 @@
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
+pub mod budget;
 pub mod conform;
+pub mod earlier_walks;
 pub mod evaluation;
 pub mod explorer;
 pub mod fuzz;
@@ -19,6 +21,7 @@ pub mod robot;
 #[cfg(feature = "ros1")]
 pub mod ros1;
 pub mod run;
+pub mod run_settings;
 pub mod simulator;
 pub mod superscout;
 pub mod truth;

@@ -6,7 +6,7 @@ use std::{collections::HashMap, fmt};
 use thiserror::Error;
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
-    mapping::{MappingError, MappingMethod, MappingRun},
+    mapping::{MappingError, MappingRun},
     percept::{Door, Percept},
 };
 use toposlam_vision::sensing::{Sensor, WrongSize};
@@ -21,6 +21,7 @@ use crate::{
     },
     record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
     robot::{Reckoned, Robot, RobotError},
+    run_settings::RunSettings,
 };
 
 /// The number of recorded results that were reproduced.
@@ -132,8 +133,7 @@ pub fn replay(
     log: &Log,
     topics: &TopicMap,
     sensor: Option<Sensor>,
-    method: impl Into<MappingMethod>,
-    dart_bound: usize,
+    settings: &RunSettings,
 ) -> Result<Replay, ReplayError> {
     let has = |role| topics.carrier(role).is_some();
     let frames = if has(Role::Image) { Role::Image } else { Role::Scene };
@@ -156,7 +156,7 @@ pub fn replay(
         check_size(sensor.as_ref().ok_or(ReplayError::NoSensor)?, image)?;
     }
     let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
-    let (mapping, mapped) = explorer.map(method.into(), dart_bound, &[]);
+    let (mapping, mapped) = explorer.map(settings);
     let error = mapped.err();
     let (mut robot, results) = explorer.into_parts();
     // The results after the last frame that was used are compared, too.
@@ -375,7 +375,8 @@ mod tests {
         let mut recorder =
             Recorder::new(&mut log, &crate::log::messages::Run::default(), None).unwrap();
         let robot = setting.by_scene();
-        let run = run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200);
+        let run =
+            run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
         recorder.finish().unwrap();
         (Log::of_bytes(log).unwrap(), run.mapping)
     }
@@ -387,7 +388,7 @@ mod tests {
             let algorithm = DirectionalAlgorithm::ALL[seed as usize % 2];
             let (log, mapping) = recorded(seed, algorithm);
             let topics = TopicMap::unambiguous(&log);
-            let replay = replay(&log, &topics, None, algorithm, 200).unwrap();
+            let replay = replay(&log, &topics, None, &RunSettings::new(algorithm, 200)).unwrap();
             let to = replay.comparison;
             assert_eq!((replay.error, to.difference), (None, None));
             assert_eq!(replay.mapping.map(), mapping.map());
@@ -403,7 +404,9 @@ mod tests {
     fn another_algorithm_than_the_recorded_one_takes_another_door() {
         let [algorithm1, folding] = DirectionalAlgorithm::ALL;
         let (log, _) = recorded_in("building-12", 0, algorithm1);
-        let replay = replay(&log, &TopicMap::unambiguous(&log), None, folding, 200).unwrap();
+        let replay =
+            replay(&log, &TopicMap::unambiguous(&log), None, &RunSettings::new(folding, 200))
+                .unwrap();
         assert_eq!(replay.comparison.difference.unwrap().what, "door");
     }
 
@@ -411,7 +414,9 @@ mod tests {
     fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
         let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
         let mapping = TopicMap::unambiguous(&log);
-        let replay = replay(&log, &mapping, None, DirectionalAlgorithm::Algorithm1, 4).unwrap();
+        let replay =
+            replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 4))
+                .unwrap();
         assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
         let to = replay.comparison;
         assert!(!to.doors.is_whole());
@@ -422,7 +427,8 @@ mod tests {
     fn a_log_without_commands_is_not_replayed() {
         let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
         let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-        let replay = replay(&log, &mapping, None, DirectionalAlgorithm::Algorithm1, 200);
+        let replay =
+            replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 200));
         assert!(matches!(replay, Err(ReplayError::Nothing)));
     }
 }

@@ -20,6 +20,7 @@ use crate::{
     record::{FrameSensor, RunObserver},
     recording::Recording,
     robot::Robot as _,
+    run_settings::RunSettings,
     simulator::SimulatedRobot,
 };
 
@@ -65,7 +66,11 @@ impl Run<'_> {
     /// The moves, with those of recoveries and audits.
     #[must_use]
     pub fn moves(&self) -> u64 {
-        self.mapped.as_ref().map_or(self.mapping.moves(), |mapped| mapped.moves)
+        match (&self.mapped, &self.error) {
+            (Some(mapped), _) => mapped.moves,
+            (None, Some(MappingError::World(ExplorerError::Budget { moves, .. }))) => *moves,
+            (None, _) => self.mapping.moves(),
+        }
     }
 
     /// The darts of the map whose hallways are blocked.
@@ -117,19 +122,18 @@ impl Run<'_> {
 
 /// A simulated robot that stands at a dart's junction maps its building.
 // paper: exp.simulated
-pub fn run(
-    plan: &FloorPlan,
+pub fn run<'p>(
+    plan: &'p FloorPlan,
     facing: Dart,
     robot: SimulatedRobot,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
-    method: impl Into<MappingMethod>,
-    dart_bound: usize,
-) -> Run<'_> {
-    let method = method.into();
+    settings: &RunSettings,
+) -> Run<'p> {
+    let &RunSettings { method, dart_bound, .. } = settings;
     let monitor = GroundTruthMonitor::new(plan, facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
-    let (mapping, mapped) = explorer.map(method, dart_bound, &[]);
+    let (mapping, mapped) = explorer.map(settings);
     let is_at_obstacle = explorer.is_at_obstacle();
     let (robot, (monitor, _)) = explorer.into_parts();
     let (mapped, error) = match mapped {
@@ -205,11 +209,10 @@ pub fn offline(
     recording: &Recording,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
-    method: impl Into<MappingMethod>,
-    dart_bound: usize,
+    settings: &RunSettings,
 ) -> Result<MappingRun, MappingError<ExplorerError>> {
     let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
-    let (mapping, mapped) = explorer.map(method.into(), dart_bound, &[]);
+    let (mapping, mapped) = explorer.map(settings);
     mapped.map(|_| mapping)
 }
 
@@ -240,7 +243,14 @@ mod tests {
                 for algorithm in DirectionalAlgorithm::ALL {
                     let robot =
                         SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
-                    let run = run(&plan, facing, robot, NoSensor, (), algorithm, DARTS);
+                    let run = run(
+                        &plan,
+                        facing,
+                        robot,
+                        NoSensor,
+                        (),
+                        &RunSettings::new(algorithm, DARTS),
+                    );
                     let what = format!("{name} from {facing:?} by {algorithm}");
                     assert_eq!(run.outcome(), RunOutcome::Right, "{what}");
                     assert!(run.isomorphic() && run.pose_true());
@@ -260,9 +270,17 @@ mod tests {
         for algorithm in DirectionalAlgorithm::ALL {
             let mut recording = Recording::default();
             let robot = config.by_scene();
-            let run = run(&plan, facing, robot, NoSensor, &mut recording, algorithm, DARTS);
+            let run = run(
+                &plan,
+                facing,
+                robot,
+                NoSensor,
+                &mut recording,
+                &RunSettings::new(algorithm, DARTS),
+            );
             assert_eq!(recording.len() as u64, run.pictures);
-            let again = offline(&recording, NoSensor, (), algorithm, DARTS).unwrap();
+            let again =
+                offline(&recording, NoSensor, (), &RunSettings::new(algorithm, DARTS)).unwrap();
             assert_eq!(again.map(), run.mapping.map());
             assert_eq!(again.moves(), run.mapping.moves());
         }
@@ -276,7 +294,9 @@ mod tests {
         let outcome = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
             let algorithm = DirectionalAlgorithm::Algorithm1;
-            run(&plan, facing, robot, NoSensor, (), algorithm, DARTS).outcome().to_string()
+            run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS))
+                .outcome()
+                .to_string()
         };
         for (kind, why) in [
             (FaultKind::LightsOut, "7 pictures in a row do not show where the robot is"),

@@ -23,6 +23,7 @@ use toposlam_robot::{
     pose::Pose,
     record::{FrameSensor, NoSensor, RobotSensor},
     run::{RunOutcome, run},
+    run_settings::RunSettings,
     simulator::{
         Corridor, CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams, SimulatedRobot,
         SimulationConfig,
@@ -123,7 +124,14 @@ fn logged(
     let head = messages::Run { world: "long-8".to_owned(), ..messages::Run::default() };
     let mut recorder = Recorder::new(file, &head, None).unwrap();
     let algorithm = DirectionalAlgorithm::Algorithm1;
-    let run = run(&plan, facing, robot(&config), sensor, &mut recorder, algorithm, 200);
+    let run = run(
+        &plan,
+        facing,
+        robot(&config),
+        sensor,
+        &mut recorder,
+        &RunSettings::new(algorithm, 200),
+    );
     assert_eq!(run.outcome(), RunOutcome::Right);
     recorder.finish().unwrap();
     path

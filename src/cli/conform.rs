@@ -355,7 +355,7 @@ impl ConformArguments {
             None => opened.marker()?,
         };
         let method = match self.driver {
-            Who::Algorithm => opened.method(path, self.algorithm)?,
+            Who::Algorithm => opened.settings(path, self.algorithm)?.method,
             Who::Anyone => MappingMethod::default(),
         };
         let algorithm = method.algorithm();

@@ -11,6 +11,7 @@ use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 
 use super::{
     CliError, Outcome,
+    budget_options::BudgetOptions,
     exit_codes::help_end,
     method_options::{BlockedOptions, MethodOptions},
     robot_sensor::{SensorChoice, one_sensor},
@@ -66,6 +67,11 @@ pub(super) struct DriveArguments {
     method: MethodOptions,
     #[command(flatten)]
     blocked: BlockedOptions,
+    #[command(flatten)]
+    budget: BudgetOptions,
+    /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands; may be repeated
+    #[arg(long, value_name = "LOG", requires = "recover")]
+    resume: Vec<PathBuf>,
     /// The topic of images: sensor_msgs/CompressedImage
     #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
     image_topic: String,

@@ -6,6 +6,7 @@ macro_rules! remark {
 }
 
 mod appearance;
+mod budget_options;
 mod calibrate;
 mod check;
 mod ci_report;
@@ -15,6 +16,7 @@ mod conform;
 mod counterexample;
 mod draw;
 mod drive;
+mod earlier_logs;
 mod edge_range;
 mod evaluate;
 mod exit_codes;

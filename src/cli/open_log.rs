@@ -2,10 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_model::{
-    mapping::MappingMethod,
-    marker::{self, Marker},
-};
+use toposlam_model::marker::{self, Marker};
 use toposlam_robot::{
     conform::{Evidence, ExtractError},
     log::{
@@ -15,6 +12,7 @@ use toposlam_robot::{
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{EventId, EventKind},
+    run_settings::RecordedSettings,
 };
 use toposlam_vision::{
     annotate,
@@ -26,7 +24,7 @@ use toposlam_vision::{
 use super::{CliError, input, mapping_marker::AlgorithmOption};
 
 /// What the log itself may not contain.
-#[derive(clap::Args)]
+#[derive(Default, clap::Args)]
 pub(super) struct LogOptions {
     /// What each topic carries [default: by the message types; see `toposlam info`]
     #[arg(long, value_name = "FILE")]
@@ -159,17 +157,20 @@ impl OpenLog {
         marker::named(name).map_err(|error| CliError::at("the log", error))
     }
 
-    /// The algorithm that was asked for, or how the robot of the log maps; without either Algorithm 1.
-    pub(super) fn method(
+    /// How the robot of the log maps, or by the algorithm that was asked for; without either by Algorithm 1.
+    pub(super) fn settings(
         &self,
         path: &Path,
         option: Option<AlgorithmOption>,
-    ) -> Result<MappingMethod, CliError> {
+    ) -> Result<RecordedSettings, CliError> {
         let recorded = self.run.as_ref().map_or("", |run| &run.algorithm);
         match (option, recorded) {
-            (Some(option), _) => Ok(option.directional().into()),
-            (None, "") => Ok(MappingMethod::default()),
-            (None, name) => name.parse().map_err(|_| {
+            (Some(option), _) => {
+                let method = option.directional().into();
+                Ok(RecordedSettings { method, ..RecordedSettings::default() })
+            }
+            (None, "") => Ok(RecordedSettings::default()),
+            (None, name) => RecordedSettings::from_head(name).map_err(|_| {
                 let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
                 CliError::in_file(path, cause)
             }),

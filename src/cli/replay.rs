@@ -7,7 +7,10 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{FACING, MappingError},
 };
-use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
+use toposlam_robot::{
+    replay::{Agreement, Replay, ReplayDifference, ReplayError, replay},
+    run_settings::{RecordedSettings, RunSettings},
+};
 
 use super::{
     CliError, Outcome,
@@ -93,9 +96,15 @@ impl ReplayArguments {
         }
         let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
-        let method = opened.method(&self.log, self.algorithm)?;
+        let RecordedSettings { method, budget, is_resumed } =
+            opened.settings(&self.log, self.algorithm)?;
+        if is_resumed {
+            let cause = "its robot went on from an earlier run, which is not in this log";
+            return Err(CliError::in_file(&self.log, cause));
+        }
+        let settings = RunSettings { budget, ..RunSettings::new(method, self.max_darts) };
         let (log, topics) = (&opened.log, &opened.mapping);
-        let replay = replay(log, topics, opened.sensor(), method, self.max_darts);
+        let replay = replay(log, topics, opened.sensor(), &settings);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),

@@ -18,22 +18,26 @@ use std::{
 
 use toposlam::{journal::Journal, page, picture};
 use toposlam_model::{
-    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
-    mapping::MappingMethod,
+    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld, mapping::Walk,
 };
 use toposlam_robot::{
     evaluation::{LearnedSensors, LearningError},
-    log::recorder::Recorder,
+    log::{recorder::Recorder, world_hash},
     record::{RobotSensor, StoppedBy},
     recording::Recording,
     run::{offline, run},
-    simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
+    run_settings::RunSettings,
+    simulator::{
+        Effects, FAULTS, FOR_EVER, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig,
+    },
 };
 use toposlam_vision::camera::Camera;
 
 use super::{
     CliError, Outcome,
     appearance::{Appearance, ImageSize, camera_with},
+    budget_options::BudgetOptions,
+    earlier_logs::earlier_walks_of,
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
     input,
@@ -74,6 +78,11 @@ pub(super) struct SimulateArguments {
     method: MethodOptions,
     #[command(flatten)]
     blocked: BlockedOptions,
+    #[command(flatten)]
+    budget: BudgetOptions,
+    /// With --recover: go on from the log of an earlier run, .mcap; may be repeated
+    #[arg(long, value_name = "LOG", requires = "recover")]
+    resume: Vec<PathBuf>,
     /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
@@ -166,7 +175,7 @@ struct Simulation {
     plan: Arc<FloorPlan>,
     facing: Dart,
     setting: SimulationConfig,
-    method: MappingMethod,
+    settings: RunSettings,
     /// Before colours were learned.
     begun: Instant,
 }
@@ -185,6 +194,11 @@ impl SimulateArguments {
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
+        let settings = RunSettings {
+            budget: self.budget.budget(),
+            earlier: self.earlier(&world, facing)?,
+            ..RunSettings::new(method, self.max_darts)
+        };
         let setting = SimulationConfig {
             noise: self.noise,
             picture_time: self.picture_time,
@@ -192,7 +206,7 @@ impl SimulateArguments {
             faults: self.fault.clone(),
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
-        let simulation = Simulation { world, plan, facing, setting, method, begun };
+        let simulation = Simulation { world, plan, facing, setting, settings, begun };
         if let (SensorChoice::Laser, Some(scanner)) = (self.sensor, &scanner) {
             let robot = simulation.setting.by_laser(scanner);
             #[cfg(feature = "ros1")]
@@ -245,6 +259,11 @@ impl SimulateArguments {
         Ok(nearest)
     }
 
+    /// The walks of the earlier runs from which the robot goes on.
+    fn earlier(&self, world: &NamedWorld, facing: Dart) -> Result<Vec<Walk>, CliError> {
+        earlier_walks_of(&self.resume, Some(&world_hash(&world.graph, facing)))
+    }
+
     fn check_places(&self) -> Result<(), CliError> {
         let places: [(&Option<PathBuf>, &[&str]); 3] =
             [(&self.log, &["mcap"]), (&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
@@ -295,7 +314,8 @@ impl SimulateArguments {
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let &Simulation { ref world, ref plan, facing, method, .. } = simulation;
+        let Simulation { world, plan, facing, settings, .. } = simulation;
+        let facing = *facing;
         let progress = Progress::endless("exploring", "pictures")?;
         // On a terminal the story shows how far the run is.
         let hidden = !self.json && io::stdout().is_terminal();
@@ -306,13 +326,13 @@ impl SimulateArguments {
         let mut capture = RunCapture::new(story, progress, pictures);
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
-        let run = run(plan, facing, robot, sensor.clone(), observer, method, self.max_darts);
+        let run = run(plan, facing, robot, sensor.clone(), observer, settings);
         let logged = log.map_or(Ok(()), Recorder::finish);
         let mut journal = capture.finish(&world.name, plan, facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
         let stop = StoppedBy(&StopSignal);
-        let replayed = offline(&recording, sensor, stop, method, self.max_darts);
+        let replayed = offline(&recording, sensor, stop, settings);
         let compute_seconds = computed.elapsed().as_secs_f64();
         let result = SimulationResult {
             world,
@@ -379,10 +399,13 @@ fn speed(text: &str) -> Result<f64, String> {
 
 /// The faults, the log and examples.
 fn after_help() -> String {
-    let faults = FAULTS
-        .iter()
-        .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
-    let head = "Faults, and for how many pictures or commands each lasts by default:\n".to_owned();
+    let faults = FAULTS.iter().map(|&(_, name, lasting, about)| match lasting {
+        FOR_EVER => format!("  {name:<14}      {about}\n"),
+        lasting => format!("  {name:<14} {lasting:>2}   {about}\n"),
+    });
+    let head =
+        "Faults, and for how many pictures or commands each lasts by default, if it passes:\n"
+            .to_owned();
     let notes = head
         + &faults.collect::<String>()
         + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \
@@ -398,6 +421,8 @@ Examples:
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80
+  toposlam simulate worlds/shape-8.toml --by-scene --recover --max-moves 15 --log part.mcap
+  toposlam simulate worlds/shape-8.toml --by-scene --recover --resume part.mcap
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 ";
     help_end(

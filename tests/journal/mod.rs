@@ -14,6 +14,7 @@ use toposlam_model::{
 use toposlam_robot::{
     record::{Event, EventKind, NoSensor, RunObserver},
     run::run,
+    run_settings::RunSettings,
     simulator::SimulationConfig,
 };
 
@@ -110,7 +111,8 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
     let mut keeper = Keeper { journal, moves: 0, door: None, pictures };
     let algorithm = DirectionalAlgorithm::Algorithm1;
-    let run = run(&plan, facing, robot, NoSensor, &mut keeper, algorithm, DEFAULT_DART_BOUND);
+    let settings = RunSettings::new(algorithm, DEFAULT_DART_BOUND);
+    let run = run(&plan, facing, robot, NoSensor, &mut keeper, &settings);
     let mut journal = keeper.journal;
     journal.ending = run.outcome().to_string();
     for (call, arrival) in journal.calls.iter_mut().zip(run.monitor.arrivals()) {

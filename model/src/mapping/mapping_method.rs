@@ -221,7 +221,7 @@ mod tests {
         );
         assert_eq!(run.moves() as usize, moves.len());
         for known in [3, moves.len() / 2, moves.len()] {
-            let earlier = [Walk::new(first.unwrap(), moves[..known].iter().copied())];
+            let earlier = [Walk::new(first.unwrap(), moves[..known].iter().copied(), false)];
             for pose in graph.darts() {
                 let world = GraphWorld::new(&graph, facing);
                 let placed = world.state().placed;

@@ -26,6 +26,7 @@ use crate::{
     },
     robot::Reckoned,
     run::run,
+    run_settings::RunSettings,
     simulator::SimulationConfig,
 };
 
@@ -99,7 +100,7 @@ fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
 fn log_of(algorithm: DirectionalAlgorithm, plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, facing, robot, NoSensor, &mut log, algorithm, DARTS);
+    let run = run(plan, facing, robot, NoSensor, &mut log, &RunSettings::new(algorithm, DARTS));
     assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
 }

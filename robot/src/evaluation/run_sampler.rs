@@ -16,6 +16,7 @@ use crate::{
     explorer::ExplorerError,
     record::StoppedBy,
     run::{RunOutcome, explored, run},
+    run_settings::RunSettings,
     simulator::{FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
 
@@ -174,7 +175,8 @@ fn judged(
     // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), method, bound);
+    let settings = RunSettings::new(method, bound);
+    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), &settings);
     let ending = run.outcome();
     let stopped =
         matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })));

@@ -275,6 +275,7 @@ pub(super) fn end(stamp: Stamp, end: &RunEnd) -> End {
         RunEnding::Mapped => ("mapped", ""),
         RunEnding::Stopped => ("stopped", ""),
         RunEnding::GaveUp(cause) => ("gave-up", cause.as_str()),
+        RunEnding::OutOfBudget(cause) => ("out-of-budget", cause.as_str()),
     };
     End { stamp, moves: count(end.moves), ending: ending.to_owned(), cause: cause.to_owned() }
 }
@@ -285,6 +286,7 @@ pub(super) fn end_of(message: End) -> Option<RunEnd> {
         "mapped" => RunEnding::Mapped,
         "stopped" => RunEnding::Stopped,
         "gave-up" => RunEnding::GaveUp(message.cause),
+        "out-of-budget" => RunEnding::OutOfBudget(message.cause),
         _ => return None,
     };
     Some(RunEnd { moves: message.moves.into(), ending })

@@ -191,6 +191,7 @@ mod tests {
         record::{CameraImage, DECODED, FrameSensor, NoSensor, SensingError},
         robot::{Reckoned, Robot, RobotError},
         run::{Run, run},
+        run_settings::RunSettings,
         simulator::{FaultKind, RobotFault, SimulatedRobot, SimulationConfig},
     };
 
@@ -204,7 +205,14 @@ mod tests {
         let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
         let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
         let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
-        check(&run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200));
+        check(&run(
+            &plan,
+            facing,
+            robot,
+            NoSensor,
+            &mut recorder,
+            &RunSettings::new(algorithm, 200),
+        ));
         recorder.finish().unwrap();
         log
     }
@@ -326,7 +334,7 @@ mod tests {
         let mut page = Pixels::default();
         let decoded = DECODED.get();
         let mut explorer = RobotExplorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
-        let (_, mapped) = explorer.map(MappingMethod::default(), 200, &[]);
+        let (_, mapped) = explorer.map(&RunSettings::new(MappingMethod::default(), 200));
         mapped.unwrap();
         assert!(page.0 > 60, "{}", page.0);
         assert_eq!(DECODED.get() - decoded, page.0);
@@ -358,7 +366,8 @@ mod tests {
         setting.keeps_track = true;
         let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
         let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
-        let run = run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200);
+        let run =
+            run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
         assert!(recorder.stop());
         let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
         assert_eq!(run.error, stopped);

@@ -145,6 +145,8 @@ pub enum RunEnding {
     Stopped,
     /// The robot gave up, for this reason.
     GaveUp(String),
+    /// The robot turned back to keep within its budget, for this reason.
+    OutOfBudget(String),
 }
 
 /// Seconds since the robot was switched on, in nanoseconds.

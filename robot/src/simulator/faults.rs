@@ -4,6 +4,9 @@ use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
+/// A fault that never passes lasts for this number of images.
+pub const FOR_EVER: u32 = u32::MAX;
+
 /// A fault that starts when the robot takes its nth image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotFault {
@@ -37,7 +40,7 @@ kinds! {
     OverExposed "over-exposed" 3 "Images are overexposed.";
     Corrupt "corrupt" 3 "Image files are damaged.";
     Ignored "ignored" 2 "Commands are ignored.";
-    Blocked "blocked" 1 "An obstacle ahead, unseen by the camera, stops the robot.";
+    Blocked "blocked" 4_294_967_295 "An obstacle ahead, unseen by the camera, stops the robot.";
     LightsOut "lights-out" 40 "The lights go out.";
     Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
@@ -67,6 +70,11 @@ impl RobotFault {
         Self { kind, picture, lasting }
     }
 
+    /// Whether it has passed when this image is taken.
+    pub(super) fn has_passed(&self, picture: u64) -> bool {
+        self.lasting < FOR_EVER && picture >= self.picture + u64::from(self.lasting)
+    }
+
     /// Whether it affects the image with this number.
     pub(super) fn spoils(&self, picture: u64) -> bool {
         self.begins(picture)
@@ -82,7 +90,8 @@ impl RobotFault {
 /// The form that `from_str` parses.
 impl fmt::Display for RobotFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{}@{}:{}", self.kind.name(), self.picture, self.lasting)
+        write!(out, "{}@{}", self.kind.name(), self.picture)?;
+        if self.lasting == FOR_EVER { Ok(()) } else { write!(out, ":{}", self.lasting) }
     }
 }
 

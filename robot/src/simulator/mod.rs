@@ -41,7 +41,7 @@ pub use building::Building;
 pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
 pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
 pub use effects::{EffectScope, EffectSettings, Effects, KNOBS, Knob, KnobError};
-pub use faults::{FAULTS, FaultError, FaultKind, RobotFault};
+pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
 pub use labels::{label_mask, labels};
 pub use looks::{BuildingLook, Colour, FloorCovering, LOOKS};
 pub use motion::{MotionNoise, SimulatedBase};

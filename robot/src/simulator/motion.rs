@@ -197,6 +197,12 @@ impl SimulatedBase {
         self.read();
     }
 
+    /// Takes all obstacles away.
+    pub(super) fn clear_obstacles(&mut self) {
+        self.surroundings.clear_obstacles();
+        self.read();
+    }
+
     /// Moves the robot for this time unless something is in its way. Its wheels turn in either
     /// case.
     fn advance(&mut self, seconds: f64) {

@@ -145,6 +145,17 @@ impl SimulatedRobot {
         let number = self.pictures;
         let begin: Vec<RobotFault> =
             self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
+        let stays = |fault: &RobotFault| {
+            fault.kind == FaultKind::Blocked && fault.picture < number && !fault.has_passed(number)
+        };
+        let passes = |fault: &RobotFault| {
+            fault.kind == FaultKind::Blocked
+                && fault.has_passed(number)
+                && !fault.has_passed(number - 1)
+        };
+        if self.faults.iter().any(passes) && !self.faults.iter().any(stays) {
+            self.base.clear_obstacles();
+        }
         for fault in &begin {
             self.begin(fault);
         }

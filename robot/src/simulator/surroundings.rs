@@ -37,6 +37,11 @@ impl Surroundings {
         self.obstacles.push(obstacle);
     }
 
+    /// Takes all obstacles away.
+    pub(super) fn clear_obstacles(&mut self) {
+        self.obstacles.clear();
+    }
+
     /// The walls near a place, and all obstacles.
     fn near(&self, [x, y]: [f64; 2]) -> impl Iterator<Item = Rectangle> {
         let walls = self.near.at([x as f32, y as f32]).iter();

@@ -165,6 +165,7 @@ impl<'j> Ending<'j> {
             RunEnding::Mapped => ("mapped", None),
             RunEnding::Stopped => ("stopped", None),
             RunEnding::GaveUp(cause) => ("gave-up", Some(cause.as_str())),
+            RunEnding::OutOfBudget(cause) => ("out-of-budget", Some(cause.as_str())),
         };
         Self { how, cause }
     }

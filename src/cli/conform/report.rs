@@ -84,6 +84,7 @@ impl Judged<'_> {
                 let colon = if cause.is_empty() { "" } else { ": " };
                 remarks.push(format!("the run was given up{colon}{cause}"));
             }
+            Some(RunEnding::OutOfBudget(cause)) => remarks.push(cause.clone()),
             None if events.has_head => {
                 remarks.push("the log does not record how the run ended".to_owned());
             }

@@ -24,6 +24,7 @@ use toposlam_robot::{
     record::{Event, EventKind, RobotSensor, RunObserver},
     robot::{Robot, RobotError},
     ros1::{LiveRobot, LiveSensor, RobotTopics},
+    run_settings::RunSettings,
 };
 use toposlam_vision::{
     camera::{Camera, calibration},
@@ -33,6 +34,7 @@ use toposlam_vision::{
 
 use super::{CliError, DriveArguments, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
+    earlier_logs::earlier_walks_of,
     explore::story::{Story, StoryDetail},
     input,
     method_options::words_of,
@@ -53,6 +55,11 @@ impl DriveArguments {
             output::check_world_place(map, false)?;
         }
         let method = self.blocked.method(&self.method)?;
+        let settings = RunSettings {
+            budget: self.budget.budget(),
+            earlier: earlier_walks_of(&self.resume, None)?,
+            ..RunSettings::new(method, self.max_darts)
+        };
         let eyes = self.eyes()?;
         let (sensor, live) = match &eyes {
             Some((camera, colours)) => {
@@ -88,8 +95,8 @@ impl DriveArguments {
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
             Err(error) => return Err(CliError::at("--ros", error)),
         };
-        let log = self.recorder(method, world.as_ref(), eyes.as_ref())?;
-        self.explore(method, robot, sensor, world.as_ref(), log, &progress, out)
+        let log = self.recorder(&settings, world.as_ref(), eyes.as_ref())?;
+        self.explore(&settings, robot, sensor, world.as_ref(), log, &progress, out)
     }
 
     /// The camera and the colours of the building; `None` with a laser scanner.
@@ -121,7 +128,7 @@ impl DriveArguments {
     #[expect(clippy::too_many_arguments, reason = "these are the parts of one run")]
     fn explore(
         &self,
-        method: MappingMethod,
+        settings: &RunSettings,
         robot: LiveRobot,
         sensor: RobotSensor,
         world: Option<&(NamedWorld, Dart)>,
@@ -138,7 +145,7 @@ impl DriveArguments {
         };
         let mut narrator = Narrator { story, progress };
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
-        let (mapping, mapped) = explorer.map(method, self.max_darts, &[]);
+        let (mapping, mapped) = explorer.map(settings);
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
@@ -151,7 +158,7 @@ impl DriveArguments {
         let frames = if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" };
         let result = DriveResult {
             world: name,
-            method,
+            method: settings.method,
             mapping: &mapping,
             mapped: mapped.as_ref(),
             allows_blocked: self.blocked.allows(),
@@ -176,7 +183,7 @@ impl DriveArguments {
     /// Opens the log, if one is wanted. Unknown fields of its head are empty.
     fn recorder(
         &self,
-        method: MappingMethod,
+        settings: &RunSettings,
         world: Option<&(NamedWorld, Dart)>,
         eyes: Option<&(Camera, ColourModel)>,
     ) -> Result<Option<Recorder<File>>, CliError> {
@@ -196,8 +203,8 @@ impl DriveArguments {
             seed: 0,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(method),
-            algorithm: method.to_string(),
+            command: self.command(settings.method),
+            algorithm: settings.recorded().to_string(),
         };
         let camera = eyes.map(|(camera, _)| camera.clone());
         let recorder = Recorder::new(output::create_growing(path)?, &run, camera);
@@ -230,7 +237,11 @@ impl DriveArguments {
         let options =
             options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
-        let words = words.into_iter().chain(words_of(method)).chain(options.flatten());
+        let words = words
+            .into_iter()
+            .chain(words_of(method))
+            .chain(self.budget.words())
+            .chain(options.flatten());
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
     }
 }

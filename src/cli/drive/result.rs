@@ -53,14 +53,19 @@ impl DriveResult<'_> {
             Ok(mapped) if mapped.blocked.is_empty() || self.allows_blocked => Outcome::Holds,
             Ok(_)
             | Err(
-                MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }),
+                MappingError::Bound { .. }
+                | MappingError::World(ExplorerError::Stopped { .. } | ExplorerError::Budget { .. }),
             ) => Outcome::Incomplete,
             Err(_) => Outcome::Violated,
         }
     }
 
     fn moves(&self) -> u64 {
-        self.mapped.map_or(self.mapping.moves(), |mapped| mapped.moves)
+        match self.mapped {
+            Ok(mapped) => mapped.moves,
+            Err(MappingError::World(ExplorerError::Budget { moves, .. })) => *moves,
+            Err(_) => self.mapping.moves(),
+        }
     }
 
     /// The map as a world, if it is complete.
@@ -89,6 +94,7 @@ impl DriveResult<'_> {
                 format!("the map is complete but for {doors}, after {moves} moves")
             }
             Ok(_) => format!("the map is complete, after {moves} moves"),
+            Err(MappingError::World(error @ ExplorerError::Budget { .. })) => error.to_string(),
             Err(error) => format!("the robot gave up: {error}"),
         };
         writeln!(out)?;
@@ -107,6 +113,7 @@ impl DriveResult<'_> {
         let ending = match self.mapped {
             Ok(_) => "mapped",
             Err(MappingError::World(ExplorerError::Stopped { .. })) => "stopped",
+            Err(MappingError::World(ExplorerError::Budget { .. })) => "out-of-budget",
             Err(_) => "gave-up",
         };
         let line = Line {

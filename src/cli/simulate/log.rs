@@ -35,8 +35,8 @@ impl SimulateArguments {
             seed: self.seed,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(simulation.method),
-            algorithm: simulation.method.to_string(),
+            command: self.command(simulation.settings.method),
+            algorithm: simulation.settings.recorded().to_string(),
         };
         let file = output::create_growing(path)?;
         let recorder = Recorder::new(file, &run, eyes.map(|(camera, _)| camera.clone()));
@@ -58,6 +58,10 @@ impl SimulateArguments {
             words.extend(["--start".to_owned(), start.clone()]);
         }
         words.extend(words_of(method));
+        words.extend(self.budget.words());
+        for log in &self.resume {
+            words.extend(["--resume".to_owned(), log.display().to_string()]);
+        }
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 words.extend([name.to_owned(), value]);

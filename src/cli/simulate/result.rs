@@ -73,7 +73,12 @@ impl SimulationResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
         let incomplete = matches!(
             self.run.error,
-            Some(MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }))
+            Some(
+                MappingError::Bound { .. }
+                    | MappingError::World(
+                        ExplorerError::Stopped { .. } | ExplorerError::Budget { .. }
+                    )
+            )
         );
         match self.run.outcome() {
             RunOutcome::Right => {
@@ -111,6 +116,9 @@ impl SimulationResult<'_> {
             }
             RunOutcome::Right => {
                 format!("the map is right, after {moves} moves, all as specified")
+            }
+            RunOutcome::GaveUp(MappingError::World(error @ ExplorerError::Budget { .. })) => {
+                error.to_string()
             }
             ending => ending.to_string(),
         }

@@ -21,12 +21,17 @@ pub(super) fn sees_marker(percept: &Percept) -> bool {
 }
 
 impl Walk {
-    /// A walk that begins with a percept; after each door there is another percept.
+    /// A walk that begins with a percept; after each door there is another percept. `is_blocked` tells whether the
+    /// robot turned round at an obstacle.
     #[must_use]
-    pub fn new(first: Percept, moves: impl IntoIterator<Item = (Door, Percept)>) -> Self {
+    pub fn new(
+        first: Percept,
+        moves: impl IntoIterator<Item = (Door, Percept)>,
+        is_blocked: bool,
+    ) -> Self {
         let (doors, mut percepts): (Vec<Door>, Vec<Percept>) = moves.into_iter().unzip();
         percepts.insert(0, first);
-        Self { percepts, doors, is_blocked: false }
+        Self { percepts, doors, is_blocked }
     }
 
     /// Whether nothing was perceived.

@@ -1,0 +1,306 @@
+//! What a run may spend, and whether the robot can still return to its marker.
+//!
+//! The way back is the way by which the robot has come since it last saw the marker, without what it went to and
+//! fro. So it does not depend on the map, and is right even if the map is not.
+
+use std::fmt;
+
+use toposlam_model::percept::Door;
+
+/// What a run may spend.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Budget {
+    /// Moves.
+    pub moves: Option<u64>,
+    /// Seconds by the robot's clock.
+    pub seconds: Option<f64>,
+    /// Metres, as far as the battery lasts.
+    pub metres: Option<f64>,
+}
+
+/// What a run has spent, or a part of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Spent {
+    pub(crate) moves: u64,
+    pub(crate) seconds: f64,
+    pub(crate) metres: f64,
+}
+
+/// The limit of a budget that the run comes near.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BudgetLimit {
+    /// The number of moves.
+    Moves(u64),
+    /// The time, in seconds.
+    Time(f64),
+    /// The way, in metres.
+    Way(f64),
+}
+
+impl fmt::Display for BudgetLimit {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Moves(moves) => write!(out, "{moves} moves"),
+            Self::Time(seconds) => write!(out, "{:.1} minutes", seconds / 60.0),
+            Self::Way(metres) => write!(out, "{metres:.0} m on one battery"),
+        }
+    }
+}
+
+impl Spent {
+    fn since(self, earlier: Self) -> Self {
+        Self {
+            moves: self.moves - earlier.moves,
+            seconds: self.seconds - earlier.seconds,
+            metres: self.metres - earlier.metres,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            moves: self.moves + other.moves,
+            seconds: self.seconds + other.seconds,
+            metres: self.metres + other.metres,
+        }
+    }
+
+    fn greatest(self, other: Self) -> Self {
+        Self {
+            moves: self.moves.max(other.moves),
+            seconds: self.seconds.max(other.seconds),
+            metres: self.metres.max(other.metres),
+        }
+    }
+
+    /// More time and way, but not more moves.
+    fn times(self, factor: f64) -> Self {
+        Self { moves: self.moves, seconds: factor * self.seconds, metres: factor * self.metres }
+    }
+
+    /// The limit that this exceeds.
+    fn exceeded(self, budget: Budget) -> Option<BudgetLimit> {
+        let moves = budget.moves.filter(|&most| self.moves > most).map(BudgetLimit::Moves);
+        let time = budget.seconds.filter(|&most| self.seconds > most).map(BudgetLimit::Time);
+        let way = budget.metres.filter(|&most| self.metres > most).map(BudgetLimit::Way);
+        moves.or(time).or(way)
+    }
+}
+
+/// A hallway that takes this is expected at first.
+const FIRST: Spent = Spent { moves: 1, seconds: 180.0, metres: 30.0 };
+/// Each hallway may take so many times as much as the longest so far, and so may the way back.
+const MARGIN: f64 = 1.5;
+
+/// A hallway on the way from the marker.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    /// The door by which the robot left, counted from the one by which it first came in.
+    door: u32,
+    cost: Spent,
+}
+
+/// A robot's budget, and its way back to the marker.
+#[derive(Clone, Debug)]
+pub(crate) struct Allowance {
+    budget: Budget,
+    spent: Spent,
+    longest: Option<Spent>,
+    legs: Vec<Leg>,
+    /// The door by which the robot has come in, counted from the one by which it first came in.
+    entry: u32,
+    /// The number of doors where it is.
+    degree: u32,
+    /// The hallway in which it is.
+    leaving: Option<Leaving>,
+    /// Whether it knows its way back.
+    knows_way: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Leaving {
+    /// The last one of the way, back.
+    Back,
+    /// Another one, by a door counted from the one by which the robot first came in.
+    On(u32),
+}
+
+impl Allowance {
+    /// The allowance of a robot that begins.
+    pub(crate) fn new(budget: Budget) -> Self {
+        Self {
+            budget,
+            spent: Spent::default(),
+            longest: None,
+            legs: Vec::new(),
+            entry: 0,
+            degree: 1,
+            leaving: None,
+            knows_way: false,
+        }
+    }
+
+    fn way_back(&self) -> Spent {
+        let legs = self.legs.iter().fold(Spent::default(), |sum, leg| sum.plus(leg.cost));
+        legs.times(MARGIN)
+    }
+
+    fn door(&self, door: Door) -> u32 {
+        (self.entry + door.0) % self.degree.max(1)
+    }
+
+    /// The limit that would not allow to take a door and to return to the marker.
+    pub(crate) fn forbids(&self, door: Door, spent: Spent) -> Option<BudgetLimit> {
+        if !self.legs.is_empty() && self.door(door) == 0 {
+            return None;
+        }
+        let there = self.longest.map_or(FIRST, |longest| longest.times(MARGIN));
+        let all = spent.plus(there).plus(there).plus(self.way_back());
+        all.exceeded(self.budget)
+    }
+
+    /// The robot takes a door.
+    pub(crate) fn leave(&mut self, door: Door, spent: Spent) {
+        self.spent = spent;
+        let door = self.door(door);
+        let back = !self.legs.is_empty() && door == 0;
+        self.leaving = Some(if back { Leaving::Back } else { Leaving::On(door) });
+    }
+
+    /// The robot has come to the next junction.
+    pub(crate) fn arrive(&mut self, degree: u32, sees_marker: bool, spent: Spent) {
+        let cost = Spent { moves: 1, ..spent.since(self.spent) };
+        let leaving = self.leaving.take();
+        if leaving.is_some() {
+            self.longest = Some(self.longest.map_or(cost, |longest| longest.greatest(cost)));
+        }
+        match (leaving, self.legs.last().copied()) {
+            (Some(Leaving::Back), Some(leg)) => {
+                self.legs.pop();
+                self.entry = leg.door;
+            }
+            (Some(Leaving::On(door)), _) => {
+                self.legs.push(Leg { door, cost });
+                self.entry = 0;
+            }
+            // The robot was lost, or begins.
+            _ => self.knows_way = false,
+        }
+        self.degree = degree;
+        if sees_marker {
+            self.legs.clear();
+            (self.entry, self.knows_way) = (0, true);
+        }
+    }
+
+    /// The robot got lost.
+    pub(crate) fn lose_way(&mut self) {
+        self.knows_way = false;
+        self.leaving = None;
+        self.legs.clear();
+        self.entry = 0;
+    }
+
+    /// The door of the way back; `None` at the marker, or if the way is not known.
+    pub(crate) fn door_back(&self) -> Option<Door> {
+        let is_away = self.knows_way && !self.legs.is_empty();
+        is_away.then(|| Door(self.entry).inverse(self.degree.max(1)))
+    }
+
+    /// Whether the robot is at the marker.
+    pub(crate) fn is_at_marker(&self) -> bool {
+        self.knows_way && self.legs.is_empty() && self.leaving.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::{
+        embedded_graph::{Dart, EmbeddedGraph},
+        percept::Sighting,
+        world::{GraphWorld, World},
+    };
+
+    use super::*;
+
+    /// A triangle whose vertices each have a dead end.
+    fn triangle() -> EmbeddedGraph {
+        let lists =
+            [("a", "b c x"), ("b", "c a y"), ("c", "a b z"), ("x", "a"), ("y", "b"), ("z", "c")];
+        let lists = lists.map(|(name, others)| {
+            (name.to_owned(), others.split(' ').map(str::to_owned).collect::<Vec<_>>())
+        });
+        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+    }
+
+    /// A walk by some doors, as far as the budget allows, and the way back.
+    fn moves(doors: &[u32], budget: Budget) -> (u64, Option<BudgetLimit>, bool) {
+        let graph = triangle();
+        let mut world = GraphWorld::new(&graph, Dart(0));
+        let mut allowance = Allowance::new(budget);
+        // Each move takes 10 s and 5 m.
+        let spent = |world: &GraphWorld| {
+            let moves = world.moves();
+            Spent { moves, seconds: 10.0 * moves as f64, metres: 5.0 * moves as f64 }
+        };
+        let look = |world: &mut GraphWorld, allowance: &mut Allowance| {
+            let percept = world.percept().unwrap();
+            let sees = matches!(percept.sighting, Sighting::Pointing(_));
+            allowance.arrive(percept.degree, sees, spent(world));
+        };
+        look(&mut world, &mut allowance);
+        let go = |world: &mut GraphWorld, door: Door, allowance: &mut Allowance| {
+            allowance.leave(door, spent(world));
+            world.traverse(door).unwrap();
+            look(world, allowance);
+        };
+        let mut limit = None;
+        for &door in doors {
+            let door = Door(door % world.sensed().degree);
+            limit = allowance.forbids(door, spent(&world));
+            if limit.is_some() {
+                break;
+            }
+            go(&mut world, door, &mut allowance);
+        }
+        while let Some(door) = allowance.door_back() {
+            assert_eq!(allowance.forbids(door, spent(&world)), None);
+            go(&mut world, door, &mut allowance);
+        }
+        assert!(allowance.is_at_marker());
+        (world.moves(), limit, matches!(world.sensed().sighting, Sighting::Pointing(_)))
+    }
+
+    #[test]
+    fn the_robot_is_back_at_the_marker_before_its_moves_are_over() {
+        let mut doors = [0_u32; 12];
+        // Other doors each time.
+        for seed in 0..400_u32 {
+            for (at, door) in doors.iter_mut().enumerate() {
+                *door = (seed.wrapping_mul(2_654_435_761) >> (2 * at)) & 3;
+            }
+            for most in 2..=14 {
+                let budget = Budget { moves: Some(most), ..Budget::default() };
+                let (moves, limit, is_at_marker) = moves(&doors, budget);
+                assert!(moves <= most && is_at_marker, "{doors:?} {most}: {moves}");
+                // A walk that was stopped could have gone on for less than two moves.
+                assert!(limit.is_none() || moves + 2 > most, "{doors:?} {most}: {moves}");
+            }
+        }
+    }
+
+    #[test]
+    fn time_and_way_have_margins() {
+        let doors = [1, 1, 1, 1, 1, 1, 1, 1];
+        let limited = |budget| moves(&doors, budget).1;
+        let none = Budget::default();
+        assert_eq!(limited(none), None);
+        let (seconds, metres) = (Some(400.0), Some(90.0));
+        assert_eq!(limited(Budget { seconds, ..none }), None);
+        assert_eq!(
+            limited(Budget { seconds: Some(359.0), ..none }),
+            Some(BudgetLimit::Time(359.0))
+        );
+        assert_eq!(limited(Budget { metres, ..none }), None);
+        assert_eq!(limited(Budget { metres: Some(59.0), ..none }), Some(BudgetLimit::Way(59.0)));
+    }
+}

@@ -1,0 +1,126 @@
+//! What a robot does in a run: how it maps, what it may spend, and from where it goes on.
+
+use std::fmt;
+
+use toposlam_model::mapping::{MappingMethod, Walk};
+
+use crate::budget::Budget;
+
+/// What a robot does in a run.
+#[derive(Clone, Debug)]
+pub struct RunSettings {
+    /// How it maps.
+    pub method: MappingMethod,
+    /// The most darts of its map.
+    pub dart_bound: usize,
+    /// What it may spend.
+    pub budget: Budget,
+    /// The walks of earlier runs from which it goes on. Without any, it starts at its marker.
+    pub earlier: Vec<Walk>,
+}
+
+impl RunSettings {
+    /// A run from the marker, without a budget.
+    #[must_use]
+    pub fn new(method: impl Into<MappingMethod>, dart_bound: usize) -> Self {
+        let (budget, earlier) = (Budget::default(), Vec::new());
+        Self { method: method.into(), dart_bound, budget, earlier }
+    }
+}
+
+/// What the head of a log says of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RecordedSettings {
+    /// How the robot maps.
+    pub method: MappingMethod,
+    /// What it may spend.
+    pub budget: Budget,
+    /// Whether it goes on from earlier runs.
+    pub is_resumed: bool,
+}
+
+impl RunSettings {
+    /// What the head of its log says.
+    #[must_use]
+    pub fn recorded(&self) -> RecordedSettings {
+        let Self { method, budget, .. } = *self;
+        RecordedSettings { method, budget, is_resumed: !self.earlier.is_empty() }
+    }
+}
+
+/// The form that `from_head` parses, as in `folding recovering audits=1 max-moves=25`.
+impl fmt::Display for RecordedSettings {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { method, budget: Budget { moves, seconds, metres }, is_resumed } = self;
+        write!(out, "{method}")?;
+        if let Some(moves) = moves {
+            write!(out, " max-moves={moves}")?;
+        }
+        if let Some(seconds) = seconds {
+            write!(out, " max-seconds={seconds}")?;
+        }
+        if let Some(metres) = metres {
+            write!(out, " max-metres={metres}")?;
+        }
+        if *is_resumed { write!(out, " resumed") } else { Ok(()) }
+    }
+}
+
+impl RecordedSettings {
+    /// Reads what the head of a log says.
+    ///
+    /// # Errors
+    /// Returns the cause if it is not of this form.
+    pub fn from_head(text: &str) -> Result<Self, String> {
+        let mut settings = Self::default();
+        let mut method = Vec::new();
+        for word in text.split(' ') {
+            let (name, number) = word.split_once('=').unwrap_or((word, ""));
+            let real = || number.parse().ok().filter(|number: &f64| *number > 0.0);
+            let known = match name {
+                "max-moves" => {
+                    number.parse().map(|most| settings.budget.moves = Some(most)).is_ok()
+                }
+                "max-seconds" => real().map(|most| settings.budget.seconds = Some(most)).is_some(),
+                "max-metres" => real().map(|most| settings.budget.metres = Some(most)).is_some(),
+                "resumed" => {
+                    settings.is_resumed = true;
+                    true
+                }
+                _ => {
+                    method.push(word);
+                    true
+                }
+            };
+            if !known {
+                return Err(format!("`{word}` has no number"));
+            }
+        }
+        settings.method = method.join(" ").parse()?;
+        Ok(settings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_head_of_a_log_gives_the_settings_again() {
+        for text in [
+            "algorithm1",
+            "folding audits=2 max-moves=25",
+            "folding recovering audits=1 max-seconds=1200 max-metres=500.5 resumed",
+        ] {
+            assert_eq!(RecordedSettings::from_head(text).unwrap().to_string(), text);
+        }
+        for (text, cause) in [
+            ("folding max-moves=-1", "`max-moves=-1` has no number"),
+            ("folding max-metres=0", "`max-metres=0` has no number"),
+            ("max-moves=3", "`` is not algorithm1 or folding"),
+            ("folding slowly", "`slowly` does not follow the name of an algorithm"),
+        ] {
+            assert_eq!(RecordedSettings::from_head(text), Err(cause.to_owned()));
+        }
+    }
+}
