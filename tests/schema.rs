@@ -65,6 +65,7 @@ const COMMANDS: [(&str, &[&str]); 18] = [
             "simulate worlds/shape-6.toml --by-scene --fault carried@40 --log carried.mcap",
             "simulate worlds/shape-6.toml --by-scene --fault carried@9999",
             "simulate worlds/shape-6.toml --sensor laser",
+            "simulate worlds/shape-8.toml --by-scene --recover --fault blocked@20",
         ],
     ),
     (

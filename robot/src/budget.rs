@@ -9,7 +9,7 @@ use toposlam_model::percept::Door;
 
 /// What a run may spend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Budget {
+pub struct RunBudget {
     /// Moves.
     pub moves: Option<u64>,
     /// Seconds by the robot's clock.
@@ -78,7 +78,7 @@ impl Spent {
     }
 
     /// The limit that this exceeds.
-    fn exceeded(self, budget: Budget) -> Option<BudgetLimit> {
+    fn exceeded(self, budget: RunBudget) -> Option<BudgetLimit> {
         let moves = budget.moves.filter(|&most| self.moves > most).map(BudgetLimit::Moves);
         let time = budget.seconds.filter(|&most| self.seconds > most).map(BudgetLimit::Time);
         let way = budget.metres.filter(|&most| self.metres > most).map(BudgetLimit::Way);
@@ -102,7 +102,7 @@ struct Leg {
 /// A robot's budget, and its way back to the marker.
 #[derive(Clone, Debug)]
 pub(crate) struct Allowance {
-    budget: Budget,
+    budget: RunBudget,
     spent: Spent,
     longest: Option<Spent>,
     legs: Vec<Leg>,
@@ -126,7 +126,7 @@ enum Leaving {
 
 impl Allowance {
     /// The allowance of a robot that begins.
-    pub(crate) fn new(budget: Budget) -> Self {
+    pub(crate) fn new(budget: RunBudget) -> Self {
         Self {
             budget,
             spent: Spent::default(),
@@ -233,7 +233,7 @@ mod tests {
     }
 
     /// A walk by some doors, as far as the budget allows, and the way back.
-    fn moves(doors: &[u32], budget: Budget) -> (u64, Option<BudgetLimit>, bool) {
+    fn moves(doors: &[u32], budget: RunBudget) -> (u64, Option<BudgetLimit>, bool) {
         let graph = triangle();
         let mut world = GraphWorld::new(&graph, Dart(0));
         let mut allowance = Allowance::new(budget);
@@ -279,7 +279,7 @@ mod tests {
                 *door = (seed.wrapping_mul(2_654_435_761) >> (2 * at)) & 3;
             }
             for most in 2..=14 {
-                let budget = Budget { moves: Some(most), ..Budget::default() };
+                let budget = RunBudget { moves: Some(most), ..RunBudget::default() };
                 let (moves, limit, is_at_marker) = moves(&doors, budget);
                 assert!(moves <= most && is_at_marker, "{doors:?} {most}: {moves}");
                 // A walk that was stopped could have gone on for less than two moves.
@@ -292,15 +292,15 @@ mod tests {
     fn time_and_way_have_margins() {
         let doors = [1, 1, 1, 1, 1, 1, 1, 1];
         let limited = |budget| moves(&doors, budget).1;
-        let none = Budget::default();
+        let none = RunBudget::default();
         assert_eq!(limited(none), None);
         let (seconds, metres) = (Some(400.0), Some(90.0));
-        assert_eq!(limited(Budget { seconds, ..none }), None);
+        assert_eq!(limited(RunBudget { seconds, ..none }), None);
         assert_eq!(
-            limited(Budget { seconds: Some(359.0), ..none }),
+            limited(RunBudget { seconds: Some(359.0), ..none }),
             Some(BudgetLimit::Time(359.0))
         );
-        assert_eq!(limited(Budget { metres, ..none }), None);
-        assert_eq!(limited(Budget { metres: Some(59.0), ..none }), Some(BudgetLimit::Way(59.0)));
+        assert_eq!(limited(RunBudget { metres, ..none }), None);
+        assert_eq!(limited(RunBudget { metres: Some(59.0), ..none }), Some(BudgetLimit::Way(59.0)));
     }
 }

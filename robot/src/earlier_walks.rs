@@ -1,7 +1,7 @@
 //! The walks of an earlier run, from its log.
 
 use toposlam_model::{
-    mapping::Walk,
+    mapping::EarlierWalk,
     percept::{Door, Percept},
 };
 use toposlam_vision::laser::params::LaserParams;
@@ -17,7 +17,7 @@ use crate::{
 ///
 /// # Errors
 /// Returns an error if the log cannot be read, or records no percepts and doors.
-pub fn earlier_walks(log: &Log, topics: &TopicMap) -> Result<Vec<Walk>, ExtractError> {
+pub fn earlier_walks(log: &Log, topics: &TopicMap) -> Result<Vec<EarlierWalk>, ExtractError> {
     let config = ExtractConfig {
         evidence: Evidence::Recorded,
         sensor: None,
@@ -49,7 +49,7 @@ pub fn earlier_walks(log: &Log, topics: &TopicMap) -> Result<Vec<Walk>, ExtractE
 /// The walks so far.
 #[derive(Default)]
 struct Walks {
-    done: Vec<Walk>,
+    done: Vec<EarlierWalk>,
     first: Option<Percept>,
     moves: Vec<(Door, Percept)>,
     door: Option<Door>,
@@ -83,7 +83,7 @@ impl Walks {
     fn end(&mut self) {
         let moves = std::mem::take(&mut self.moves);
         if let Some(first) = self.first.take().filter(|_| !moves.is_empty()) {
-            self.done.push(Walk::new(first, moves, self.is_blocked));
+            self.done.push(EarlierWalk::new(first, moves, self.is_blocked));
         }
         self.door = None;
         self.is_blocked = false;

@@ -15,7 +15,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    budget::{Allowance, Budget, BudgetLimit, Spent},
+    budget::{Allowance, BudgetLimit, RunBudget, Spent},
     record::{
         Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
         RunObserver, SensingError, nanoseconds,
@@ -173,7 +173,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             place: None,
             obstacles: Obstacles::Fail,
             begins_anywhere: false,
-            allowance: Allowance::new(Budget::default()),
+            allowance: Allowance::new(RunBudget::default()),
             metres: 0.0,
             moves: 0,
             door: None,

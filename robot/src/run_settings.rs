@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use toposlam_model::mapping::{MappingMethod, Walk};
+use toposlam_model::mapping::{EarlierWalk, MappingMethod};
 
-use crate::budget::Budget;
+use crate::budget::RunBudget;
 
 /// What a robot does in a run.
 #[derive(Clone, Debug)]
@@ -14,16 +14,16 @@ pub struct RunSettings {
     /// The most darts of its map.
     pub dart_bound: usize,
     /// What it may spend.
-    pub budget: Budget,
+    pub budget: RunBudget,
     /// The walks of earlier runs from which it goes on. Without any, it starts at its marker.
-    pub earlier: Vec<Walk>,
+    pub earlier: Vec<EarlierWalk>,
 }
 
 impl RunSettings {
     /// A run from the marker, without a budget.
     #[must_use]
     pub fn new(method: impl Into<MappingMethod>, dart_bound: usize) -> Self {
-        let (budget, earlier) = (Budget::default(), Vec::new());
+        let (budget, earlier) = (RunBudget::default(), Vec::new());
         Self { method: method.into(), dart_bound, budget, earlier }
     }
 }
@@ -34,7 +34,7 @@ pub struct RecordedSettings {
     /// How the robot maps.
     pub method: MappingMethod,
     /// What it may spend.
-    pub budget: Budget,
+    pub budget: RunBudget,
     /// Whether it goes on from earlier runs.
     pub is_resumed: bool,
 }
@@ -51,7 +51,7 @@ impl RunSettings {
 /// The form that `from_head` parses, as in `folding recovering audits=1 max-moves=25`.
 impl fmt::Display for RecordedSettings {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let Self { method, budget: Budget { moves, seconds, metres }, is_resumed } = self;
+        let Self { method, budget: RunBudget { moves, seconds, metres }, is_resumed } = self;
         write!(out, "{method}")?;
         if let Some(moves) = moves {
             write!(out, " max-moves={moves}")?;

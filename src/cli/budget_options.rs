@@ -1,6 +1,6 @@
 //! The options of what a robot may spend.
 
-use toposlam_robot::budget::Budget;
+use toposlam_robot::budget::RunBudget;
 
 /// What a robot may spend.
 #[derive(Clone, Copy, Debug, clap::Args)]
@@ -9,16 +9,16 @@ pub(super) struct BudgetOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_moves: Option<u64>,
     /// Return to the marker before this time is over, in minutes of the robot's clock
-    #[arg(long, value_name = "MINUTES", value_parser = positive)]
+    #[arg(long, value_name = "MINUTES", allow_hyphen_values = true, value_parser = positive)]
     max_minutes: Option<f64>,
     /// Return to the marker before the battery is empty: the part of it that one metre takes, as in 0.001
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = share)]
     battery_per_metre: Option<f64>,
 }
 
 impl BudgetOptions {
-    pub(super) fn budget(self) -> Budget {
-        Budget {
+    pub(super) fn budget(self) -> RunBudget {
+        RunBudget {
             moves: self.max_moves,
             seconds: self.max_minutes.map(|minutes| 60.0 * minutes),
             metres: self.battery_per_metre.map(|share| 1.0 / share),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toposlam_model::mapping::Walk;
+use toposlam_model::mapping::EarlierWalk;
 use toposlam_robot::earlier_walks::earlier_walks;
 
 use super::{
@@ -18,7 +18,7 @@ use super::{
 pub(super) fn earlier_walks_of(
     logs: &[PathBuf],
     world_hash: Option<&str>,
-) -> Result<Vec<Walk>, CliError> {
+) -> Result<Vec<EarlierWalk>, CliError> {
     let mut walks = Vec::new();
     for path in logs {
         let opened = OpenLog::new(path, &LogOptions::default())?;

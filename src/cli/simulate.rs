@@ -18,7 +18,8 @@ use std::{
 
 use toposlam::{journal::Journal, page, picture};
 use toposlam_model::{
-    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld, mapping::Walk,
+    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
+    mapping::EarlierWalk,
 };
 use toposlam_robot::{
     evaluation::{LearnedSensors, LearningError},
@@ -260,7 +261,7 @@ impl SimulateArguments {
     }
 
     /// The walks of the earlier runs from which the robot goes on.
-    fn earlier(&self, world: &NamedWorld, facing: Dart) -> Result<Vec<Walk>, CliError> {
+    fn earlier(&self, world: &NamedWorld, facing: Dart) -> Result<Vec<EarlierWalk>, CliError> {
         earlier_walks_of(&self.resume, Some(&world_hash(&world.graph, facing)))
     }
 

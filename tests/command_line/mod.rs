@@ -26,6 +26,7 @@ mod options;
 mod proofs;
 mod render;
 mod replay;
+mod safeguards;
 mod sense;
 mod simulate;
 mod train;

@@ -171,6 +171,9 @@ pub enum Contradiction {
         /// The percept.
         perceived: Percept,
     },
+    /// A hallway that was blocked is free.
+    #[error("a door that was blocked is free")]
+    Unblocked,
     /// A robot that looks for the marker has seen every place that it can reach, or has looked for too long.
     #[error("the marker is not found; perhaps an obstacle cuts the robot off from it")]
     NoMarker,

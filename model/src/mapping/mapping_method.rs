@@ -3,9 +3,9 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    DirectionalAlgorithm, FACING, FoldingExploration, InvalidStep, MappedWorld, MappingError,
-    MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent, Walk, audit,
-    map_with_recovery,
+    DirectionalAlgorithm, EarlierWalk, FACING, FoldingExploration, InvalidStep, MappedWorld,
+    MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+    audit, map_with_recovery,
 };
 
 /// How a robot maps.
@@ -70,7 +70,7 @@ impl MappingMethod {
         self,
         world: &mut W,
         bound: usize,
-        earlier: &[Walk],
+        earlier: &[EarlierWalk],
         observer: &mut impl Observer<W>,
     ) -> (MappingRun, Result<MappedWorld, MappingError<W::Error>>) {
         match self {
@@ -221,7 +221,7 @@ mod tests {
         );
         assert_eq!(run.moves() as usize, moves.len());
         for known in [3, moves.len() / 2, moves.len()] {
-            let earlier = [Walk::new(first.unwrap(), moves[..known].iter().copied(), false)];
+            let earlier = [EarlierWalk::new(first.unwrap(), moves[..known].iter().copied(), false)];
             for pose in graph.darts() {
                 let world = GraphWorld::new(&graph, facing);
                 let placed = world.state().placed;

@@ -172,7 +172,7 @@ own! {
     End "/toposlam/end" {
         /// Moves made.
         moves: u32,
-        /// `mapped`, `gave-up` or `stopped`.
+        /// `mapped`, `gave-up`, `stopped` or `out-of-budget`.
         ending: String,
         /// Why, if it gave up.
         cause: String,

@@ -18,7 +18,7 @@ use std::mem;
 use super::{
     FoldingExploration,
     marker_walk::MarkerWalk,
-    walks::{Walk, Walks, sees_marker},
+    walks::{EarlierWalk, EarlierWalks, sees_marker},
 };
 use crate::{
     embedded_graph::Dart,
@@ -91,7 +91,7 @@ pub struct MappedWorld {
 struct Remembering<'w, W> {
     world: &'w mut W,
     /// The walk since the robot last began one.
-    walk: Walk,
+    walk: EarlierWalk,
     moves: u64,
 }
 
@@ -187,15 +187,15 @@ pub fn map_with_recovery<W: Relocate>(
     world: &mut W,
     exploration: &mut FoldingExploration,
     config: RecoveryConfig,
-    earlier: &[Walk],
+    earlier: &[EarlierWalk],
     observer: &mut impl Observer<W>,
 ) -> Result<MappedWorld, MappingError<W::Error>> {
-    let mut walks = Walks::default();
+    let mut walks = EarlierWalks::default();
     for walk in earlier {
         walks.add(walk.clone());
     }
     let mut recovery = Recovery {
-        world: Remembering { world, walk: Walk::default(), moves: 0 },
+        world: Remembering { world, walk: EarlierWalk::default(), moves: 0 },
         exploration,
         observer: Through(observer),
         config,
@@ -215,7 +215,7 @@ struct Recovery<'w, 'e, W, O> {
     exploration: &'e mut FoldingExploration,
     observer: Through<'w, O>,
     config: RecoveryConfig,
-    walks: Walks,
+    walks: EarlierWalks,
     /// Whether the last search, for a junction or for the marker, was in vain.
     has_failed: bool,
     /// Whether the blocked doors were tried again.
@@ -343,6 +343,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
                     // A hallway is free now. What was seen while it was blocked is of another world.
                     self.walks.add(mem::take(&mut self.world.walk));
                     self.walks.forget_blocked();
+                    return Err(Contradiction::Unblocked.into());
                 }
                 Err(error.into())
             }

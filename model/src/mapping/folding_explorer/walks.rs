@@ -9,7 +9,7 @@ use crate::{
 
 /// A walk: percepts, and the doors between them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Walk {
+pub struct EarlierWalk {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
     /// Whether the robot turned round at an obstacle.
@@ -20,7 +20,7 @@ pub(super) fn sees_marker(percept: &Percept) -> bool {
     matches!(percept.sighting, Sighting::Pointing(_))
 }
 
-impl Walk {
+impl EarlierWalk {
     /// A walk that begins with a percept; after each door there is another percept. `is_blocked` tells whether the
     /// robot turned round at an obstacle.
     #[must_use]
@@ -91,11 +91,11 @@ impl Walk {
 
 /// What a robot knows: its walks, each from or to the marker, the newest last.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Walks(Vec<Walk>);
+pub(super) struct EarlierWalks(Vec<EarlierWalk>);
 
-impl Walks {
+impl EarlierWalks {
     /// Adds the parts of a walk.
-    pub(super) fn add(&mut self, walk: Walk) {
+    pub(super) fn add(&mut self, walk: EarlierWalk) {
         self.0.extend(walk.split_at_marker());
     }
 
