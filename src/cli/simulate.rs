@@ -22,7 +22,7 @@ use toposlam_model::{
     mapping::EarlierWalk,
 };
 use toposlam_robot::{
-    evaluation::{LearnedSensors, LearningError},
+    evaluation::{FalsePercepts, LearnedSensors, LearningError},
     log::{recorder::Recorder, world_hash},
     record::{RobotSensor, StoppedBy},
     recording::Recording,
@@ -340,6 +340,11 @@ impl SimulateArguments {
             facing,
             seed: self.seed,
             allows_blocked: self.blocked.allows(),
+            percepts: match self.sensor {
+                SensorChoice::Laser => FalsePercepts::BY_LASER,
+                _ if self.by_scene => FalsePercepts::BY_SCENE,
+                _ => FalsePercepts::BY_IMAGE,
+            },
             frames: if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" },
             run: &run,
             missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),

@@ -28,6 +28,14 @@ pub struct Audit {
     pub pose: Dart,
 }
 
+impl Audit {
+    /// The number of percepts: one before each move, and the last.
+    #[must_use]
+    pub fn percepts(&self) -> u64 {
+        self.moves + 1
+    }
+}
+
 /// Why an audit ended early.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AuditError<E> {

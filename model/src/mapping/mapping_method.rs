@@ -100,16 +100,24 @@ fn audited<W: Relocate>(
     let mut tell = |world: &mut W, event| {
         observer.event(world, run.journey(), MappingEvent::Safeguard(event));
     };
-    let (mut pose, mut audit_moves) = (run.robot(), 0);
+    let (mut pose, mut audit_moves, mut audited_percepts) = (run.robot(), 0, Vec::new());
     for _ in 0..audits {
         tell(world, SafeguardEvent::AuditBegun);
         let audited = audit(world, map, FACING, pose, |_, _| {})?;
         pose = audited.pose;
         audit_moves += audited.moves;
+        audited_percepts.push(audited.percepts());
         tell(world, SafeguardEvent::AuditPassed { moves: audited.moves });
     }
     let moves = run.moves() + audit_moves;
-    Ok(MappedWorld { pose, moves, audit_moves, recoveries: 0, blocked: Vec::new() })
+    Ok(MappedWorld {
+        pose,
+        moves,
+        audit_moves,
+        audited_percepts,
+        recoveries: 0,
+        blocked: Vec::new(),
+    })
 }
 
 /// The name in logs.

@@ -6,6 +6,7 @@ pub mod clutter;
 mod colour_learning;
 mod equipment;
 pub mod failure_groups;
+mod false_percepts;
 #[cfg(test)]
 mod impatient;
 pub mod judge;
@@ -26,5 +27,6 @@ pub mod view_sampler;
 
 pub use colour_learning::{LearningError, learned};
 pub use equipment::RobotEquipment;
+pub use false_percepts::FalsePercepts;
 pub use learned_sensors::LearnedSensors;
 pub use plans::plans;

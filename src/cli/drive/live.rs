@@ -14,6 +14,7 @@ use toposlam_model::{
     mapping::{Journey, MappingEvent, MappingMethod, Observer},
 };
 use toposlam_robot::{
+    evaluation::FalsePercepts,
     explorer::RobotExplorer,
     log::{
         messages,
@@ -162,6 +163,10 @@ impl DriveArguments {
             mapping: &mapping,
             mapped: mapped.as_ref(),
             allows_blocked: self.blocked.allows(),
+            percepts: match self.sensor {
+                SensorChoice::Laser => FalsePercepts::BY_LASER,
+                _ => FalsePercepts::BY_IMAGE,
+            },
             seconds,
             pictures,
             frames,

@@ -7,7 +7,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
 };
-use toposlam_robot::explorer::ExplorerError;
+use toposlam_robot::{evaluation::FalsePercepts, explorer::ExplorerError};
 
 use super::{CliError, Outcome};
 use crate::cli::{
@@ -25,6 +25,8 @@ pub(super) struct DriveResult<'a> {
     pub(super) mapped: Result<&'a MappedWorld, &'a MappingError<ExplorerError>>,
     /// Whether the map may lack what is behind blocked doors.
     pub(super) allows_blocked: bool,
+    /// How often a percept is false.
+    pub(super) percepts: FalsePercepts,
     /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
     pub(super) pictures: u64,
@@ -101,7 +103,7 @@ impl DriveResult<'_> {
         print_paragraph(out, &sentence(&ended))?;
         writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
         if let Ok(mapped) = self.mapped {
-            print_safeguards(out, self.method, mapped, self.mapping.map())?;
+            print_safeguards(out, self.method, mapped, self.mapping.map(), self.percepts)?;
         }
         let minutes = self.seconds / 60.0;
         writeln!(out, "  {:<17} {}", self.frames, self.pictures)?;
@@ -121,7 +123,7 @@ impl DriveResult<'_> {
             ending,
             error: self.mapped.err().map(ToString::to_string),
             moves: self.moves(),
-            safeguards: SafeguardFields::new(self.mapped.ok(), self.mapping.map()),
+            safeguards: SafeguardFields::new(self.mapped.ok(), self.mapping.map(), self.percepts),
             vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),
             seconds: (self.seconds * 1e3).round() / 1e3,

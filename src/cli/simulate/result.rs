@@ -9,6 +9,7 @@ use toposlam_model::{
     mapping::{FACING, MappingError, MappingRun},
 };
 use toposlam_robot::{
+    evaluation::FalsePercepts,
     explorer::ExplorerError,
     run::{Run, RunOutcome},
     simulator::RobotFault,
@@ -28,6 +29,8 @@ pub(super) struct SimulationResult<'a> {
     pub(super) seed: u64,
     /// Whether the map may lack what is behind blocked doors.
     pub(super) allows_blocked: bool,
+    /// How often a percept is false.
+    pub(super) percepts: FalsePercepts,
     /// What its frames are called.
     pub(super) frames: &'static str,
     pub(super) run: &'a Run<'a>,
@@ -145,7 +148,7 @@ impl SimulationResult<'_> {
         let (moves, expected) = (run.moves(), run.explore_moves);
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
         if let Some(mapped) = &run.mapped {
-            print_safeguards(out, run.method, mapped, map)?;
+            print_safeguards(out, run.method, mapped, map, self.percepts)?;
         }
         writeln!(out, "  edges             {edges}")?;
         writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
@@ -175,7 +178,7 @@ impl SimulationResult<'_> {
             moves: run.moves(),
             edges: self.world.graph.edge_count(),
             explore_moves: run.explore_moves,
-            safeguards: SafeguardFields::new(run.mapped.as_ref(), run.mapping.map()),
+            safeguards: SafeguardFields::new(run.mapped.as_ref(), run.mapping.map(), self.percepts),
             isomorphic: run.isomorphic(),
             pose_true: run.pose_true(),
             conforms: divergence.is_none(),

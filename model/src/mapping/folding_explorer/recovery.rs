@@ -78,8 +78,10 @@ pub struct MappedWorld {
     /// All moves, with those of recoveries and audits. What a robot that got lost drives until it comes to a
     /// junction is no move.
     pub moves: u64,
-    /// The moves of audits.
+    /// The moves of audits, with those that found a mistake.
     pub audit_moves: u64,
+    /// The number of percepts in each audit of this map. All agreed with it.
+    pub audited_percepts: Vec<u64>,
     /// The number of recoveries.
     pub recoveries: u32,
     /// The darts of the map whose hallways are blocked: they lead to dead ends that are obstacles. The
@@ -204,6 +206,7 @@ pub fn map_with_recovery<W: Relocate>(
         has_retried: false,
         recoveries: 0,
         audit_moves: 0,
+        audited_percepts: Vec::new(),
     };
     let begun = if earlier.is_empty() { recovery.begin() } else { recovery.go_on() };
     recovery.finish(begun)
@@ -222,6 +225,7 @@ struct Recovery<'w, 'e, W, O> {
     has_retried: bool,
     recoveries: u32,
     audit_moves: u64,
+    audited_percepts: Vec<u64>,
 }
 
 impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
@@ -238,9 +242,16 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         loop {
             match ended.and_then(|()| self.check_map()) {
                 Ok((pose, blocked)) => {
-                    let Self { world, audit_moves, recoveries, .. } = self;
+                    let Self { world, audit_moves, audited_percepts, recoveries, .. } = self;
                     let moves = world.moves;
-                    return Ok(MappedWorld { pose, moves, audit_moves, recoveries, blocked });
+                    return Ok(MappedWorld {
+                        pose,
+                        moves,
+                        audit_moves,
+                        audited_percepts,
+                        recoveries,
+                        blocked,
+                    });
                 }
                 Err(error) if self.recoveries == self.config.most_recoveries => return Err(error),
                 Err(error) => ended = self.recover(error),
@@ -353,6 +364,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
     fn audit_map(&mut self) -> Result<(Dart, Vec<Dart>), MappingError<W::Error>> {
         let mut pose = self.exploration.robot();
         let mut blocked = Vec::new();
+        self.audited_percepts.clear();
         for _ in 0..self.config.audits {
             self.tell(SafeguardEvent::AuditBegun);
             let Some(map) = self.exploration.map().complete() else {
@@ -367,6 +379,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
             };
             let audited = audit(&mut self.world, map, FACING, pose, note)?;
             pose = audited.pose;
+            self.audited_percepts.push(audited.percepts());
             self.tell(SafeguardEvent::AuditPassed { moves: audited.moves });
         }
         blocked.sort_unstable();
