@@ -45,7 +45,6 @@ use super::{
     input,
     laser_options::LaserOptions,
     mapping_marker::AlgorithmOption,
-    method_options::safeguards_in_words,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
     output,
@@ -359,17 +358,19 @@ impl ConformArguments {
             Who::Anyone => MappingMethod::default(),
         };
         let algorithm = method.algorithm();
-        let driver = match self.driver {
-            Who::Algorithm if method.audits() == 0 => RunDriver::Algorithm(algorithm),
-            Who::Algorithm => {
-                let safeguards = safeguards_in_words(method);
+        let driver = match (self.driver, method) {
+            (Who::Algorithm, MappingMethod::By { algorithm, audits: 0 }) => {
+                RunDriver::Algorithm(algorithm)
+            }
+            (Who::Algorithm, MappingMethod::By { algorithm, audits }) => {
+                RunDriver::Audited { algorithm, audits }
+            }
+            (Who::Algorithm, MappingMethod::Recovering(_)) => {
                 let path = path.display();
-                remark!(
-                    "{path}: its robot maps {safeguards}; its doors are compared with no algorithm"
-                );
+                remark!("{path}: its robot recovers; its doors are compared with no algorithm");
                 RunDriver::Anyone
             }
-            Who::Anyone => RunDriver::Anyone,
+            (Who::Anyone, _) => RunDriver::Anyone,
         };
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
@@ -400,7 +401,7 @@ impl ConformArguments {
         let question = self.question(known.as_ref(), marker, driver);
         // Whoever drives may turn back between junctions. The algorithms do not.
         let events = match driver {
-            RunDriver::Algorithm(_) => gathered.events.clone(),
+            RunDriver::Algorithm(_) | RunDriver::Audited { .. } => gathered.events.clone(),
             RunDriver::Anyone => gathered.events.without_excursions(),
         };
         let judgement = judge(events, &question, quirks, &progress);

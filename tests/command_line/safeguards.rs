@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use super::{folder, objects, run, stderr, stdout};
+use super::{folder, objects, run, stderr, stdout, stdout_of};
 
 const SHAPE_8: &str = "worlds/shape-8.toml";
 const BUILDING: &str = "worlds/building-12.toml";
@@ -35,6 +35,23 @@ fn an_audit_takes_moves_of_its_own_and_changes_nothing_else() {
         }
         assert!(0 < one[1] && one[1] < two[1]);
     }
+}
+
+#[test]
+fn the_log_of_an_audited_run_conforms_to_its_algorithm_and_audits() {
+    let folder = folder("audited-log");
+    let log = folder.join("audited.mcap").display().to_string();
+    for algorithm in ["algorithm1", "folding"] {
+        let audited = [SHAPE_8, "--algorithm", algorithm, "--audit=2", "--log", &log];
+        assert_eq!(simulated(&audited).0, 0);
+        let lines = objects(&stdout_of(["conform", &log, "--world", SHAPE_8, "--json"]));
+        assert!(lines.iter().any(|line| line["verdict"] == "conforms"), "{lines:?}");
+        // Another algorithm would not have audited.
+        let output = run(["conform", &log, "--algorithm", algorithm]);
+        assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+        assert!(stdout(&output).contains("the map is complete"), "{}", stdout(&output));
+    }
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -114,7 +131,7 @@ fn a_robot_returns_within_its_budget_and_goes_on_from_its_log() {
     // Whoever chose the doors, its percepts are those of the building.
     let output = run(["conform", &rest, "--world", BUILDING]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
-    assert!(stderr(&output).contains("with an audit and recovery"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("its robot recovers"), "{}", stderr(&output));
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -90,6 +90,10 @@ pub enum StepPurpose {
     },
     /// The folding explorer has followed every dart.
     NoOpenDart,
+    /// The robot audits its map.
+    Audit,
+    /// The audits of the map are over.
+    Audited,
     /// The percept is a contradiction.
     Contradicted(Contradiction),
     /// The step is not valid: the enumeration of choices is wrong.
@@ -107,6 +111,8 @@ impl fmt::Display for StepPurpose {
                 write!(out, "tests whether {edge} leads to {hypothesis}")
             }
             Self::NoOpenDart => write!(out, "no dart is open: the map is complete"),
+            Self::Audit => write!(out, "audits the map"),
+            Self::Audited => write!(out, "the map is complete and audited"),
             Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
             Self::InvalidStep(step) => write!(out, "{step}"),
         }

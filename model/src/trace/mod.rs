@@ -2,6 +2,7 @@
 //! Sections 2.1 and 2.3.
 
 mod algorithm_match;
+mod audit_match;
 mod choice_search;
 mod coverage;
 mod folding_match;
@@ -15,6 +16,7 @@ use thiserror::Error;
 pub use algorithm_match::{
     AlgorithmMatch, Amendment, MatchedChoices, match_algorithm, match_amended,
 };
+pub use audit_match::match_audited;
 pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};

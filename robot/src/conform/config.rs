@@ -24,6 +24,24 @@ pub struct ConformConfig<'w> {
 pub enum RunDriver {
     /// An algorithm; Algorithm 1 with any choices.
     Algorithm(DirectionalAlgorithm),
+    /// An algorithm with the default choices, and then audits of its map.
+    Audited {
+        /// The algorithm.
+        algorithm: DirectionalAlgorithm,
+        /// The number of audits.
+        audits: u32,
+    },
     /// Anything, in any way.
     Anyone,
+}
+
+impl RunDriver {
+    /// The algorithm, if it is one.
+    #[must_use]
+    pub fn algorithm(self) -> Option<DirectionalAlgorithm> {
+        match self {
+            Self::Algorithm(algorithm) | Self::Audited { algorithm, .. } => Some(algorithm),
+            Self::Anyone => None,
+        }
+    }
 }

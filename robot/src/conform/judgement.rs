@@ -12,7 +12,7 @@ use toposlam_model::{
     marker::{Directional, Marker, Undirected},
     trace::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError,
-        match_algorithm, poses,
+        match_algorithm, match_audited, poses,
     },
 };
 
@@ -153,7 +153,7 @@ pub fn judge(
     events.check_order()?;
     events.complete_sightings(question.marker)?;
     let marker = question.marker.name();
-    if let RunDriver::Algorithm(algorithm) = question.driver
+    if let Some(algorithm) = question.driver.algorithm()
         && marker != Directional.name()
     {
         return Err(JudgeError::Algorithm { algorithm, marker });
@@ -257,8 +257,17 @@ impl Judgement {
             }
             judgement.poses = Some(poses);
         }
-        if let RunDriver::Algorithm(algorithm) = question.driver {
-            let followed = match_algorithm(algorithm, trace, events.claim(), question.dart_bound);
+        let (claim, bound) = (events.claim(), question.dart_bound);
+        let followed = match question.driver {
+            RunDriver::Algorithm(algorithm) => {
+                Some(match_algorithm(algorithm, trace, claim, bound))
+            }
+            RunDriver::Audited { algorithm, audits } => {
+                Some(match_audited(algorithm, audits, trace, claim, bound))
+            }
+            RunDriver::Anyone => None,
+        };
+        if let Some(followed) = followed {
             match &followed.reached {
                 MatchEnd::Departure(departure) => {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));

@@ -63,10 +63,7 @@ fn options() -> impl Strategy<Value = Options> {
 impl Options {
     /// A good run of the algorithm that it is judged with.
     fn log(&self, plan: &Arc<FloorPlan>, facing: Dart) -> Log {
-        let algorithm = match self.driver {
-            RunDriver::Algorithm(algorithm) => algorithm,
-            RunDriver::Anyone => DirectionalAlgorithm::Algorithm1,
-        };
+        let algorithm = self.driver.algorithm().unwrap_or_default();
         log_of(algorithm, plan, facing, self.seed)
     }
 
