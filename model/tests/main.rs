@@ -12,6 +12,7 @@ mod contradictions_movable;
 mod costs;
 mod counts;
 mod explorers;
+mod false_each_time;
 mod figure_1;
 mod folding;
 mod folding_explorer;
