@@ -40,6 +40,8 @@ pub enum ContradictoryMeasurement {
         /// By this one.
         now: f64,
     },
+    /// The junction has another shape than before.
+    Shape,
     /// The turns of a closed walk are this number of quarter turns too many, from 1 to 3.
     ClosedTurns {
         /// Counter-clockwise.
@@ -59,8 +61,8 @@ pub enum ContradictoryMeasurement {
 pub struct MeasurementContradiction {
     /// The visit at the end of the measurement.
     pub visit: usize,
-    /// The earlier visit that it contradicts: the end of an earlier traversal of the hallway, or the beginning of
-    /// the closed walk.
+    /// The earlier visit that it contradicts: the end of an earlier traversal of the hallway, the beginning of the
+    /// closed walk, or the last visit of the junction.
     pub earlier: usize,
     /// How.
     pub measurement: ContradictoryMeasurement,

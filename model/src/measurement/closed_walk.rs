@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::{MeasuredVisit, MeasurementNoise, check::ContradictoryMeasurement, two_degrees};
-use crate::{driving::visit::JunctionShape, embedded_graph::Dart, percept::Door};
+use crate::embedded_graph::Dart;
 
 /// A direction: quarter turns counter-clockwise from where the robot looked at first.
 type Quarter = u32;
@@ -30,12 +30,14 @@ struct Here {
     way: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct PastVisit {
     visit: usize,
     here: Here,
     /// The direction of the vertex's least dart.
     direction: Quarter,
+    /// The directions of all darts clockwise from that one, in quarter turns clockwise from it.
+    quarters: Vec<Quarter>,
 }
 
 impl ClosedWalks {
@@ -57,7 +59,9 @@ impl ClosedWalks {
             Here::default()
         });
         let found = self.compare(number, visit, &mut here);
-        self.here = Some(here);
+        // Of two shapes it is not known which leads on.
+        let leads_on = !matches!(found, Some((_, ContradictoryMeasurement::Shape)));
+        self.here = leads_on.then_some(here);
         found
     }
 
@@ -70,16 +74,28 @@ impl ClosedWalks {
         here: &mut Here,
     ) -> Option<(usize, ContradictoryMeasurement)> {
         let (door, &vertex) = visit.darts.iter().enumerate().min_by_key(|(_, dart)| **dart)?;
-        let mut direction = (here.heading + 6 - quarter(visit.shape?, Door(door as u32))?) % 4;
-        let past = self.visited.get(&vertex).copied();
-        let found = past.and_then(|past| Some((past, past.contradiction(here, direction)?)));
-        if let Some((past, _)) = found {
+        let mut quarters = visit.shape?.quarters();
+        if quarters.len() != visit.darts.len() {
+            return None;
+        }
+        quarters.rotate_left(door);
+        let mut direction = (here.heading + 6 - quarters[0]) % 4;
+        let first = quarters[0];
+        quarters.iter_mut().for_each(|quarter| *quarter = (*quarter + 4 - first) % 4);
+        let past = self.visited.get(&vertex);
+        if let Some(past) = past.filter(|past| past.quarters != quarters) {
+            return Some((past.visit, ContradictoryMeasurement::Shape));
+        }
+        let found =
+            past.and_then(|past| Some((past.clone(), past.contradiction(here, direction)?)));
+        if let Some((past, _)) = &found {
             here.heading = (here.heading + past.direction + 4 - direction) % 4;
             here.position = past.here.position;
             direction = past.direction;
             self.visited.retain(|_, other| other.visit <= past.visit);
         }
-        self.visited.insert(vertex, PastVisit { visit: number, here: *here, direction });
+        let now = PastVisit { visit: number, here: *here, direction, quarters };
+        self.visited.insert(vertex, now);
         found.map(|(past, measurement)| (past.visit, measurement))
     }
 }
@@ -93,7 +109,7 @@ impl Here {
         noise: &MeasurementNoise,
     ) -> Option<Self> {
         let length = now.arrived?.length;
-        let leaving = quarter(before.shape?, before.left_by?)?;
+        let leaving = *before.shape?.quarters().get(before.left_by?.0 as usize)?;
         self.heading = (self.heading + 6 - leaving) % 4;
         let along = (self.heading % 2) as usize;
         let sign = if self.heading < 2 { 1.0 } else { -1.0 };
@@ -123,10 +139,4 @@ impl PastVisit {
             ContradictoryMeasurement::ClosedWalk { off: off[0].hypot(off[1]), way }
         })
     }
-}
-
-/// The quarter turns clockwise from the entry door to a door.
-fn quarter(shape: JunctionShape, door: Door) -> Option<Quarter> {
-    let mut doors = (0..4).filter(|&quarter| shape.0[quarter as usize]);
-    doors.nth(door.0 as usize)
 }

@@ -27,6 +27,13 @@ pub struct MeasurementNoise {
     pub drift: f64,
 }
 
+impl Default for MeasurementNoise {
+    /// [`MeasurementNoise::UNKNOWN`].
+    fn default() -> Self {
+        Self::UNKNOWN
+    }
+}
+
 impl MeasurementNoise {
     /// For a robot of unknown calibration, whose events may be some way off the junctions: a difference of a tenth
     /// of the way and of some metres is none.

@@ -3,11 +3,14 @@
 
 use rayon::prelude::*;
 use thiserror::Error;
-use toposlam_model::driving::{odometry::Odometry, scene::Scene};
+use toposlam_model::{
+    driving::{odometry::Odometry, scene::Scene},
+    measurement::MeasurementNoise,
+};
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
-    InferredEvents, LaserEvents, RecordedEvents,
+    InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
@@ -21,6 +24,7 @@ use crate::{
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{EventKind, Frame, FrameSensor, SensingError},
+    superscout::MEASUREMENT_NOISE,
 };
 
 /// The source of events.
@@ -243,6 +247,15 @@ pub fn extract(
         Some(SensedScene { source, scene, odometry })
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
+    if run.is_some() {
+        events.measurement_noise = match evidence {
+            Evidence::Recorded => MEASUREMENT_NOISE,
+            Evidence::Scenes | Evidence::Pictures => {
+                MeasurementNoise { standing: NEAR, ..MEASUREMENT_NOISE }
+            }
+            Evidence::Laser => MeasurementNoise::UNKNOWN,
+        };
+    }
     let mut junctions = Vec::new();
     if evidence == Evidence::Laser && events.end.is_some() {
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.

@@ -21,6 +21,7 @@ use super::{
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
+    measured_hallways::MeasuredHallways,
     quirks::Quirks,
     tolerance::Tolerance,
 };
@@ -49,6 +50,8 @@ pub struct Judgement {
     /// The number of ways in which the visits of an undirected marker can be visits of one junction, as far as
     /// it was counted; 1 with other markers.
     pub ways: usize,
+    /// How many hallways were measured by odometry, and compared.
+    pub measured: MeasuredHallways,
     /// How far the algorithm follows the log.
     pub algorithm: Option<AlgorithmMatch>,
     /// The cases that the run covers.
@@ -243,6 +246,7 @@ impl Judgement {
             smallest: None,
             determined: None,
             ways: 1,
+            measured: MeasuredHallways::default(),
             algorithm: None,
             coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
@@ -288,6 +292,17 @@ impl Judgement {
             trail = marked.trail.or(trail);
         } else {
             judgement.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
+        }
+        let graph = question.world.as_ref().map(|known| known.graph);
+        let (measured, moved) = MeasuredHallways::compare(
+            events,
+            trace,
+            trail.as_ref(),
+            graph.zip(judgement.poses.as_ref()),
+        );
+        judgement.measured = measured;
+        if let Some((event, cause)) = moved {
+            found.note(event, cause);
         }
         if question.world.is_none() && impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);

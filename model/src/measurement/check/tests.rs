@@ -121,6 +121,24 @@ fn a_rectangle_has_four_left_turns() {
 }
 
 #[test]
+fn a_junction_keeps_its_shape() {
+    let mut visits = round(&[4.0; 5]);
+    visits[4].shape = Some(JunctionShape([true, false, true, false]));
+    // It cannot be a left turn at the first visit, and straight on at the next.
+    assert_eq!(found(&visits), [(4, 0, ContradictoryMeasurement::Shape)]);
+    visits[4].shape = None;
+    assert_eq!(found(&visits), []);
+    // Seen from the other door, the corner is to the right.
+    let right = JunctionShape([true, false, false, true]);
+    let there_and_back = [
+        visit(&[0, 1], L_LEFT, None, 1),
+        visit(&[2], END, Some(4.0), 0),
+        visit(&[1, 0], right, Some(4.0), 0),
+    ];
+    assert_eq!(found(&there_and_back), []);
+}
+
+#[test]
 fn a_hallway_that_was_not_measured_closes_no_walk() {
     let mut visits = round(&[4.0, 6.0, 4.0, 9.0]);
     visits[2].arrived = None;
