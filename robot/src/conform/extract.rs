@@ -13,6 +13,7 @@ use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
+    measured_hallways::log_noise,
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -24,7 +25,6 @@ use crate::{
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{EventKind, Frame, FrameSensor, SensingError},
-    superscout::MEASUREMENT_NOISE,
 };
 
 /// The source of events.
@@ -248,11 +248,10 @@ pub fn extract(
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
     if run.is_some() {
+        let noise = log_noise();
         events.measurement_noise = match evidence {
-            Evidence::Recorded => MEASUREMENT_NOISE,
-            Evidence::Scenes | Evidence::Pictures => {
-                MeasurementNoise { standing: NEAR, ..MEASUREMENT_NOISE }
-            }
+            Evidence::Recorded => noise,
+            Evidence::Scenes | Evidence::Pictures => MeasurementNoise { standing: NEAR, ..noise },
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
     }

@@ -3,9 +3,10 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    folding::FoldedTrail,
+    folding::{FoldedTrail, fold},
     measurement::{
         ContradictoryMeasurement, MeasuredVisit, MeasurementCheck, MeasurementContradiction,
+        MeasurementNoise,
     },
     percept::{Door, Percept},
     trace::{Poses, Trace},
@@ -16,6 +17,15 @@ use super::{
     events::{CheckedEvent, CheckedKind, RunEvents},
     impossible::{first_percept, folded_before},
 };
+
+use crate::superscout::MEASUREMENT_NOISE;
+
+/// The uncertainty of the hallways in a log of this project. It does not record the calibration of its base, which
+/// may be several times worse than that of a SuperScout on tiles.
+#[must_use]
+pub fn log_noise() -> MeasurementNoise {
+    MEASUREMENT_NOISE.times(3.0, 5.0)
+}
 
 /// How many hallways of a run were measured by odometry, and compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,6 +80,15 @@ impl MeasuredHallways {
 }
 
 impl RunEvents {
+    /// The visits of a run with the directional marker, with their measurements, identified by the folded trail;
+    /// `None` if no world explains the run.
+    #[must_use]
+    pub fn measured_visits(&self) -> Option<Vec<MeasuredVisit>> {
+        let trace = self.trace().ok()?;
+        let trail = fold(trace.percepts(), trace.doors()).ok()?;
+        Some(by_trail(&unplaced_visits(self, &trace), &trace, &trail))
+    }
+
     /// Leaves out the measurement of a divergence.
     pub(super) fn forget_measurement(&mut self, cause: &DivergenceCause) {
         let DivergenceCause::Measurement { between: [_, at], measurement, .. } = cause else {

@@ -238,7 +238,7 @@ fn judged_with_recovery(
 }
 
 /// The bound on the darts of a map, which stops a robot that maps places that do not exist.
-fn dart_bound(plan: &FloorPlan) -> usize {
+pub(super) fn dart_bound(plan: &FloorPlan) -> usize {
     2 * plan.graph().dart_count() + SPARE_DARTS
 }
 
