@@ -28,10 +28,10 @@ use crate::{
     robot::Reckoned,
     run::run,
     simulator::SimulationConfig,
-    superscout::MEASUREMENT_NOISE,
 };
 
 mod folding;
+mod measured;
 mod oracle;
 mod report;
 mod tolerance;
@@ -65,7 +65,7 @@ impl Log {
             events: recorded.finish(),
             has_head: true,
             end,
-            measurement_noise: MEASUREMENT_NOISE,
+            measurement_noise: log_noise(),
             ..RunEvents::default()
         }
     }
