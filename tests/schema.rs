@@ -109,6 +109,13 @@ const COMMANDS: [(&str, &[&str]); 18] = [
         &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"],
     ),
     (
+        "evaluate-lengths",
+        &[
+            "evaluate lengths --plan worlds/shape-6.toml --traversals 300",
+            "evaluate lengths --plans 1 --traversals 10",
+        ],
+    ),
+    (
         "evaluate-mistakes",
         &[
             "evaluate mistakes --edges 1..=3",

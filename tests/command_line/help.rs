@@ -33,7 +33,7 @@ const VERBS: [(&str, &[&str]); 19] = [
     ),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision", "control", "runs", "laser", "mistakes"]),
+    ("evaluate", &["vision", "control", "runs", "laser", "mistakes", "lengths"]),
     (
         "simulate",
         &[
@@ -138,6 +138,7 @@ fn no_line_is_wider_than_80_columns() {
         &["conform", &log],
         &["replay", &log],
         &["evaluate", "control", "--traversals", "20"],
+        &["evaluate", "lengths", "--traversals", "20"],
     ];
     for arguments in runs {
         for line in stdout(&run(arguments)).lines() {
@@ -177,6 +178,7 @@ fn the_help_of_every_verb_ends_with_its_exit_codes() {
         "evaluate runs",
         "evaluate laser",
         "evaluate mistakes",
+        "evaluate lengths",
     ];
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
@@ -204,6 +206,7 @@ fn there_is_a_manual_page_of_every_verb() {
         "evaluate-runs",
         "evaluate-laser",
         "evaluate-mistakes",
+        "evaluate-lengths",
     ];
     let mut pages: Vec<_> = VERBS.iter().map(|(verb, _)| *verb).chain(parts).collect();
     pages.sort_unstable();

@@ -1,6 +1,6 @@
 //! The measurements of a walk whose visits are identified, compared.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 
 use super::{
     HallwayMeasurement, MeasurementNoise, ONE_DEGREE, ONE_DEGREE_MEDIAN,
@@ -54,6 +54,28 @@ pub enum ContradictoryMeasurement {
         /// The length of the walk, in metres.
         way: f64,
     },
+}
+
+impl fmt::Display for ContradictoryMeasurement {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match *self {
+            Self::Length { before, now } => {
+                write!(out, "the hallway is {now:.1} m long, and was {before:.1} m")
+            }
+            Self::Turn { before, now } => {
+                let [before, now] = [before, now].map(f64::to_degrees);
+                write!(out, "the hallway turns by {now:.0} degrees, and by {before:.0}")
+            }
+            Self::Shape => out.write_str("the junction has another shape than before"),
+            Self::ClosedTurns { quarters } => {
+                let degrees = 90 * quarters;
+                write!(out, "the turns of this closed walk are {degrees} degrees too many")
+            }
+            Self::ClosedWalk { off, way } => {
+                write!(out, "this closed walk of {way:.1} m ends {off:.1} m from where it began")
+            }
+        }
+    }
 }
 
 /// Measurements that contradict each other.

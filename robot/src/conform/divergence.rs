@@ -311,26 +311,14 @@ fn contradictory(
     [first, last]: [usize; 2],
     measurement: &ContradictoryMeasurement,
 ) -> fmt::Result {
-    if *measurement != ContradictoryMeasurement::Shape {
-        write!(out, "moved by hand or slipped between events {from} and {to}: ")?;
+    if *measurement == ContradictoryMeasurement::Shape {
+        return write!(out, "the junction has another shape than at event {from}");
     }
-    let then = format!("between events {first} and {last}");
-    match *measurement {
-        ContradictoryMeasurement::Shape => {
-            write!(out, "the junction has another shape than at event {from}")
+    write!(out, "moved by hand or slipped between events {from} and {to}: {measurement}")?;
+    match measurement {
+        ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. } => {
+            write!(out, " between events {first} and {last}")
         }
-        ContradictoryMeasurement::Length { before, now } => {
-            write!(out, "the hallway is {now:.1} m long, and was {before:.1} m {then}")
-        }
-        ContradictoryMeasurement::Turn { before, now } => {
-            let [before, now] = [before, now].map(f64::to_degrees);
-            write!(out, "the hallway turns by {now:.0} degrees, and by {before:.0} {then}")
-        }
-        ContradictoryMeasurement::ClosedTurns { quarters } => {
-            write!(out, "the turns of this closed walk are {} degrees too many", 90 * quarters)
-        }
-        ContradictoryMeasurement::ClosedWalk { off, way } => {
-            write!(out, "this closed walk of {way:.1} m ends {off:.1} m from where it began")
-        }
+        _ => Ok(()),
     }
 }

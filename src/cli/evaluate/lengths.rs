@@ -105,15 +105,20 @@ impl EvaluateLengthsArguments {
         writeln!(out, "  {compared} of them of hallways that were measured before")?;
         for (run, alarm) in alarms(runs) {
             let what = format!("run {} in {}", run.case.number, run.case.plan_name);
-            print_failure(out, what, format!("{:?}", alarm.measurement))?;
+            print_failure(out, what, alarm.measurement)?;
         }
-        let row = |name: String, of: &dyn Fn(&TestTally) -> [usize; 2]| {
-            let [robot, log] = [0, 1].map(|test| rate(of(&tally.tests[test])));
-            [name, robot, log]
-        };
-        let mut rows = vec![row("false alarms".to_owned(), &|test| [test.alarms, test.measured])];
+        let [robot, log] = tally.tests.each_ref().map(|test| {
+            let most = 100.0 * upper_bound(test.alarms, test.measured);
+            format!("{}, at most {most:.3} %", grouped(test.alarms as u128))
+        });
+        let mut rows = vec![["false alarms".to_owned(), robot, log]];
         for (index, metres) in LENGTH_CHANGES.into_iter().enumerate() {
-            rows.push(row(format!("{metres:.1} m found"), &|test| test.found[index]));
+            let [robot, log] = tally.tests.each_ref().map(|test| {
+                let [found, of] = test.found[index];
+                let [found, of] = [found, of].map(|count| grouped(count as u128));
+                format!("{found} of {of}")
+            });
+            rows.push([format!("{metres:.1} m found"), robot, log]);
         }
         print_rows(out, ["", "calibrated base", "log"], &rows)?;
         let verdict = match outcome {
@@ -135,7 +140,7 @@ impl EvaluateLengthsArguments {
         for (run, alarm) in alarms(runs) {
             let line = json!({
                 "run": run.case.number, "plan": run.case.plan_name, "visit": alarm.visit,
-                "earlier": alarm.earlier, "what": format!("{:?}", alarm.measurement),
+                "earlier": alarm.earlier, "what": alarm.measurement.to_string(),
             });
             print_line(out, "alarm", &line)?;
         }
@@ -161,12 +166,6 @@ fn alarms(
     runs: &[MeasuredRun],
 ) -> impl Iterator<Item = (&MeasuredRun, &MeasurementContradiction)> + '_ {
     runs.iter().flat_map(|run| run.tests[0].alarms.iter().map(move |alarm| (run, alarm)))
-}
-
-/// A count, and the upper bound of its rate with a confidence of 95 %.
-fn rate([seen, cases]: [usize; 2]) -> String {
-    let [count, all] = [seen, cases].map(|count| grouped(count as u128));
-    format!("{count} of {all}, at most {:.3} %", 100.0 * upper_bound(seen, cases))
 }
 
 /// The sums over all runs.
