@@ -108,7 +108,7 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 29] = [
+    let runs: [&[&str]; 30] = [
         &[],
         &["check", "--edges", "1..=4"],
         &["check", "--edges", "1..=4", "--choices", "all"],

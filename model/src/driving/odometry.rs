@@ -102,7 +102,9 @@ mod tests {
         let at = |x: f64, y: f64| Odometry { position: [x, y], heading: 0.0 };
         let length = |readings: &[Odometry]| {
             let mut way = WayLength::default();
-            readings.iter().for_each(|&reading| way.add(reading));
+            for &reading in readings {
+                way.add(reading);
+            }
             way.length()
         };
         assert_eq!(length(&[]), None);

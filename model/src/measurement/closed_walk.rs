@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{MeasuredVisit, MeasurementNoise, check::ContradictoryMeasurement, two_degrees};
+use super::{ContradictoryMeasurement, MeasuredVisit, MeasurementNoise, two_degrees};
 use crate::embedded_graph::Dart;
 
 /// A direction: quarter turns counter-clockwise from where the robot looked at first.
@@ -79,9 +79,11 @@ impl ClosedWalks {
             return None;
         }
         quarters.rotate_left(door);
-        let mut direction = (here.heading + 6 - quarters[0]) % 4;
         let first = quarters[0];
-        quarters.iter_mut().for_each(|quarter| *quarter = (*quarter + 4 - first) % 4);
+        let mut direction = (here.heading + 6 - first) % 4;
+        for quarter in &mut quarters {
+            *quarter = (*quarter + 4 - first) % 4;
+        }
         let past = self.visited.get(&vertex);
         if let Some(past) = past.filter(|past| past.quarters != quarters) {
             return Some((past.visit, ContradictoryMeasurement::Shape));

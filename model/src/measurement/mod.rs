@@ -9,12 +9,12 @@
 
 mod check;
 mod closed_walk;
+mod contradiction;
 mod edge;
 mod noise;
 
-pub use check::{
-    ContradictoryMeasurement, MeasuredVisit, MeasurementCheck, MeasurementContradiction,
-};
+pub use check::MeasurementCheck;
+pub use contradiction::{ContradictoryMeasurement, MeasuredVisit, MeasurementContradiction};
 pub use noise::{HallwayMeasurement, MeasurementNoise};
 
 /// The nominal rate of false alarms: the probability that a test contradicts if nothing happened.

@@ -150,11 +150,10 @@ impl DivergenceCause {
             Self::NotInTurn(_) | Self::Number { .. } | Self::Form { .. } | Self::Moves { .. } => {
                 FaultClass::Log
             }
-            Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
             Self::Measurement { measurement: ContradictoryMeasurement::Shape, .. } => {
                 FaultClass::Perception
             }
-            Self::Measurement { .. } => FaultClass::Motion,
+            Self::Aside { .. } | Self::TurnedBack | Self::Measurement { .. } => FaultClass::Motion,
             Self::Return { .. } | Self::Entry { .. } | Self::Undecided(_) => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map { .. } | Self::WrongMap => FaultClass::Algorithm,
             Self::World(Misfit { event, .. })

@@ -219,19 +219,7 @@ impl Judgement {
         #[cfg(test)]
         JUDGED.set(JUDGED.get() + 1);
         let mut found = Found { tolerated, first: None };
-        let trace = match events.trace() {
-            Ok(all) => all,
-            Err(TraceOrderError::Empty) => return Err(JudgeError::Empty),
-            Err(
-                not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event }),
-            ) => {
-                found.note(event, DivergenceCause::NotInTurn(not));
-                match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
-                    Some(Ok(before)) => before,
-                    _ => return Err(JudgeError::Empty),
-                }
-            }
-        };
+        let trace = trace_in_turn(events, &mut found)?;
         let in_turn = found.first.is_none();
         for (place, cause) in events.own_faults() {
             found.note(place, cause);
@@ -411,6 +399,21 @@ impl Judgement {
             (Some(poses), _) => poses.states.len(),
             (None, Some(SmallestWorld::World { .. })) => 1,
             _ => 0,
+        }
+    }
+}
+
+/// The trace of the events up to the first that is out of turn, which is noted.
+fn trace_in_turn(events: &RunEvents, found: &mut Found) -> Result<Trace, JudgeError> {
+    match events.trace() {
+        Ok(all) => Ok(all),
+        Err(TraceOrderError::Empty) => Err(JudgeError::Empty),
+        Err(not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event })) => {
+            found.note(event, DivergenceCause::NotInTurn(not));
+            match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
+                Some(Ok(before)) => Ok(before),
+                _ => Err(JudgeError::Empty),
+            }
         }
     }
 }

@@ -51,7 +51,7 @@ impl MeasuredHallways {
         let check =
             |visits: &[MeasuredVisit]| MeasurementCheck::new(visits, &events.measurement_noise);
         let in_trail = |trail: &FoldedTrail| check(&by_trail(&unplaced, trace, trail));
-        let by_trail = trail.map(in_trail).unwrap_or_else(|| check(&unplaced));
+        let by_trail = trail.map_or_else(|| check(&unplaced), in_trail);
         let by_poses = known
             .map(|(graph, poses)| check(&by_poses(&unplaced, graph, poses)))
             .unwrap_or_default();

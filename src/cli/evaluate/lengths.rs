@@ -137,13 +137,6 @@ impl EvaluateLengthsArguments {
         outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        for (run, alarm) in alarms(runs) {
-            let line = json!({
-                "run": run.case.number, "plan": run.case.plan_name, "visit": alarm.visit,
-                "earlier": alarm.earlier, "what": alarm.measurement.to_string(),
-            });
-            print_line(out, "alarm", &line)?;
-        }
         for (noise, test) in ["calibrated", "log"].into_iter().zip(&tally.tests) {
             let line = |what: &str, [seen, cases]: [usize; 2]| {
                 share_json(&format!("{what}, {noise}"), seen, cases)
@@ -153,9 +146,16 @@ impl EvaluateLengthsArguments {
                 print_line(out, "rate", &line(&format!("{metres:.1} m found"), found))?;
             }
         }
+        let first_alarm = alarms(runs).next().map(|(run, alarm)| {
+            json!({
+                "run": run.case.number, "plan": run.case.plan_name, "visit": alarm.visit,
+                "earlier": alarm.earlier, "what": alarm.measurement.to_string(),
+            })
+        });
         let line = json!({
             "runs": runs.len(), "traversals": tally.measured, "compared": tally.compared,
-            "seed": self.robots.seed, "target": TARGET, "holds": outcome == Outcome::Holds,
+            "seed": self.robots.seed, "target": TARGET, "first_alarm": first_alarm,
+            "holds": outcome == Outcome::Holds,
         });
         print_line(out, "lengths", &line)
     }

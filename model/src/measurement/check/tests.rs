@@ -1,7 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
-use crate::measurement::{FALSE_ALARMS, two_degrees};
+use crate::{
+    driving::visit::JunctionShape,
+    measurement::{FALSE_ALARMS, HallwayMeasurement, two_degrees},
+    percept::Door,
+};
 
 /// Half a metre or so.
 const NOISE: MeasurementNoise = MeasurementNoise {
@@ -80,7 +84,9 @@ fn moves_that_were_measured_and_compared_are_counted() {
     let check = MeasurementCheck::new(&visits, &NOISE);
     assert_eq!((check.measured, check.compared), (3, 2));
     // Without places nothing is compared.
-    visits.iter_mut().for_each(|visit| visit.darts.clear());
+    for visit in &mut visits {
+        visit.darts.clear();
+    }
     let check = MeasurementCheck::new(&visits, &NOISE);
     assert_eq!((check.measured, check.compared), (3, 0));
     assert_eq!(MeasurementCheck::new(&[], &NOISE), MeasurementCheck::default());
