@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 18] = [
+const COMMANDS: [(&str, &[&str]); 19] = [
     ("paper", &["paper --section 2.3"]),
     (
         "proofs",
@@ -108,6 +108,13 @@ const COMMANDS: [(&str, &[&str]); 18] = [
     (
         "evaluate-laser",
         &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"],
+    ),
+    (
+        "evaluate-lengths",
+        &[
+            "evaluate lengths --plan worlds/shape-6.toml --traversals 300",
+            "evaluate lengths --plans 1 --traversals 10",
+        ],
     ),
     (
         "evaluate-mistakes",

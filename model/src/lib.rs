@@ -15,6 +15,7 @@
 //! * [`ambiguity`]: worlds that a marker does not distinguish, with witnesses (Section 2.2);
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
+//! * [`measurement`]: lengths and turns of hallways by odometry, which contradict each other or not;
 //! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;
 //! * [`trace`]: checks recorded explorations.
 //!
@@ -50,6 +51,7 @@ pub mod format;
 pub mod isomorphism;
 pub mod mapping;
 pub mod marker;
+pub mod measurement;
 pub mod percept;
 pub mod similar;
 pub mod trace;

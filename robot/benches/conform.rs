@@ -78,9 +78,11 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
     let event = |event: TraceEvent| CheckedEvent {
         source: EventSource { time: event.id as u64, ..EventSource::default() },
         kind: match event.kind {
-            TraceEventKind::Percept(percept) => {
-                CheckedKind::Arrival { arrival: arrival(percept, None), entry_off: None }
-            }
+            TraceEventKind::Percept(percept) => CheckedKind::Arrival {
+                arrival: arrival(percept, None),
+                entry_off: None,
+                hallway: None,
+            },
             TraceEventKind::Door(door) => CheckedKind::Door { door, number: None, off: None },
         },
     };

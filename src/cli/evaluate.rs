@@ -4,6 +4,7 @@ mod clutter;
 mod control;
 mod failing;
 mod laser;
+mod lengths;
 mod mistakes;
 mod report;
 mod robots;
@@ -25,7 +26,8 @@ Examples:
   toposlam evaluate control              every door of every junction
   toposlam evaluate runs                 mapping of whole buildings
   toposlam evaluate laser                junctions by a laser scanner
-  toposlam evaluate mistakes --audit     what one mistake does",
+  toposlam evaluate mistakes --audit     what one mistake does
+  toposlam evaluate lengths              false alarms of measured hallways",
     &[
         (0, "all targets are met, everything is right"),
         (1, "a target is missed, or something is wrong"),
@@ -45,6 +47,7 @@ enum What {
     Runs(runs::EvaluateRunsArguments),
     Laser(laser::EvaluateLaserArguments),
     Mistakes(mistakes::EvaluateMistakesArguments),
+    Lengths(lengths::EvaluateLengthsArguments),
 }
 
 impl EvaluateArguments {
@@ -55,6 +58,7 @@ impl EvaluateArguments {
             What::Runs(runs) => runs.run(out),
             What::Laser(laser) => laser.run(out),
             What::Mistakes(mistakes) => mistakes.run(out),
+            What::Lengths(lengths) => lengths.run(out),
         }
     }
 }

@@ -236,3 +236,33 @@ fn the_last_six_steps_before_a_divergence_are_shown() {
         .collect();
     assert_eq!(numbers, [3, 4, 5, 6, 7, 8], "{text}");
 }
+
+#[test]
+fn a_robot_that_was_carried_was_moved_between_two_events() {
+    let folder = folder("conform-moved");
+    let log = logged(&folder, "worlds/shape-6.toml", &["--fault", "carried@40"]);
+    let page = folder.join("moved.html");
+    let arguments = [&ANYONE[..], &["--html", page.to_str().unwrap()]].concat();
+    let (code, report) = judged(&log, &arguments);
+    assert_eq!(
+        (code, &report["cause"], &report["class"]),
+        (Some(1), &json!("moved"), &json!("motion"))
+    );
+    let condition = report["condition"].as_str().unwrap();
+    assert!(condition.starts_with("moved by hand or slipped between events "), "{condition}");
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("oved by hand or slipped between events "), "no page");
+    let lengths = &report["lengths"];
+    assert_eq!((&lengths["moves"], &lengths["measured"]), (&json!(15), &json!(15)), "{lengths}");
+}
+
+#[test]
+fn without_odometry_the_report_states_that_lengths_were_not_compared() {
+    let folder = folder("conform-no-odometry");
+    let log = walked(&folder, &[(1, -1, Some(0)), (3, 1, Some(0)), (1, -1, None)]);
+    let (code, report) = judged(&log, &ANYONE);
+    assert_eq!(code, Some(0), "{report}");
+    assert_eq!(report["lengths"], json!({"moves": 2, "measured": 0, "compared": 0}));
+    let fact = "not compared: no odometry between the junctions";
+    assert_eq!(report["facts"]["lengths"], json!(fact));
+}

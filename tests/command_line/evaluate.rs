@@ -98,3 +98,23 @@ fn a_world_without_a_floor_plan_is_refused() {
         "error: worlds/petersen.toml: this world is not a floor plan: it has no [floor]\n"
     );
 }
+
+#[test]
+fn too_few_traversals_do_not_show_the_rate_of_false_alarms() {
+    let words = ["evaluate", "lengths", "--plan", "worlds/shape-8.toml", "--traversals", "300"];
+    let output = run([&words[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(3));
+    let lines = objects(&stdout(&output));
+    let rate = |what: &str| lines.iter().find(|line| line["what"] == what).unwrap();
+    for noise in ["calibrated", "log"] {
+        let alarms = rate(&format!("false alarms, {noise}"));
+        assert_eq!(alarms["seen"], 0, "{alarms}");
+        assert!(alarms["cases"].as_u64().unwrap() >= 300, "{alarms}");
+        let found = rate(&format!("4.0 m found, {noise}"));
+        assert!(found["rate"].as_f64().unwrap() > 0.5, "{found}");
+    }
+    assert_eq!(
+        (&lines.last().unwrap()["kind"], &lines.last().unwrap()["holds"]),
+        (&"lengths".into(), &false.into())
+    );
+}

@@ -155,7 +155,14 @@ fn file_options(verb: &str) -> BTreeSet<String> {
 #[test]
 fn every_option_that_writes_a_file_is_in_the_list() {
     let verbs: BTreeSet<_> = OUTPUTS.iter().map(|output| output.verb).collect();
-    let others = ["paper", "proofs", "evaluate control", "evaluate runs", "evaluate laser"];
+    let others = [
+        "paper",
+        "proofs",
+        "evaluate control",
+        "evaluate runs",
+        "evaluate laser",
+        "evaluate lengths",
+    ];
     for verb in verbs.into_iter().chain(others) {
         let outputs = OUTPUTS.iter().filter(|output| output.verb == verb);
         let inputs = INPUTS.iter().filter(|(of, _)| *of == verb).flat_map(|(_, names)| *names);
@@ -165,7 +172,7 @@ fn every_option_that_writes_a_file_is_in_the_list() {
             "evaluate vision" => {
                 known.insert("--plan".to_owned());
             }
-            "evaluate control" | "evaluate runs" => {
+            "evaluate control" | "evaluate runs" | "evaluate lengths" => {
                 known.extend(["--plan", "--scanner"].map(str::to_owned));
             }
             "evaluate laser" => {

@@ -33,7 +33,7 @@ const VERBS: [(&str, &[&str]); 19] = [
     ),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision", "control", "runs", "laser", "mistakes"]),
+    ("evaluate", &["vision", "control", "runs", "laser", "mistakes", "lengths"]),
     (
         "simulate",
         &[
@@ -108,7 +108,7 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 29] = [
+    let runs: [&[&str]; 30] = [
         &[],
         &["check", "--edges", "1..=4"],
         &["check", "--edges", "1..=4", "--choices", "all"],
@@ -138,6 +138,7 @@ fn no_line_is_wider_than_80_columns() {
         &["conform", &log],
         &["replay", &log],
         &["evaluate", "control", "--traversals", "20"],
+        &["evaluate", "lengths", "--traversals", "20"],
     ];
     for arguments in runs {
         for line in stdout(&run(arguments)).lines() {
@@ -177,6 +178,7 @@ fn the_help_of_every_verb_ends_with_its_exit_codes() {
         "evaluate runs",
         "evaluate laser",
         "evaluate mistakes",
+        "evaluate lengths",
     ];
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
@@ -204,6 +206,7 @@ fn there_is_a_manual_page_of_every_verb() {
         "evaluate-runs",
         "evaluate-laser",
         "evaluate-mistakes",
+        "evaluate-lengths",
     ];
     let mut pages: Vec<_> = VERBS.iter().map(|(verb, _)| *verb).chain(parts).collect();
     pages.sort_unstable();

@@ -42,6 +42,40 @@ impl Odometry {
     }
 }
 
+/// The length of a way by odometry, in steps of at least half a metre: shorter ones are manoeuvres, or errors of
+/// single readings.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WayLength {
+    /// Of the whole steps, in metres.
+    steps: f64,
+    /// Where the last step ended, and the last reading.
+    ends: Option<[Odometry; 2]>,
+}
+
+/// The least length of a step, in metres.
+const STEP: f64 = 0.5;
+
+impl WayLength {
+    /// Adds a reading.
+    pub fn add(&mut self, reading: Odometry) {
+        let [from, _] = self.ends.unwrap_or([reading; 2]);
+        let step = reading.distance(&from);
+        if step >= STEP {
+            self.steps += step;
+            self.ends = Some([reading; 2]);
+        } else {
+            self.ends = Some([from, reading]);
+        }
+    }
+
+    /// The length up to the last reading, in metres; `None` without a reading, or if one is not a number.
+    #[must_use]
+    pub fn length(&self) -> Option<f64> {
+        let [from, last] = self.ends?;
+        Some(self.steps + last.distance(&from)).filter(|length| length.is_finite())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -61,5 +95,24 @@ mod tests {
         let entry = before.whither(PI);
         let after = before.moved(-FRAC_PI_2, 0.0);
         assert!((after.seen(entry) + FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_way_is_as_long_as_its_steps() {
+        let at = |x: f64, y: f64| Odometry { position: [x, y], heading: 0.0 };
+        let length = |readings: &[Odometry]| {
+            let mut way = WayLength::default();
+            for &reading in readings {
+                way.add(reading);
+            }
+            way.length()
+        };
+        assert_eq!(length(&[]), None);
+        assert_eq!(length(&[at(3.0, 4.0)]), Some(0.0));
+        assert_eq!(length(&[at(0.0, 0.0), at(3.0, 0.0), at(3.0, 4.0), at(3.0, 4.25)]), Some(7.25));
+        // To and fro by less than a step.
+        let idle = [0.0, 0.25, 0.0, 0.25, 0.0, 0.25].map(|x| at(x, 0.0));
+        assert_eq!(length(&idle), Some(0.25));
+        assert_eq!(length(&[at(0.0, 0.0), at(f64::NAN, 0.0)]), None);
     }
 }

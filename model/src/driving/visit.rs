@@ -70,6 +70,12 @@ impl JunctionShape {
         Self([true, code & 1 != 0, code & 2 != 0, code & 4 != 0])
     }
 
+    /// The quarter turns clockwise from the entry door to each door, in the order of the doors.
+    #[must_use]
+    pub fn quarters(self) -> Vec<u32> {
+        (0..4).filter(|&quarter| self.0[quarter as usize]).collect()
+    }
+
     /// The number of doors.
     #[must_use]
     pub fn degree(self) -> u32 {

@@ -23,7 +23,7 @@ impl RunEvents {
         for (place, event) in self.events.iter().enumerate() {
             let mut fault = |cause| faults.push((place, cause));
             match &event.kind {
-                CheckedKind::Arrival { arrival, entry_off } => {
+                CheckedKind::Arrival { arrival, entry_off, .. } => {
                     let Arrival { degree, number, form, .. } = *arrival;
                     if let Some(recorded) = number.filter(|&number| number != moves) {
                         fault(DivergenceCause::Number { expected: moves, recorded });

@@ -4,6 +4,7 @@ use std::{f64::consts::FRAC_PI_6, fmt};
 
 use toposlam_model::{
     mapping::DirectionalAlgorithm,
+    measurement::ContradictoryMeasurement,
     trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
@@ -96,6 +97,17 @@ pub enum DivergenceCause {
         /// The number of doors after it.
         now: u32,
     },
+    /// A measurement contradicts earlier ones: the robot was moved by hand, or it slipped, between two events, or
+    /// it perceived another shape of a junction at them.
+    Measurement {
+        /// The indices of these events.
+        between: [usize; 2],
+        /// The indices of the events between which the hallway was last measured before; for a closed walk
+        /// and a shape, the same two.
+        earlier: [usize; 2],
+        /// What contradicts the earlier measurements.
+        measurement: ContradictoryMeasurement,
+    },
     /// The robot was at a junction that could not be recognised.
     Undecided(UndecidedCause),
     /// It does not fit the known world.
@@ -138,7 +150,10 @@ impl DivergenceCause {
             Self::NotInTurn(_) | Self::Number { .. } | Self::Form { .. } | Self::Moves { .. } => {
                 FaultClass::Log
             }
-            Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
+            Self::Measurement { measurement: ContradictoryMeasurement::Shape, .. } => {
+                FaultClass::Perception
+            }
+            Self::Aside { .. } | Self::TurnedBack | Self::Measurement { .. } => FaultClass::Motion,
             Self::Return { .. } | Self::Entry { .. } | Self::Undecided(_) => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map { .. } | Self::WrongMap => FaultClass::Algorithm,
             Self::World(Misfit { event, .. })
@@ -160,6 +175,8 @@ impl DivergenceCause {
             Self::Aside { .. } => "aside",
             Self::Entry { .. } => "entry",
             Self::TurnedBack => "turned-back",
+            Self::Measurement { measurement: ContradictoryMeasurement::Shape, .. } => "shape",
+            Self::Measurement { .. } => "moved",
             Self::Return { .. } => "return",
             Self::Undecided(_) => "undecided",
             Self::World(misfit) => match misfit.event.kind {
@@ -180,13 +197,15 @@ impl DivergenceCause {
 }
 
 /// The names of all causes.
-pub(super) const NAMES: [&str; 17] = [
+pub(super) const NAMES: [&str; 19] = [
     "not-in-turn",
     "number",
     "form",
     "aside",
     "entry",
     "turned-back",
+    "moved",
+    "shape",
     "return",
     "undecided",
     "percept",
@@ -221,6 +240,10 @@ impl fmt::Display for DivergenceCause {
             ),
             Self::TurnedBack => {
                 write!(out, "the robot turned back before it reached a junction")
+            }
+            Self::Measurement { between, earlier, measurement } => {
+                let [between, earlier] = [between, earlier].map(|events| events.map(|at| at + 1));
+                contradictory(out, between, earlier, measurement)
             }
             Self::Return { before, now } if before == now => {
                 write!(
@@ -277,5 +300,24 @@ impl fmt::Display for DivergenceCause {
                 write!(out, "the log says that {recorded} moves were made; it has {made}")
             }
         }
+    }
+}
+
+/// A measurement between two events that contradicts the measurements between two earlier ones.
+fn contradictory(
+    out: &mut fmt::Formatter,
+    [from, to]: [usize; 2],
+    [first, last]: [usize; 2],
+    measurement: &ContradictoryMeasurement,
+) -> fmt::Result {
+    if *measurement == ContradictoryMeasurement::Shape {
+        return write!(out, "the junction has another shape than at event {from}");
+    }
+    write!(out, "moved by hand or slipped between events {from} and {to}: {measurement}")?;
+    match measurement {
+        ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. } => {
+            write!(out, " between events {first} and {last}")
+        }
+        _ => Ok(()),
     }
 }

@@ -4,6 +4,7 @@
 use thiserror::Error;
 use toposlam_model::{
     marker::{Marker, NoMarker},
+    measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEvent, TraceEventKind, TraceOrderError},
 };
@@ -40,6 +41,8 @@ pub enum CheckedKind {
         /// The angle between the entry door and the direction that the robot came from by odometry, in
         /// radians; `None` if it is not known.
         entry_off: Option<f64>,
+        /// What odometry measured since the arrival before; `None` if it is not known.
+        hallway: Option<HallwayMeasurement>,
     },
     /// The robot left a junction.
     Door {
@@ -86,6 +89,8 @@ pub struct RunEvents {
     pub truncated: bool,
     /// Whether the robot may turn back between junctions. The excursions that fit are not among the events.
     pub may_turn_back: bool,
+    /// The uncertainty of the measurements of hallways.
+    pub measurement_noise: MeasurementNoise,
 }
 
 /// An event that is earlier than the one before it.
@@ -219,6 +224,7 @@ impl RunEvents {
     #[must_use]
     pub fn up_to(&self, index: usize) -> Self {
         let events = self.events.iter().take(index + 1).cloned().collect();
-        Self { events, has_head: self.has_head, ..Self::default() }
+        let Self { has_head, measurement_noise, .. } = *self;
+        Self { events, has_head, measurement_noise, ..Self::default() }
     }
 }

@@ -3,13 +3,17 @@
 
 use rayon::prelude::*;
 use thiserror::Error;
-use toposlam_model::driving::{odometry::Odometry, scene::Scene};
+use toposlam_model::{
+    driving::{odometry::Odometry, scene::Scene},
+    measurement::MeasurementNoise,
+};
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
-    InferredEvents, LaserEvents, RecordedEvents,
+    InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
+    measured_hallways::log_noise,
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -243,6 +247,14 @@ pub fn extract(
         Some(SensedScene { source, scene, odometry })
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
+    if run.is_some() {
+        let noise = log_noise();
+        events.measurement_noise = match evidence {
+            Evidence::Recorded => noise,
+            Evidence::Scenes | Evidence::Pictures => MeasurementNoise { standing: NEAR, ..noise },
+            Evidence::Laser => MeasurementNoise::UNKNOWN,
+        };
+    }
     let mut junctions = Vec::new();
     if evidence == Evidence::Laser && events.end.is_some() {
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.

@@ -4,16 +4,17 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use toposlam_model::{
     driving::{
-        odometry::Odometry,
+        odometry::{Odometry, WayLength},
         scene::{JunctionView, Place, Scene, wrapped},
         visit::{JunctionEstimate, JunctionShape},
     },
+    measurement::HallwayMeasurement,
     percept::{Door, Percept},
 };
 
 use super::{
     events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
-    recorded_events::direction,
+    recorded_events::{direction, turn},
 };
 use crate::record::Arrival;
 
@@ -35,6 +36,10 @@ pub struct InferredEvents {
     seen: JunctionEstimate,
     /// The heading when the robot was last in a hallway.
     hallway: Option<f64>,
+    /// The way since the last visit; `None` if it is not measured.
+    way: Option<WayLength>,
+    /// The direction in which the robot left then.
+    exit: Option<f64>,
 }
 
 /// Consecutive scenes of one junction.
@@ -50,6 +55,9 @@ struct Approach {
     /// The smallest distance to the turning point, in metres, and its scene.
     nearest: f64,
     visited: EventSource,
+    /// The length of the way to the nearest scene, in metres, and the way since then.
+    way: Option<f64>,
+    onwards: WayLength,
 }
 
 impl InferredEvents {
@@ -57,11 +65,15 @@ impl InferredEvents {
     #[must_use]
     pub fn new(marked: bool) -> Self {
         let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
-        Self { events: Vec::new(), approach: None, seen, hallway: None }
+        Self { events: Vec::new(), approach: None, seen, hallway: None, way: None, exit: None }
     }
 
     /// The next scene, and the odometry at its time.
     pub fn see(&mut self, source: EventSource, scene: &Scene, odometry: &Odometry) {
+        let onwards = self.approach.as_mut().map(|approach| &mut approach.onwards);
+        for way in self.way.iter_mut().chain(onwards) {
+            way.add(*odometry);
+        }
         match &scene.place {
             Place::Unknown(_) => {}
             Place::Hallway(_) => self.in_hallway(source, scene, odometry),
@@ -111,6 +123,7 @@ impl InferredEvents {
             let nearest = (0..form.degree()).filter_map(off);
             let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0));
             let Some((off, door)) = nearest else { return };
+            self.exit = direction(form, entry, door);
             self.push(source, CheckedKind::Door { door, number: None, off: Some(off) });
             if off > ASIDE {
                 self.push(source, CheckedKind::Aside { off });
@@ -138,6 +151,7 @@ impl InferredEvents {
             self.leave(source, &approach, odometry.heading);
             self.hallway = Some(odometry.heading);
         }
+        let way = self.way.and_then(|way| way.length());
         let seen = &mut self.seen;
         let approach = self.approach.get_or_insert_with(|| Approach {
             source,
@@ -146,11 +160,15 @@ impl InferredEvents {
             turning_point,
             nearest: f64::INFINITY,
             visited: source,
+            way,
+            onwards: WayLength::default(),
         });
         let junction = junction.clone().entered_from(odometry.seen(approach.entry));
         let [x, y] = junction.turning_point;
         if x.hypot(y) < approach.nearest {
-            (approach.nearest, approach.visited) = (x.hypot(y), source);
+            (approach.nearest, approach.visited, approach.way) = (x.hypot(y), source, way);
+            approach.onwards = WayLength::default();
+            approach.onwards.add(*odometry);
         }
         approach.visit.see(&Scene { place: Place::Junction(junction), marker: scene.marker });
     }
@@ -158,7 +176,7 @@ impl InferredEvents {
     /// Adds the percept of a visit, and returns the junction's shape and the direction of its entry. If
     /// the pictures do not decide the percept, adds that as an event and returns `None`.
     fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
-        let Approach { visit, entry, visited, .. } = approach;
+        let Approach { visit, entry, visited, way, onwards, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
             self.push(*visited, CheckedKind::Undecided(UndecidedCause::Unclear));
             return None;
@@ -171,12 +189,17 @@ impl InferredEvents {
             form: Some(form),
             entry: Some(*entry),
         };
-        let kind = CheckedKind::Arrival { arrival, entry_off: None };
-        self.push(*visited, kind);
+        let hallway =
+            way.map(|length| HallwayMeasurement { length, turn: turn(self.exit, Some(*entry)) });
+        self.push(*visited, CheckedKind::Arrival { arrival, entry_off: None, hallway });
+        (self.way, self.exit) = (Some(*onwards), None);
         Some((form, *entry))
     }
 
     fn push(&mut self, source: EventSource, kind: CheckedKind) {
+        if matches!(kind, CheckedKind::TurnedBack | CheckedKind::Undecided(_)) {
+            self.way = None;
+        }
         self.events.push(CheckedEvent { source, kind });
     }
 }

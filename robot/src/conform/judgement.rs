@@ -21,6 +21,7 @@ use super::{
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
+    measured_hallways::MeasuredHallways,
     quirks::Quirks,
     tolerance::Tolerance,
 };
@@ -49,6 +50,8 @@ pub struct Judgement {
     /// The number of ways in which the visits of an undirected marker can be visits of one junction, as far as
     /// it was counted; 1 with other markers.
     pub ways: usize,
+    /// How many hallways were measured by odometry, and compared.
+    pub measured: MeasuredHallways,
     /// How far the algorithm follows the log.
     pub algorithm: Option<AlgorithmMatch>,
     /// The cases that the run covers.
@@ -216,19 +219,7 @@ impl Judgement {
         #[cfg(test)]
         JUDGED.set(JUDGED.get() + 1);
         let mut found = Found { tolerated, first: None };
-        let trace = match events.trace() {
-            Ok(all) => all,
-            Err(TraceOrderError::Empty) => return Err(JudgeError::Empty),
-            Err(
-                not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event }),
-            ) => {
-                found.note(event, DivergenceCause::NotInTurn(not));
-                match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
-                    Some(Ok(before)) => before,
-                    _ => return Err(JudgeError::Empty),
-                }
-            }
-        };
+        let trace = trace_in_turn(events, &mut found)?;
         let in_turn = found.first.is_none();
         for (place, cause) in events.own_faults() {
             found.note(place, cause);
@@ -243,6 +234,7 @@ impl Judgement {
             smallest: None,
             determined: None,
             ways: 1,
+            measured: MeasuredHallways::default(),
             algorithm: None,
             coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
@@ -297,6 +289,17 @@ impl Judgement {
             trail = marked.trail.or(trail);
         } else {
             judgement.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
+        }
+        let graph = question.world.as_ref().map(|known| known.graph);
+        let (measured, moved) = MeasuredHallways::compare(
+            events,
+            trace,
+            trail.as_ref(),
+            graph.zip(judgement.poses.as_ref()),
+        );
+        judgement.measured = measured;
+        if let Some((event, cause)) = moved {
+            found.note(event, cause);
         }
         if question.world.is_none() && impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);
@@ -405,6 +408,21 @@ impl Judgement {
             (Some(poses), _) => poses.states.len(),
             (None, Some(SmallestWorld::World { .. })) => 1,
             _ => 0,
+        }
+    }
+}
+
+/// The trace of the events up to the first that is out of turn, which is noted.
+fn trace_in_turn(events: &RunEvents, found: &mut Found) -> Result<Trace, JudgeError> {
+    match events.trace() {
+        Ok(all) => Ok(all),
+        Err(TraceOrderError::Empty) => Err(JudgeError::Empty),
+        Err(not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event })) => {
+            found.note(event, DivergenceCause::NotInTurn(not));
+            match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
+                Some(Ok(before)) => Ok(before),
+                _ => Err(JudgeError::Empty),
+            }
         }
     }
 }

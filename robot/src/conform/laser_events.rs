@@ -8,6 +8,7 @@ use std::{
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
+    measurement::HallwayMeasurement,
     percept::Door,
 };
 use toposlam_vision::laser::{
@@ -22,6 +23,7 @@ use super::{
     events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
     laser_visit::{Shown, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
+    recorded_events::turn,
     seen_junctions::{SeenJunction, SeenJunctions},
 };
 use crate::record::Arrival;
@@ -63,6 +65,9 @@ pub struct LaserEvents {
     way: f64,
     source: EventSource,
     to_odometry: Motion,
+    /// The centre of the last junction with an event, and the direction in which the robot left, in the frame of
+    /// odometry.
+    left: Option<([f64; 2], Option<f64>)>,
 }
 
 /// What is known of a junction that was left.
@@ -106,6 +111,7 @@ impl LaserEvents {
             way: 0.0,
             source: EventSource::default(),
             to_odometry: Motion::default(),
+            left: None,
         }
     }
 
@@ -453,10 +459,17 @@ impl LaserEvents {
             entry: Some(wrapped(entry + visit.to_odometry.turn)),
         };
         self.push_junction(visit, &doors);
-        self.push(visit.source, CheckedKind::Arrival { arrival, entry_off: None });
+        let centre = visit.to_odometry.point(visit.centre);
+        let hallway = self.left.take().map(|(before, exit)| HallwayMeasurement {
+            length: distance(before, centre),
+            turn: turn(exit, arrival.entry),
+        });
+        self.left = Some((centre, None));
+        self.push(visit.source, CheckedKind::Arrival { arrival, entry_off: None, hallway });
         if let Some((exit, _)) = visit.exit
             && let Some(door) = nearest(&doors, exit)
         {
+            self.left = Some((centre, Some(doors[door] + visit.to_odometry.turn)));
             let off = Some(wrapped(doors[door] - exit).abs());
             let door = Door(door as u32);
             self.push(visit.left, CheckedKind::Door { door, number: None, off });
@@ -475,6 +488,9 @@ impl LaserEvents {
     }
 
     fn push(&mut self, source: EventSource, kind: CheckedKind) {
+        if matches!(kind, CheckedKind::TurnedBack | CheckedKind::Undecided(_)) {
+            self.left = None;
+        }
         self.events.push(CheckedEvent { source, kind });
     }
 }

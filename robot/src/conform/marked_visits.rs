@@ -188,7 +188,7 @@ mod tests {
                 ..EventSource::default()
             };
             let arrival = Arrival { number: None, degree: 3, sighting: None, form: None, entry };
-            let arrived = CheckedKind::Arrival { arrival, entry_off: None };
+            let arrived = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
             events.push(CheckedEvent { source: source(seconds), kind: arrived });
             let left = CheckedKind::Door { door: Door(1), number: None, off: None };
             events.push(CheckedEvent { source: source(seconds + 1), kind: left });

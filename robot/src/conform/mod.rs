@@ -14,6 +14,7 @@ mod known_world;
 mod laser_events;
 mod laser_visit;
 mod marked_visits;
+mod measured_hallways;
 mod quirks;
 mod recorded_events;
 mod scan_odometry;
@@ -42,6 +43,7 @@ pub use laser_events::LaserEvents;
 pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
 };
+pub use measured_hallways::{MeasuredHallways, log_noise};
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use recorded_events::{RecordedEvents, direction};
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

@@ -19,7 +19,7 @@ pub struct Quirk {
     pub name: String,
     /// Why it is tolerated.
     pub reason: String,
-    /// The cause of the divergence: `percept`, `contradiction`, `entry`, `aside`, `turned-back`, `return`,
+    /// The cause of the divergence: `percept`, `contradiction`, `entry`, `aside`, `turned-back`, `moved`, `shape`, `return`,
     /// `undecided`, `number`, `form`, `moves`, `map`, `wrong-map` or `unfinished`.
     pub cause: String,
     /// The only event at which it is tolerated, counted from 1; everywhere without one.

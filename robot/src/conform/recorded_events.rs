@@ -6,7 +6,12 @@ use std::{
 };
 
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::wrapped, visit::JunctionShape},
+    driving::{
+        odometry::{Odometry, WayLength},
+        scene::wrapped,
+        visit::JunctionShape,
+    },
+    measurement::HallwayMeasurement,
     percept::Door,
 };
 
@@ -24,6 +29,18 @@ pub struct RecordedEvents {
     way: VecDeque<Odometry>,
     /// Where the robot last left a junction, the index of the event, and the direction of the door.
     left: Option<(Odometry, usize, f64)>,
+    /// The hallway since the last arrival.
+    hallway: Option<MeasuredHallway>,
+}
+
+/// A hallway that is being measured.
+#[derive(Clone, Copy, Debug, Default)]
+struct MeasuredHallway {
+    way: WayLength,
+    /// The direction in which the robot left, if it is known.
+    exit: Option<f64>,
+    /// Whether there was odometry since the arrival.
+    moved: bool,
 }
 
 impl RecordedEvents {
@@ -39,11 +56,15 @@ impl RecordedEvents {
 
     /// An event that is neither an arrival nor a door.
     pub fn note(&mut self, source: EventSource, kind: CheckedKind) {
-        self.left = None;
+        (self.left, self.hallway) = (None, None);
         self.events.push(CheckedEvent { source, kind });
     }
 
     fn moved(&mut self, odometry: Odometry) {
+        if let Some(hallway) = &mut self.hallway {
+            hallway.way.add(odometry);
+            hallway.moved = true;
+        }
         if let Some((from, event, direction)) = self.left
             && from.distance(&odometry) >= FAR_ENOUGH
         {
@@ -72,8 +93,14 @@ impl RecordedEvents {
         };
         let entry_off =
             arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
-        self.events
-            .push(CheckedEvent { source, kind: CheckedKind::Arrival { arrival, entry_off } });
+        let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
+        let mut next = MeasuredHallway::default();
+        if let Some(now) = now {
+            next.way.add(*now);
+        }
+        self.hallway = Some(next);
+        let kind = CheckedKind::Arrival { arrival, entry_off, hallway };
+        self.events.push(CheckedEvent { source, kind });
     }
 
     fn left(&mut self, source: EventSource, number: Option<u32>, door: Door) {
@@ -85,6 +112,9 @@ impl RecordedEvents {
             _ => None,
         };
         let now = self.way.back().copied();
+        if let Some(hallway) = &mut self.hallway {
+            hallway.exit = direction;
+        }
         self.left = now.zip(direction).map(|(now, direction)| (now, self.events.len(), direction));
         // The next direction starts here.
         self.way.clear();
@@ -98,6 +128,19 @@ impl RecordedEvents {
     pub fn finish(self) -> Vec<CheckedEvent> {
         self.events
     }
+}
+
+impl MeasuredHallway {
+    /// The measurement up to an arrival with this direction of the entry door.
+    fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
+        let length = self.way.length().filter(|_| self.moved)?;
+        Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
+    }
+}
+
+/// The turn from the direction of the door by which a robot left to that in which it comes in.
+pub(super) fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
+    exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
 }
 
 /// The direction from one position to another.

@@ -70,7 +70,9 @@ pub fn shorten_run(
         DivergenceCause::Unfinished { .. }
         | DivergenceCause::Map { .. }
         | DivergenceCause::WrongMap
-        | DivergenceCause::Moves { .. } => None,
+        | DivergenceCause::Moves { .. }
+        // A log of percepts and doors has no measurements.
+        | DivergenceCause::Measurement { .. } => None,
         _ => {
             // The odometry after a door belongs to the next event.
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
@@ -147,7 +149,7 @@ fn of_trace(trace: &Trace) -> RunEvents {
                 let Percept { degree, sighting } = percept;
                 let (number, sighting) = (Some(moves), Some(sighting));
                 let arrival = Arrival { number, degree, sighting, form: None, entry: None };
-                CheckedKind::Arrival { arrival, entry_off: None }
+                CheckedKind::Arrival { arrival, entry_off: None, hallway: None }
             }
             TraceEventKind::Door(door) => {
                 CheckedKind::Door { door, number: Some(moves + 1), off: None }
@@ -179,7 +181,7 @@ impl RunEvents {
                 *number = number.map(|number| number.wrapping_sub(before));
             }
         }
-        let Self { has_head, may_turn_back, .. } = *self;
-        Some(Self { events, has_head, may_turn_back, ..Self::default() })
+        let Self { has_head, may_turn_back, measurement_noise, .. } = *self;
+        Some(Self { events, has_head, may_turn_back, measurement_noise, ..Self::default() })
     }
 }

@@ -12,6 +12,7 @@ use toposlam_model::{
     folding::WorldSearch,
     mapping::DirectionalAlgorithm,
     marker::Directional,
+    measurement::ContradictoryMeasurement,
     percept::{Door, Percept, Sighting},
     trace::anywhere,
     world::GraphWorld,
@@ -31,6 +32,7 @@ use crate::{
 };
 
 mod folding;
+mod measured;
 mod oracle;
 mod report;
 mod tolerance;
@@ -60,7 +62,13 @@ impl Log {
             recorded.observe(source, line);
         }
         let end = Some(RunEnd { moves: self.moves(), ending: RunEnding::Mapped });
-        RunEvents { events: recorded.finish(), has_head: true, end, ..RunEvents::default() }
+        RunEvents {
+            events: recorded.finish(),
+            has_head: true,
+            end,
+            measurement_noise: log_noise(),
+            ..RunEvents::default()
+        }
     }
 
     fn inferred(&self) -> Vec<CheckedEvent> {
@@ -340,8 +348,25 @@ fn assert_mutation_is_found(
         Shows::Never(_) => None,
         Shows::NotOne => return,
     };
-    let found = divergence_at(&log, good.moves(), &question(plan, Some(facing)));
+    let question = question(plan, Some(facing));
+    let found = divergence_at(&log, good.moves(), &question);
+    if how.0 == Mutation::Form && found != expected && is_shape_of(&log, event, &question) {
+        return;
+    }
     assert_eq!(found, expected, "{how:?} of event {event}");
+}
+
+/// Whether a log diverges because a junction has another shape at an event than at another visit.
+fn is_shape_of(log: &Log, event: usize, question: &ConformConfig) -> bool {
+    let found = judged(&log.recorded(), question).divergence;
+    found.is_some_and(|found| match found.cause {
+        DivergenceCause::Measurement {
+            between,
+            measurement: ContradictoryMeasurement::Shape,
+            ..
+        } => between.contains(&event),
+        _ => false,
+    })
 }
 
 #[test]

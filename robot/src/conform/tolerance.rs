@@ -112,6 +112,7 @@ impl<'q> Tolerance<'q> {
                 // Its shape belongs to the tolerated percept.
                 arrival.form = None;
             }
+            self.amended.forget_measurement(&divergence.cause);
         }
     }
 

@@ -13,6 +13,7 @@ pub mod judge;
 pub mod judged_view;
 pub mod laser;
 mod learned_sensors;
+pub mod measured_run;
 mod parallel;
 mod plans;
 pub mod quantile;

@@ -172,10 +172,8 @@ fn judged(
     watch: &dyn Watch,
 ) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, .. } = case.config.clone();
-    // The bound stops a robot that maps places that do not exist.
-    let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let settings = RunSettings::new(method, bound);
+    let settings = RunSettings::new(method, dart_bound(&plan));
     let run = run(&plan, marker, robot, sensor, StoppedBy(watch), &settings);
     let ending = run.outcome();
     let stopped =
@@ -188,6 +186,11 @@ fn judged(
         seconds: run.seconds,
         pictures: run.pictures,
     })
+}
+
+/// The bound on the darts of a map, which stops a robot that maps places that do not exist.
+pub(super) fn dart_bound(plan: &FloorPlan) -> usize {
+    2 * plan.graph().dart_count() + SPARE_DARTS
 }
 
 /// The possible starts in a plan: the darts of its Ls.

@@ -6,7 +6,10 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     trace::{AlgorithmMatch, MatchedChoices},
 };
-use toposlam_robot::{conform::Evidence, record::RunEnding};
+use toposlam_robot::{
+    conform::{Evidence, MeasuredHallways},
+    record::RunEnding,
+};
 
 use super::{
     Judged,
@@ -30,6 +33,7 @@ pub(super) struct FactFields<'j> {
     ending: Option<Ending<'j>>,
     world: Option<World<'j>>,
     smallest: Option<Size>,
+    lengths: Lengths,
     /// Whether no other world explains the log.
     unique: Option<bool>,
     /// The number of doors that were never followed.
@@ -74,6 +78,15 @@ struct Size {
     edges: usize,
     /// Whether all smaller worlds were excluded.
     least: bool,
+}
+
+/// How many hallways were measured by odometry.
+#[derive(Serialize)]
+struct Lengths {
+    moves: usize,
+    measured: usize,
+    /// The number of moves through hallways that were measured before.
+    compared: usize,
 }
 
 /// A door that was never followed.
@@ -143,6 +156,7 @@ impl<'j> FactFields<'j> {
                 }
             }),
             smallest,
+            lengths: Lengths::from(judgement.measured),
             unique: judgement.determines_world(),
             open_doors: open.as_ref().map(Vec::len),
             never_followed: open.map(|open| open.into_iter().map(NeverFollowed::from).collect()),
@@ -150,6 +164,12 @@ impl<'j> FactFields<'j> {
             doors: judgement.algorithm.as_ref().map(Doors::of),
             map: judgement.algorithm.as_ref().map(Map::of),
         }
+    }
+}
+
+impl From<MeasuredHallways> for Lengths {
+    fn from(MeasuredHallways { moves, measured, compared }: MeasuredHallways) -> Self {
+        Self { moves, measured, compared }
     }
 }
 

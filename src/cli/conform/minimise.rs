@@ -134,7 +134,7 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
         match kind {
-            CheckedKind::Arrival { arrival, entry_off } => {
+            CheckedKind::Arrival { arrival, entry_off, .. } => {
                 if let Some(way) = last.way(arrival, *entry_off) {
                     // Odometry before and after the drive gives the direction of the entry door.
                     for forward in [0.0, DISTANCE] {

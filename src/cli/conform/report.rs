@@ -16,8 +16,8 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, Quirks,
-        ReachedLimit, UndecidedCause,
+        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence,
+        MeasuredHallways, Quirks, ReachedLimit, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
     record::{Arrival, RunEnding},
@@ -189,6 +189,7 @@ impl Judged<'_> {
             }
             _ => facts.push(("world", self.unknown_world())),
         }
+        facts.extend(lengths(judgement.measured).map(|lengths| ("lengths", lengths)));
         if let Some(doors) = folded::open_doors(self) {
             facts.push(("unique", folded::in_words(&doors)));
         } else if let (Some(false), ways) = (judgement.determines_world(), judgement.ways) {
@@ -366,6 +367,20 @@ impl Judged<'_> {
 fn date_text(nanoseconds: u64) -> String {
     let text = moment(nanoseconds);
     if text.ends_with("UTC") { text } else { format!("no date: {text} on the clock of the log") }
+}
+
+/// How many hallways were measured and compared; `None` if the robot did not move.
+fn lengths(hallways: MeasuredHallways) -> Option<String> {
+    let MeasuredHallways { moves, measured, compared } = hallways;
+    match (moves, measured, compared) {
+        (0, ..) => None,
+        (_, 0, _) => Some("not compared: no odometry between the junctions".to_owned()),
+        (_, _, 0) => Some("not compared: no hallway is known to be measured twice".to_owned()),
+        _ => {
+            let [compared, moves] = [compared, moves].map(|count| grouped(count as u128));
+            Some(format!("{compared} of {moves} moves compared with earlier ones"))
+        }
+    }
 }
 
 fn map_in_words(map: &PartialMap) -> String {

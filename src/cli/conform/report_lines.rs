@@ -85,6 +85,8 @@ struct EventLine {
     marker: Option<i64>,
     /// Whether the robot turned back on its way there.
     turned_back: bool,
+    /// The length of the hallway by which it came, by odometry, in metres; `None` if it was not measured.
+    length: Option<f64>,
 }
 
 /// Prints the junctions that the robot visited.
@@ -99,17 +101,19 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
             door: None,
             marker,
             turned_back: std::mem::take(&mut back),
+            length: None,
         };
         match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => {
+            CheckedKind::Arrival { arrival, hallway, .. } => {
                 // An undirected marker points along no door.
                 let marker = arrival.sighting.and_then(|sighting| match sighting {
                     Sighting::Pointing(door) => Some(i64::from(door.0)),
                     Sighting::Nothing => Some(-1),
                     _ => None,
                 });
+                let length = hallway.map(|hallway| hallway.length);
                 let visit = visit(Some(arrival.degree), marker);
-                lines.push(visit);
+                lines.push(EventLine { length, ..visit });
             }
             CheckedKind::Undecided(_) => {
                 let visit = visit(None, None);

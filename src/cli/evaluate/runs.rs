@@ -284,7 +284,8 @@ fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
 
 fn named(run: &JudgedRun) -> String {
     let faults = run.case.config.faults.iter();
-    let faults: String =
-        faults.map(|fault| format!(", {}@{}", fault.kind.name(), fault.picture)).collect();
-    format!("run {}, {}{faults}", run.case.number, run.case.plan_name)
+    let faults = faults.map(|fault| format!("{}@{}", fault.kind.name(), fault.picture));
+    let plan = run.case.plan_name.clone();
+    let parts = std::iter::once(plan).chain(faults).collect::<Vec<_>>().join(", ");
+    format!("run {}, {parts}", run.case.number)
 }

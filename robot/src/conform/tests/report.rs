@@ -126,8 +126,70 @@ fn each_cause_has_a_name_a_class_and_words() {
     for (cause, name, fault, words) in &table {
         assert_eq!((cause.name(), cause.fault(), &*cause.to_string()), (*name, *fault, *words));
     }
-    let names: BTreeSet<_> = table.iter().map(|(cause, ..)| cause.name()).collect();
-    assert_eq!(names, BTreeSet::from(NAMES));
+    let names = table.iter().map(|(cause, ..)| cause.name()).chain(["moved", "shape"]);
+    assert_eq!(names.collect::<BTreeSet<_>>(), BTreeSet::from(NAMES));
+}
+
+#[test]
+fn each_contradictory_measurement_has_a_name_a_class_and_words() {
+    use ContradictoryMeasurement::{ClosedTurns, ClosedWalk, Length, Shape, Turn};
+    use DivergenceCause::Measurement;
+    use FaultClass::{Motion, Perception};
+    let table = [
+        (
+            Measurement {
+                between: [11, 13],
+                earlier: [2, 4],
+                measurement: Length { before: 8.0, now: 14.2 },
+            },
+            "moved",
+            Motion,
+            "moved by hand or slipped between events 12 and 14: the hallway is 14.2 m long, and was 8.0 m \
+             between events 3 and 5",
+        ),
+        (
+            Measurement {
+                between: [11, 13],
+                earlier: [2, 4],
+                measurement: Turn { before: 0.0, now: -FRAC_PI_2 },
+            },
+            "moved",
+            Motion,
+            "moved by hand or slipped between events 12 and 14: the hallway turns by -90 degrees, and by 0 \
+             between events 3 and 5",
+        ),
+        (
+            Measurement {
+                between: [2, 13],
+                earlier: [2, 13],
+                measurement: ClosedTurns { quarters: 3 },
+            },
+            "moved",
+            Motion,
+            "moved by hand or slipped between events 3 and 14: the turns of this closed walk are 270 degrees \
+             too many",
+        ),
+        (
+            Measurement {
+                between: [2, 13],
+                earlier: [2, 13],
+                measurement: ClosedWalk { off: 3.04, way: 41.0 },
+            },
+            "moved",
+            Motion,
+            "moved by hand or slipped between events 3 and 14: this closed walk of 41.0 m ends 3.0 m from \
+             where it began",
+        ),
+        (
+            Measurement { between: [2, 13], earlier: [2, 13], measurement: Shape },
+            "shape",
+            Perception,
+            "the junction has another shape than at event 3",
+        ),
+    ];
+    for (cause, name, fault, words) in &table {
+        assert_eq!((cause.name(), cause.fault(), &*cause.to_string()), (*name, *fault, *words));
+    }
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl Options {
         let mut events = log.recorded();
         for event in &mut events.events {
             match &mut event.kind {
-                CheckedKind::Arrival { arrival, entry_off } => {
+                CheckedKind::Arrival { arrival, entry_off, .. } => {
                     if self.unmarked {
                         arrival.sighting = None;
                     }
@@ -463,6 +463,7 @@ fn a_driver_may_turn_back_but_not_find_another_junction_then() {
             entry: None,
         },
         entry_off: None,
+        hallway: None,
     };
     let door = |door| CheckedKind::Door { door: Door(door), number: None, off: None };
     let kinds = |again| {
