@@ -88,7 +88,7 @@ fn a_stretch_that_was_cut_out_shows_where_the_percepts_fit() {
     let named = found_at_once + found_later;
     let counts = format!("{found_at_once}, {found_later}, {elsewhere} of {cuts}");
     assert!(found_at_once > 0 && found_later > 0 && named > 9 * elsewhere, "{counts}");
-    // What is not found was traversed once, on no closed walk.
+    // A hallway that was traversed once, on no closed walk, shows nothing.
     assert!(10 * named > 6 * cuts, "{counts}");
 }
 
