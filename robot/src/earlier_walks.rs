@@ -64,12 +64,11 @@ impl Walks {
         }
         // Before an obstacle the robot sees no junction.
         let is_blocked = arrival.degree == 1 && arrival.form.is_none() && arrival.entry.is_some();
-        match (self.first, self.door.take()) {
-            (Some(_), Some(door)) => self.moves.push((door, percept)),
-            _ => {
-                self.end();
-                self.first = Some(percept);
-            }
+        if let (Some(_), Some(door)) = (self.first, self.door.take()) {
+            self.moves.push((door, percept));
+        } else {
+            self.end();
+            self.first = Some(percept);
         }
         self.is_blocked |= is_blocked;
     }

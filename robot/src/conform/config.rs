@@ -1,6 +1,11 @@
 //! What a run is checked against.
 
-use toposlam_model::{folding::WorldSearch, mapping::DirectionalAlgorithm, marker::Marker};
+use toposlam_model::{
+    folding::WorldSearch,
+    mapping::DirectionalAlgorithm,
+    marker::Marker,
+    trace::{AlgorithmMatch, Trace, TraceClaim, match_algorithm, match_audited},
+};
 
 use super::known_world::KnownWorld;
 
@@ -41,6 +46,22 @@ impl RunDriver {
     pub fn algorithm(self) -> Option<DirectionalAlgorithm> {
         match self {
             Self::Algorithm(algorithm) | Self::Audited { algorithm, .. } => Some(algorithm),
+            Self::Anyone => None,
+        }
+    }
+
+    /// How far it follows a trace, if it is an algorithm.
+    pub(super) fn follow(
+        self,
+        trace: &Trace,
+        claim: TraceClaim,
+        bound: usize,
+    ) -> Option<AlgorithmMatch> {
+        match self {
+            Self::Algorithm(algorithm) => Some(match_algorithm(algorithm, trace, claim, bound)),
+            Self::Audited { algorithm, audits } => {
+                Some(match_audited(algorithm, audits, trace, claim, bound))
+            }
             Self::Anyone => None,
         }
     }

@@ -10,14 +10,11 @@ use toposlam_model::{
     folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
     mapping::DirectionalAlgorithm,
     marker::{Directional, Marker, Undirected},
-    trace::{
-        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError,
-        match_algorithm, match_audited, poses,
-    },
+    trace::{AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError, poses},
 };
 
 use super::{
-    config::{ConformConfig, RunDriver},
+    config::ConformConfig,
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
@@ -249,16 +246,7 @@ impl Judgement {
             }
             judgement.poses = Some(poses);
         }
-        let (claim, bound) = (events.claim(), question.dart_bound);
-        let followed = match question.driver {
-            RunDriver::Algorithm(algorithm) => {
-                Some(match_algorithm(algorithm, trace, claim, bound))
-            }
-            RunDriver::Audited { algorithm, audits } => {
-                Some(match_audited(algorithm, audits, trace, claim, bound))
-            }
-            RunDriver::Anyone => None,
-        };
+        let followed = question.driver.follow(trace, events.claim(), question.dart_bound);
         if let Some(followed) = followed {
             match &followed.reached {
                 MatchEnd::Departure(departure) => {
