@@ -156,10 +156,13 @@ const OF_IMAGES: [&str; 7] =
     ["calibration", "size", "colours", "frames", "look", "effects", "effect"];
 
 /// Options that need a run; --ros serves the robot instead.
-const NOT_DRIVEN: [&str; 11] = [
+const NOT_DRIVEN: [&str; 14] = [
     "algorithm",
     "audit",
     "recover",
+    "max_moves",
+    "max_minutes",
+    "battery_per_metre",
     "by_scene",
     "log",
     "svg",

@@ -87,7 +87,7 @@ fn printed_events_are_read_as_they_were_printed() {
     let path = folder.join("events.jsonl");
     let line = |index: usize, degree: &str, door: u32, turned_back: bool| {
         format!(
-            "{{\"degree\":{degree},\"door\":{door},\"index\":{index},\"kind\":\"event\",\"marker\":null,\
+            "{{\"degree\":{degree},\"door\":{door},\"index\":{index},\"kind\":\"event\",\"length\":null,\"marker\":null,\
              \"schema\":1,\"stamp\":{index}.5,\"turned_back\":{turned_back}}}\n"
         )
     };

@@ -55,7 +55,7 @@ fn the_smallest_mistakes_are_written_as_worlds() {
 #[test]
 fn only_the_folding_explorer_recovers() {
     for what in ["mistakes", "runs"] {
-        let output = run(["evaluate", what, "--recover"]);
+        let output = run(["evaluate", what, "--recover", "--algorithm", "algorithm1"]);
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains("--algorithm folding"), "{}", stderr(&output));
     }

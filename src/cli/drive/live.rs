@@ -242,10 +242,13 @@ impl DriveArguments {
         let options =
             options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
+        let resumed =
+            self.resume.iter().flat_map(|log| ["--resume".to_owned(), log.display().to_string()]);
         let words = words
             .into_iter()
             .chain(words_of(method))
             .chain(self.budget.words())
+            .chain(resumed)
             .chain(options.flatten());
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
     }
