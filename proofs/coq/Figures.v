@@ -62,16 +62,16 @@ Qed.
 
 Hypothesis file_sound : sound.
 
-Let uniq_neighbours v : uniq (neighbours v).
+Lemma uniq_neighbours v : uniq (neighbours v).
 Proof.
 case/andP: file_sound => /allP all_uniq _; rewrite /neighbours.
 by case: (ltnP v (size file)) => [/(mem_nth [::])/all_uniq | /(nth_default [::])->].
 Qed.
 
-Let flip_names d : d \in names -> flip d \in names.
+Lemma flip_names d : d \in names -> flip d \in names.
 Proof. by case/and3P: file_sound => _ /allP ok _ /ok /andP[]. Qed.
 
-Let around_names d : d \in names -> around d \in names.
+Lemma around_names d : d \in names -> around d \in names.
 Proof. by rewrite !mem_names mem_next. Qed.
 
 Definition file_dart := seq_sub names.
@@ -79,23 +79,23 @@ Definition file_dart := seq_sub names.
 Definition file_opposite (d : file_dart) : file_dart := SeqSub (flip_names (ssvalP d)).
 Definition file_clockwise (d : file_dart) : file_dart := SeqSub (around_names (ssvalP d)).
 
-Let file_involutive : involutive file_opposite.
+Lemma file_involutive : involutive file_opposite.
 Proof. by move=> d; apply: val_inj; case: d => -[]. Qed.
 
-Let file_moves d : file_opposite d != d.
+Lemma file_moves d : file_opposite d != d.
 Proof.
 case/and3P: file_sound => _ /allP ok _; have /andP[_] := ok _ (ssvalP d).
 by apply: contra => /eqP/(congr1 val) /= /(congr1 snd) /= ->.
 Qed.
 
-Let file_injective : injective file_clockwise.
+Lemma file_injective : injective file_clockwise.
 Proof.
 move=> [d d_in] [e e_in] /(congr1 val) /= [same_v same_next]; apply: val_inj => /=.
 case: d e same_v same_next {d_in e_in} => [v w] [v' w'] /= <- /(congr1 (prev (neighbours v))).
-by rewrite !prev_next // => ->.
+by rewrite !(prev_next (uniq_neighbours v)) => ->.
 Qed.
 
-Let file_connected (d e : file_dart) :
+Lemma file_connected (d e : file_dart) :
   connect (fun x y => (y == file_opposite x) || (y == file_clockwise x)) d e.
 Proof.
 set step := fun x y => _.
@@ -147,7 +147,7 @@ Lemma world_degree d : degree d = size (neighbours (val d).1).
 Proof.
 rewrite /degree /order cardE -(size_map val) -[RHS](size_map (pair (val d).1)).
 apply/perm_size/uniq_perm; first by rewrite (map_inj_uniq val_inj) enum_uniq.
-  by rewrite map_inj_uniq // => ? ? [].
+  by rewrite map_inj_uniq ?uniq_neighbours // => ? ? [].
 move=> x; apply/mapP/mapP => [[e] | [w w_v ->]].
   rewrite mem_enum [_ \in _]world_same_vertex => /eqP-> ->; exists (val e).2.
     by have := ssvalP e; rewrite mem_names.
