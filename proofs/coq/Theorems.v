@@ -1,10 +1,11 @@
-(** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v] and
-    [MovableMarker.v] define the terms; the proofs are in the other files. *)
+(** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
+    [MovableMarker.v] and [Folding.v] define the terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1.
+From toposlam Require Import Spec Program Algorithm1 Folding.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect Covering.
+From toposlam Require Moves Trail Unfolding Determined.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
 Import Embedding(embeds).
@@ -285,6 +286,8 @@ move=> simple_W enough; have short S path : size path < known_vertices S -> any_
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
 Qed.
 
+(** * Folding *)
+
 (** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
     so that opposites and clockwise successors are kept, and only the facing dart maps to the facing dart,
     then both starts are isomorphic. Paper: beyond 2.3. *)
@@ -294,3 +297,55 @@ Theorem complete_trail_is_the_world (V W : start) (f : V -> W) :
   (forall d, f d = facing W <-> d = facing V) ->
   isomorphic_starts V W.
 Proof. exact: Covering.covering_isomorphic. Qed.
+
+(** The folded trail of a walk maps into every start with the percepts of this walk: darts of the trail that
+    are folded stand for one dart of the start, and different darts of a visit stand for different ones.
+    Paper: beyond 2.3. *)
+Theorem folding_sound (W : start) (doors : seq door) :
+  let seen := sees W doors in
+  (forall x y, folded doors seen x y -> dart_of W doors x = dart_of W doors y) /\
+  (forall visit i j, visit < size seen -> i < degree_seen seen visit -> j < degree_seen seen visit ->
+     dart_of W doors (visit, i) = dart_of W doors (visit, j) -> i = j).
+Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_injective]. Qed.
+
+(** If no dart of the folded trail is open, all starts with the percepts of the walk are isomorphic, facing
+    to facing. Paper: beyond 2.3. *)
+Theorem complete_folding_determines (V W : start) (doors : seq door) :
+  sees V doors = sees W doors -> complete doors (sees W doors) -> isomorphic_starts V W.
+Proof. exact: Trail.complete_folding_determines. Qed.
+
+(** If a dart of the folded trail is open, two worlds that are not isomorphic have the percepts of the walk.
+    They are simple if the robot's world is, and their degrees are at most its greatest degree, or 2. Paper:
+    beyond 2.3. *)
+Theorem open_folding_ambiguous (W : start) (doors : seq door) (visit : nat) (i : door) :
+  visit < size (sees W doors) -> ~ followed doors (sees W doors) (visit, i) ->
+  exists V V' : start,
+    [/\ sees V doors = sees W doors, sees V' doors = sees W doors, ~ isomorphic V V',
+        simple W -> simple V /\ simple V'
+      & forall bound, 2 <= bound -> (forall d : W, degree d <= bound) ->
+          (forall d : V, degree d <= bound) /\ (forall d : V', degree d <= bound)].
+Proof. exact: Unfolding.open_folding_ambiguous. Qed.
+
+(** A robot maps every start exactly if in each it answers, when its folded trail is complete, with a start
+    that has its percepts. Paper: beyond 2.3. *)
+Theorem correct_iff_complete (robot : strategy start) :
+  (forall W, maps_start directional robot W) <->
+  (forall W, exists n map,
+     let past := history robot directional W n in
+     let doors := doors_taken robot directional W n in
+     [/\ robot past = Answer map, sees map doors = past & complete doors past]).
+Proof. exact: Determined.correct_iff_complete. Qed.
+
+(** A robot that maps every world has gone over every edge before it answers. Paper: beyond 2.3. *)
+Theorem every_edge_is_traversed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  forall d : W, traverses (facing W) (doors_taken robot directional W n) d.
+Proof. exact: Moves.every_edge_is_traversed. Qed.
+
+(** So it makes at least as many moves as the world has edges. Paper: beyond 2.3. *)
+Theorem at_least_m_moves (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  edges W <= size (doors_taken robot directional W n).
+Proof. exact: Moves.at_least_m_moves. Qed.
