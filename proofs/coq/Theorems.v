@@ -236,12 +236,38 @@ apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pos
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
+(** With any limit on rounds, also with one that is too low, Algorithm 1 answers nothing or rightly. Paper:
+    2.3; Algorithm 1. *)
+Theorem algorithm1_never_wrong (W : start) (bound : nat) :
+  always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => answer = None \/ right_answer answer pose).
+Proof.
+by apply: Correct.algorithm1_any => S path.
+Qed.
+
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
   exists robot : strategy start, forall W : start, maps_start directional robot W.
 Proof. (* paper: marker.directional-sufficient *)
 by exists Mapper.mapper; apply: Mapper.mapper_maps.
+Qed.
+
+(** One robot also knows where it is in its map, takes only doors that exist, and makes at most
+    m n + 2 m^2 (n - 1) moves. Paper: 1 and 2.3. *)
+Theorem directional_marker_locates :
+  exists robot : strategy located, forall W : start, exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot directional W decisions).2 in
+    [/\ robot (history robot directional W decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j i, robot (history robot directional W j) = Leave i ->
+          i < degree (situation robot directional W j).2
+      & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
+Proof.
+exists Mapper.locating_mapper => W; have := Mapper.locating_mapper_maps W.
+by rewrite /Correct.cost -mulnn subn1.
 Qed.
 
 (** * More than the paper *)
@@ -284,6 +310,19 @@ Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
 Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
+Qed.
+
+(** With any limit on rounds, also with one that is too low, it answers nothing or rightly. Paper: 2.3. *)
+Theorem movable_marker_never_wrong (W : start) (bound : nat) :
+  simple W ->
+  let begin := Some (facing W) in
+  MovableMarker.always_handling
+    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
+    (facing W) begin
+    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+Proof.
+move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
+exact: (MovableCorrect.movable_marker_any short simple_W).
 Qed.
 
 (** * Folding *)
