@@ -1,8 +1,9 @@
 (** The worlds of the figures, as lists from their world files, and facts about them that are checked by
-    computation: Figure 1 of the paper, the smallest simple pair, and two cycles. *)
+    computation: Figure 1 of the paper, the smallest simple pair, two cycles, and a pair for marks on an edge
+    and for two markers that look alike. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Walks Bisimulation.
+From toposlam Require Import Spec Markers Walks Bisimulation.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -227,6 +228,19 @@ have /andP[/eqP degrees /eqP marks] := same _ pq.
 by rewrite /perceive /undirected !world_degree !world_same_vertex /= degrees [_ == d1.1]marks.
 Qed.
 
+(** For any marker whose sighting is computed from names. *)
+Lemma marker_bisimilar M (sighted : world_file -> name -> name -> sighting) rounds :
+  (forall file (ok : sound file) d (d_in : d \in names file) (p : start_at ok d_in),
+     M (start_at ok d_in) p = sighted file d (val p)) ->
+  let found := pairs rounds in
+  let same both := same_degree both && (sighted file1 d1 both.1 == sighted file2 d2 both.2) in
+  closed found && all same found -> bisimilar M V W.
+Proof.
+move=> M_sighted found same /andP[found_closed /allP all_same].
+apply: closed_bisimilar found_closed _ => p q pq; have /andP[/eqP degrees /eqP sightings] := all_same _ pq.
+by rewrite /perceive !world_degree degrees !M_sighted sightings.
+Qed.
+
 (** * Not isomorphic, by computation *)
 
 (** A walk that is closed in one world, and in the other world from no pose. *)
@@ -332,3 +346,54 @@ Proof. by split; apply: world_simple. Qed.
 
 Lemma smallest_simple : simple smallest_a /\ simple smallest_b.
 Proof. by split; apply: world_simple. Qed.
+
+(** * A pair for two more kinds of markers *)
+
+(** The marked edge joins two triangles, or two opposite vertices of a cycle of 6. They are
+    undirected-edge-corridor-1 and -2 in the atlas, and two-identical-corridor-1 and -2. *)
+Definition edge_a_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 4; 5];
+      (* 2 *) [:: 0; 3];
+      (* 3 *) [:: 0; 2];
+      (* 4 *) [:: 1; 5];
+      (* 5 *) [:: 1; 4]].
+
+Definition edge_b_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 4; 5];
+      (* 2 *) [:: 0; 5];
+      (* 3 *) [:: 0; 4];
+      (* 4 *) [:: 1; 3];
+      (* 5 *) [:: 1; 2]].
+
+Lemma edge_a_sound : sound edge_a_file. Proof. by vm_compute. Qed.
+Lemma edge_b_sound : sound edge_b_file. Proof. by vm_compute. Qed.
+
+(** At vertex 0, facing vertex 1. *)
+Definition edge_a : start := start_at edge_a_sound (erefl : (0, 1) \in names edge_a_file).
+Definition edge_b : start := start_at edge_b_sound (erefl : (0, 1) \in names edge_b_file).
+
+Lemma edge_simple : simple edge_a /\ simple edge_b.
+Proof. by split; apply: world_simple. Qed.
+
+Lemma edge_not_isomorphic : ~ isomorphic edge_a edge_b.
+Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 2; 1; 1]); vm_compute. Qed.
+
+Lemma edge_undirected_edge : bisimilar undirected_edge edge_a edge_b.
+Proof.
+pose sighted (file : world_file) (d x : name) := if (x == d) || (x == flip d) then Passed else Nothing.
+by apply: (@marker_bisimilar _ _ _ _ _ _ _ _ _ sighted 24) => //; vm_compute.
+Qed.
+
+Lemma edge_two_identical : bisimilar two_identical edge_a edge_b.
+Proof.
+pose sighted (file : world_file) (d x : name) :=
+  match x.1 == d.1, x.1 == d.2 with
+  | true, true => Two
+  | true, false | false, true => Lying
+  | false, false => Nothing
+  end.
+apply: (@marker_bisimilar _ _ _ _ _ _ _ _ _ sighted 24) => [file ok d d_in p|]; last by vm_compute.
+by rewrite /two_identical !world_same_vertex.
+Qed.

@@ -1,13 +1,14 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v] and [Folding.v] define the terms; the proofs are in the other files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding.
+From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
-From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect Covering.
-From toposlam Require Moves Trail Unfolding Determined.
+From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
+From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs.
 
-Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
+Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
+Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
 Import Embedding(embeds).
 
 Set Implicit Arguments.
@@ -272,17 +273,6 @@ Qed.
 
 (** * More than the paper *)
 
-(** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
-    beyond 2.2. *)
-Theorem undirected_marker_at_dead_end_suffices :
-  exists robot : strategy start, forall W : start,
-    degree (facing W) = 1 -> maps_start undirected robot W.
-Proof.
-have [robot same] := Degree1.degree_1_marker_suffices Mapper.mapper.
-exists robot => W dead_end; have [map answered iso] := Mapper.mapper_maps W.
-by exists map => //; apply/same.
-Qed.
-
 (** In two starts that are indistinguishable with one undirected marker, all classes of poses that
     perceive the same for ever have the same size, in both worlds, and this size divides the degree of the
     marked vertex. Paper: beyond 2.2. *)
@@ -324,6 +314,107 @@ Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_any short simple_W).
 Qed.
+
+(** * Which markers suffice *)
+
+(** A marker is as good as a directional one if it identifies the facing dart: only near its vertex, and then
+    behind its edge, the robot perceives certain percepts. Any robot with a directional marker can be
+    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more.
+    Paper: beyond 2.3. *)
+Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robot : strategy A) :
+  exists robot' : strategy A, forall (W : start) (bound : nat),
+    identifies M near beyond W -> (forall d : W, degree d <= bound) ->
+    forall n answer, robot (history robot directional W n) = Answer answer ->
+    exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer.
+Proof.
+exists (Simulation.simulating near beyond robot) => W bound identifies_W small n answer.
+exact: Simulation.simulating_answers.
+Qed.
+
+(** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
+Theorem directed_edge_suffices :
+  exists robot : strategy start, forall W : start, maps_start directed_edge robot W.
+Proof.
+have [robot maps_W] := Identifying.identifying_suffices directed_edge predT (fun seen => seen.2 == PassedAlong).
+by exists robot => W; apply/maps_W/Identifying.directed_edge_identifies.
+Qed.
+
+(** One robot maps every world without loops and parallel edges with two markers that look different, at both
+    ends of an edge. Paper: beyond 2.3. *)
+Theorem two_distinct_suffices_in_simple_worlds :
+  exists robot : strategy start, forall W : start, simple W -> maps_start two_distinct robot W.
+Proof.
+have [robot maps_W] :=
+  Identifying.identifying_suffices two_distinct (fun seen => seen.2 == First) (fun seen => seen.2 == Second).
+by exists robot => W simple_W; apply/maps_W/Identifying.two_distinct_identifies.
+Qed.
+
+(** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
+    beyond 2.2. *)
+Theorem undirected_marker_at_dead_end_suffices :
+  exists robot : strategy start, forall W : start,
+    degree (facing W) = 1 -> maps_start undirected robot W.
+Proof.
+have [robot maps_W] := Identifying.identifying_suffices undirected (fun seen => seen == (1, Lying)) predT.
+by exists robot => W dead_end; apply/maps_W/Identifying.dead_end_identifies.
+Qed.
+
+(** An undirected marker distinguishes a start from all others if the degree of the marked vertex and the
+    number of darts have no common divisor. Paper: beyond 2.2. *)
+Theorem coprime_degree_determines (V W : start) :
+  coprime (degree (facing W)) #|W| -> indistinguishable undirected V W -> isomorphic_starts V W.
+Proof. exact: Coprime.coprime_degree_determines. Qed.
+
+(** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
+    with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
+Theorem undirected_edge_impossible (robot : strategy embedded_graph) :
+  [/\ simple edge_a, simple edge_b, bisimilar undirected_edge edge_a edge_b
+    & ~ (maps undirected_edge robot edge_a /\ maps undirected_edge robot edge_b)].
+Proof.
+have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_undirected_edge.
+by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+Qed.
+
+(** Nor do two markers that look alike at both ends of an edge, in the same two worlds. Paper: beyond 2.2. *)
+Theorem two_identical_impossible (robot : strategy embedded_graph) :
+  [/\ simple edge_a, simple edge_b, bisimilar two_identical edge_a edge_b
+    & ~ (maps two_identical robot edge_a /\ maps two_identical robot edge_b)].
+Proof.
+have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_two_identical.
+by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+Qed.
+
+(** Two markers that look different at both ends of an edge do not suffice in worlds with parallel edges, nor
+    in worlds with loops: no robot maps both worlds of three parallel edges, in the plane and on the torus,
+    nor both of two loops. Paper: beyond 2.2. *)
+Theorem two_distinct_impossible (robot : strategy embedded_graph) :
+  ~ (maps two_distinct robot theta_plane /\ maps two_distinct robot theta_torus) /\
+  ~ (maps two_distinct robot two_loops_plane /\ maps two_distinct robot two_loops_torus).
+Proof.
+split; apply: Impossible.bisimilar_impossible robot.
+- exact: Multigraphs.theta_two_distinct.
+- exact: Multigraphs.theta_not_isomorphic.
+- exact: Multigraphs.loops_two_distinct.
+exact: Multigraphs.loops_not_isomorphic.
+Qed.
+
+(** Two markers that look different and are not adjacent do not suffice, not even in worlds without loops and
+    parallel edges: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
+Theorem two_distant_impossible (robot : strategy embedded_graph) :
+  [/\ simple paths_a, simple paths_b, bisimilar two_distant paths_a paths_b
+    & ~ (maps two_distant robot paths_a /\ maps two_distant robot paths_b)].
+Proof.
+have [simple_a simple_b] := Multigraphs.paths_simple; have same := Multigraphs.paths_two_distant.
+by split=> //; apply: Impossible.bisimilar_impossible same Multigraphs.paths_not_isomorphic robot.
+Qed.
+
+(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: no robot that
+    can pick it up and drop it maps both worlds of three parallel edges, nor both of two loops. Paper: beyond
+    2.3. *)
+Theorem movable_marker_impossible (robot : handling_strategy embedded_graph) :
+  ~ (handling_maps robot theta_plane /\ handling_maps robot theta_torus) /\
+  ~ (handling_maps robot two_loops_plane /\ handling_maps robot two_loops_torus).
+Proof. by split; [apply: Multigraphs.theta_handling | apply: Multigraphs.loops_handling]. Qed.
 
 (** * Folding *)
 

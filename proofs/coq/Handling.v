@@ -1,0 +1,55 @@
+(** Robots that handle one movable marker, as strategies: like [strategy] in [Spec.v], for the marker of
+    [MovableMarker.v]. Definitions only. Section 2.3. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec.
+From toposlam Require MovableMarker.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** From its percepts so far the robot decides by which door to leave, to pick up the marker or to drop it,
+    or what to answer. It perceives its place again when it has picked up or dropped the marker. *)
+Inductive handling (A : Type) := LeaveBy of door | PickUp | Drop | Report of A.
+
+Arguments LeaveBy {A}.
+Arguments PickUp {A}.
+Arguments Drop {A}.
+
+Definition handling_strategy (A : Type) := seq percept -> handling A.
+
+Section Runs.
+
+Variables (A : Type) (robot : handling_strategy A) (W : start).
+
+(** The robot's pose and the place of the marker after a decision. It cannot pick up a marker that does not
+    lie there, and cannot drop one that it does not carry. *)
+Definition handle (d : handling A) (pose : W) (lying : option W) : W * option W :=
+  match d with
+  | LeaveBy i => (traverse pose i, lying)
+  | PickUp => (pose, if lying is Some spot then if same_vertex pose spot then None else lying else lying)
+  | Drop => (pose, if lying is None then Some pose else lying)
+  | Report _ => (pose, lying)
+  end.
+
+(** The robot's percepts, its pose and the place of the marker after a number of decisions. *)
+Fixpoint handling_situation (decisions : nat) : seq percept * (W * option W) :=
+  if decisions is earlier.+1 then
+    let: (past, (pose, lying)) := handling_situation earlier in
+    if robot past is Report _ then (past, (pose, lying))
+    else
+      let: (pose', lying') := handle (robot past) pose lying in
+      (rcons past (MovableMarker.perceive_lying lying' pose'), (pose', lying'))
+  else
+    ([:: MovableMarker.perceive_lying (Some (facing W)) (facing W)], (facing W, Some (facing W))).
+
+Definition handling_history decisions := (handling_situation decisions).1.
+
+Definition reports (a : A) := exists decisions, robot (handling_history decisions) = Report a.
+
+End Runs.
+
+(** The robot answers with a map that is isomorphic to its world. *)
+Definition handling_maps (robot : handling_strategy embedded_graph) (W : start) :=
+  exists2 map : embedded_graph, reports robot W map & isomorphic map W.
