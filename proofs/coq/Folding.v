@@ -70,3 +70,7 @@ Definition sees (W : start) (doors : seq door) : seq percept := percepts directi
 (** The dart of a start for which a dart of the trail stands. *)
 Definition dart_of (W : start) (doors : seq door) (x : trail_dart) : W :=
   turn (walk (facing W) (take x.1 doors)) x.2.
+
+(** How many percepts are not what they should be. *)
+Definition false_percepts (right perceived : seq percept) : nat :=
+  count (fun both => both.1 != both.2) (zip right perceived).

@@ -5,10 +5,11 @@ From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
-From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs.
+From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
+Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 
 Set Implicit Arguments.
@@ -479,3 +480,38 @@ Theorem at_least_m_moves (robot : strategy start) :
   forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
   edges W <= size (doors_taken robot directional W n).
 Proof. exact: Moves.at_least_m_moves. Qed.
+
+(** * Maps that can be checked *)
+
+(** A walk whose folded trail in a map is complete checks the map: from a pose of a world it has the percepts
+    that the map predicts exactly if this pose is the facing dart and the map is isomorphic to the world,
+    facing to facing. Paper: beyond 2.3. *)
+Theorem tour_checks_the_map (map : start) (tour : seq door) :
+  complete tour (sees map tour) ->
+  forall (W : start) (pose : W),
+    percepts directional pose tour = sees map tour <-> pose = facing W /\ isomorphic_starts map W.
+Proof. exact: Tours.tour_checks_the_map. Qed.
+
+(** Every map has such a walk, with at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
+Theorem map_has_a_tour (map : start) :
+  let m := edges map in
+  let n := vertices map in
+  exists2 tour, complete tour (sees map tour) & size tour <= m * n + 2 * m ^ 2 * (n - 1).
+Proof. by have := Tours.map_has_a_tour map; rewrite /Correct.cost -mulnn subn1. Qed.
+
+(** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
+    then the map is right, wherever the walks began. Paper: beyond 2.3. *)
+Theorem k_false_percepts (map W : start) (tour : seq door) (k : nat)
+    (poses : 'I_k.+1 -> W) (perceived : 'I_k.+1 -> seq percept) :
+  complete tour (sees map tour) ->
+  (forall walk, perceived walk = sees map tour) ->
+  \sum_walk false_percepts (percepts directional (poses walk) tour) (perceived walk) <= k ->
+  isomorphic_starts map W.
+Proof. exact: Tours.k_false_percepts. Qed.
+
+(** One such walk can confirm a wrong map if one of its percepts is false: in a chain of three vertices it has
+    the percepts that a chain of two predicts. Paper: beyond 2.3. *)
+Theorem one_false_percept_deceives :
+  [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
+    & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
+Proof. exact: Tours.one_false_percept. Qed.
