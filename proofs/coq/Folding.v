@@ -23,6 +23,10 @@ Fixpoint traverses (G : embedded_graph) (pose : G) (doors : seq door) (d : G) : 
     [|| turn pose i == d, traverse pose i == d | traverses (traverse pose i) others d]
   else false.
 
+(** How often a walk in a start comes back to the marked vertex. *)
+Definition returns (W : start) (doors : seq door) : nat :=
+  count (fun k => same_vertex (walk (facing W) (take k.+1 doors)) (facing W)) (iota 0 (size doors)).
+
 (** * The folded trail *)
 
 Section Trail.

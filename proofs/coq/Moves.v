@@ -62,11 +62,11 @@ Lemma mapped_alike (robot : strategy start) M (V W : start) n answer :
   isomorphic_starts V W.
 Proof.
 move=> [map map_V iso_V] [map' map_W iso_W] answered /same_walk_history same.
-have {map_V iso_V} iso_V : isomorphic_starts answer V.
+have iso_a : isomorphic_starts answer V.
   by rewrite -(answers_unique map_V (ex_intro _ n (etrans (congr1 _ same) answered))).
-have {map_W iso_W} iso_W : isomorphic_starts answer W.
+have iso_b : isomorphic_starts answer W.
   by rewrite -(answers_unique map_W (ex_intro _ n answered)).
-exact: isomorphic_starts_trans (isomorphic_starts_sym iso_V) iso_W.
+exact: isomorphic_starts_trans (isomorphic_starts_sym iso_a) iso_b.
 Qed.
 
 (** * Every edge *)

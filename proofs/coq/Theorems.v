@@ -5,7 +5,8 @@ From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
-From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours.
+From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
+  Returns.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -480,6 +481,13 @@ Theorem at_least_m_moves (robot : strategy start) :
   forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
   edges W <= size (doors_taken robot directional W n).
 Proof. exact: Moves.at_least_m_moves. Qed.
+
+(** And it comes back to the marked vertex at least m - n + 1 times. Paper: beyond 2.3. *)
+Theorem returns_needed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  edges W < vertices W + returns W (doors_taken robot directional W n).
+Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
 
 (** * Maps that can be checked *)
 

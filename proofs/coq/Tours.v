@@ -26,10 +26,10 @@ Lemma map_has_a_tour (T : start) :
   exists2 tour, complete tour (sees T tour) & size tour <= cost T (edges T).
 Proof.
 have [map [n [answered _ _ n_le]]] := locating_mapper_maps T.
-have {answered} answered : mapper (history mapper directional T n) = Answer (Algorithm1.world map).
+have answered_start : mapper (history mapper directional T n) = Answer (Algorithm1.world map).
   by move: answered; rewrite /history situation_mapper /mapper => ->.
 exists (doors_taken mapper directional T n); last exact: leq_trans (size_doors_taken _ _ _ _) n_le.
-by have := mapped_complete mapper_maps answered; rewrite history_walk.
+by have := mapped_complete mapper_maps answered_start; rewrite history_walk.
 Qed.
 
 Lemma no_false_percept right perceived :
