@@ -53,3 +53,31 @@ End Runs.
 (** The robot answers with a map that is isomorphic to its world. *)
 Definition handling_maps (robot : handling_strategy embedded_graph) (W : start) :=
   exists2 map : embedded_graph, reports robot W map & isomorphic map W.
+
+(** * Programs as strategies *)
+
+(** The decision of a robot that runs the program of [MovableMarker.v] with the default choices, after these
+    percepts. *)
+Fixpoint obey_handling A (p : MovableMarker.handling_program A) (past : seq percept) : handling A :=
+  match p with
+  | MovableMarker.Return a => Report a
+  | MovableMarker.Move i go => if past is seen :: later then obey_handling (go seen) later else LeaveBy i
+  | MovableMarker.PickUp go => if past is _ :: later then obey_handling go later else PickUp
+  | MovableMarker.Drop go => if past is _ :: later then obey_handling go later else Drop
+  | MovableMarker.Choose T _ default go => obey_handling (go default) past
+  end.
+
+(** For all choices: the program, begun at this pose and with this place of the marker, ends within a number
+    of decisions: moves, pick-ups and drops. *)
+Fixpoint within (W : start) A (decisions : nat) (p : MovableMarker.handling_program A)
+    (pose : W) (lying : option W) : Prop :=
+  match p with
+  | MovableMarker.Return _ => True
+  | MovableMarker.Move i go =>
+      if decisions is others.+1 then
+        within others (go (MovableMarker.perceive_lying lying (traverse pose i))) (traverse pose i) lying
+      else False
+  | MovableMarker.PickUp go => if decisions is others.+1 then within others go pose None else False
+  | MovableMarker.Drop go => if decisions is others.+1 then within others go pose (Some pose) else False
+  | MovableMarker.Choose T allowed _ go => forall x, allowed x -> within decisions (go x) pose lying
+  end.

@@ -1,12 +1,13 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other
+    files. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns.
+  Returns MovableCost MovableMapper.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -315,6 +316,41 @@ Theorem movable_marker_never_wrong (W : start) (bound : nat) :
 Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_any short simple_W).
+Qed.
+
+(** With paths that have fewer edges than there are known vertices, it makes at most
+    1 + m ((n + 4) (n - 1) + 4 m + 8) decisions: moves, pick-ups and drops. Paper: 2.3. *)
+Theorem movable_marker_cost (W : start) (bound : nat) :
+  simple W ->
+  let m := edges W in
+  let n := vertices W in
+  let begin := Some (facing W) in
+  within (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))
+    (MovableMarker.movable short_paths bound (MovableMarker.perceive_lying begin (facing W)))
+    (facing W) begin.
+Proof.
+move=> simple_W m n begin; have short S path : size path < known_vertices S -> short_paths S path by [].
+rewrite -addnA [4 * m + 8]addnC addnA subn1.
+exact: (MovableCost.movable_within short simple_W (fun S path => id)).
+Qed.
+
+(** So one robot maps every world without loops and parallel edges with one movable marker, within this bound.
+    It knows where it is in its map, carries the marker in the end, and takes only doors that exist. Paper: 1
+    and 2.3. *)
+Theorem movable_marker_locates :
+  exists robot : handling_strategy located, forall W : start, simple W ->
+  exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let: (pose, lying) := (handling_situation robot W decisions).2 in
+    [/\ robot (handling_history robot W decisions) = Report map, lying = None,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j i, robot (handling_history robot W j) = LeaveBy i ->
+          i < degree (handling_situation robot W j).2.1
+      & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
+Proof.
+exists MovableMapper.movable_mapper => W /MovableMapper.movable_mapper_maps.
+by rewrite /MovableCost.round_cost -addnA [8 + _]addnC addnA subn1.
 Qed.
 
 (** * Which markers suffice *)
