@@ -7,7 +7,7 @@ From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper.
+  Returns MovableCost MovableMapper ShortTours.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -536,12 +536,12 @@ Theorem tour_checks_the_map (map : start) (tour : seq door) :
     percepts directional pose tour = sees map tour <-> pose = facing W /\ isomorphic_starts map W.
 Proof. exact: Tours.tour_checks_the_map. Qed.
 
-(** Every map has such a walk, with at most m n + 2 m^2 (n - 1) moves. Paper: beyond 2.3. *)
+(** Every map has such a walk, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
 Theorem map_has_a_tour (map : start) :
   let m := edges map in
   let n := vertices map in
-  exists2 tour, complete tour (sees map tour) & size tour <= m * n + 2 * m ^ 2 * (n - 1).
-Proof. by have := Tours.map_has_a_tour map; rewrite /Correct.cost -mulnn subn1. Qed.
+  exists2 tour, complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1).
+Proof. exact: ShortTours.map_has_a_short_tour. Qed.
 
 (** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
     then the map is right, wherever the walks began. Paper: beyond 2.3. *)

@@ -2,8 +2,7 @@
     where the map is right. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Algorithm1 Folding Walks Separates Bisimulation Parts Figures.
-From toposlam Require Import Moves Trail Determined Correct Mapper.
+From toposlam Require Import Spec Folding Walks Separates Bisimulation Parts Figures Trail Determined.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -19,17 +18,6 @@ have at_start : q = facing W.
   exact/points_back.
 split=> //; apply: isomorphic_starts_sym; rewrite at_start in same.
 exact: complete_folding_determines complete_T.
-Qed.
-
-(** Such a walk can be computed from the map: that of Algorithm 1 in it. *)
-Lemma map_has_a_tour (T : start) :
-  exists2 tour, complete tour (sees T tour) & size tour <= cost T (edges T).
-Proof.
-have [map [n [answered _ _ n_le]]] := locating_mapper_maps T.
-have answered_start : mapper (history mapper directional T n) = Answer (Algorithm1.world map).
-  by move: answered; rewrite /history situation_mapper /mapper => ->.
-exists (doors_taken mapper directional T n); last exact: leq_trans (size_doors_taken _ _ _ _) n_le.
-by have := mapped_complete mapper_maps answered_start; rewrite history_walk.
 Qed.
 
 Lemma no_false_percept right perceived :

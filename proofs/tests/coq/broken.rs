@@ -84,6 +84,18 @@ fn a_hypothesis_is_not_validated_by_degrees_alone() {
 }
 
 #[test]
+fn a_folded_trail_with_an_open_entry_dart_is_not_complete() {
+    let followed = "i < degree_seen visit -> followed";
+    assert_matters("complete", "Folding.v", followed, &format!("0 < i -> {followed}"));
+}
+
+#[test]
+fn an_arrow_needs_its_sense() {
+    let along = "(facing W) then PassedAlong";
+    assert_matters("sense", "Markers.v", along, "(facing W) then PassedAgainst");
+}
+
+#[test]
 fn what_is_left_out_or_assumed_is_refused() {
     let Some(whole) = compiled() else { return };
     for (name, added, found) in [
