@@ -27,6 +27,15 @@ Fixpoint traverses (G : embedded_graph) (pose : G) (doors : seq door) (d : G) : 
 Definition returns (W : start) (doors : seq door) : nat :=
   count (fun k => same_vertex (walk (facing W) (take k.+1 doors)) (facing W)) (iota 0 (size doors)).
 
+(** Whether a walk leads from the marker to the vertex of a dart without going over these edges. *)
+Definition near_without (W : start) (far : pred W) (d : W) : bool :=
+  connect (fun x y => (y == clockwise x) || (y == opposite x) && ~~ far x) (facing W) d.
+
+(** The number of these edges, by one dart of each; and of the vertices that are not near without them. *)
+Definition far_edges (W : start) (far : pred W) : nat := #|[set d : W | (froot opposite d == d) && far d]|.
+Definition far_vertices (W : start) (far : pred W) : nat :=
+  #|[set d : W | (froot clockwise d == d) && ~~ near_without far d]|.
+
 (** * The folded trail *)
 
 Section Trail.

@@ -525,6 +525,18 @@ Theorem returns_needed (robot : strategy start) :
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
 
+(** Cycles far from the marker cost much: if a set of far edges is at least [depth] moves from the marker, it
+    makes at least 2 depth + 1 moves for each of them, except as many as there are vertices that cannot be
+    reached without them. Paper: beyond 2.3. *)
+Theorem far_cycles_cost (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  forall (far : pred W) (depth : nat),
+  (forall d, far (opposite d) = far d) ->
+  (forall doors d, same_vertex (walk (facing W) doors) d -> far d -> depth <= size doors) ->
+  (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).
+Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycles_cost maps_all answered. Qed.
+
 (** * Maps that can be checked *)
 
 (** A walk whose folded trail in a map is complete checks the map: from a pose of a world it has the percepts
