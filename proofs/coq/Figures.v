@@ -125,7 +125,7 @@ Proof. by elim: i => //= i <-. Qed.
 Lemma iter_around i x : iter i around x = (x.1, iter i (next (neighbours x.1)) x.2).
 Proof. by elim: i => [|i IH] /=; [case: x | rewrite IH]. Qed.
 
-Lemma next_reaches (s : seq nat) x y :
+Lemma next_reaches (T : eqType) (s : seq T) x y :
   uniq s -> x \in s -> y \in s -> exists i, y = iter i (next s) x.
 Proof.
 move=> s_uniq /rot_to[k t rot_s] y_s.

@@ -12,7 +12,8 @@ Unset Printing Implicit Defensive.
 
 Notation within := Handling.within.
 
-Lemma within_le (W : start) A k k' (p : handling_program A) (pose : W) (l : option W) : k <= k' -> within k p pose l -> within k' p pose l.
+Lemma within_le (W : start) A k k' (p : handling_program A) (pose : W) (l : option W) :
+  k <= k' -> within k p pose l -> within k' p pose l.
 Proof.
 elim: p k k' pose l => [a|i go IH|go IH|go IH|T ok default go IH] [|k] [|k'] pose l //= le;
   try exact: IH; by move=> all x /all; apply: IH.
@@ -197,7 +198,8 @@ have known := size_known em.
 have left_gt0 : 0 < left by move: count; rewrite UE /= => count; arithmetic.
 rewrite -(prednK left_gt0) mulSn.
 have spec := explore_edge_spec allowed_short simple_W em lt some_left.
-apply: (within_bind (@explore_edge_within S place pose (place pose) None em) spec) => after r l [-> [S' [pose' [place' [-> em' lt' -> sizes]]]]].
+apply: (within_bind (@explore_edge_within S place pose (place pose) None em) spec) => after r l [->].
+case=> S' [pose' [place' [-> em' lt' -> sizes]]].
 by apply: IH => //; arithmetic.
 Qed.
 

@@ -386,7 +386,8 @@ Qed.
 Let size_way_back (p : W) ds : size (way_back (taken p ds)) = size ds.
 Proof. by case: ds => //= i ds; rewrite size_rev size_map size_taken. Qed.
 
-Let walk_between a b : a <= b -> walk (facing W) (take b doors) = walk (walk (facing W) (take a doors)) (drop a (take b doors)).
+Let walk_between a b : a <= b ->
+  walk (facing W) (take b doors) = walk (walk (facing W) (take a doors)) (drop a (take b doors)).
 Proof. by move=> le; rewrite -walk_cat -[take a doors](take_take le) cat_take_drop. Qed.
 
 Lemma far_return_apart (k : 'I_(size doors)) : k \in far_returns robot n far ->

@@ -237,7 +237,8 @@ Proof.
 have way_d : way (clockwise d) = way d by apply: way_same; rewrite same_vertex_sym (same_vertex_turn d 1).
 rewrite /f way_d -[RHS]/(turn (walk (facing W) (way d)) (last_door d).+1).
 have : turn (walk (facing T) (way d)) (last_door (clockwise d)) = turn (walk (facing T) (way d)) (last_door d).+1.
-  by rewrite -[in LHS]way_d turn_last_door -[RHS]/(clockwise (turn (walk (facing T) (way d)) (last_door d))) turn_last_door.
+  rewrite -[in LHS]way_d turn_last_door.
+  by rewrite -[RHS]/(clockwise (turn (walk (facing T) (way d)) (last_door d))) turn_last_door.
 move/turn_eq => mod_eq; rewrite -[LHS]turn_mod -[RHS]turn_mod degree_way.
 by move: mod_eq; rewrite (same_vertex_degree (way_at d)) => ->.
 Qed.

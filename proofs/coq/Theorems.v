@@ -7,7 +7,7 @@ From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours.
+  Returns MovableCost MovableMapper ShortTours Lollipop.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -536,6 +536,20 @@ Theorem far_cycles_cost (robot : strategy start) :
   (forall doors d, same_vertex (walk (facing W) doors) d -> far d -> depth <= size doors) ->
   (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).
 Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycles_cost maps_all answered. Qed.
+
+(** So order m n moves are needed. For any two numbers there is a world of a chain of k + 1 edges, which begins
+    at the marker and ends at a vertex with l loops, in which every robot that maps every world makes at least
+    (2 k + 3) l moves. Paper: beyond 2.3. *)
+Theorem lower_bound (k l : nat) :
+  exists W : start, [/\ edges W = k + 1 + l, vertices W = k + 2
+    & forall robot : strategy start, (forall V, maps_start directional robot V) ->
+      forall n answer, robot (history robot directional W n) = Answer answer ->
+      (2 * k + 3) * l <= size (doors_taken robot directional W n)].
+Proof.
+exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
+split=> // robot maps_all n answer answered.
+by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+Qed.
 
 (** * Maps that can be checked *)
 
