@@ -8,17 +8,24 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** Edges have two ends. *)
-Lemma card_darts (G : embedded_graph) : #|G| = 2 * edges G.
+Lemma order_opposite (G : embedded_graph) (d : G) : order opposite d = 2.
 Proof.
-have two (d : G) : order opposite d = 2.
-  have cycle_d : fcycle opposite [:: d; opposite d] by rewrite /= opposite_involutive !eqxx.
-  have uniq_d : uniq [:: d; opposite d] by rewrite /= inE eq_sym opposite_moves.
-  by rewrite (order_cycle cycle_d uniq_d) ?mem_head.
-have halves : fcard (@opposite G) G * 2 = #|G|.
-  apply: (fcard_order_set (inv_inj (@opposite_involutive G))) => //.
-  by apply/subsetP=> d _; rewrite inE two.
-by rewrite /edges -halves muln2 doubleK mul2n.
+have cycle_d : fcycle opposite [:: d; opposite d] by rewrite /= opposite_involutive !eqxx.
+have uniq_d : uniq [:: d; opposite d] by rewrite /= inE eq_sym opposite_moves.
+by rewrite (order_cycle cycle_d uniq_d) ?mem_head.
 Qed.
+
+Lemma card_edge_orbits (G : embedded_graph) : fcard (@opposite G) G * 2 = #|G|.
+Proof.
+apply: (fcard_order_set (inv_inj (@opposite_involutive G))) => //.
+by apply/subsetP=> d _; rewrite inE order_opposite.
+Qed.
+
+Lemma edges_orbits (G : embedded_graph) : edges G = fcard (@opposite G) G.
+Proof. by rewrite /edges -card_edge_orbits muln2 doubleK. Qed.
+
+Lemma card_darts (G : embedded_graph) : #|G| = 2 * edges G.
+Proof. by rewrite edges_orbits -card_edge_orbits mulnC. Qed.
 
 Section Embedded.
 

@@ -75,6 +75,21 @@ apply: (@cost_of_round _ _ _ (size (unexplored S))) (cost_l short) vertices_gt0.
 by rewrite prednK //; arithmetic.
 Qed.
 
+(** With any limit the rounds end with such a map, or without an answer. *)
+Lemma rounds_any bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
+  always directional (rounds allowed bound S pose) (place pose)
+    (fun answer r _ => answer = None \/ exists T pose' (place' : nat -> W),
+       [/\ answer = Some (T, pose'), embeds T place', unexplored T = [::], pose' < size T
+         & r = place' pose']).
+Proof.
+elim: bound S place pose => [|bound IH] S place pose em lt.
+  by rewrite /=; case UE: (unexplored S) => [|e U]; [right; exists S, pose, place | left].
+rewrite another_round; case UE: (unexplored S) => [|e U]; first by right; exists S, pose, place.
+have some_left : unexplored S != [::] by rewrite UE.
+apply: always_bind; apply: always_weaken (explore_spec allowed_short em lt some_left).
+by move=> [T pose'] r k [[place' [/= em' lt' -> _]] _]; apply: IH.
+Qed.
+
 (** * From the start *)
 
 Let g := degree (facing W).
@@ -106,6 +121,17 @@ have count : size (with_vertex [::] g) + 2 * edges W = 2 * edges W + size (unexp
 have lt : 0 < size (with_vertex [::] g) by rewrite sz degree_gt0.
 apply: always_weaken (rounds_spec embeds_at_start lt count le) => answer r k [[T [p [place]]]].
 case=> -> em explored p_lt -> cost_k; split=> //.
+have [L drawn_L iso] := drawn_isomorphic em explored p_lt; by exists T, p, L; split.
+Qed.
+
+(** With any limit on rounds, Algorithm 1 answers nothing or rightly. *)
+Lemma algorithm1_any bound :
+  always directional (algorithm1 allowed bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => answer = None \/ right_answer answer pose).
+Proof.
+have lt : 0 < size (with_vertex [::] g) by rewrite size_with_vertex degree_gt0.
+apply: always_weaken (rounds_any bound embeds_at_start lt) => answer r k [->|]; first by left.
+case=> T [p [place [-> em explored p_lt ->]]]; right.
 have [L drawn_L iso] := drawn_isomorphic em explored p_lt; by exists T, p, L; split.
 Qed.
 

@@ -1,8 +1,9 @@
 (** The worlds of the figures, as lists from their world files, and facts about them that are checked by
-    computation: Figure 1 of the paper, the smallest simple pair, and two cycles. *)
+    computation: Figure 1 of the paper, the smallest simple pair, two cycles, and a pair for marks on an edge
+    and for two markers that look alike. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Walks Bisimulation.
+From toposlam Require Import Spec Markers Walks Bisimulation.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -62,16 +63,16 @@ Qed.
 
 Hypothesis file_sound : sound.
 
-Let uniq_neighbours v : uniq (neighbours v).
+Lemma uniq_neighbours v : uniq (neighbours v).
 Proof.
 case/andP: file_sound => /allP all_uniq _; rewrite /neighbours.
 by case: (ltnP v (size file)) => [/(mem_nth [::])/all_uniq | /(nth_default [::])->].
 Qed.
 
-Let flip_names d : d \in names -> flip d \in names.
+Lemma flip_names d : d \in names -> flip d \in names.
 Proof. by case/and3P: file_sound => _ /allP ok _ /ok /andP[]. Qed.
 
-Let around_names d : d \in names -> around d \in names.
+Lemma around_names d : d \in names -> around d \in names.
 Proof. by rewrite !mem_names mem_next. Qed.
 
 Definition file_dart := seq_sub names.
@@ -79,23 +80,23 @@ Definition file_dart := seq_sub names.
 Definition file_opposite (d : file_dart) : file_dart := SeqSub (flip_names (ssvalP d)).
 Definition file_clockwise (d : file_dart) : file_dart := SeqSub (around_names (ssvalP d)).
 
-Let file_involutive : involutive file_opposite.
+Lemma file_involutive : involutive file_opposite.
 Proof. by move=> d; apply: val_inj; case: d => -[]. Qed.
 
-Let file_moves d : file_opposite d != d.
+Lemma file_moves d : file_opposite d != d.
 Proof.
 case/and3P: file_sound => _ /allP ok _; have /andP[_] := ok _ (ssvalP d).
 by apply: contra => /eqP/(congr1 val) /= /(congr1 snd) /= ->.
 Qed.
 
-Let file_injective : injective file_clockwise.
+Lemma file_injective : injective file_clockwise.
 Proof.
 move=> [d d_in] [e e_in] /(congr1 val) /= [same_v same_next]; apply: val_inj => /=.
 case: d e same_v same_next {d_in e_in} => [v w] [v' w'] /= <- /(congr1 (prev (neighbours v))).
-by rewrite !prev_next // => ->.
+by rewrite !(prev_next (uniq_neighbours v)) => ->.
 Qed.
 
-Let file_connected (d e : file_dart) :
+Lemma file_connected (d e : file_dart) :
   connect (fun x y => (y == file_opposite x) || (y == file_clockwise x)) d e.
 Proof.
 set step := fun x y => _.
@@ -124,7 +125,7 @@ Proof. by elim: i => //= i <-. Qed.
 Lemma iter_around i x : iter i around x = (x.1, iter i (next (neighbours x.1)) x.2).
 Proof. by elim: i => [|i IH] /=; [case: x | rewrite IH]. Qed.
 
-Lemma next_reaches (s : seq nat) x y :
+Lemma next_reaches (T : eqType) (s : seq T) x y :
   uniq s -> x \in s -> y \in s -> exists i, y = iter i (next s) x.
 Proof.
 move=> s_uniq /rot_to[k t rot_s] y_s.
@@ -147,7 +148,7 @@ Lemma world_degree d : degree d = size (neighbours (val d).1).
 Proof.
 rewrite /degree /order cardE -(size_map val) -[RHS](size_map (pair (val d).1)).
 apply/perm_size/uniq_perm; first by rewrite (map_inj_uniq val_inj) enum_uniq.
-  by rewrite map_inj_uniq // => ? ? [].
+  by rewrite map_inj_uniq ?uniq_neighbours // => ? ? [].
 move=> x; apply/mapP/mapP => [[e] | [w w_v ->]].
   rewrite mem_enum [_ \in _]world_same_vertex => /eqP-> ->; exists (val e).2.
     by have := ssvalP e; rewrite mem_names.
@@ -225,6 +226,19 @@ Proof.
 move=> found /andP[found_closed /allP same]; apply: closed_bisimilar found_closed _ => p q pq.
 have /andP[/eqP degrees /eqP marks] := same _ pq.
 by rewrite /perceive /undirected !world_degree !world_same_vertex /= degrees [_ == d1.1]marks.
+Qed.
+
+(** For any marker whose sighting is computed from names. *)
+Lemma marker_bisimilar M (sighted : world_file -> name -> name -> sighting) rounds :
+  (forall file (ok : sound file) d (d_in : d \in names file) (p : start_at ok d_in),
+     M (start_at ok d_in) p = sighted file d (val p)) ->
+  let found := pairs rounds in
+  let same both := same_degree both && (sighted file1 d1 both.1 == sighted file2 d2 both.2) in
+  closed found && all same found -> bisimilar M V W.
+Proof.
+move=> M_sighted found same /andP[found_closed /allP all_same].
+apply: closed_bisimilar found_closed _ => p q pq; have /andP[/eqP degrees /eqP sightings] := all_same _ pq.
+by rewrite /perceive !world_degree degrees !M_sighted sightings.
 Qed.
 
 (** * Not isomorphic, by computation *)
@@ -332,3 +346,54 @@ Proof. by split; apply: world_simple. Qed.
 
 Lemma smallest_simple : simple smallest_a /\ simple smallest_b.
 Proof. by split; apply: world_simple. Qed.
+
+(** * A pair for two more kinds of markers *)
+
+(** The marked edge joins two triangles, or two opposite vertices of a cycle of 6. They are
+    undirected-edge-corridor-1 and -2 in the atlas, and two-identical-corridor-1 and -2. *)
+Definition edge_a_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 4; 5];
+      (* 2 *) [:: 0; 3];
+      (* 3 *) [:: 0; 2];
+      (* 4 *) [:: 1; 5];
+      (* 5 *) [:: 1; 4]].
+
+Definition edge_b_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 4; 5];
+      (* 2 *) [:: 0; 5];
+      (* 3 *) [:: 0; 4];
+      (* 4 *) [:: 1; 3];
+      (* 5 *) [:: 1; 2]].
+
+Lemma edge_a_sound : sound edge_a_file. Proof. by vm_compute. Qed.
+Lemma edge_b_sound : sound edge_b_file. Proof. by vm_compute. Qed.
+
+(** At vertex 0, facing vertex 1. *)
+Definition edge_a : start := start_at edge_a_sound (erefl : (0, 1) \in names edge_a_file).
+Definition edge_b : start := start_at edge_b_sound (erefl : (0, 1) \in names edge_b_file).
+
+Lemma edge_simple : simple edge_a /\ simple edge_b.
+Proof. by split; apply: world_simple. Qed.
+
+Lemma edge_not_isomorphic : ~ isomorphic edge_a edge_b.
+Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 2; 1; 1]); vm_compute. Qed.
+
+Lemma edge_undirected_edge : bisimilar undirected_edge edge_a edge_b.
+Proof.
+pose sighted (file : world_file) (d x : name) := if (x == d) || (x == flip d) then Passed else Nothing.
+by apply: (@marker_bisimilar _ _ _ _ _ _ _ _ _ sighted 24) => //; vm_compute.
+Qed.
+
+Lemma edge_two_identical : bisimilar two_identical edge_a edge_b.
+Proof.
+pose sighted (file : world_file) (d x : name) :=
+  match x.1 == d.1, x.1 == d.2 with
+  | true, true => Two
+  | true, false | false, true => Lying
+  | false, false => Nothing
+  end.
+apply: (@marker_bisimilar _ _ _ _ _ _ _ _ _ sighted 24) => [file ok d d_in p|]; last by vm_compute.
+by rewrite /two_identical !world_same_vertex.
+Qed.

@@ -8,16 +8,24 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
+(** What a robot does that runs Algorithm 1: at the end it answers with the world of its map, and its pose in
+    it. *)
+Definition drawing (d : decision (option (partial_map * nat))) : decision located :=
+  match d with
+  | Leave i => Leave i
+  | Answer (Some (T, pose)) => if drawn T pose is Some map then Answer map else Leave 0
+  | Answer None => Leave 0
+  end.
+
 (** The robot runs Algorithm 1 with its default choices. It has made fewer rounds than it has percepts, so
     their number is a sufficient limit, and it need not know the size of the world. *)
-Definition mapper : strategy start := fun past =>
-  if past is first :: later then
-    match obey (algorithm1 short_paths (size past) first) later with
-    | Leave i => Leave i
-    | Answer (Some (T, pose)) => if drawn T pose is Some map then Answer (map : start) else Leave 0
-    | Answer None => Leave 0
-    end
+Definition locating_mapper : strategy located := fun past =>
+  if past is first :: later then drawing (obey (algorithm1 short_paths (size past) first) later)
   else Leave 0.
+
+(** The same robot, which answers without its pose. *)
+Definition mapper : strategy start := fun past =>
+  match locating_mapper past with Leave i => Leave i | Answer map => Answer (world map) end.
 
 (** * The limit makes no difference before it is reached *)
 
@@ -80,55 +88,88 @@ Fixpoint heard (p : program A) (pose : W) : seq percept :=
   | Choose T _ default go => heard (go default) pose
   end.
 
+Variables (B : Type) (report : decision A -> decision B).
+Hypothesis report_leave : forall i, report (Leave i) = Leave i.
+
+(** A strategy that does what the program does until it ends reports the program's answer. *)
+Lemma obedient (robot : strategy B) p past n (pose : W) (Q : A -> W -> nat -> Prop) :
+  situation robot M W n = (past, pose) -> always M p pose Q ->
+  (forall later, size later <= size (heard p pose) -> robot (past ++ later) = report (obey p later)) ->
+  (forall a r k, Q a r k -> exists b, report (Answer a) = Answer b) ->
+  exists a k,
+    [/\ robot (history robot M W (n + k)) = report (Answer a), Q a (situation robot M W (n + k)).2 k
+      & forall j i, n <= j -> robot (history robot M W j) = Leave i ->
+          i < degree (situation robot M W j).2].
+Proof.
+elim: p past n pose Q => [a|i go IH|T ok default go IH] past n pose Q at_n /=.
+- move=> q obeys reports; have [b reported] := reports a pose 0 q.
+  have answered : robot past = Answer b by have := obeys [::] isT; rewrite cats0 /= reported.
+  exists a, 0; rewrite addn0 /history at_n reported; split=> // j i /subnKC <-.
+  have -> : situation robot M W (n + (j - n)) = (past, pose).
+    by elim: (j - n) => [|l stays]; rewrite ?addn0 // addnS /= stays answered.
+  by rewrite /= answered.
+- case=> open_i all obeys reports; set pose' := traverse pose i; set seen := perceive M pose'.
+  have leaves : robot past = Leave i by have := obeys [::] isT; rewrite cats0 /= report_leave.
+  have at_n1 : situation robot M W n.+1 = (rcons past seen, pose') by rewrite /= at_n leaves.
+  have obeys' later : size later <= size (heard (go seen) pose') ->
+      robot (rcons past seen ++ later) = report (obey (go seen) later).
+    by move=> le; rewrite cat_rcons obeys.
+  have [|a [k [answered q doors]]] := IH _ _ _ _ _ at_n1 all obeys'.
+    by move=> a r k; apply: reports.
+  exists a, k.+1; rewrite -addSnnS; split=> // j i'; rewrite leq_eqVlt => /predU1P[<-|]; last exact: doors.
+  by rewrite /history at_n /= leaves => -[<-].
+- by case=> okd /(_ default okd); apply: IH at_n.
+Qed.
+
 Lemma always_heard p pose Q : always M p pose Q ->
-  exists a r, obey p (heard p pose) = Answer a /\ Q a r (size (heard p pose)).
+  exists a r, Q a r (size (heard p pose)).
 Proof.
 elim: p pose Q => [a|i go IH|T ok default go IH] pose Q /=; first by exists a, pose.
   by case=> _ /IH.
 by case=> okd /(_ default okd)/IH.
 Qed.
 
-Variables (B : Type) (report : decision A -> decision B).
-Hypothesis report_leave : forall i, report (Leave i) = Leave i.
-
-(** A strategy that does what the program does until it ends gives the same answer. *)
-Lemma obedient (robot : strategy B) p past n (pose : W) a b :
-  situation robot M W n = (past, pose) ->
-  (forall later, size later <= size (heard p pose) -> robot (past ++ later) = report (obey p later)) ->
-  obey p (heard p pose) = Answer a -> report (Answer a) = Answer b -> answers robot M W b.
-Proof.
-elim: p past n pose => [c|i go IH|T ok default go IH] past n pose at_n obeys /=.
-- case=> <- reported; exists n; rewrite /history at_n /=.
-  by have := obeys [::] isT; rewrite cats0 /= reported.
-- set seen := perceive _ _ => ended reported.
-  have leaves : robot past = Leave i by have := obeys [::] isT; rewrite cats0 /= report_leave.
-  apply: (IH seen (rcons past seen) n.+1 (traverse pose i)) ended reported.
-    by rewrite /= at_n leaves.
-  by move=> later le; rewrite cat_rcons obeys.
-- exact: IH at_n obeys.
-Qed.
-
 End Obedient.
 
-(** One directional marker suffices. *)
-Lemma mapper_maps W : maps_start directional mapper W.
+(** One directional marker suffices, for the pose as well, and within the bound of Algorithm 1. *)
+Lemma locating_mapper_maps W :
+  let robot := locating_mapper in
+  exists map n,
+    [/\ robot (history robot directional W n) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W
+          & f (Algorithm1.robot map) = (situation robot directional W n).2],
+        forall j i, robot (history robot directional W j) = Leave i ->
+          i < degree (situation robot directional W j).2
+      & n <= cost W (edges W)].
 Proof.
-have short S path : size path < known_vertices S -> short_paths S path by [].
+move=> robot; have short S path : size path < known_vertices S -> short_paths S path by [].
 pose first := perceive directional (facing W).
 pose bound := (edges W + cost W (edges W)).+1.
 have le : edges W <= bound by rewrite /bound -addnS leq_addr.
-have [answer [pose [ended [right cost_le]]]] := always_heard (algorithm1_spec short le).
+have spec := algorithm1_spec short le.
+have [_ [_ [_ cost_le]]] := always_heard spec.
 have {cost_le} moves_le := cost_le (fun S path => id).
-have [T [p [map [answered _ drawn_map [f [iso facing_f _]]]]]] := right.
-exists (map : start); last by exists f.
-pose report (d : decision (option (partial_map * nat))) : decision start :=
-  match d with
-  | Leave i => Leave i
-  | Answer (Some (T, pose)) => if drawn T pose is Some map then Answer (map : start) else Leave 0
-  | Answer None => Leave 0
-  end.
-have reported : report (Answer answer) = Answer (map : start) by rewrite /report answered drawn_map.
-apply: (@obedient _ _ _ _ report _ _ _ [:: first] 0) ended reported => // later later_le.
-rewrite /mapper /= (@same_rounds _ _ bound) //.
-by rewrite /bound !ltnS (leq_trans later_le) // (leq_trans moves_le) // leq_addl.
+have at_first : situation robot directional W 0 = ([:: first], facing W) by [].
+have [//|later later_le|answer r k [[T [p [map [-> _ drawn_map _]]]] _]|] :=
+  @obedient _ _ _ _ drawing _ robot _ _ _ _ _ at_first spec.
+- rewrite /robot /= (@same_rounds _ _ bound) //.
+  by rewrite /bound !ltnS (leq_trans later_le) // (leq_trans moves_le) // leq_addl.
+- by exists map; rewrite /= drawn_map.
+move=> answer [n [answered [right cost_n] doors]]; move: right => [T [p [map [answerE _ drawn_map iso]]]].
+exists map, n; split=> //; last exact: cost_n (fun S path => id).
+  by rewrite answered answerE /= drawn_map.
+by move=> j i; apply: doors.
+Qed.
+
+Lemma situation_mapper W n : situation mapper directional W n = situation locating_mapper directional W n.
+Proof.
+elim: n => //= n ->; case: (situation _ _ _ n) => past pose; rewrite /mapper.
+by case: (locating_mapper past).
+Qed.
+
+Lemma mapper_maps W : maps_start directional mapper W.
+Proof.
+have [map [n [answered [f [iso facing_f _]] _ _]]] := locating_mapper_maps W.
+exists (world map); last by exists f.
+by exists n; move: answered; rewrite /history situation_mapper /mapper => ->.
 Qed.

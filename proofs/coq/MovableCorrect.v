@@ -375,6 +375,21 @@ case=> S' [pose' [place' [-> em' pose'_lt -> sizes]]].
 by apply: IH => //; arithmetic.
 Qed.
 
+(** With any limit the rounds end with such a map, or without an answer. *)
+Lemma explore_edges_any bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
+  always_handling (explore_edges allowed bound S pose) (place pose) None
+    (fun answer r l => l = None /\ (answer = None \/ explored_well answer r l)).
+Proof.
+elim: bound S place pose => [|bound IH] S place pose em pose_lt.
+  rewrite /=; case UE: (unexplored S) => [|d U]; split=> //; last by left.
+  by right; split=> //; exists S, pose, place.
+rewrite /explore_edges -/explore_edges; case UE: (unexplored S) => [|d U].
+  by split=> //; right; split=> //; exists S, pose, place.
+have some_left : unexplored S != [::] by rewrite UE.
+apply: always_handling_bind (explore_edge_spec em pose_lt some_left) _ => after r l [->].
+by case=> S' [pose' [place' [-> em' pose'_lt -> _]]]; apply: IH.
+Qed.
+
 Let begin := Some (facing W).
 
 (** From the place of the marker, the algorithm ends with a map of the whole world. The robot is where it
@@ -396,6 +411,18 @@ Proof.
 move/movable_spec; apply: always_handling_weaken => answer pose lying [->].
 case=> S [p [place [-> em explored p_lt ->]]]; split=> //.
 by have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
+Qed.
+
+(** With any limit on rounds, it answers nothing or rightly. *)
+Lemma movable_marker_any bound :
+  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
+    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+Proof.
+split; first exact: same_vertex_refl.
+have some_known : 0 < size (with_vertex [::] (degree (facing W))) by rewrite size_with_vertex degree_gt0.
+apply: always_handling_weaken (explore_edges_any bound (embeds_at_start W) some_known).
+move=> answer pose lying [-> [->|[_ [S [p [place [-> em explored p_lt ->]]]]]]]; split=> //; first by left.
+by right; have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
 Qed.
 
 End Correct.

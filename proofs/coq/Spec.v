@@ -81,14 +81,24 @@ Definition simple (G : embedded_graph) :=
 (** * Percepts and markers *)
 
 (** What a marker adds to a percept: nothing; an undirected marker lies here; a directional marker lies
-    here and points along this door. *)
-Inductive sighting := Nothing | Lying | Pointing of door.
+    here and points along this door; two markers that look alike lie here; of two markers that look
+    different the first, the second or both lie here; the edge just traversed is marked, with an arrow along
+    the traversal, or against it. *)
+Inductive sighting :=
+  | Nothing | Lying | Pointing of door | Two | First | Second | Both | Passed | PassedAlong | PassedAgainst.
 
 (** Sightings can be compared. *)
-Definition sighting_code (s : sighting) : option (option nat) :=
-  match s with Nothing => None | Lying => Some None | Pointing i => Some (Some i) end.
-Definition sighting_of_code (c : option (option nat)) : sighting :=
-  match c with None => Nothing | Some None => Lying | Some (Some i) => Pointing i end.
+Definition sighting_code (s : sighting) : nat + door :=
+  match s with
+  | Pointing i => inr i
+  | Nothing => inl 0 | Lying => inl 1 | Two => inl 2 | First => inl 3 | Second => inl 4 | Both => inl 5
+  | Passed => inl 6 | PassedAlong => inl 7 | PassedAgainst => inl 8
+  end.
+Definition sighting_of_code (c : nat + door) : sighting :=
+  match c with
+  | inr i => Pointing i
+  | inl code => nth Nothing [:: Nothing; Lying; Two; First; Second; Both; Passed; PassedAlong; PassedAgainst] code
+  end.
 Lemma sighting_codeK : cancel sighting_code sighting_of_code.
 Proof. by case. Qed.
 Canonical sighting_eqType := EqType sighting (CanEqMixin sighting_codeK).

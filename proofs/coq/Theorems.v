@@ -1,12 +1,17 @@
-(** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v] and
-    [MovableMarker.v] define the terms; the proofs are in the other files. *)
+(** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
+    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other
+    files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1.
+From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
-From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect Covering.
+From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
+From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
+  Returns MovableCost MovableMapper ShortTours Lollipop.
 
-Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
+Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
+Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
+Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
 
 Set Implicit Arguments.
@@ -235,6 +240,15 @@ apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pos
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
+(** With any limit on rounds, also with one that is too low, Algorithm 1 answers nothing or rightly. Paper:
+    2.3; Algorithm 1. *)
+Theorem algorithm1_never_wrong (W : start) (bound : nat) :
+  always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => answer = None \/ right_answer answer pose).
+Proof.
+by apply: Correct.algorithm1_any => S path.
+Qed.
+
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
@@ -243,18 +257,24 @@ Proof. (* paper: marker.directional-sufficient *)
 by exists Mapper.mapper; apply: Mapper.mapper_maps.
 Qed.
 
-(** * More than the paper *)
-
-(** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
-    beyond 2.2. *)
-Theorem undirected_marker_at_dead_end_suffices :
-  exists robot : strategy start, forall W : start,
-    degree (facing W) = 1 -> maps_start undirected robot W.
+(** One robot also knows where it is in its map, takes only doors that exist, and makes at most
+    m n + 2 m^2 (n - 1) moves. Paper: 1 and 2.3. *)
+Theorem directional_marker_locates :
+  exists robot : strategy located, forall W : start, exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let pose := (situation robot directional W decisions).2 in
+    [/\ robot (history robot directional W decisions) = Answer map,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j i, robot (history robot directional W j) = Leave i ->
+          i < degree (situation robot directional W j).2
+      & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
 Proof.
-have [robot same] := Degree1.degree_1_marker_suffices Mapper.mapper.
-exists robot => W dead_end; have [map answered iso] := Mapper.mapper_maps W.
-by exists map => //; apply/same.
+exists Mapper.locating_mapper => W; have := Mapper.locating_mapper_maps W.
+by rewrite /Correct.cost -mulnn subn1.
 Qed.
+
+(** * More than the paper *)
 
 (** In two starts that are indistinguishable with one undirected marker, all classes of poses that
     perceive the same for ever have the same size, in both worlds, and this size divides the degree of the
@@ -285,6 +305,157 @@ move=> simple_W enough; have short S path : size path < known_vertices S -> any_
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
 Qed.
 
+(** With any limit on rounds, also with one that is too low, it answers nothing or rightly. Paper: 2.3. *)
+Theorem movable_marker_never_wrong (W : start) (bound : nat) :
+  simple W ->
+  let begin := Some (facing W) in
+  MovableMarker.always_handling
+    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
+    (facing W) begin
+    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+Proof.
+move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
+exact: (MovableCorrect.movable_marker_any short simple_W).
+Qed.
+
+(** With paths that have fewer edges than there are known vertices, it makes at most
+    1 + m ((n + 4) (n - 1) + 4 m + 8) decisions: moves, pick-ups and drops. Paper: 2.3. *)
+Theorem movable_marker_cost (W : start) (bound : nat) :
+  simple W ->
+  let m := edges W in
+  let n := vertices W in
+  let begin := Some (facing W) in
+  within (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))
+    (MovableMarker.movable short_paths bound (MovableMarker.perceive_lying begin (facing W)))
+    (facing W) begin.
+Proof.
+move=> simple_W m n begin; have short S path : size path < known_vertices S -> short_paths S path by [].
+rewrite -addnA [4 * m + 8]addnC addnA subn1.
+exact: (MovableCost.movable_within short simple_W (fun S path => id)).
+Qed.
+
+(** So one robot maps every world without loops and parallel edges with one movable marker, within this bound.
+    It knows where it is in its map, carries the marker in the end, and takes only doors that exist. Paper: 1
+    and 2.3. *)
+Theorem movable_marker_locates :
+  exists robot : handling_strategy located, forall W : start, simple W ->
+  exists map decisions,
+    let m := edges W in
+    let n := vertices W in
+    let: (pose, lying) := (handling_situation robot W decisions).2 in
+    [/\ robot (handling_history robot W decisions) = Report map, lying = None,
+        exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
+        forall j i, robot (handling_history robot W j) = LeaveBy i ->
+          i < degree (handling_situation robot W j).2.1
+      & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
+Proof.
+exists MovableMapper.movable_mapper => W /MovableMapper.movable_mapper_maps.
+by rewrite /MovableCost.round_cost -addnA [8 + _]addnC addnA subn1.
+Qed.
+
+(** * Which markers suffice *)
+
+(** A marker is as good as a directional one if it identifies the facing dart: only near its vertex, and then
+    behind its edge, the robot perceives certain percepts. Any robot with a directional marker can be
+    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more.
+    Paper: beyond 2.3. *)
+Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robot : strategy A) :
+  exists robot' : strategy A, forall (W : start) (bound : nat),
+    identifies M near beyond W -> (forall d : W, degree d <= bound) ->
+    forall n answer, robot (history robot directional W n) = Answer answer ->
+    exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer.
+Proof.
+exists (Simulation.simulating near beyond robot) => W bound identifies_W small n answer.
+exact: Simulation.simulating_answers.
+Qed.
+
+(** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
+Theorem directed_edge_suffices :
+  exists robot : strategy start, forall W : start, maps_start directed_edge robot W.
+Proof.
+have [robot maps_W] := Identifying.identifying_suffices directed_edge predT (fun seen => seen.2 == PassedAlong).
+by exists robot => W; apply/maps_W/Identifying.directed_edge_identifies.
+Qed.
+
+(** One robot maps every world without loops and parallel edges with two markers that look different, at both
+    ends of an edge. Paper: beyond 2.3. *)
+Theorem two_distinct_suffices_in_simple_worlds :
+  exists robot : strategy start, forall W : start, simple W -> maps_start two_distinct robot W.
+Proof.
+have [robot maps_W] :=
+  Identifying.identifying_suffices two_distinct (fun seen => seen.2 == First) (fun seen => seen.2 == Second).
+by exists robot => W simple_W; apply/maps_W/Identifying.two_distinct_identifies.
+Qed.
+
+(** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
+    beyond 2.2. *)
+Theorem undirected_marker_at_dead_end_suffices :
+  exists robot : strategy start, forall W : start,
+    degree (facing W) = 1 -> maps_start undirected robot W.
+Proof.
+have [robot maps_W] := Identifying.identifying_suffices undirected (fun seen => seen == (1, Lying)) predT.
+by exists robot => W dead_end; apply/maps_W/Identifying.dead_end_identifies.
+Qed.
+
+(** An undirected marker distinguishes a start from all others if the degree of the marked vertex and the
+    number of darts have no common divisor. Paper: beyond 2.2. *)
+Theorem coprime_degree_determines (V W : start) :
+  coprime (degree (facing W)) #|W| -> indistinguishable undirected V W -> isomorphic_starts V W.
+Proof. exact: Coprime.coprime_degree_determines. Qed.
+
+(** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
+    with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
+Theorem undirected_edge_impossible (robot : strategy embedded_graph) :
+  [/\ simple edge_a, simple edge_b, bisimilar undirected_edge edge_a edge_b
+    & ~ (maps undirected_edge robot edge_a /\ maps undirected_edge robot edge_b)].
+Proof.
+have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_undirected_edge.
+by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+Qed.
+
+(** Nor do two markers that look alike at both ends of an edge, in the same two worlds. Paper: beyond 2.2. *)
+Theorem two_identical_impossible (robot : strategy embedded_graph) :
+  [/\ simple edge_a, simple edge_b, bisimilar two_identical edge_a edge_b
+    & ~ (maps two_identical robot edge_a /\ maps two_identical robot edge_b)].
+Proof.
+have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_two_identical.
+by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+Qed.
+
+(** Two markers that look different at both ends of an edge do not suffice in worlds with parallel edges, nor
+    in worlds with loops: no robot maps both worlds of three parallel edges, in the plane and on the torus,
+    nor both of two loops. Paper: beyond 2.2. *)
+Theorem two_distinct_impossible (robot : strategy embedded_graph) :
+  ~ (maps two_distinct robot theta_plane /\ maps two_distinct robot theta_torus) /\
+  ~ (maps two_distinct robot two_loops_plane /\ maps two_distinct robot two_loops_torus).
+Proof.
+split; apply: Impossible.bisimilar_impossible robot.
+- exact: Multigraphs.theta_two_distinct.
+- exact: Multigraphs.theta_not_isomorphic.
+- exact: Multigraphs.loops_two_distinct.
+exact: Multigraphs.loops_not_isomorphic.
+Qed.
+
+(** Two markers that look different and are not adjacent do not suffice, not even in worlds without loops and
+    parallel edges: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
+Theorem two_distant_impossible (robot : strategy embedded_graph) :
+  [/\ simple paths_a, simple paths_b, bisimilar two_distant paths_a paths_b
+    & ~ (maps two_distant robot paths_a /\ maps two_distant robot paths_b)].
+Proof.
+have [simple_a simple_b] := Multigraphs.paths_simple; have same := Multigraphs.paths_two_distant.
+by split=> //; apply: Impossible.bisimilar_impossible same Multigraphs.paths_not_isomorphic robot.
+Qed.
+
+(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: no robot that
+    can pick it up and drop it maps both worlds of three parallel edges, nor both of two loops. Paper: beyond
+    2.3. *)
+Theorem movable_marker_impossible (robot : handling_strategy embedded_graph) :
+  ~ (handling_maps robot theta_plane /\ handling_maps robot theta_torus) /\
+  ~ (handling_maps robot two_loops_plane /\ handling_maps robot two_loops_torus).
+Proof. by split; [apply: Multigraphs.theta_handling | apply: Multigraphs.loops_handling]. Qed.
+
+(** * Folding *)
+
 (** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
     so that opposites and clockwise successors are kept, and only the facing dart maps to the facing dart,
     then both starts are isomorphic. Paper: beyond 2.3. *)
@@ -294,3 +465,123 @@ Theorem complete_trail_is_the_world (V W : start) (f : V -> W) :
   (forall d, f d = facing W <-> d = facing V) ->
   isomorphic_starts V W.
 Proof. exact: Covering.covering_isomorphic. Qed.
+
+(** The folded trail of a walk maps into every start with the percepts of this walk: darts of the trail that
+    are folded stand for one dart of the start, and different darts of a visit stand for different ones.
+    Paper: beyond 2.3. *)
+Theorem folding_sound (W : start) (doors : seq door) :
+  let seen := sees W doors in
+  (forall x y, folded doors seen x y -> dart_of W doors x = dart_of W doors y) /\
+  (forall visit i j, visit < size seen -> i < degree_seen seen visit -> j < degree_seen seen visit ->
+     dart_of W doors (visit, i) = dart_of W doors (visit, j) -> i = j).
+Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_injective]. Qed.
+
+(** If no dart of the folded trail is open, all starts with the percepts of the walk are isomorphic, facing
+    to facing. Paper: beyond 2.3. *)
+Theorem complete_folding_determines (V W : start) (doors : seq door) :
+  sees V doors = sees W doors -> complete doors (sees W doors) -> isomorphic_starts V W.
+Proof. exact: Trail.complete_folding_determines. Qed.
+
+(** If a dart of the folded trail is open, two worlds that are not isomorphic have the percepts of the walk.
+    They are simple if the robot's world is, and their degrees are at most its greatest degree, or 2. Paper:
+    beyond 2.3. *)
+Theorem open_folding_ambiguous (W : start) (doors : seq door) (visit : nat) (i : door) :
+  visit < size (sees W doors) -> ~ followed doors (sees W doors) (visit, i) ->
+  exists V V' : start,
+    [/\ sees V doors = sees W doors, sees V' doors = sees W doors, ~ isomorphic V V',
+        simple W -> simple V /\ simple V'
+      & forall bound, 2 <= bound -> (forall d : W, degree d <= bound) ->
+          (forall d : V, degree d <= bound) /\ (forall d : V', degree d <= bound)].
+Proof. exact: Unfolding.open_folding_ambiguous. Qed.
+
+(** A robot maps every start exactly if in each it answers, when its folded trail is complete, with a start
+    that has its percepts. Paper: beyond 2.3. *)
+Theorem correct_iff_complete (robot : strategy start) :
+  (forall W, maps_start directional robot W) <->
+  (forall W, exists n map,
+     let past := history robot directional W n in
+     let doors := doors_taken robot directional W n in
+     [/\ robot past = Answer map, sees map doors = past & complete doors past]).
+Proof. exact: Determined.correct_iff_complete. Qed.
+
+(** A robot that maps every world has gone over every edge before it answers. Paper: beyond 2.3. *)
+Theorem every_edge_is_traversed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  forall d : W, traverses (facing W) (doors_taken robot directional W n) d.
+Proof. exact: Moves.every_edge_is_traversed. Qed.
+
+(** So it makes at least as many moves as the world has edges. Paper: beyond 2.3. *)
+Theorem at_least_m_moves (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  edges W <= size (doors_taken robot directional W n).
+Proof. exact: Moves.at_least_m_moves. Qed.
+
+(** And it comes back to the marked vertex at least m - n + 1 times. Paper: beyond 2.3. *)
+Theorem returns_needed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  edges W < vertices W + returns W (doors_taken robot directional W n).
+Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
+
+(** Cycles far from the marker cost much: if a set of far edges is at least [depth] moves from the marker, it
+    makes at least 2 depth + 1 moves for each of them, except as many as there are vertices that cannot be
+    reached without them. Paper: beyond 2.3. *)
+Theorem far_cycles_cost (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  forall (far : pred W) (depth : nat),
+  (forall d, far (opposite d) = far d) ->
+  (forall doors d, same_vertex (walk (facing W) doors) d -> far d -> depth <= size doors) ->
+  (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).
+Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycles_cost maps_all answered. Qed.
+
+(** So order m n moves are needed. For any two numbers there is a world of a chain of k + 1 edges, which begins
+    at the marker and ends at a vertex with l loops, in which every robot that maps every world makes at least
+    (2 k + 3) l moves. Paper: beyond 2.3. *)
+Theorem lower_bound (k l : nat) :
+  exists W : start, [/\ edges W = k + 1 + l, vertices W = k + 2
+    & forall robot : strategy start, (forall V, maps_start directional robot V) ->
+      forall n answer, robot (history robot directional W n) = Answer answer ->
+      (2 * k + 3) * l <= size (doors_taken robot directional W n)].
+Proof.
+exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
+split=> // robot maps_all n answer answered.
+by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+Qed.
+
+(** * Maps that can be checked *)
+
+(** A walk whose folded trail in a map is complete checks the map: from a pose of a world it has the percepts
+    that the map predicts exactly if this pose is the facing dart and the map is isomorphic to the world,
+    facing to facing. Paper: beyond 2.3. *)
+Theorem tour_checks_the_map (map : start) (tour : seq door) :
+  complete tour (sees map tour) ->
+  forall (W : start) (pose : W),
+    percepts directional pose tour = sees map tour <-> pose = facing W /\ isomorphic_starts map W.
+Proof. exact: Tours.tour_checks_the_map. Qed.
+
+(** Every map has such a walk, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
+Theorem map_has_a_tour (map : start) :
+  let m := edges map in
+  let n := vertices map in
+  exists2 tour, complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1).
+Proof. exact: ShortTours.map_has_a_short_tour. Qed.
+
+(** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
+    then the map is right, wherever the walks began. Paper: beyond 2.3. *)
+Theorem k_false_percepts (map W : start) (tour : seq door) (k : nat)
+    (poses : 'I_k.+1 -> W) (perceived : 'I_k.+1 -> seq percept) :
+  complete tour (sees map tour) ->
+  (forall walk, perceived walk = sees map tour) ->
+  \sum_walk false_percepts (percepts directional (poses walk) tour) (perceived walk) <= k ->
+  isomorphic_starts map W.
+Proof. exact: Tours.k_false_percepts. Qed.
+
+(** One such walk can confirm a wrong map if one of its percepts is false: in a chain of three vertices it has
+    the percepts that a chain of two predicts. Paper: beyond 2.3. *)
+Theorem one_false_percept_deceives :
+  [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
+    & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
+Proof. exact: Tours.one_false_percept. Qed.

@@ -23,7 +23,9 @@ impl Changed {
                 fs::copy(entry.path(), sources.join(entry.file_name())).unwrap();
             }
         }
-        fs::copy(source("_CoqProject"), sources.join("_CoqProject")).unwrap();
+        for other in ["_CoqProject", "statements.txt"] {
+            fs::copy(source(other), sources.join(other)).unwrap();
+        }
         fs::write(sources.join(file), change(&fs::read_to_string(source(file)).unwrap())).unwrap();
         Self { sources, compiled }
     }
@@ -82,6 +84,18 @@ fn a_hypothesis_is_not_validated_by_degrees_alone() {
 }
 
 #[test]
+fn a_folded_trail_with_an_open_entry_dart_is_not_complete() {
+    let followed = "i < degree_seen visit -> followed";
+    assert_matters("complete", "Folding.v", followed, &format!("0 < i -> {followed}"));
+}
+
+#[test]
+fn an_arrow_needs_its_sense() {
+    let along = "(facing W) then PassedAlong";
+    assert_matters("sense", "Markers.v", along, "(facing W) then PassedAgainst");
+}
+
+#[test]
 fn what_is_left_out_or_assumed_is_refused() {
     let Some(whole) = compiled() else { return };
     for (name, added, found) in [
@@ -112,6 +126,32 @@ fn a_theorem_that_rests_on_an_axiom_of_a_library_is_not_closed() {
     let (before, after) = stdout.split_once("\nmiddle ").unwrap();
     assert!(before.lines().all(|line| line.ends_with(" closed")), "{stdout}");
     assert!(after.trim_start().starts_with("not closed\n  Axioms:\n"), "{stdout}");
+}
+
+/// A theorem with a weaker statement, or about less with the same statement, is another theorem.
+#[test]
+fn statements_and_their_definitions_are_pinned() {
+    let Some(whole) = compiled() else { return };
+    let weaker = |text: &str| {
+        let (before, rest) = text.split_once("\nTheorem algorithm1_correct ").unwrap();
+        let (_, after) = rest.split_once("Qed.").unwrap();
+        format!("{before}\nTheorem algorithm1_correct : True.\nProof. by []. Qed.{after}")
+    };
+    let fewer = |text: &str| {
+        let (any, short) = ("fun _ _ => true.", "fun S path => size path < known_vertices S.");
+        assert_eq!(text.matches(any).count(), 1);
+        text.replace(any, short)
+    };
+    let changes: [(_, _, &dyn Fn(&str) -> String, _); 2] = [
+        ("weaker", "Theorems.v", &weaker, ">      : True"),
+        ("fewer", "Algorithm1.v", &fewer, "< Algorithm1.any_path = fun=> xpredT"),
+    ];
+    for (name, file, change, line) in changes {
+        let (stdout, _) = Changed::new(name, file, change, whole).violated();
+        let why = "violated: a statement, or a definition on which it depends, \
+                   is not that of statements.txt";
+        assert!(stdout.contains(line) && stdout.ends_with(why), "{stdout}");
+    }
 }
 
 #[test]

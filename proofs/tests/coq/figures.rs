@@ -7,13 +7,15 @@ use toposlam_model::{embedded_graph::EmbeddedGraph, format::world_file};
 use super::{compiled, printed, source};
 
 /// The lists of `Figures.v`, without their ending, and the world files.
-const WORLDS: [(&str, &str); 6] = [
+const WORLDS: [(&str, &str); 8] = [
     ("cycle_3", "cycle-3"),
     ("cycle_4", "cycle-4"),
     ("figure_1a", "figure-1a"),
     ("figure_1b", "figure-1b"),
     ("smallest_a", "atlas/undirected-simple-1"),
     ("smallest_b", "atlas/undirected-simple-2"),
+    ("edge_a", "atlas/undirected-edge-corridor-1"),
+    ("edge_b", "atlas/undirected-edge-corridor-2"),
 ];
 
 /// The neighbours of each vertex, as Coq prints them: `= [:: [:: 1; 2]; [:: 2; 0]; [:: 0; 1]]`.
