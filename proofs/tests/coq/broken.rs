@@ -142,12 +142,14 @@ fn statements_and_their_definitions_are_pinned() {
         assert_eq!(text.matches(any).count(), 1);
         text.replace(any, short)
     };
-    let changes: [(_, _, &dyn Fn(&str) -> String, _); 2] = [
-        ("weaker", "Theorems.v", &weaker, ">      : True"),
-        ("fewer", "Algorithm1.v", &fewer, "< Algorithm1.any_path = fun=> xpredT"),
-    ];
-    for (name, file, change, line) in changes {
-        let (stdout, _) = Changed::new(name, file, change, whole).violated();
+    for (changed, line) in [
+        (Changed::new("weaker", "Theorems.v", weaker, whole), ">      : True"),
+        (
+            Changed::new("fewer", "Algorithm1.v", fewer, whole),
+            "< Algorithm1.any_path = fun=> xpredT",
+        ),
+    ] {
+        let (stdout, _) = changed.violated();
         let why = "violated: a statement, or a definition on which it depends, \
                    is not that of statements.txt";
         assert!(stdout.contains(line) && stdout.ends_with(why), "{stdout}");
