@@ -9,13 +9,14 @@ use toposlam_model::{
         algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
         scene::{Place as ScenePlace, Scene, wrapped},
     },
-    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Relocate},
+    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured, Relocate},
     percept::{Door, Percept, Sighting},
     world::World,
 };
 
 use crate::{
     budget::{Allowance, BudgetLimit, RunBudget, Spent},
+    measured_hallway::{MeasuredHallway, direction},
     record::{
         Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
         RunObserver, SensingError, nanoseconds,
@@ -136,6 +137,9 @@ pub struct RobotExplorer<R, S, O = ()> {
     allowance: Allowance,
     /// The way that was commanded, in metres.
     metres: f64,
+    /// The hallway since the last junction, and what was measured on the way to it.
+    hallway: Option<MeasuredHallway>,
+    measured: Measured,
     /// The last frame that was used.
     last: Option<Frame>,
     /// The number of events so far.
@@ -175,6 +179,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             begins_anywhere: false,
             allowance: Allowance::new(RunBudget::default()),
             metres: 0.0,
+            hallway: None,
+            measured: Measured::default(),
             moves: 0,
             door: None,
             last: None,
@@ -309,6 +315,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 return Err(ExplorerError::Stopped { moves });
             }
             let (frame, scene) = self.look()?;
+            if let Some(hallway) = &mut self.hallway {
+                hallway.add(frame.odometry);
+            }
             let step = path.round(&scene, frame.odometry);
             self.last = Some(frame.clone());
             self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
@@ -400,11 +409,15 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// A robot that was lost has come to a junction. How many moves lead there is not known.
     fn arrive_from_nowhere(&mut self, standing: Standing) {
+        self.hallway = None;
         self.stand(standing, Arrival { number: None, ..Arrival::new(self.moves, &standing) });
     }
 
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
         self.place = Some(Place::Junction(standing));
+        let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
+        self.measured = Measured { hallway, shape: arrival.form };
+        self.hallway = Some(MeasuredHallway::from(Some(self.robot.odometry().odometry)));
         self.allow_for(standing.percept);
         self.emit(EventKind::Arrival(arrival));
     }
@@ -430,6 +443,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             return Err(ExplorerError::Budget { moves: self.moves, limit, is_at_marker: false });
         }
         self.allowance.leave(door, self.spent());
+        match (&mut self.hallway, &from) {
+            (Some(hallway), Place::Junction(from)) => {
+                hallway.leave(direction(from.form, from.entry, door));
+            }
+            // A way that an obstacle ended is not measured.
+            (hallway, _) => *hallway = None,
+        }
         self.moves += 1;
         self.door = Some(door);
         // Until the robot arrives, it does not know where it is.
@@ -446,6 +466,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
                 let back = wrapped(self.robot.odometry().odometry.heading + PI);
                 self.place = Some(Place::Obstacle { back });
                 self.allow_for(DEAD_END);
+                (self.hallway, self.measured) = (None, Measured::default());
                 let number = Some(u32::try_from(self.moves).unwrap_or(u32::MAX));
                 let Percept { degree, sighting } = DEAD_END;
                 let (sighting, form, entry) = (Some(sighting), None, Some(back));
@@ -518,6 +539,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, 
             | ExplorerError::Budget { .. }) => Err(error),
             _ => self.find_junction().map(|_| ()),
         }
+    }
+
+    fn measured(&self) -> Measured {
+        self.measured
     }
 
     fn is_blocked(&self) -> bool {

@@ -13,6 +13,7 @@ pub mod fuzz;
 pub mod ground_truth_monitor;
 mod judge_cut;
 pub mod log;
+pub mod measured_hallway;
 pub mod pose;
 pub mod record;
 pub mod recording;

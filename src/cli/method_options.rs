@@ -2,6 +2,8 @@
 
 use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig};
 
+use toposlam_robot::conform::log_noise;
+
 use super::{CliError, mapping_marker::AlgorithmOption, text::counted};
 
 /// How a robot maps.
@@ -38,9 +40,9 @@ impl MethodOptions {
                 Err(CliError::at("--recover", cause))
             }
             (true, Some(DirectionalAlgorithm::Folding) | None) => {
-                let audits = self.audit.unwrap_or(1);
                 Ok(MappingMethod::Recovering(RecoveryConfig {
-                    audits,
+                    audits: self.audit.unwrap_or(1),
+                    noise: Some(log_noise()),
                     ..RecoveryConfig::default()
                 }))
             }

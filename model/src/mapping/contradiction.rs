@@ -171,6 +171,11 @@ pub enum Contradiction {
         /// The percept.
         perceived: Percept,
     },
+    /// Lengths of hallways, or other measurements, contradict each other.
+    #[error(
+        "what was measured of the hallways does not agree: the robot was moved, or its wheels slipped"
+    )]
+    Moved,
     /// A hallway that was blocked is free.
     #[error("a door that was blocked is free")]
     Unblocked,

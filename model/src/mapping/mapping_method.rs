@@ -9,7 +9,7 @@ use super::{
 };
 
 /// How a robot maps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MappingMethod {
     /// By an algorithm. It gives up at a contradiction, or if it gets lost.
     By {
@@ -161,24 +161,42 @@ mod tests {
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Bijection,
-        percept::Percept,
-        world::{GraphWorld, State, World},
+        mapping::Measured,
+        measurement::{HallwayMeasurement, MeasurementNoise},
+        percept::{Door, Percept},
+        world::{GraphWorld, Refused, State, World},
     };
+
+    fn graph(lists: &[(&str, &str)]) -> EmbeddedGraph {
+        let list = |&(name, others): &(&str, &str)| {
+            (name.to_owned(), others.split(' ').map(str::to_owned).collect::<Vec<_>>())
+        };
+        EmbeddedGraph::from_neighbour_lists(&lists.iter().map(list).collect::<Vec<_>>()).unwrap()
+    }
 
     /// Two triangles that share a vertex, and a dead end at it.
     fn bow_tie() -> EmbeddedGraph {
-        let list = |name: &str, others: &str| {
-            (name.to_owned(), others.split(' ').map(str::to_owned).collect())
-        };
-        EmbeddedGraph::from_neighbour_lists(&[
-            list("shared", "a b c d end"),
-            list("a", "shared b"),
-            list("b", "a shared"),
-            list("c", "shared d"),
-            list("d", "c shared"),
-            list("end", "shared"),
+        graph(&[
+            ("shared", "a b c d end"),
+            ("a", "shared b"),
+            ("b", "a shared"),
+            ("c", "shared d"),
+            ("d", "c shared"),
+            ("end", "shared"),
         ])
-        .unwrap()
+    }
+
+    /// Three arms of two hallways each.
+    fn star() -> EmbeddedGraph {
+        graph(&[
+            ("centre", "a b c"),
+            ("a", "centre a-end"),
+            ("b", "centre b-end"),
+            ("c", "centre c-end"),
+            ("a-end", "a"),
+            ("b-end", "b"),
+            ("c-end", "c"),
+        ])
     }
 
     const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
@@ -267,5 +285,75 @@ mod tests {
         ] {
             assert_eq!(name.parse::<MappingMethod>(), Err(error.to_owned()));
         }
+    }
+
+    /// A robot that is carried after a move, to this pose. It measures the hallways, of which each has another
+    /// length.
+    struct Carried<'g> {
+        world: GraphWorld<'g>,
+        after_and_to: (u64, Dart),
+        length: Option<f64>,
+    }
+
+    impl World for Carried<'_> {
+        type Error = Refused;
+
+        fn percept(&mut self) -> Result<Percept, Refused> {
+            self.world.percept()
+        }
+
+        fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+            self.world.traverse(door)?;
+            let (graph, State { pose, placed }) = (self.world.graph(), self.world.state());
+            self.length = Some(5.0 + 2.0 * f64::from(pose.0.min(graph.opposite(pose).0)));
+            if self.world.moves() == self.after_and_to.0 {
+                self.world = self.world.clone().at(State { pose: self.after_and_to.1, placed });
+            }
+            Ok(())
+        }
+    }
+
+    impl Relocate for Carried<'_> {
+        fn relocate(&mut self, _: Refused) -> Result<(), Refused> {
+            self.traverse(Door::BACK)
+        }
+
+        fn measured(&self) -> Measured {
+            let hallway = self.length.map(|length| HallwayMeasurement { length, turn: None });
+            Measured { hallway, shape: None }
+        }
+    }
+
+    #[test]
+    fn lengths_show_that_a_robot_was_carried_unless_nothing_comes_after_it() {
+        let graph = star();
+        let facing = Dart(0);
+        let run = |after_and_to, noise| {
+            let world = GraphWorld::new(&graph, facing);
+            let mut world = Carried { world, after_and_to, length: None };
+            let config = RecoveryConfig { noise, ..RecoveryConfig::default() };
+            let method = MappingMethod::Recovering(config);
+            let (run, mapped) = method.map_world(&mut world, 100, &[], &mut ());
+            let map = run.map().complete().unwrap();
+            let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
+            assert!(bijection.verify(map, &graph));
+            let is_there =
+                bijection.image(mapped.as_ref().unwrap().pose) == Some(world.world.pose());
+            (is_there, mapped.unwrap())
+        };
+        let noise = MeasurementNoise { standing: 0.1, ..MeasurementNoise::UNKNOWN };
+        let noise = Some(noise.times(0.1, 1.0));
+        let (is_there, never) = run((u64::MAX, facing), noise);
+        assert!(is_there && never.recoveries == 0);
+        let (mut without, mut with) = (0, 0);
+        for after in 1..=never.moves {
+            for to in graph.darts() {
+                without += u32::from(!run((after, to), None).0);
+                let is_there = run((after, to), noise).0;
+                assert!(is_there || after == never.moves, "carried to {to:?} after {after} moves");
+                with += u32::from(!is_there);
+            }
+        }
+        assert!(with > 0 && with < without, "{with} of {without}");
     }
 }

@@ -12,11 +12,11 @@ use toposlam_model::{
     percept::{Door, Percept},
 };
 
-use super::{
-    events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
-    recorded_events::{direction, turn},
+use super::events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause};
+use crate::{
+    measured_hallway::{direction, turn},
+    record::Arrival,
 };
-use crate::record::Arrival;
 
 /// A junction is visited if its turning point comes this near, in metres.
 pub const NEAR: f64 = 0.3;

@@ -23,10 +23,9 @@ use super::{
     events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
     laser_visit::{Shown, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
-    recorded_events::turn,
     seen_junctions::{SeenJunction, SeenJunctions},
 };
-use crate::record::Arrival;
+use crate::{measured_hallway::turn, record::Arrival};
 
 /// Infers events from a sequence of scans.
 #[derive(Clone, Debug)]

@@ -141,7 +141,7 @@ fn by_poses(visits: &[MeasuredVisit], graph: &EmbeddedGraph, poses: &Poses) -> V
     for (visit, state) in placed.iter_mut().zip(poses.alone.iter().step_by(2)) {
         if let Some(state) = state {
             let doors = 0..graph.degree_around(state.pose);
-            let darts = doors.map(|door| graph.after(state.pose, Door(door)));
+            let darts = doors.map(|door| graph.behind(state.pose, Door(door)));
             visit.darts = darts.collect::<Vec<Dart>>();
         }
     }

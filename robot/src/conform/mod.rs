@@ -45,5 +45,5 @@ pub use marked_visits::{
 };
 pub use measured_hallways::{MeasuredHallways, log_noise};
 pub use quirks::{Quirk, QuirkError, Quirks};
-pub use recorded_events::{RecordedEvents, direction};
+pub use recorded_events::RecordedEvents;
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

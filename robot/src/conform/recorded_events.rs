@@ -1,22 +1,17 @@
 //! The recorded arrivals and doors of a log, compared with its odometry.
 
-use std::{
-    collections::VecDeque,
-    f64::consts::{FRAC_PI_2, PI},
-};
+use std::{collections::VecDeque, f64::consts::PI};
 
 use toposlam_model::{
-    driving::{
-        odometry::{Odometry, WayLength},
-        scene::wrapped,
-        visit::JunctionShape,
-    },
-    measurement::HallwayMeasurement,
+    driving::{odometry::Odometry, scene::wrapped},
     percept::Door,
 };
 
 use super::events::{CheckedEvent, CheckedKind, EventSource};
-use crate::record::{Arrival, EventKind};
+use crate::{
+    measured_hallway::{MeasuredHallway, direction},
+    record::{Arrival, EventKind},
+};
 
 /// A direction by odometry needs this distance, in metres. Over much more, odometry drifts.
 const FAR_ENOUGH: f64 = 1.0;
@@ -31,16 +26,6 @@ pub struct RecordedEvents {
     left: Option<(Odometry, usize, f64)>,
     /// The hallway since the last arrival.
     hallway: Option<MeasuredHallway>,
-}
-
-/// A hallway that is being measured.
-#[derive(Clone, Copy, Debug, Default)]
-struct MeasuredHallway {
-    way: WayLength,
-    /// The direction in which the robot left, if it is known.
-    exit: Option<f64>,
-    /// Whether there was odometry since the arrival.
-    moved: bool,
 }
 
 impl RecordedEvents {
@@ -62,8 +47,7 @@ impl RecordedEvents {
 
     fn moved(&mut self, odometry: Odometry) {
         if let Some(hallway) = &mut self.hallway {
-            hallway.way.add(odometry);
-            hallway.moved = true;
+            hallway.add(odometry);
         }
         if let Some((from, event, direction)) = self.left
             && from.distance(&odometry) >= FAR_ENOUGH
@@ -94,11 +78,7 @@ impl RecordedEvents {
         let entry_off =
             arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
         let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
-        let mut next = MeasuredHallway::default();
-        if let Some(now) = now {
-            next.way.add(*now);
-        }
-        self.hallway = Some(next);
+        self.hallway = Some(MeasuredHallway::from(now.copied()));
         let kind = CheckedKind::Arrival { arrival, entry_off, hallway };
         self.events.push(CheckedEvent { source, kind });
     }
@@ -113,7 +93,7 @@ impl RecordedEvents {
         };
         let now = self.way.back().copied();
         if let Some(hallway) = &mut self.hallway {
-            hallway.exit = direction;
+            hallway.leave(direction);
         }
         self.left = now.zip(direction).map(|(now, direction)| (now, self.events.len(), direction));
         // The next direction starts here.
@@ -130,36 +110,17 @@ impl RecordedEvents {
     }
 }
 
-impl MeasuredHallway {
-    /// The measurement up to an arrival with this direction of the entry door.
-    fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
-        let length = self.way.length().filter(|_| self.moved)?;
-        Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
-    }
-}
-
-/// The turn from the direction of the door by which a robot left to that in which it comes in.
-pub(super) fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
-    exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
-}
-
 /// The direction from one position to another.
 fn way(from: &Odometry, to: &Odometry) -> f64 {
     let [x, y] = [0, 1].map(|axis| to.position[axis] - from.position[axis]);
     y.atan2(x)
 }
 
-/// The direction of a door of a junction, in the frame of odometry.
-#[must_use]
-pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
-    let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
-    let quarter = doors.nth(door.0 as usize)?;
-    Some(wrapped(entry - quarter as f64 * FRAC_PI_2))
-}
-
 #[cfg(test)]
 mod tests {
-    use toposlam_model::percept::Sighting;
+    use std::f64::consts::FRAC_PI_2;
+
+    use toposlam_model::{driving::visit::JunctionShape, percept::Sighting};
 
     use super::*;
 

@@ -10,7 +10,7 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
-        RunDriver, RunEvents, SensedScene, ShortenedRun, direction, extract, infer_events, judge,
+        RunDriver, RunEvents, SensedScene, ShortenedRun, extract, infer_events, judge,
         shorten_frames, shorten_run,
     },
     log::{
@@ -22,6 +22,7 @@ use toposlam_robot::{
         topic_map::TopicMap,
         writer::{LogWriteError, LogWriter},
     },
+    measured_hallway::direction,
     record::Arrival,
 };
 

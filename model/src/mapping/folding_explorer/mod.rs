@@ -35,7 +35,7 @@ use crate::{
 };
 use hypotheses::Hypotheses;
 pub use recovery::{MappedWorld, RecoveryConfig, Relocate, map_with_recovery};
-pub use walks::EarlierWalk;
+pub use walks::{EarlierWalk, Measured};
 use ways::Ways;
 
 /// What the robot does next.

@@ -10,6 +10,9 @@
 //!
 //! If the map becomes too large, it starts over without earlier walks.
 //!
+//! If the robot measures the lengths of hallways, they are compared after the audit. If they contradict each other,
+//! it was moved, perhaps to a place that looks the same, and looks for the marker once more.
+//!
 //! This makes no map that is not right: a map is complete when the folded trail of the walks that are left
 //! is, and an [audit] does not depend on any earlier percept.
 
@@ -18,7 +21,7 @@ use std::mem;
 use super::{
     FoldingExploration,
     marker_walk::MarkerWalk,
-    walks::{EarlierWalk, EarlierWalks, sees_marker},
+    walks::{EarlierWalk, EarlierWalks, Measured, sees_marker},
 };
 use crate::{
     embedded_graph::Dart,
@@ -29,6 +32,7 @@ use crate::{
         audit::{AuditError, audit, try_doors},
     },
     marker::Marker,
+    measurement::{MeasurementCheck, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, World},
 };
@@ -44,6 +48,11 @@ pub trait Relocate: World {
         Err(error)
     }
 
+    /// What the robot has measured on the way to where it is. It is never used to make a map.
+    fn measured(&self) -> Measured {
+        Measured::default()
+    }
+
     /// Whether the robot stands before an obstacle, where its hallway is a dead end.
     fn is_blocked(&self) -> bool {
         false
@@ -53,7 +62,7 @@ pub trait Relocate: World {
 impl<M: Marker> Relocate for GraphWorld<'_, M> {}
 
 /// How much a robot does for a right map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecoveryConfig {
     /// The number of audits of a complete map.
     pub audits: u32,
@@ -61,12 +70,14 @@ pub struct RecoveryConfig {
     pub most_recoveries: u32,
     /// Whether it tries the doors that are blocked once more at the end.
     pub retries_blocked: bool,
+    /// The uncertainty of what it measures; `None` if it does not compare measurements.
+    pub noise: Option<MeasurementNoise>,
 }
 
 impl Default for RecoveryConfig {
-    /// One audit, and at most 32 recoveries. Blocked doors are not tried again.
+    /// One audit, and at most 32 recoveries. Blocked doors are not tried again, and measurements not compared.
     fn default() -> Self {
-        Self { audits: 1, most_recoveries: 32, retries_blocked: false }
+        Self { audits: 1, most_recoveries: 32, retries_blocked: false, noise: None }
     }
 }
 
@@ -102,7 +113,7 @@ impl<W: Relocate> World for Remembering<'_, W> {
 
     fn percept(&mut self) -> Result<Percept, W::Error> {
         let percept = self.world.percept()?;
-        self.walk.perceive(percept, self.world.is_blocked());
+        self.walk.perceive(percept, self.world.measured(), self.world.is_blocked());
         Ok(percept)
     }
 
@@ -323,7 +334,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         };
         self.has_failed = false;
         self.walks.add(mem::take(&mut self.world.walk));
-        self.world.walk.perceive(seen, false);
+        self.world.walk.perceive(seen, Measured::default(), false);
         let (trail, kept) = match self.walks.fold_most(1) {
             folded if folded.0.marker().is_some() => folded,
             _ => (FoldedTrail::new(seen)?, 0),
@@ -339,6 +350,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         let audited = self.audit_map();
         self.audit_moves += self.world.moves - before;
         let (pose, blocked) = audited?;
+        self.compare_measurements()?;
         if !self.config.retries_blocked || self.has_retried || blocked.is_empty() {
             return Ok((pose, blocked));
         }
@@ -359,6 +371,16 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
                 Err(error.into())
             }
         }
+    }
+
+    /// Compares what was measured since the robot last began a walk. All percepts of it agree with the map.
+    fn compare_measurements(&mut self) -> Result<(), MappingError<W::Error>> {
+        let (Some(noise), Some(map)) = (self.config.noise, self.exploration.map().complete())
+        else {
+            return Ok(());
+        };
+        let check = MeasurementCheck::new(&self.world.walk.visits(map, FACING), &noise);
+        if check.contradictions.is_empty() { Ok(()) } else { Err(Contradiction::Moved.into()) }
     }
 
     fn audit_map(&mut self) -> Result<(Dart, Vec<Dart>), MappingError<W::Error>> {

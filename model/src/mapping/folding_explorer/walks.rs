@@ -3,17 +3,31 @@
 use std::mem;
 
 use crate::{
+    driving::visit::JunctionShape,
+    embedded_graph::{Dart, EmbeddedGraph},
     folding::{FoldedTrail, TrailError},
+    measurement::{HallwayMeasurement, MeasuredVisit},
     percept::{Door, Percept, Sighting},
 };
 
 /// A walk: percepts, and the doors between them.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct EarlierWalk {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
+    /// What was measured on the way to each percept.
+    measured: Vec<Measured>,
     /// Whether the robot turned round at an obstacle.
     is_blocked: bool,
+}
+
+/// What a robot measures besides its percepts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// The hallway by which it came.
+    pub hallway: Option<HallwayMeasurement>,
+    /// The shape of the junction, if its doors are at right angles and the hallways are straight.
+    pub shape: Option<JunctionShape>,
 }
 
 pub(super) fn sees_marker(percept: &Percept) -> bool {
@@ -31,7 +45,8 @@ impl EarlierWalk {
     ) -> Self {
         let (doors, mut percepts): (Vec<Door>, Vec<Percept>) = moves.into_iter().unzip();
         percepts.insert(0, first);
-        Self { percepts, doors, is_blocked }
+        let measured = vec![Measured::default(); percepts.len()];
+        Self { percepts, doors, measured, is_blocked }
     }
 
     /// Whether nothing was perceived.
@@ -40,9 +55,10 @@ impl EarlierWalk {
     }
 
     /// The robot perceives this, if it has not yet perceived where it is.
-    pub(super) fn perceive(&mut self, percept: Percept, is_blocked: bool) {
+    pub(super) fn perceive(&mut self, percept: Percept, measured: Measured, is_blocked: bool) {
         if self.percepts.len() == self.doors.len() {
             self.percepts.push(percept);
+            self.measured.push(measured);
             self.is_blocked |= is_blocked;
         }
     }
@@ -57,7 +73,7 @@ impl EarlierWalk {
     /// Its parts that begin or end at the marker. Without the marker a part says nothing about the world with the
     /// marker, and is left out.
     pub(super) fn split_at_marker(self) -> Vec<Self> {
-        let Self { percepts, doors, is_blocked } = self;
+        let Self { percepts, doors, is_blocked, .. } = self;
         let mut parts = Vec::new();
         let new = || Self { is_blocked, ..Self::default() };
         let mut part = new();
@@ -75,6 +91,30 @@ impl EarlierWalk {
         parts.push(part);
         parts.retain(|part| part.percepts.iter().any(sees_marker) && !part.doors.is_empty());
         parts
+    }
+
+    /// The visits in a map that agrees with all percepts, if the walk begins at the marker.
+    pub(super) fn visits(&self, map: &EmbeddedGraph, facing: Dart) -> Vec<MeasuredVisit> {
+        let Some(Percept { degree, sighting: Sighting::Pointing(along) }) = self.percepts.first()
+        else {
+            return Vec::new();
+        };
+        let mut pose = map.behind(facing, along.inverse(*degree));
+        let visit = |(number, measured): (usize, &Measured)| {
+            let left_by = self.doors.get(number).copied();
+            let doors = (0..map.degree_around(pose)).map(Door);
+            let visit = MeasuredVisit {
+                darts: doors.map(|door| map.behind(pose, door)).collect(),
+                shape: measured.shape,
+                arrived: measured.hallway,
+                left_by,
+            };
+            if let Some(door) = left_by {
+                pose = map.after(pose, door);
+            }
+            visit
+        };
+        self.measured.iter().enumerate().map(visit).collect()
     }
 
     /// Adds the walk to a trail, as another visit of the same world.

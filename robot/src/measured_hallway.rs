@@ -1,0 +1,64 @@
+//! A hallway that is measured by odometry while the robot drives through it: its length, and its turn.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::{
+    driving::{
+        odometry::{Odometry, WayLength},
+        scene::wrapped,
+        visit::JunctionShape,
+    },
+    measurement::HallwayMeasurement,
+    percept::Door,
+};
+
+/// A hallway since the robot arrived at a junction.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MeasuredHallway {
+    way: WayLength,
+    /// The direction in which the robot left, if it is known.
+    exit: Option<f64>,
+    /// Whether there was odometry since the arrival.
+    moved: bool,
+}
+
+impl MeasuredHallway {
+    /// The robot stands at a junction, perhaps at this odometry.
+    pub(crate) fn from(odometry: Option<Odometry>) -> Self {
+        let mut hallway = Self::default();
+        if let Some(odometry) = odometry {
+            hallway.way.add(odometry);
+        }
+        hallway
+    }
+
+    /// It leaves in this direction, if it is known.
+    pub(crate) fn leave(&mut self, direction: Option<f64>) {
+        self.exit = direction;
+    }
+
+    /// The next odometry.
+    pub(crate) fn add(&mut self, odometry: Odometry) {
+        self.way.add(odometry);
+        self.moved = true;
+    }
+
+    /// The measurement up to an arrival with this direction of the entry door.
+    pub(crate) fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
+        let length = self.way.length().filter(|_| self.moved)?;
+        Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
+    }
+}
+
+/// The turn from the direction of the door by which a robot left to that in which it comes in.
+pub(crate) fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
+    exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
+}
+
+/// The direction of a door of a junction, in the frame of odometry.
+#[must_use]
+pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
+    let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
+    let quarter = doors.nth(door.0 as usize)?;
+    Some(wrapped(entry - quarter as f64 * FRAC_PI_2))
+}
