@@ -1,15 +1,18 @@
 //! A robot as a world: a mapping algorithm chooses doors, and Algorithm 2 drives the robot through them.
 //! Sections 4.3 and 5.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+mod error;
+mod relocation;
+
+use std::f64::consts::PI;
 
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{Lost, LostReason, PathExecution, Standing, Step},
-        scene::{Place as ScenePlace, Scene, wrapped},
+        algorithm2::{PathExecution, Standing, Step},
+        scene::{Scene, wrapped},
     },
-    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured, Relocate},
+    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured},
     percept::{Door, Percept, Sighting},
     world::World,
 };
@@ -25,64 +28,7 @@ use crate::{
     run_settings::RunSettings,
 };
 
-/// Why a run ended early.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum ExplorerError {
-    /// The robot does not know where it is any more.
-    #[error("on move {moves}, {}: {lost}", by_door(*.door))]
-    Lost {
-        /// The number of the move, counted from 1; 0 at the start.
-        moves: u64,
-        /// The door that it took.
-        door: Option<Door>,
-        /// What happened.
-        lost: Lost,
-    },
-    /// The camera gives no usable picture.
-    #[error("on move {moves}, {}: {pictures} unusable pictures in a row: {cause}", by_door(*.door))]
-    NoPicture {
-        /// The number of the move.
-        moves: u64,
-        /// The door that it took.
-        door: Option<Door>,
-        /// The number of pictures.
-        pictures: u32,
-        /// What is wrong with the last one.
-        cause: String,
-    },
-    /// The robot does not start at an L.
-    #[error("the robot stands at a junction with {degree} doors; a run starts at an L")]
-    NotAnL {
-        /// The degree of the junction.
-        degree: u32,
-    },
-    /// The robot failed.
-    #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// The robot could not go on and still return to its marker within its budget.
-    #[error("{}", budget_in_words(*.moves, *.limit, *.is_at_marker))]
-    Budget {
-        /// The moves, with those of the way back.
-        moves: u64,
-        /// The limit.
-        limit: BudgetLimit,
-        /// Whether it is back at its marker.
-        is_at_marker: bool,
-    },
-    /// The user or an observer stopped the run.
-    #[error("the run was ended on move {moves}")]
-    Stopped {
-        /// The number of the move.
-        moves: u64,
-    },
-}
-
-impl ExplorerError {
-    /// Whether something is in the robot's way.
-    fn is_stalled(&self) -> bool {
-        matches!(self, Self::Lost { lost: Lost { why: LostReason::Stalled { .. }, .. }, .. })
-    }
-}
+pub use error::ExplorerError;
 
 /// Where the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,19 +50,6 @@ enum Obstacles {
 
 /// The percept at an obstacle.
 const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };
-
-fn by_door(door: Option<Door>) -> String {
-    door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
-}
-
-fn budget_in_words(moves: u64, limit: BudgetLimit, is_at_marker: bool) -> String {
-    let place = if is_at_marker {
-        "it is back at its marker"
-    } else {
-        "it did not find back to its marker"
-    };
-    format!("the robot turned back to keep within {limit}; after {moves} moves {place}")
-}
 
 /// A robot that explores. Everything that happens goes to one observer.
 ///
@@ -481,77 +414,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     }
 }
 
-/// A robot that got lost tries these directions, relative to its heading, until it comes to a junction.
-const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];
-/// How often it tries them.
-const TRIES: usize = 4;
-
-/// A robot that sees nothing waits for this number of images.
-const PATIENCE: usize = 600;
-
-impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
-    /// Waits until an image shows a place, without moving.
-    fn wait_for_sight(&mut self) -> Result<(), ExplorerError> {
-        for _ in 0..PATIENCE {
-            if self.observer.stop() {
-                return Err(ExplorerError::Stopped { moves: self.moves });
-            }
-            match self.frame() {
-                Ok((frame, scene)) => {
-                    let sees = !matches!(scene.place, ScenePlace::Unknown(_));
-                    self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
-                    if sees {
-                        return Ok(());
-                    }
-                }
-                Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
-                Err(_) => {}
-            }
-        }
-        Ok(())
-    }
-
-    /// Drives until the robot is at a junction, wherever it stands.
-    fn find_junction(&mut self) -> Result<Standing, ExplorerError> {
-        self.wait_for_sight()?;
-        let heading = self.robot.odometry().odometry.heading;
-        let mut directions = DIRECTIONS.repeat(TRIES).into_iter();
-        loop {
-            let direction = wrapped(heading + directions.next().unwrap_or_default());
-            let is_last = directions.len() == 0;
-            match self.drive(PathExecution::onwards_to_junction(direction)) {
-                Ok(standing) => {
-                    self.arrive_from_nowhere(standing);
-                    return Ok(standing);
-                }
-                Err(ExplorerError::Lost { .. } | ExplorerError::NoPicture { .. }) if !is_last => {}
-                Err(error) => return Err(error),
-            }
-        }
-    }
-}
-
-impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, O> {
-    fn relocate(&mut self, error: ExplorerError) -> Result<(), ExplorerError> {
-        match error {
-            error @ (ExplorerError::Stopped { .. }
-            | ExplorerError::Robot(_)
-            | ExplorerError::Budget { .. }) => Err(error),
-            _ => self.find_junction().map(|_| ()),
-        }
-    }
-
-    fn measured(&self) -> Measured {
-        self.measured
-    }
-
-    fn is_blocked(&self) -> bool {
-        self.is_at_obstacle()
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use toposlam_model::driving::{
         odometry::Odometry,
         scene::{CentreLine, JunctionView, Place},
