@@ -40,6 +40,7 @@ pub enum BudgetLimit {
 impl fmt::Display for BudgetLimit {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
+            Self::Moves(1) => write!(out, "1 move"),
             Self::Moves(moves) => write!(out, "{moves} moves"),
             Self::Time(seconds) => write!(out, "{:.1} minutes", seconds / 60.0),
             Self::Way(metres) => write!(out, "{metres:.0} m on one battery"),

@@ -11,11 +11,9 @@ use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 
 use super::{
     CliError, Outcome,
-    budget_options::BudgetOptions,
     exit_codes::help_end,
-    method_options::{BlockedOptions, MethodOptions},
     robot_sensor::{SensorChoice, one_sensor},
-    simulate::MAX_DARTS,
+    run_options::RunOptions,
 };
 
 /// Let a live SuperScout map its building by its camera or its laser scanner
@@ -64,14 +62,7 @@ pub(super) struct DriveArguments {
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
     #[command(flatten)]
-    method: MethodOptions,
-    #[command(flatten)]
-    blocked: BlockedOptions,
-    #[command(flatten)]
-    budget: BudgetOptions,
-    /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands; may be repeated
-    #[arg(long, value_name = "LOG", requires = "recover")]
-    resume: Vec<PathBuf>,
+    options: RunOptions,
     /// The topic of images: sensor_msgs/CompressedImage
     #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
     image_topic: String,
@@ -96,9 +87,6 @@ pub(super) struct DriveArguments {
     /// Where the robot stands in the plan, and the door behind it [default: the plan's own start]
     #[arg(long, value_name = "VERTEX:FACING", requires = "plan")]
     start: Option<String>,
-    /// Stop if the map has more darts
-    #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
-    max_darts: usize,
     /// Write a log of the run, .mcap
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,

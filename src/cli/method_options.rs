@@ -54,38 +54,6 @@ impl MethodOptions {
     }
 }
 
-/// What a robot that recovers does about doors that are blocked.
-#[derive(Clone, Copy, Debug, clap::Args)]
-pub(super) struct BlockedOptions {
-    /// With --recover: try the blocked doors once more at the end
-    #[arg(long, requires = "recover")]
-    retry_blocked: bool,
-    /// With --recover: a map that is complete but for blocked doors is enough for exit code 0
-    #[arg(long, requires = "recover")]
-    allow_blocked: bool,
-}
-
-impl BlockedOptions {
-    /// The method of a robot that may find blocked doors.
-    ///
-    /// # Errors
-    /// Returns an error if Algorithm 1 is to recover.
-    pub(super) fn method(self, options: &MethodOptions) -> Result<MappingMethod, CliError> {
-        Ok(match options.method()? {
-            MappingMethod::Recovering(config) => MappingMethod::Recovering(RecoveryConfig {
-                retries_blocked: self.retry_blocked,
-                ..config
-            }),
-            method @ MappingMethod::By { .. } => method,
-        })
-    }
-
-    /// Whether a map may lack what is behind blocked doors.
-    pub(super) fn allows(self) -> bool {
-        self.allow_blocked
-    }
-}
-
 /// The options that give a method again.
 pub(super) fn words_of(method: MappingMethod) -> Vec<String> {
     let mut words = Vec::new();

@@ -41,6 +41,7 @@ mod render;
 mod replay;
 mod report_output;
 mod robot_sensor;
+mod run_options;
 mod safeguards;
 mod scene;
 mod sense;

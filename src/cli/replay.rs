@@ -120,8 +120,9 @@ impl ReplayArguments {
             }
         }
         if let Some(path) = &self.map {
-            match replay.mapping.map().complete() {
-                None => remark!("the map is not complete, and is not written"),
+            let complete = replay.mapping.map().complete();
+            match complete.filter(|_| replay.error.is_none()) {
+                None => remark!("the map is not written: the run ended early"),
                 Some(graph) => {
                     let about = format!("The map from a replay of {}", self.log.display());
                     let map = NamedWorld::numbered("map", &about, graph.clone(), Some(FACING));

@@ -20,8 +20,8 @@ pub(super) struct SafeguardFields {
     /// The largest chance that a wrong map survives the audits; `null` without any.
     wrong_map_chance: Option<f64>,
     recoveries: Option<u32>,
-    /// The doors of the map whose hallways are blocked, as `v2.1`.
-    blocked: Vec<String>,
+    /// The doors of the map whose hallways are blocked, as `v2.1`; `null` if the run ended early.
+    blocked: Option<Vec<String>>,
 }
 
 impl SafeguardFields {
@@ -35,7 +35,7 @@ impl SafeguardFields {
             audit_moves: mapped.map(|mapped| mapped.audit_moves),
             wrong_map_chance: audited.map(|mapped| percepts.survival(&mapped.audited_percepts)),
             recoveries: mapped.map(|mapped| mapped.recoveries),
-            blocked: mapped.map_or_else(Vec::new, |mapped| doors(map, &mapped.blocked)),
+            blocked: mapped.map(|mapped| doors(map, &mapped.blocked)),
         }
     }
 }

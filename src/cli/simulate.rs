@@ -19,7 +19,6 @@ use std::{
 use toposlam::{journal::Journal, page, picture};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
-    mapping::EarlierWalk,
 };
 use toposlam_robot::{
     evaluation::{FalsePercepts, LearnedSensors, LearningError},
@@ -37,22 +36,17 @@ use toposlam_vision::camera::Camera;
 use super::{
     CliError, Outcome,
     appearance::{Appearance, ImageSize, camera_with},
-    budget_options::BudgetOptions,
-    earlier_logs::earlier_walks_of,
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
-    input,
-    method_options::{BlockedOptions, MethodOptions},
-    noise, output,
+    input, noise, output,
     progress::{Progress, StopSignal},
     robot_sensor::SensorChoice,
+    run_options::RunOptions,
     story_lines::StoryLines,
     text::capital,
 };
 use result::SimulationResult;
 use run_capture::{Pictures, RunCapture};
-
-pub(super) use log::MAX_DARTS;
 
 /// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
 ///
@@ -76,14 +70,7 @@ pub(super) struct SimulateArguments {
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
     #[command(flatten)]
-    method: MethodOptions,
-    #[command(flatten)]
-    blocked: BlockedOptions,
-    #[command(flatten)]
-    budget: BudgetOptions,
-    /// With --recover: go on from the log of an earlier run, .mcap; may be repeated
-    #[arg(long, value_name = "LOG", requires = "recover")]
-    resume: Vec<PathBuf>,
+    options: RunOptions,
     /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
@@ -122,9 +109,6 @@ pub(super) struct SimulateArguments {
     /// Inject a fault at a picture; may be repeated
     #[arg(long, value_name = "NAME@PICTURE[:COUNT]")]
     fault: Vec<RobotFault>,
-    /// Stop if the map has more darts
-    #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
-    max_darts: usize,
     /// Write a log of the run, .mcap
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
@@ -190,7 +174,7 @@ impl SimulateArguments {
         if self.ros.is_some() {
             return Err(super::without_ros());
         }
-        let method = self.blocked.method(&self.method)?;
+        self.options.method()?;
         let scanner = self.scanner_params()?;
         self.check_places()?;
         let begun = Instant::now();
@@ -198,11 +182,7 @@ impl SimulateArguments {
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
-        let settings = RunSettings {
-            budget: self.budget.budget(),
-            earlier: self.earlier(&world, facing)?,
-            ..RunSettings::new(method, self.max_darts)
-        };
+        let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
         let setting = SimulationConfig {
             noise: self.noise,
             picture_time: self.picture_time,
@@ -261,11 +241,6 @@ impl SimulateArguments {
             world.at_text(facing),
         );
         Ok(nearest)
-    }
-
-    /// The walks of the earlier runs from which the robot goes on.
-    fn earlier(&self, world: &NamedWorld, facing: Dart) -> Result<Vec<EarlierWalk>, CliError> {
-        earlier_walks_of(&self.resume, Some(&world_hash(&world.graph, facing)))
     }
 
     fn check_places(&self) -> Result<(), CliError> {
@@ -342,7 +317,7 @@ impl SimulateArguments {
             world,
             facing,
             seed: self.seed,
-            allows_blocked: self.blocked.allows(),
+            allows_blocked: self.options.allows_blocked(),
             percepts: match self.sensor {
                 SensorChoice::Laser => FalsePercepts::BY_LASER,
                 _ if self.by_scene => FalsePercepts::BY_SCENE,
@@ -369,7 +344,7 @@ impl SimulateArguments {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => remark!("the map is not complete, and is not written"),
+                None => remark!("the map is not written: the run ended early"),
             }
         }
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());

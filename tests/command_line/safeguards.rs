@@ -37,6 +37,25 @@ fn an_audit_takes_moves_of_its_own_and_changes_nothing_else() {
     }
 }
 
+/// After 10 moves the map is complete, and its audit takes 12 more.
+#[test]
+fn a_map_whose_audit_did_not_end_is_not_written() {
+    let folder = folder("unaudited-map");
+    let map = folder.join("map.toml").display().to_string();
+    let audited = [SHAPE_8, "--algorithm", "folding", "--audit", "--map", &map];
+    for (most, code) in [("19", 3), ("40", 0)] {
+        let output = run([&["simulate", "--by-scene", "--max-moves", most], &audited[..]].concat());
+        assert_eq!(output.status.code(), Some(code), "{}", stdout(&output));
+        assert_eq!(fs::exists(&map).unwrap(), code == 0);
+        let says = stderr(&output).contains("the map is not written: the run ended early");
+        assert_eq!(says, code != 0, "{}", stderr(&output));
+    }
+    let (_, _, object) = simulated(&[SHAPE_8, "--recover", "--max-moves", "1"]);
+    assert_eq!(object["blocked"], Value::Null);
+    assert!(object["error"].as_str().unwrap().contains("to keep within 1 move;"), "{object}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn the_log_of_an_audited_run_conforms_to_its_algorithm_and_audits() {
     let folder = folder("audited-log");

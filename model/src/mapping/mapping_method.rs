@@ -97,17 +97,17 @@ fn audited<W: Relocate>(
     observer: &mut impl Observer<W>,
 ) -> Result<MappedWorld, MappingError<W::Error>> {
     let Some(map) = run.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
-    let mut tell = |world: &mut W, event| {
+    let mut report = |world: &mut W, event| {
         observer.event(world, run.journey(), MappingEvent::Safeguard(event));
     };
     let (mut pose, mut audit_moves, mut audited_percepts) = (run.robot(), 0, Vec::new());
     for _ in 0..audits {
-        tell(world, SafeguardEvent::AuditBegun);
+        report(world, SafeguardEvent::AuditBegun);
         let audited = audit(world, map, FACING, pose, |_, _| {})?;
         pose = audited.pose;
         audit_moves += audited.moves;
         audited_percepts.push(audited.percepts());
-        tell(world, SafeguardEvent::AuditPassed { moves: audited.moves });
+        report(world, SafeguardEvent::AuditPassed { moves: audited.moves });
     }
     let moves = run.moves() + audit_moves;
     Ok(MappedWorld {

@@ -11,7 +11,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingEvent, MappingMethod, Observer},
+    mapping::{Journey, MappingEvent, Observer},
 };
 use toposlam_robot::{
     evaluation::FalsePercepts,
@@ -33,13 +33,10 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{CliError, DriveArguments, MAX_DARTS, Outcome, result::DriveResult};
+use super::{CliError, DriveArguments, Outcome, result::DriveResult};
 use crate::cli::{
-    earlier_logs::earlier_walks_of,
     explore::story::{Story, StoryDetail},
-    input,
-    method_options::words_of,
-    output,
+    input, output,
     progress::Progress,
     robot_sensor::{SensorChoice, needs_camera},
     story_lines::StoryLines,
@@ -55,12 +52,7 @@ impl DriveArguments {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
-        let method = self.blocked.method(&self.method)?;
-        let settings = RunSettings {
-            budget: self.budget.budget(),
-            earlier: earlier_walks_of(&self.resume, None)?,
-            ..RunSettings::new(method, self.max_darts)
-        };
+        let settings = self.options.settings(None)?;
         let eyes = self.eyes()?;
         let (sensor, live) = match &eyes {
             Some((camera, colours)) => {
@@ -162,7 +154,7 @@ impl DriveArguments {
             method: settings.method,
             mapping: &mapping,
             mapped: mapped.as_ref(),
-            allows_blocked: self.blocked.allows(),
+            allows_blocked: self.options.allows_blocked(),
             percepts: match self.sensor {
                 SensorChoice::Laser => FalsePercepts::BY_LASER,
                 _ => FalsePercepts::BY_IMAGE,
@@ -179,7 +171,7 @@ impl DriveArguments {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => remark!("the map is not complete, and is not written"),
+                None => remark!("the map is not written: the run ended early"),
             }
         }
         Ok(result.outcome())
@@ -208,7 +200,7 @@ impl DriveArguments {
             seed: 0,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(settings.method),
+            command: self.command()?,
             algorithm: settings.recorded().to_string(),
         };
         let camera = eyes.map(|(camera, _)| camera.clone());
@@ -222,7 +214,7 @@ impl DriveArguments {
     }
 
     /// The command of this run, without the options for its outputs.
-    fn command(&self, method: MappingMethod) -> String {
+    fn command(&self) -> Result<String, CliError> {
         let path = |path: &std::path::PathBuf| path.display().to_string();
         let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
         let options = [
@@ -237,20 +229,12 @@ impl DriveArguments {
             ("--cmd-vel-topic", unless(&self.cmd_vel_topic, recorder::CMD_VEL)),
             ("--plan", self.plan.as_ref().map(path)),
             ("--start", self.start.clone()),
-            ("--max-darts", (self.max_darts != MAX_DARTS).then(|| self.max_darts.to_string())),
         ];
         let options =
             options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
-        let resumed =
-            self.resume.iter().flat_map(|log| ["--resume".to_owned(), log.display().to_string()]);
-        let words = words
-            .into_iter()
-            .chain(words_of(method))
-            .chain(self.budget.words())
-            .chain(resumed)
-            .chain(options.flatten());
-        words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
+        let words = words.into_iter().chain(self.options.words()?).chain(options.flatten());
+        Ok(words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" "))
     }
 }
 

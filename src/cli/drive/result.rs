@@ -70,8 +70,9 @@ impl DriveResult<'_> {
         }
     }
 
-    /// The map as a world, if it is complete.
+    /// The map as a world, if it is complete and the run did not end before its last check.
     pub(super) fn map(&self) -> Option<NamedWorld> {
+        self.mapped.ok()?;
         let graph = self.mapping.map().complete()?;
         let moves = self.moves();
         let (name, of) = match self.world {

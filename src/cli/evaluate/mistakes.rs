@@ -196,7 +196,7 @@ impl EvaluateMistakesArguments {
         let all = tally.all();
         let line = json!({
             "class": self.class.name(), "algorithm": method.algorithm().name(),
-            "audit": method.audits() > 0, "recover": method.recovers(),
+            "audits": method.audits(), "recover": method.recovers(),
             "starts": tally.starts, "runs": all.runs(), "right": all.right,
             "unnoticed": all.unnoticed(), "moves_total": tally.moves,
             "interrupted": tally.interrupted, "holds": outcome == Outcome::Holds,

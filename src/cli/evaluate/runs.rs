@@ -18,7 +18,7 @@ use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
-    method_options::MethodOptions,
+    method_options::{MethodOptions, safeguards_in_words},
     progress::Progress,
     text::{counted, grouped, print_hanging, print_rows},
     use_threads,
@@ -105,13 +105,12 @@ impl EvaluateRunsArguments {
             self.print_json(method, &judged, (violations, outcome), out)?;
         } else {
             let sensing = self.robots.sensing();
-            let by = match method.algorithm() {
-                DirectionalAlgorithm::Algorithm1 => "",
-                DirectionalAlgorithm::Folding => ", folding explorer",
-            };
-            writeln!(out, "Whole runs by {sensing}{by}, seed {seed}")?;
+            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
+            let starts = format!("{} starts", grouped(runs.starts() as u128));
             let plans = counted(count, "floor plan");
-            writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
+            let by = method.algorithm().in_words();
+            let by = format!("{by} {}", safeguards_in_words(method));
+            writeln!(out, "  {starts} in {plans}, by {}", by.trim_end())?;
             self.print(method, &judged, outcome, out)?;
         }
         remark!("{:.1} s", begun.elapsed().as_secs_f64());
@@ -151,8 +150,8 @@ impl EvaluateRunsArguments {
         writeln!(out, "  right    {} of {}", grouped(right as u128), grouped(all as u128))?;
         writeln!(out, "  gave up  {}", share(gave_up, all))?;
         writeln!(out, "  wrong    {}", share(wrong, all))?;
-        if method.recovers() {
-            print_recovery(judged, out)?;
+        if method.audits() > 0 || method.recovers() {
+            print_safeguards(method, judged, out)?;
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
@@ -208,30 +207,36 @@ impl EvaluateRunsArguments {
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
             "algorithm": method.algorithm().name(),
-            "recover": method.recovers(),
+            "audits": method.audits(), "recover": method.recovers(),
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
     }
 }
 
-/// What recovery did in all runs.
-fn print_recovery(judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliError> {
+/// What audits and recoveries took in all runs.
+fn print_safeguards(
+    method: MappingMethod,
+    judged: &[JudgedRun],
+    out: &mut dyn Write,
+) -> Result<(), CliError> {
     let right = || judged.iter().filter(|run| run.ending == RunOutcome::Right);
     let all = || right().filter_map(|run| run.mapped.as_ref());
-    let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
-    let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
     let audits: u64 = all().map(|mapped| mapped.audit_moves).sum();
     let [made, explored] = [0, 1].map(|at| right().map(|run| run.moves[at]).sum::<u64>());
     let extra = made.saturating_sub(audits).saturating_sub(explored);
     let number = |number: u64| grouped(number.into());
-    let text = format!(
-        "{} in the right runs without faults, {} more for audits, {} more for {}",
-        number(explored),
-        number(audits),
-        number(extra),
-        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") },
-    );
+    let explored = number(explored);
+    let text =
+        format!("{explored} in the right runs without faults, {} more for audits", number(audits));
+    if !method.recovers() {
+        return Ok(print_hanging(out, "  moves    ", &text)?);
+    }
+    let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
+    let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
+    let recoveries =
+        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") };
+    let text = format!("{text}, {} more for {recoveries}", number(extra));
     print_hanging(out, "  moves    ", &text)?;
     let recovered = || {
         let is_one = |run: &&JudgedRun| run.mapped.as_ref().is_some_and(|map| map.recoveries > 0);

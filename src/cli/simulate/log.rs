@@ -2,7 +2,6 @@
 
 use std::fs::File;
 
-use toposlam_model::mapping::MappingMethod;
 use toposlam_robot::{
     log::{messages, recorder::Recorder, world_hash, writer::LogWriteError},
     simulator::PICTURE_TIME,
@@ -13,9 +12,7 @@ use toposlam_vision::{
 };
 
 use super::{CliError, SimulateArguments, Simulation};
-use crate::cli::{
-    method_options::words_of, output, robot_sensor::SensorChoice, text::quoted, version,
-};
+use crate::cli::{output, robot_sensor::SensorChoice, text::quoted, version};
 
 impl SimulateArguments {
     /// Opens the log, if one is wanted. Its head has the camera and the colours.
@@ -35,7 +32,7 @@ impl SimulateArguments {
             seed: self.seed,
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
-            command: self.command(simulation.settings.method),
+            command: self.command()?,
             algorithm: simulation.settings.recorded().to_string(),
         };
         let file = output::create_growing(path)?;
@@ -50,18 +47,14 @@ impl SimulateArguments {
     }
 
     /// The command that repeats this run, without the options for its outputs.
-    fn command(&self, method: MappingMethod) -> String {
+    fn command(&self) -> Result<String, CliError> {
         let mut words = vec!["toposlam".to_owned(), "simulate".to_owned()];
         words.push(self.plan.display().to_string());
         let path = |path: &std::path::PathBuf| path.display().to_string();
         if let Some(start) = &self.start {
             words.extend(["--start".to_owned(), start.clone()]);
         }
-        words.extend(words_of(method));
-        words.extend(self.budget.words());
-        for log in &self.resume {
-            words.extend(["--resume".to_owned(), log.display().to_string()]);
-        }
+        words.extend(self.options.words()?);
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 words.extend([name.to_owned(), value]);
@@ -81,19 +74,15 @@ impl SimulateArguments {
         for fault in &self.fault {
             option("--fault", Some(fault.to_string()));
         }
-        option("--max-darts", (self.max_darts != MAX_DARTS).then(|| self.max_darts.to_string()));
         let is_camera = self.sensor == SensorChoice::Camera;
         option("--sensor", (!is_camera).then(|| self.sensor.name().to_owned()));
         option("--scanner", self.scanner.as_ref().map(path));
         if self.by_scene {
             words.push("--by-scene".to_owned());
         }
-        words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+        Ok(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
     }
 }
-
-/// The default bound on known darts.
-pub(in crate::cli) const MAX_DARTS: usize = 1000;
 
 #[cfg(test)]
 mod tests {
@@ -109,7 +98,7 @@ mod tests {
 
     fn command_of(line: &[&str]) -> String {
         let arguments = Line::try_parse_from([&["simulate"][..], line].concat()).unwrap().arguments;
-        arguments.command(arguments.blocked.method(&arguments.method).unwrap())
+        arguments.command().unwrap()
     }
 
     #[test]

@@ -97,9 +97,10 @@ impl SimulationResult<'_> {
         }
     }
 
-    /// The map as a world, if it is complete.
+    /// The map as a world, if it is complete and the run did not end before its last check.
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
+        self.run.mapped.as_ref()?;
         let (name, moves) = (&self.world.name, self.run.moves());
         let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
         let graph = self.run.mapping.map().complete()?;

@@ -105,7 +105,23 @@ struct Remembering<'w, W> {
     world: &'w mut W,
     /// The walk since the robot last began one.
     walk: EarlierWalk,
+    /// What was measured on the way to each of its percepts.
+    measured: Vec<Measured>,
     moves: u64,
+}
+
+impl<W> Remembering<'_, W> {
+    /// Ends the walk, and returns it.
+    fn take_walk(&mut self) -> EarlierWalk {
+        self.measured.clear();
+        mem::take(&mut self.walk)
+    }
+
+    /// Begins a walk where the robot stands. It does not matter how it has come there.
+    fn begin_walk(&mut self, seen: Percept) -> EarlierWalk {
+        self.measured = vec![Measured::default()];
+        mem::replace(&mut self.walk, EarlierWalk::new(seen, [], false))
+    }
 }
 
 impl<W: Relocate> World for Remembering<'_, W> {
@@ -113,7 +129,9 @@ impl<W: Relocate> World for Remembering<'_, W> {
 
     fn percept(&mut self) -> Result<Percept, W::Error> {
         let percept = self.world.percept()?;
-        self.walk.perceive(percept, self.world.measured(), self.world.is_blocked());
+        if self.walk.perceive(percept, self.world.is_blocked()) {
+            self.measured.push(self.world.measured());
+        }
         Ok(percept)
     }
 
@@ -208,7 +226,7 @@ pub fn map_with_recovery<W: Relocate>(
         walks.add(walk.clone());
     }
     let mut recovery = Recovery {
-        world: Remembering { world, walk: EarlierWalk::default(), moves: 0 },
+        world: Remembering { world, walk: EarlierWalk::default(), measured: Vec::new(), moves: 0 },
         exploration,
         observer: Through(observer),
         config,
@@ -270,7 +288,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         }
     }
 
-    fn tell(&mut self, event: SafeguardEvent) {
+    fn report(&mut self, event: SafeguardEvent) {
         let event = MappingEvent::Safeguard(event);
         self.observer.event(&mut self.world, &self.exploration.journey, event);
     }
@@ -278,21 +296,21 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
     /// Leaves the place of a contradiction, looks for the marker and goes on with the walks that agree.
     fn recover(&mut self, error: MappingError<W::Error>) -> Result<(), MappingError<W::Error>> {
         self.recoveries += 1;
-        self.walks.add(mem::take(&mut self.world.walk));
+        self.walks.add(self.world.take_walk());
         match error {
             MappingError::Contradiction(contradiction) => {
-                self.tell(SafeguardEvent::Contradicted(contradiction));
+                self.report(SafeguardEvent::Contradicted(contradiction));
                 self.leave_place()?;
             }
             MappingError::Bound { bound } => {
                 // The robot found ever more places, and nothing that it could compare.
                 self.walks.forget();
-                self.tell(SafeguardEvent::TooLarge { bound });
+                self.report(SafeguardEvent::TooLarge { bound });
                 self.leave_place()?;
             }
             MappingError::World(error) => {
                 self.relocate(error)?;
-                self.tell(SafeguardEvent::Relocated);
+                self.report(SafeguardEvent::Relocated);
             }
             error @ MappingError::InvalidStep(_) => return Err(error),
         }
@@ -333,8 +351,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
             found => found?,
         };
         self.has_failed = false;
-        self.walks.add(mem::take(&mut self.world.walk));
-        self.world.walk.perceive(seen, Measured::default(), false);
+        self.walks.add(self.world.begin_walk(seen));
         let (trail, kept) = match self.walks.fold_most(1) {
             folded if folded.0.marker().is_some() => folded,
             _ => (FoldedTrail::new(seen)?, 0),
@@ -355,7 +372,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
             return Ok((pose, blocked));
         }
         self.has_retried = true;
-        self.tell(SafeguardEvent::BlockedRetried { doors: blocked.len() });
+        self.report(SafeguardEvent::BlockedRetried { doors: blocked.len() });
         let Some(map) = self.exploration.map().complete() else {
             return Err(InvalidStep::NoPlan.into());
         };
@@ -364,7 +381,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
             Err(error) => {
                 if matches!(error, AuditError::Mismatch { .. }) && !self.world.world.is_blocked() {
                     // A hallway is free now. What was seen while it was blocked is of another world.
-                    self.walks.add(mem::take(&mut self.world.walk));
+                    self.walks.add(self.world.take_walk());
                     self.walks.forget_blocked();
                     return Err(Contradiction::Unblocked.into());
                 }
@@ -379,7 +396,8 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         else {
             return Ok(());
         };
-        let check = MeasurementCheck::new(&self.world.walk.visits(map, FACING), &noise);
+        let Remembering { walk, measured, .. } = &self.world;
+        let check = MeasurementCheck::new(&walk.visits(measured, map, FACING), &noise);
         if check.contradictions.is_empty() { Ok(()) } else { Err(Contradiction::Moved.into()) }
     }
 
@@ -388,7 +406,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         let mut blocked = Vec::new();
         self.audited_percepts.clear();
         for _ in 0..self.config.audits {
-            self.tell(SafeguardEvent::AuditBegun);
+            self.report(SafeguardEvent::AuditBegun);
             let Some(map) = self.exploration.map().complete() else {
                 return Err(InvalidStep::NoPlan.into());
             };
@@ -402,7 +420,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
             let audited = audit(&mut self.world, map, FACING, pose, note)?;
             pose = audited.pose;
             self.audited_percepts.push(audited.percepts());
-            self.tell(SafeguardEvent::AuditPassed { moves: audited.moves });
+            self.report(SafeguardEvent::AuditPassed { moves: audited.moves });
         }
         blocked.sort_unstable();
         Ok((pose, blocked))

@@ -11,12 +11,10 @@ use crate::{
 };
 
 /// A walk: percepts, and the doors between them.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EarlierWalk {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
-    /// What was measured on the way to each percept.
-    measured: Vec<Measured>,
     /// Whether the robot turned round at an obstacle.
     is_blocked: bool,
 }
@@ -35,8 +33,8 @@ pub(super) fn sees_marker(percept: &Percept) -> bool {
 }
 
 impl EarlierWalk {
-    /// A walk that begins with a percept; after each door there is another percept. `is_blocked` tells whether the
-    /// robot turned round at an obstacle.
+    /// A walk that begins with a percept; after each door there is another percept. `is_blocked`: whether the robot
+    /// turned round at an obstacle.
     #[must_use]
     pub fn new(
         first: Percept,
@@ -45,8 +43,7 @@ impl EarlierWalk {
     ) -> Self {
         let (doors, mut percepts): (Vec<Door>, Vec<Percept>) = moves.into_iter().unzip();
         percepts.insert(0, first);
-        let measured = vec![Measured::default(); percepts.len()];
-        Self { percepts, doors, measured, is_blocked }
+        Self { percepts, doors, is_blocked }
     }
 
     /// Whether nothing was perceived.
@@ -54,13 +51,14 @@ impl EarlierWalk {
         self.percepts.is_empty()
     }
 
-    /// The robot perceives this, if it has not yet perceived where it is.
-    pub(super) fn perceive(&mut self, percept: Percept, measured: Measured, is_blocked: bool) {
-        if self.percepts.len() == self.doors.len() {
+    /// The robot perceives this, if it has not yet perceived where it is. Returns whether it has not.
+    pub(super) fn perceive(&mut self, percept: Percept, is_blocked: bool) -> bool {
+        let is_new = self.percepts.len() == self.doors.len();
+        if is_new {
             self.percepts.push(percept);
-            self.measured.push(measured);
             self.is_blocked |= is_blocked;
         }
+        is_new
     }
 
     /// The robot takes a door.
@@ -73,7 +71,7 @@ impl EarlierWalk {
     /// Its parts that begin or end at the marker. Without the marker a part says nothing about the world with the
     /// marker, and is left out.
     pub(super) fn split_at_marker(self) -> Vec<Self> {
-        let Self { percepts, doors, is_blocked, .. } = self;
+        let Self { percepts, doors, is_blocked } = self;
         let mut parts = Vec::new();
         let new = || Self { is_blocked, ..Self::default() };
         let mut part = new();
@@ -93,8 +91,14 @@ impl EarlierWalk {
         parts
     }
 
-    /// The visits in a map that agrees with all percepts, if the walk begins at the marker.
-    pub(super) fn visits(&self, map: &EmbeddedGraph, facing: Dart) -> Vec<MeasuredVisit> {
+    /// The visits in a map that agrees with all percepts, if the walk begins at the marker, with what was measured on
+    /// the way to each.
+    pub(super) fn visits(
+        &self,
+        measured: &[Measured],
+        map: &EmbeddedGraph,
+        facing: Dart,
+    ) -> Vec<MeasuredVisit> {
         let Some(Percept { degree, sighting: Sighting::Pointing(along) }) = self.percepts.first()
         else {
             return Vec::new();
@@ -114,7 +118,7 @@ impl EarlierWalk {
             }
             visit
         };
-        self.measured.iter().enumerate().map(visit).collect()
+        measured.iter().enumerate().map(visit).collect()
     }
 
     /// Adds the walk to a trail, as another visit of the same world.
