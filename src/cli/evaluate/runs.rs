@@ -110,7 +110,8 @@ impl EvaluateRunsArguments {
             let plans = counted(count, "floor plan");
             let by = method.algorithm().in_words();
             let by = format!("{by} {}", safeguards_in_words(method));
-            writeln!(out, "  {starts} in {plans}, by {}", by.trim_end())?;
+            writeln!(out, "  by {}", by.trim_end())?;
+            writeln!(out, "  {starts} in {plans}")?;
             self.print(method, &judged, outcome, out)?;
         }
         remark!("{:.1} s", begun.elapsed().as_secs_f64());
