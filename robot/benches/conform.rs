@@ -16,6 +16,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 use toposlam_robot::{
+    budget::RunBudget,
     conform::{
         CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld,
         Quirks, RunDriver, RunEvents, extract, judge,
@@ -65,6 +66,7 @@ fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
         world: Some(KnownWorld { graph: plan.graph(), states }),
         marker: &Directional,
         driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        budget: RunBudget::default(),
         search,
         dart_bound: 1000,
     }

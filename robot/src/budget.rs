@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use toposlam_model::percept::Door;
+use toposlam_model::percept::{Door, Percept, Sighting};
 
 /// What a run may spend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -165,6 +165,11 @@ impl Allowance {
         let door = self.door(door);
         let back = !self.legs.is_empty() && door == 0;
         self.leaving = Some(if back { Leaving::Back } else { Leaving::On(door) });
+    }
+
+    /// The robot has come to the next junction, and perceives it.
+    pub(crate) fn perceive(&mut self, Percept { degree, sighting }: Percept, spent: Spent) {
+        self.arrive(degree, matches!(sighting, Sighting::Pointing(_)), spent);
     }
 
     /// The robot has come to the next junction.

@@ -62,15 +62,13 @@ impl Walks {
         if is_lost {
             self.end();
         }
-        // Before an obstacle the robot sees no junction.
-        let is_blocked = arrival.degree == 1 && arrival.form.is_none() && arrival.entry.is_some();
         if let (Some(_), Some(door)) = (self.first, self.door.take()) {
             self.moves.push((door, percept));
         } else {
             self.end();
             self.first = Some(percept);
         }
-        self.is_blocked |= is_blocked;
+        self.is_blocked |= arrival.is_at_obstacle();
     }
 
     fn leave(&mut self, door: Door) {

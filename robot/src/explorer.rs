@@ -331,9 +331,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         Ok(standing)
     }
 
-    fn allow_for(&mut self, Percept { degree, sighting }: Percept) {
-        let (sees_marker, spent) = (matches!(sighting, Sighting::Pointing(_)), self.spent());
-        self.allowance.arrive(degree, sees_marker, spent);
+    fn allow_for(&mut self, percept: Percept) {
+        let spent = self.spent();
+        self.allowance.perceive(percept, spent);
     }
 
     fn arrive(&mut self, standing: Standing) {

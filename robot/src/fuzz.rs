@@ -13,6 +13,7 @@ use toposlam_model::{
 };
 
 use crate::{
+    budget::RunBudget,
     conform::{
         ConformConfig, Evidence, ExtractConfig, ExtractedRun, Quirks, RunDriver, extract, judge,
     },
@@ -174,6 +175,7 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
         world: None,
         marker: &Directional,
         driver: RunDriver::Anyone,
+        budget: RunBudget::default(),
         search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100 },
         dart_bound: 50,
     };

@@ -4,7 +4,7 @@ use std::fmt;
 
 use toposlam_model::mapping::{EarlierWalk, MappingMethod};
 
-use crate::budget::RunBudget;
+use crate::{budget::RunBudget, conform::log_noise};
 
 /// What a robot does in a run.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl fmt::Display for RecordedSettings {
 }
 
 impl RecordedSettings {
-    /// Reads what the head of a log says.
+    /// Reads what the head of a log says. A robot that recovers compares lengths with the usual uncertainty.
     ///
     /// # Errors
     /// Returns the cause if it is not of this form.
@@ -97,6 +97,9 @@ impl RecordedSettings {
             }
         }
         settings.method = method.join(" ").parse()?;
+        if let MappingMethod::Recovering(config) = &mut settings.method {
+            config.noise = Some(log_noise());
+        }
         Ok(settings)
     }
 }

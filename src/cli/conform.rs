@@ -28,14 +28,18 @@ use toposlam_model::{
     enumerate::{Class, Watch},
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
-    mapping::{DirectionalAlgorithm, MappingMethod},
+    mapping::DirectionalAlgorithm,
     marker::{Directional, Marker},
     percept::Sighting,
 };
-use toposlam_robot::conform::{
-    CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractConfig, ExtractError,
-    ExtractedRun, JudgeError, Judgement, Quirks, RunCoverage, RunDriver, RunEvents,
-    SensingProgress, extract, judge,
+use toposlam_robot::{
+    budget::RunBudget,
+    conform::{
+        CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractConfig, ExtractError,
+        ExtractedRun, JudgeError, Judgement, Quirks, RunCoverage, RunDriver, RunEvents,
+        SensingProgress, extract, judge,
+    },
+    run_settings::RecordedSettings,
 };
 
 use super::{
@@ -205,6 +209,8 @@ struct Judged<'w> {
     twin: Option<OtherWorld>,
     /// The algorithm with which the doors are compared, unless anyone may have chosen them.
     driver: RunDriver,
+    /// What the robot might spend.
+    budget: RunBudget,
     algorithm: DirectionalAlgorithm,
     /// The limits of the check.
     search: WorldSearch,
@@ -353,23 +359,21 @@ impl ConformArguments {
             Some(marker) => marker.marker(),
             None => opened.marker()?,
         };
-        let method = match self.driver {
-            Who::Algorithm => opened.settings(path, self.algorithm)?.method,
-            Who::Anyone => MappingMethod::default(),
+        let settings = match self.driver {
+            Who::Algorithm => opened.settings(path, self.algorithm)?,
+            Who::Anyone => RecordedSettings::default(),
         };
-        let algorithm = method.algorithm();
-        let driver = match (self.driver, method) {
-            (Who::Algorithm, MappingMethod::By { algorithm, audits: 0 }) => {
-                RunDriver::Algorithm(algorithm)
-            }
-            (Who::Algorithm, MappingMethod::By { algorithm, audits }) => {
-                RunDriver::Audited { algorithm, audits }
-            }
-            (Who::Algorithm, MappingMethod::Recovering(_)) => {
+        let algorithm = settings.method.algorithm();
+        let driver = match (self.driver, settings) {
+            (Who::Algorithm, RecordedSettings { is_resumed: true, .. }) => {
                 let path = path.display();
-                remark!("{path}: its robot recovers; its doors are compared with no algorithm");
+                remark!(
+                    "{path}: its robot went on from an earlier run, which is not in this log; its doors are \
+                     compared with no algorithm"
+                );
                 RunDriver::Anyone
             }
+            (Who::Algorithm, settings) => RunDriver::from(settings.method),
             (Who::Anyone, _) => RunDriver::Anyone,
         };
         let run = opened.run.as_ref();
@@ -398,11 +402,11 @@ impl ConformArguments {
             let cause = format!("no percept in it shows a marker, which {needs} needs");
             return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
-        let question = self.question(known.as_ref(), marker, driver);
+        let question = self.question(known.as_ref(), marker, (driver, settings.budget));
         // Whoever drives may turn back between junctions. The algorithms do not.
         let events = match driver {
-            RunDriver::Algorithm(_) | RunDriver::Audited { .. } => gathered.events.clone(),
             RunDriver::Anyone => gathered.events.without_excursions(),
+            _ => gathered.events.clone(),
         };
         let judgement = judge(events, &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
@@ -431,6 +435,7 @@ impl ConformArguments {
             added,
             twin,
             driver,
+            budget: settings.budget,
             algorithm,
             search,
             dart_bound,
@@ -441,12 +446,13 @@ impl ConformArguments {
         &self,
         known: Option<&'k Known>,
         marker: &'static dyn Marker,
-        driver: RunDriver,
+        (driver, budget): (RunDriver, RunBudget),
     ) -> ConformConfig<'k> {
         ConformConfig {
             world: known.map(Known::question),
             marker,
             driver,
+            budget,
             search: WorldSearch {
                 class: self.class,
                 max_edges: self.max_edges,

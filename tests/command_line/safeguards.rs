@@ -150,7 +150,51 @@ fn a_robot_returns_within_its_budget_and_goes_on_from_its_log() {
     // Whoever chose the doors, its percepts are those of the building.
     let output = run(["conform", &rest, "--world", BUILDING]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
-    assert!(stderr(&output).contains("its robot recovers"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("its robot went on from an earlier run"), "{output:?}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_log_of_a_robot_that_recovers_or_turns_back_conforms_as_far_as_it_goes() {
+    let folder = folder("recovered-log");
+    let log = folder.join("run.mcap").display().to_string();
+    let conform = |arguments: &[&str]| {
+        let output = run([&["conform", &log, "--world", BUILDING], arguments].concat());
+        (output.status.code().unwrap(), stdout(&output))
+    };
+    let simulated =
+        |arguments: &[&str]| simulated(&[&[BUILDING, "--log", &log], arguments].concat()).0;
+    // It got lost, and its world agrees with all that it saw.
+    assert_eq!(simulated(&["--recover", "--fault", "lights-out@40:120"]), 0);
+    let (code, text) = conform(&[]);
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("doors      those of the folding explorer with recovery\n"), "{text}");
+    let output = run(["conform", &log]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(3), "{text}");
+    assert!(text.contains("the robot got lost before event"), "{text}");
+    // The folding explorer alone would have given up.
+    let (code, text) = conform(&["--algorithm", "folding"]);
+    assert_eq!(code, 1, "{text}");
+    assert!(text.contains("the robot got lost, and gives up"), "{text}");
+    // It was carried, which is a divergence, and did what it should.
+    assert_eq!(simulated(&["--recover", "--fault", "carried@80"]), 0);
+    let (code, text) = conform(&[]);
+    assert_eq!(code, 1, "{text}");
+    assert!(text.contains(": motion\n"), "{text}");
+    assert!(text.contains("doors      those of the folding explorer with recovery\n"), "{text}");
+    // It tried its blocked doors again.
+    let blocked = ["--recover", "--retry-blocked", "--fault", "blocked@20:250"];
+    assert_eq!(simulated(&blocked), 0);
+    let text = conform(&[]).1;
+    assert!(text.contains("doors      those of the folding explorer with recovery\n"), "{text}");
+    // It turned back, which the budget in the head of the log explains.
+    for budget in [["--max-moves", "25"], ["--max-minutes", "20"]] {
+        assert_eq!(simulated(&[&["--algorithm", "folding"], &budget[..]].concat()), 3);
+        let (code, text) = conform(&[]);
+        assert_eq!(code, 3, "{text}");
+        assert!(text.contains("no divergence so far") && text.contains("turned back"), "{text}");
+    }
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -59,6 +59,12 @@ impl MappingMethod {
         matches!(self, Self::Recovering(_))
     }
 
+    /// Whether the robot tries blocked doors once more at the end.
+    #[must_use]
+    pub fn retries_blocked(self) -> bool {
+        matches!(self, Self::Recovering(RecoveryConfig { retries_blocked: true, .. }))
+    }
+
     /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing door. A robot that
     /// recovers may also go on from earlier walks, wherever it stands. Returns the state of the algorithm, too.
     ///
@@ -125,7 +131,10 @@ impl fmt::Display for MappingMethod {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let algorithm = self.algorithm();
         match (self.recovers(), self.audits()) {
-            (true, audits) => write!(out, "{algorithm} recovering audits={audits}"),
+            (true, audits) => {
+                let retries = if self.retries_blocked() { " retrying" } else { "" };
+                write!(out, "{algorithm} recovering{retries} audits={audits}")
+            }
             (false, 0) => write!(out, "{algorithm}"),
             (false, audits) => write!(out, "{algorithm} audits={audits}"),
         }
@@ -138,17 +147,22 @@ impl FromStr for MappingMethod {
     fn from_str(name: &str) -> Result<Self, String> {
         let mut words = name.split(' ');
         let algorithm = words.next().unwrap_or_default().parse()?;
-        let (mut recovers, mut audits) = (false, 0);
+        let (mut recovers, mut retries_blocked, mut audits) = (false, false, 0);
         for word in words {
             let count = word.strip_prefix("audits=").and_then(|count| count.parse().ok());
             match (word, count) {
                 ("recovering", _) if algorithm == DirectionalAlgorithm::Folding => recovers = true,
+                ("retrying", _) if recovers => retries_blocked = true,
                 (_, Some(count)) => audits = count,
                 _ => return Err(format!("`{word}` does not follow the name of an algorithm")),
             }
         }
         Ok(if recovers {
-            Self::Recovering(RecoveryConfig { audits, ..RecoveryConfig::default() })
+            Self::Recovering(RecoveryConfig {
+                audits,
+                retries_blocked,
+                ..RecoveryConfig::default()
+            })
         } else {
             Self::By { algorithm, audits }
         })
@@ -274,6 +288,7 @@ mod tests {
             "algorithm1 audits=2",
             "folding audits=1",
             "folding recovering audits=1",
+            "folding recovering retrying audits=2",
         ] {
             assert_eq!(name.parse::<MappingMethod>().unwrap().to_string(), name);
         }
@@ -281,6 +296,7 @@ mod tests {
             ("depth-first", "`depth-first` is not algorithm1 or folding"),
             ("folding slowly", "`slowly` does not follow the name of an algorithm"),
             ("algorithm1 recovering", "`recovering` does not follow the name of an algorithm"),
+            ("folding retrying", "`retrying` does not follow the name of an algorithm"),
             ("folding audits=-1", "`audits=-1` does not follow the name of an algorithm"),
         ] {
             assert_eq!(name.parse::<MappingMethod>(), Err(error.to_owned()));

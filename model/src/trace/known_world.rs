@@ -79,6 +79,9 @@ pub fn poses_amended(
     let mut left = Vec::with_capacity(trace.len());
     let mut alone = Vec::with_capacity(trace.len());
     for (index, event) in trace.events().enumerate() {
+        if index.is_multiple_of(2) && trace.relocations().binary_search(&(index / 2)).is_ok() {
+            states = relocated(graph, &states);
+        }
         let judged = |&state: &State| (state, after(graph, marker, state, event.kind));
         let judged: Vec<_> = states.iter().map(judged).collect();
         let mut fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
@@ -101,6 +104,15 @@ pub fn poses_amended(
         states = fit;
     }
     Poses { left, alone, states, misfit: None }
+}
+
+/// The states of a robot that got lost: it may be anywhere, with its marker where it was.
+fn relocated(graph: &EmbeddedGraph, states: &[State]) -> Vec<State> {
+    let mut placed: Vec<_> = states.iter().map(|state| state.placed).collect();
+    placed.sort_unstable();
+    placed.dedup();
+    let everywhere = |placed| graph.darts().map(move |pose| State { pose, placed });
+    placed.into_iter().flat_map(everywhere).collect()
 }
 
 /// The state after an event, if the event fits.

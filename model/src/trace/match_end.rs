@@ -94,6 +94,16 @@ pub enum StepPurpose {
     Audit,
     /// The audits of the map are over.
     Audited,
+    /// The robot goes on with the folding explorer after a recovery.
+    GoOn,
+    /// The robot recovers, and looks for its marker.
+    FindMarker,
+    /// The robot tries the doors that are blocked once more.
+    TryBlocked,
+    /// The robot turns back to its marker, to keep within its budget.
+    TurnBack,
+    /// The robot got lost, and gives up.
+    Lost,
     /// The percept is a contradiction.
     Contradicted(Contradiction),
     /// The step is not valid: the enumeration of choices is wrong.
@@ -113,6 +123,11 @@ impl fmt::Display for StepPurpose {
             Self::NoOpenDart => write!(out, "no dart is open: the map is complete"),
             Self::Audit => write!(out, "audits the map"),
             Self::Audited => write!(out, "the map is complete and audited"),
+            Self::GoOn => write!(out, "goes on with the folding explorer"),
+            Self::FindMarker => write!(out, "looks for its marker"),
+            Self::TryBlocked => write!(out, "tries the blocked doors once more"),
+            Self::TurnBack => write!(out, "turns back, to keep within its budget"),
+            Self::Lost => write!(out, "the robot got lost, and gives up"),
             Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
             Self::InvalidStep(step) => write!(out, "{step}"),
         }
@@ -153,6 +168,10 @@ impl RunStop {
             |purpose| Self::Departure { event, allowed: AllowedStep { door: None, purpose } };
         match error {
             MappingError::World(TraceWorldError::End) => Self::EndOfTrace,
+            MappingError::World(TraceWorldError::Lost) => {
+                let allowed = AllowedStep { door: None, purpose: StepPurpose::Lost };
+                Self::Departure { event: event + 2, allowed }
+            }
             MappingError::World(TraceWorldError::Door { asked, .. }) => {
                 let allowed = AllowedStep { door: Some(*asked), purpose };
                 Self::Departure { event: event + 1, allowed }

@@ -8,6 +8,7 @@ mod coverage;
 mod folding_match;
 mod known_world;
 mod match_end;
+mod recovery_match;
 mod shorten;
 mod trace_world;
 
@@ -21,18 +22,22 @@ pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
 pub use match_end::{AllowedStep, Departure, MapDart, MatchEnd, StepPurpose};
+pub use recovery_match::{RecordedVisit, match_recovering};
 pub use shorten::shortened;
 pub use trace_world::{TraceWorld, TraceWorldError};
 
 use crate::percept::{Door, Percept};
 
-/// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start.
+/// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start. A robot that
+/// got lost and [recovers](crate::mapping::Relocate) may have come to a vertex by any way.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
     /// Of each event.
     ids: Vec<usize>,
+    /// The percepts at vertices to which the robot came after it got lost, in order.
+    relocations: Vec<usize>,
 }
 
 /// An event of a trace.
@@ -90,7 +95,8 @@ impl Trace {
     pub fn from_events(
         events: impl IntoIterator<Item = TraceEvent>,
     ) -> Result<Self, TraceOrderError> {
-        let mut trace = Self { percepts: Vec::new(), doors: Vec::new(), ids: Vec::new() };
+        let (percepts, doors) = (Vec::new(), Vec::new());
+        let mut trace = Self { percepts, doors, ids: Vec::new(), relocations: Vec::new() };
         for TraceEvent { id, kind } in events {
             let standing = trace.percepts.len() > trace.doors.len();
             match kind {
@@ -106,6 +112,33 @@ impl Trace {
             trace.ids.push(id);
         }
         if trace.ids.is_empty() { Err(TraceOrderError::Empty) } else { Ok(trace) }
+    }
+
+    /// The same trace of a robot that got lost before it came to these vertices. They are given by the ids of the
+    /// events of their percepts; other ids are ignored.
+    #[must_use]
+    pub fn with_relocations(self, ids: impl IntoIterator<Item = usize>) -> Self {
+        let number = |id| self.ids.binary_search(&id).ok().filter(|index| index.is_multiple_of(2));
+        let mut relocations: Vec<_> =
+            ids.into_iter().filter_map(number).map(|index| index / 2).collect();
+        relocations.sort_unstable();
+        relocations.dedup();
+        Self { relocations, ..self }
+    }
+
+    /// The percepts, by their numbers from 0, at vertices to which the robot came after it got lost.
+    #[must_use]
+    pub fn relocations(&self) -> &[usize] {
+        &self.relocations
+    }
+
+    /// The trace before the robot got lost for the first time, with the door that it took then.
+    #[must_use]
+    pub fn before_relocation(&self) -> Self {
+        match self.relocations.iter().find(|&&percept| percept > 0) {
+            Some(percept) => self.up_to(2 * percept - 1),
+            None => self.clone(),
+        }
     }
 
     /// The number of events; never 0.
@@ -141,7 +174,13 @@ impl Trace {
             percepts: self.percepts[..percepts].to_vec(),
             doors: self.doors[..doors].to_vec(),
             ids: self.ids[..percepts + doors].to_vec(),
+            relocations: self.relocations_below(percepts).to_vec(),
         }
+    }
+
+    /// The relocations before a percept.
+    fn relocations_below(&self, percept: usize) -> &[usize] {
+        &self.relocations[..self.relocations.partition_point(|&one| one < percept)]
     }
 
     /// An event by its index; the last one if there are fewer.
@@ -167,7 +206,10 @@ impl Trace {
         let percepts = [&self.percepts[..from], &self.percepts[to..]].concat();
         let doors = [&self.doors[..from], &self.doors[to..]].concat();
         let ids = [&self.ids[..2 * from], &self.ids[2 * to..]].concat();
-        Self { percepts, doors, ids }
+        let (before, left_out) = (self.relocations_below(from), self.relocations_below(to).len());
+        let after = self.relocations[left_out..].iter().map(|percept| percept - (to - from));
+        let relocations = before.iter().copied().chain(after).collect();
+        Self { percepts, doors, ids, relocations }
     }
 }
 
@@ -250,6 +292,30 @@ pub(crate) mod tests {
             for event in 0..length {
                 assert_eq!(trace.up_to(event).len(), event + 1);
                 assert_eq!((trace.event(event).id, trace.index_of(event)), (event, event));
+            }
+        }
+    }
+
+    #[test]
+    fn relocations_stay_with_their_percepts() {
+        let kinds = [0, 1, 2, 3]
+            .map(|degree| TraceEventKind::Percept(Percept { degree, sighting: Sighting::Nothing }));
+        let doors = [TraceEventKind::Door(Door::BACK); 4];
+        let events = kinds.into_iter().zip(doors).flat_map(|(percept, door)| [percept, door]);
+        let events = events.enumerate().map(|(at, kind)| TraceEvent { id: 10 * at, kind });
+        // The ids of a door and of no event are ignored.
+        let trace = Trace::from_events(events).unwrap().with_relocations([60, 40, 40, 30, 7]);
+        assert_eq!(trace.relocations(), [2, 3]);
+        assert_eq!(trace.before_relocation().events().last().map(|event| event.id), Some(30));
+        assert_eq!(trace.up_to(5).relocations(), [2]);
+        assert_eq!(trace.up_to(3).relocations(), [0; 0]);
+        assert_eq!(trace.up_to(3).before_relocation(), trace.up_to(3));
+        // The percept of degree 2 takes the place of an earlier one, with its relocation.
+        for (from, to, left) in [(0, 1, &[1, 2][..]), (1, 2, &[1, 2]), (2, 3, &[2]), (1, 3, &[1])] {
+            let shorter = trace.without(from, to);
+            assert_eq!(shorter.relocations(), left, "{from}..{to}");
+            for &percept in left {
+                assert!(shorter.percepts()[percept].degree >= 2);
             }
         }
     }

@@ -13,6 +13,8 @@ use crate::{
 pub struct TraceWorld<'t> {
     trace: &'t Trace,
     moves: usize,
+    /// Whether the robot is on the way to a vertex to which it came after it got lost.
+    is_lost: bool,
 }
 
 /// Why a recorded world cannot continue.
@@ -29,13 +31,23 @@ pub enum TraceWorldError {
     /// The trace has no further event.
     #[error("the trace ends here")]
     End,
+    /// The robot got lost on the way to the next vertex.
+    #[error("the robot got lost")]
+    Lost,
 }
 
 impl<'t> TraceWorld<'t> {
     /// The world of a trace, with the robot where it is after some moves.
     #[must_use]
     pub fn after(trace: &'t Trace, moves: usize) -> Self {
-        Self { trace, moves }
+        Self { trace, moves, is_lost: false }
+    }
+
+    /// A robot that got lost comes to the next vertex. Returns whether it was lost.
+    pub(super) fn relocate(&mut self) -> bool {
+        let was_lost = std::mem::take(&mut self.is_lost);
+        self.moves += usize::from(was_lost);
+        was_lost
     }
 
     /// The moves made so far.
@@ -56,6 +68,10 @@ impl World for TraceWorld<'_> {
         match self.trace.doors().get(self.moves) {
             None => Err(TraceWorldError::End),
             Some(&recorded) if recorded != asked => Err(TraceWorldError::Door { recorded, asked }),
+            Some(_) if self.trace.relocations.binary_search(&(self.moves + 1)).is_ok() => {
+                self.is_lost = true;
+                Err(TraceWorldError::Lost)
+            }
             Some(_) => {
                 self.moves += 1;
                 Ok(())

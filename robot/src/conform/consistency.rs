@@ -115,9 +115,10 @@ impl RunEvents {
         if self.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part }
     }
 
-    /// The recorded number of moves, if it is wrong.
+    /// The recorded number of moves, if it is wrong. The door by which a robot left before it got lost is no move.
     pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
-        let made = trace.percepts().len() - 1;
+        let lost = trace.relocations().iter().filter(|&&percept| percept > 0).count();
+        let made = trace.percepts().len() - 1 - lost;
         let recorded = self.end.as_ref()?.moves;
         (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
     }

@@ -3,10 +3,11 @@
 
 use thiserror::Error;
 use toposlam_model::{
+    mapping::Measured,
     marker::{Marker, NoMarker},
     measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
-    trace::{Trace, TraceEvent, TraceEventKind, TraceOrderError},
+    trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
 use crate::record::{Arrival, EventId, MapRecord, RunEnd};
@@ -148,7 +149,34 @@ impl RunEvents {
             };
             Some(TraceEvent { id, kind })
         };
-        Trace::from_events(self.events.iter().enumerate().filter_map(event))
+        let trace = Trace::from_events(self.events.iter().enumerate().filter_map(event))?;
+        Ok(trace.with_relocations(self.relocations()))
+    }
+
+    /// The arrivals of a robot that got lost before, by their indices: the only ones whose moves are not counted.
+    fn relocations(&self) -> impl Iterator<Item = usize> + '_ {
+        let number = |event: &CheckedEvent| match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival.number),
+            _ => None,
+        };
+        let is_counted = self.events.iter().any(|event| matches!(number(event), Some(Some(_))));
+        let is_lost = move |event: &CheckedEvent| is_counted && number(event) == Some(None);
+        self.events.iter().enumerate().filter(move |(_, event)| is_lost(event)).map(|(at, _)| at)
+    }
+
+    /// What is recorded of the visits of a trace of these events, besides their percepts.
+    pub(super) fn recorded_visits(&self, trace: &Trace) -> Vec<RecordedVisit> {
+        let visit = |number| {
+            let event = self.events.get(trace.event(2 * number).id).map(|event| &event.kind);
+            let Some(CheckedKind::Arrival { arrival, hallway, .. }) = event else {
+                return RecordedVisit::default();
+            };
+            RecordedVisit {
+                measured: Measured { hallway: *hallway, shape: arrival.form },
+                is_blocked: arrival.is_at_obstacle(),
+            }
+        };
+        (0..trace.percepts().len()).map(visit).collect()
     }
 
     /// The events without the excursions of a robot that left a junction, turned back and entered it again:

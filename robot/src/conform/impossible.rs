@@ -65,10 +65,10 @@ impl Impossibility {
     }
 }
 
-/// A trace, folded as far as some world explains it.
+/// A trace, folded as far as some world explains it, and until the robot got lost.
 #[derive(Clone, Debug)]
 pub struct FoldedTrace {
-    /// The folded trail up to the first impossible event; `None` if there is no event before it, or if the
+    /// The folded trail up to the first impossible event or relocation; `None` if there is no event before it, or if the
     /// trail is too large.
     pub trail: Option<FoldedTrail>,
     /// The index of the first event of the trace that no world of any size explains together with all
@@ -88,7 +88,8 @@ impl FoldedTrace {
         if kinds.iter().all(|kind| kind.name() != marker.name()) {
             return Self { trail: None, impossible: None };
         }
-        let (mut trail, walk) = match fold(trace.percepts(), trace.doors()) {
+        let folded = trace.before_relocation();
+        let (mut trail, walk) = match fold(folded.percepts(), folded.doors()) {
             Ok(trail) => (Some(trail), None),
             Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
                 (None, Some((event, Impossibility::Walk(reason))))
@@ -118,7 +119,7 @@ impl FoldedTrace {
 
 /// The folded trail of the events before an event; `None` if there are none, or if it is too large.
 pub(super) fn folded_before(trace: &Trace, event: usize) -> Option<FoldedTrail> {
-    let before = trace.up_to(event.checked_sub(1)?);
+    let before = trace.up_to(event.checked_sub(1)?).before_relocation();
     fold(before.percepts(), before.doors()).ok()
 }
 

@@ -32,6 +32,9 @@ pub struct Judgement {
     pub trace: Trace,
     /// The first divergence.
     pub divergence: Option<Divergence>,
+    /// The index of the first arrival after the robot got lost. Without a known world, the events from there on are
+    /// compared with no world.
+    pub lost: Option<usize>,
     /// The index of the first visit of a junction that was not recognised. The events from there on are not
     /// checked.
     pub unrecognised: Option<usize>,
@@ -225,6 +228,7 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
+            lost: trace.relocations().first().map(|percept| trace.event(2 * percept).id),
             unrecognised: None,
             trail: None,
             poses: None,
@@ -246,22 +250,8 @@ impl Judgement {
             }
             judgement.poses = Some(poses);
         }
-        let followed = question.driver.follow(trace, events.claim(), question.dart_bound);
-        if let Some(followed) = followed {
-            match &followed.reached {
-                MatchEnd::Departure(departure) => {
-                    found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
-                }
-                MatchEnd::Mapped | MatchEnd::EndOfTrace | MatchEnd::Bound { .. } => {}
-            }
-            if in_turn {
-                for cause in events.false_ending(&followed, question.world.as_ref()) {
-                    found.note(len, cause);
-                }
-            }
-            judgement.coverage.algorithm = followed.coverage.clone();
-            judgement.algorithm = Some(followed);
-        }
+        judgement.follow_algorithm(question, in_turn, &mut found);
+        let trace = &judgement.trace;
         if in_turn && let Some(cause) = events.false_moves(trace) {
             found.note(len, cause);
         }
@@ -277,6 +267,10 @@ impl Judgement {
             trail = marked.trail.or(trail);
         } else {
             judgement.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
+        }
+        if judgement.lost.is_some() {
+            // What follows may determine the world, too.
+            judgement.determined = judgement.determined.filter(|&is_determined| is_determined);
         }
         let graph = question.world.as_ref().map(|known| known.graph);
         let (measured, moved) = MeasuredHallways::compare(
@@ -314,6 +308,24 @@ impl Judgement {
         Ok(judgement)
     }
 
+    /// Compares the doors with the algorithm, and what it knows with the recorded end.
+    fn follow_algorithm(&mut self, question: &ConformConfig, in_turn: bool, found: &mut Found) {
+        let Some(followed) = question.follow(&self.trace, &self.events) else { return };
+        match &followed.reached {
+            MatchEnd::Departure(departure) => {
+                found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
+            }
+            MatchEnd::Mapped | MatchEnd::EndOfTrace | MatchEnd::Bound { .. } => {}
+        }
+        if in_turn {
+            for cause in self.events.false_ending(&followed, question.world.as_ref()) {
+                found.note(self.events.events.len(), cause);
+            }
+        }
+        self.coverage.algorithm = followed.coverage.clone();
+        self.algorithm = Some(followed);
+    }
+
     /// The judgement of the events before one at which it is not known what the robot perceived. That is no
     /// fault of the run.
     fn up_to(
@@ -345,6 +357,7 @@ impl Judgement {
         if self.divergence.is_some() {
             ConformVerdict::Diverged
         } else if self.unrecognised.is_none()
+            && (self.lost.is_none() || self.poses.is_some())
             && self.is_decided()
             && self.events.is_whole(self.algorithm.is_some())
         {

@@ -112,11 +112,13 @@ fn unplaced_visits(events: &RunEvents, trace: &Trace) -> Vec<MeasuredVisit> {
         let Some(CheckedKind::Arrival { arrival, hallway, .. }) = event else {
             return MeasuredVisit::default();
         };
+        // A robot that got lost has not come through one hallway.
+        let is_lost = |number: usize| trace.relocations().binary_search(&number).is_ok();
         MeasuredVisit {
             darts: Vec::new(),
             shape: arrival.form,
-            arrived: *hallway,
-            left_by: trace.doors().get(number).copied(),
+            arrived: hallway.filter(|_| !is_lost(number)),
+            left_by: trace.doors().get(number).copied().filter(|_| !is_lost(number + 1)),
         }
     };
     (0..trace.percepts().len()).map(visit).collect()

@@ -2,6 +2,7 @@
 //! there instead, and the class of the fault. Sections 2 and 4 to 6.
 
 mod bends;
+mod budget_check;
 mod config;
 mod consistency;
 mod divergence;

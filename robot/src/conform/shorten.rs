@@ -147,7 +147,8 @@ fn of_trace(trace: &Trace) -> RunEvents {
         let kind = match event.kind {
             TraceEventKind::Percept(percept) => {
                 let Percept { degree, sighting } = percept;
-                let (number, sighting) = (Some(moves), Some(sighting));
+                let is_lost = trace.relocations().binary_search(&(index / 2)).is_ok();
+                let (number, sighting) = (Some(moves).filter(|_| !is_lost), Some(sighting));
                 let arrival = Arrival { number, degree, sighting, form: None, entry: None };
                 CheckedKind::Arrival { arrival, entry_off: None, hallway: None }
             }

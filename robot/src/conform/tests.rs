@@ -20,6 +20,7 @@ use toposlam_model::{
 
 use super::*;
 use crate::{
+    budget::RunBudget,
     evaluation::{plans, random_plan::random_plan_with, run_sampler::starts_of},
     record::{
         Arrival, Event, EventId, EventKind, Frame, MapRecord, NoSensor, RunEnd, RunEnding,
@@ -34,6 +35,7 @@ use crate::{
 mod folding;
 mod measured;
 mod oracle;
+mod recovery;
 mod report;
 mod tolerance;
 mod verdicts;
@@ -129,6 +131,7 @@ fn without_world() -> ConformConfig<'static> {
         world: None,
         marker: &Directional,
         driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        budget: RunBudget::default(),
         search,
         dart_bound: DARTS,
     }

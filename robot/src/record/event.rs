@@ -104,6 +104,12 @@ impl Arrival {
         Some(Percept { degree: self.degree, sighting: self.sighting? })
     }
 
+    /// Whether the robot stands before an obstacle, where it sees no junction.
+    #[must_use]
+    pub fn is_at_obstacle(&self) -> bool {
+        self.degree == 1 && self.form.is_none() && self.entry.is_some()
+    }
+
     /// Whether another arrival can be at the same junction, entered by a door of this one.
     #[must_use]
     pub fn is_same_from(&self, other: &Self, door: Door) -> bool {

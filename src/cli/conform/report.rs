@@ -17,7 +17,7 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence,
-        MeasuredHallways, Quirks, ReachedLimit, UndecidedCause,
+        MeasuredHallways, Quirks, ReachedLimit, RunDriver, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
     record::{Arrival, RunEnding},
@@ -93,6 +93,13 @@ impl Judged<'_> {
         if let Some(event) = self.judgement.unrecognised {
             remarks.push(format!(
                 "the junction of event {} was not recognised: the events from there on are not checked",
+                event + 1
+            ));
+        }
+        if let (Some(event), None) = (self.judgement.lost, &self.known) {
+            remarks.push(format!(
+                "the robot got lost before event {}: the events from there on are compared with no world; \
+                 add --world",
                 event + 1
             ));
         }
@@ -199,7 +206,11 @@ impl Judged<'_> {
         facts.extend(self.twin.as_ref().map(|twin| ("twin", twin.in_words())));
         if let Some(followed) = &judgement.algorithm {
             let choices = match (followed.choices, followed.algorithm) {
-                (_, DirectionalAlgorithm::Folding) => "those of the folding explorer".to_owned(),
+                (_, DirectionalAlgorithm::Folding) => {
+                    let recovers = matches!(self.driver, RunDriver::Recovering(_));
+                    let recovery = if recovers { " with recovery" } else { "" };
+                    format!("those of the folding explorer{recovery}")
+                }
                 (MatchedChoices::Default, DirectionalAlgorithm::Algorithm1) => {
                     "those of Algorithm 1 with its default choices".to_owned()
                 }

@@ -3,7 +3,7 @@
 use std::{io::Write, time::Instant};
 
 use serde_json::json;
-use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod};
+use toposlam_model::mapping::MappingMethod;
 use toposlam_robot::{
     evaluation::{
         RobotEquipment,

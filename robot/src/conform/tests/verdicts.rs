@@ -73,6 +73,7 @@ impl Options {
             world: known,
             marker: if self.unmarked { &NoMarker } else { &Directional },
             driver: self.driver,
+            budget: RunBudget::default(),
             search: WorldSearch { class: self.class, max_edges: None, steps: self.steps },
             dart_bound: self.dart_bound,
         }

@@ -1,0 +1,146 @@
+//! Matches a trace with a robot that recovers.
+
+use super::{
+    AlgorithmCoverage, AlgorithmMatch, MatchEnd, MatchedChoices, Trace, TraceWorld,
+    TraceWorldError,
+    match_end::{AllowedStep, MapDart, RunStop, StepPurpose},
+};
+use crate::{
+    mapping::{
+        DirectionalAlgorithm, FoldingEvent, FoldingExploration, Journey, MappingError,
+        MappingEvent, MappingRun, Measured, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+        map_with_recovery,
+    },
+    percept::{Door, Percept},
+    world::World,
+};
+
+/// What is recorded of a visit besides its percept.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RecordedVisit {
+    /// What was measured on the way to it.
+    pub measured: Measured,
+    /// Whether the robot stands before an obstacle.
+    pub is_blocked: bool,
+}
+
+/// Matches a trace with a robot that recovers, from its start at the marker. `visits` are those of its percepts. At
+/// most `bound` darts may become known: then the robot forgets all, and what it does is only known if that is
+/// its own bound.
+#[must_use]
+pub fn match_recovering(
+    config: RecoveryConfig,
+    trace: &Trace,
+    visits: &[RecordedVisit],
+    bound: usize,
+) -> AlgorithmMatch {
+    let algorithm = DirectionalAlgorithm::Folding;
+    let mut exploration = FoldingExploration::new(bound);
+    let mut world = RecordedWorld { world: TraceWorld::after(trace, 0), visits };
+    let mut observer = StepObserver::default();
+    let mapped = map_with_recovery(&mut world, &mut exploration, config, &[], &mut observer);
+    let moves = world.world.moves();
+    let is_end = moves == trace.doors().len();
+    let gone_on = |purpose| {
+        let allowed = AllowedStep { door: None, purpose };
+        RunStop::Departure { event: 2 * moves + 1, allowed }
+    };
+    let stop = match mapped {
+        Ok(_) if is_end => None,
+        Ok(_) => Some(gone_on(StepPurpose::Audited)),
+        // After many recoveries the robot gives up.
+        Err(MappingError::Contradiction(_)) if is_end => Some(RunStop::EndOfTrace),
+        Err(MappingError::Contradiction(contradiction)) => {
+            Some(gone_on(StepPurpose::Contradicted(contradiction)))
+        }
+        Err(error) => Some(RunStop::of(&error, moves, observer.purpose)),
+    };
+    let stop = match (stop, observer.too_large) {
+        (Some(RunStop::Departure { .. }), Some(event)) => Some(RunStop::Bound { event, bound }),
+        (stop, _) => stop,
+    };
+    AlgorithmMatch {
+        algorithm,
+        choices: MatchedChoices::Default,
+        reached: stop.map_or(MatchEnd::Mapped, |stop| stop.end(algorithm, trace)),
+        run: MappingRun::Folding(Box::new(exploration)),
+        coverage: AlgorithmCoverage::default(),
+    }
+}
+
+/// A recorded world in which the robot may have got lost.
+struct RecordedWorld<'t> {
+    world: TraceWorld<'t>,
+    visits: &'t [RecordedVisit],
+}
+
+impl RecordedWorld<'_> {
+    fn visit(&self) -> RecordedVisit {
+        self.visits.get(self.world.moves()).copied().unwrap_or_default()
+    }
+}
+
+impl World for RecordedWorld<'_> {
+    type Error = TraceWorldError;
+
+    fn percept(&mut self) -> Result<Percept, TraceWorldError> {
+        self.world.percept()
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), TraceWorldError> {
+        self.world.traverse(door)
+    }
+}
+
+impl Relocate for RecordedWorld<'_> {
+    fn relocate(&mut self, error: TraceWorldError) -> Result<(), TraceWorldError> {
+        if self.world.relocate() { Ok(()) } else { Err(error) }
+    }
+
+    fn measured(&self) -> Measured {
+        self.visit().measured
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.visit().is_blocked
+    }
+}
+
+/// What the robot is doing.
+struct StepObserver {
+    purpose: StepPurpose,
+    /// The index of the event at which more darts than the bound would be known, the first time.
+    too_large: Option<usize>,
+}
+
+impl Default for StepObserver {
+    fn default() -> Self {
+        Self { purpose: StepPurpose::GoOn, too_large: None }
+    }
+}
+
+impl Observer<RecordedWorld<'_>> for StepObserver {
+    fn event(&mut self, world: &mut RecordedWorld, journey: &Journey, event: MappingEvent) {
+        use SafeguardEvent::{
+            AuditBegun, AuditPassed, BlockedRetried, Contradicted, MarkerFound, Relocated, TooLarge,
+        };
+        let named = |dart| MapDart::of(journey.map(), dart);
+        self.purpose = match event {
+            MappingEvent::Folding(FoldingEvent::Testing { edge, hypothesis, .. }) => {
+                StepPurpose::Test { edge: named(edge), hypothesis: named(hypothesis) }
+            }
+            MappingEvent::Folding(_) | MappingEvent::Safeguard(MarkerFound { .. }) => {
+                StepPurpose::GoOn
+            }
+            MappingEvent::Safeguard(AuditBegun) => StepPurpose::Audit,
+            MappingEvent::Safeguard(BlockedRetried { .. }) => StepPurpose::TryBlocked,
+            MappingEvent::Safeguard(Contradicted(_) | Relocated) => StepPurpose::FindMarker,
+            MappingEvent::Safeguard(TooLarge { .. }) => {
+                self.too_large.get_or_insert(2 * world.world.moves());
+                StepPurpose::FindMarker
+            }
+            MappingEvent::Safeguard(AuditPassed { .. }) => StepPurpose::Audited,
+            _ => return,
+        };
+    }
+}
