@@ -5,12 +5,12 @@
 
 use std::{
     collections::VecDeque,
-    f64::consts::{PI, TAU},
+    f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU},
 };
 
 use toposlam_model::driving::{
     odometry::Odometry,
-    scene::{JunctionView, Place, Reason, wrapped},
+    scene::{HallwayStatus, HallwayView, JunctionView, Place, Reason, Unclear, wrapped},
 };
 
 use super::scan::{Reading, Scan};
@@ -26,6 +26,18 @@ pub struct ScanPlaceSensor {
     params: SensingParams,
     /// Where the last scans were taken, with their hits in the frame of odometry.
     last: VecDeque<(Odometry, Vec<[f64; 2]>)>,
+    /// The last hallway that was sensed since the last junction.
+    hallway: Option<SensedHallway>,
+}
+
+/// A hallway that was sensed.
+#[derive(Clone, Copy, Debug)]
+struct SensedHallway {
+    /// Where it was sensed last.
+    odometry: Odometry,
+    view: HallwayView,
+    /// Its width, in metres: the greatest that was sensed. Furniture looks like a wall of a narrower one.
+    width: f64,
 }
 
 /// A scan is remembered if the robot has driven this far since the last one that is, in metres, or has
@@ -41,6 +53,15 @@ const STEP_PART: f64 = 0.1;
 /// A robot is at most this far past the turning point of a dead end, in metres: half of a hallway's width
 /// less its radius.
 const PAST_DEAD_END: f64 = 0.45;
+/// A hallway whose walls are hidden goes on for at most this far, in metres.
+const HIDDEN: f64 = 5.0;
+/// What is beside the robot is at most this much farther than the wall, in metres.
+const WALL_SLACK: f64 = 0.25;
+/// A robot needs this much free space ahead, in metres, and on both sides of its middle.
+const FREE_AHEAD: f64 = 0.8;
+const FREE_ASIDE: f64 = 0.3;
+/// The confidence in a hallway whose walls are hidden.
+const HIDDEN_CONFIDENCE: f64 = 0.5;
 /// Successive readings are neighbours if their bearings differ by less than this, in radians.
 const NEXT: f64 = 0.06;
 
@@ -48,7 +69,7 @@ impl ScanPlaceSensor {
     /// Sensing with other parameters than the defaults.
     #[must_use]
     pub fn with_params(params: &SensingParams) -> Self {
-        Self { params: *params, last: VecDeque::new() }
+        Self { params: *params, ..Self::default() }
     }
 
     /// The place in a scan, and the odometry when it was taken.
@@ -56,14 +77,64 @@ impl ScanPlaceSensor {
         let boundary = self.boundary(scan, odometry);
         self.remember(scan, odometry);
         let (place, trace) = place_within(boundary, 0.0, &self.params);
-        match &place {
+        let place = match &place {
             Place::Junction(junction) if is_behind_its_wall(junction) => {
                 trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
                     Place::Hallway(hallway.view(0.0, &self.params.outline))
                 })
             }
             _ => place,
+        };
+        match place {
+            Place::Hallway(view) => {
+                let width = view.left + view.right;
+                let width = self.hallway.map_or(width, |hallway| hallway.width.max(width));
+                self.hallway = Some(SensedHallway { odometry: *odometry, view, width });
+            }
+            Place::Junction(_) => self.hallway = None,
+            Place::Unknown(_) => {
+                return self.hidden_hallway(scan, odometry).map_or(place, Place::Hallway);
+            }
         }
+        place
+    }
+
+    /// The hallway that was sensed last, if furniture along it hides its walls: both sides are closed beside the robot,
+    /// and the way ahead is free.
+    fn hidden_hallway(&self, scan: &Scan, odometry: &Odometry) -> Option<HallwayView> {
+        let SensedHallway { odometry: then, view, width } =
+            self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < HIDDEN)?;
+        let heading = wrapped(view.heading + then.heading - odometry.heading);
+        // How far the robot has come to the left.
+        let aside = across(seen(&then, odometry.position), view.heading);
+        let (left, right) = (view.left - aside, view.right + aside);
+        let slack = WALL_SLACK + width - view.left - view.right;
+        let mut beside = [0, 0];
+        for (bearing, reading) in scan.readings() {
+            let aside = wrapped(bearing - heading);
+            let is_beside = (aside.abs() - FRAC_PI_2).abs() < FRAC_PI_6;
+            match reading {
+                Reading::Hit(range) => {
+                    let point = scan.point(bearing, range);
+                    let (ahead, across) = (along(point, heading), across(point, heading));
+                    let is_in_way = (0.0..FREE_AHEAD).contains(&ahead) && across.abs() < FREE_ASIDE;
+                    let is_open = is_beside && (across > left + slack || -across > right + slack);
+                    if is_in_way || is_open {
+                        return None;
+                    }
+                    beside[usize::from(aside < 0.0)] += usize::from(is_beside);
+                }
+                // Glass gives no return.
+                Reading::NoReturn | Reading::Invalid => {}
+            }
+        }
+        (beside[0] > 0 && beside[1] > 0).then_some(HallwayView {
+            heading,
+            left,
+            right,
+            status: HallwayStatus::Unclear(Unclear::ClustersAhead),
+            confidence: HIDDEN_CONFIDENCE,
+        })
     }
 
     /// What the scan shows on each bearing, and behind its field of view the last scans.
@@ -156,7 +227,111 @@ fn seen(odometry: &Odometry, [x, y]: [f64; 2]) -> [f64; 2] {
     [off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine]
 }
 
+/// How far a point is along a direction, and to the left of it.
+fn along([x, y]: [f64; 2], direction: f64) -> f64 {
+    x * direction.cos() + y * direction.sin()
+}
+
+fn across([x, y]: [f64; 2], direction: f64) -> f64 {
+    y * direction.cos() - x * direction.sin()
+}
+
 /// The bearing and the range of a point.
 fn polar([x, y]: [f64; 2]) -> (f64, f64) {
     (y.atan2(x), x.hypot(y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laser::scan::{ScanGeometry, ScannerPose};
+
+    /// A wall or another surface: its ends, in metres.
+    type Surface = [[f64; 2]; 2];
+
+    /// A hallway along the x-axis, 1.6 m wide, that ends at 14 m; with a door on the left from 7.2 to 8.8 m, which
+    /// leads to a hallway.
+    const HALLWAY: [Surface; 7] = [
+        [[-6.0, -0.8], [14.0, -0.8]],
+        [[-6.0, 0.8], [7.2, 0.8]],
+        [[8.8, 0.8], [14.0, 0.8]],
+        [[14.0, -0.8], [14.0, 0.8]],
+        [[-6.0, -0.8], [-6.0, 0.8]],
+        [[7.2, 0.8], [7.2, 9.0]],
+        [[8.8, 0.8], [8.8, 9.0]],
+    ];
+
+    /// A cabinet at the wall on the right, between two distances.
+    fn cabinet(from: f64, to: f64) -> [Surface; 3] {
+        [[[from, -0.8], [from, -0.45]], [[from, -0.45], [to, -0.45]], [[to, -0.45], [to, -0.8]]]
+    }
+
+    /// The range of a ray to a surface that is parallel to an axis.
+    fn range([x, y]: [f64; 2], heading: f64, [from, to]: Surface) -> Option<f64> {
+        let (along_x, along_y) = (heading.cos(), heading.sin());
+        let is_upright = from[0] == to[0];
+        let range = if is_upright { (from[0] - x) / along_x } else { (from[1] - y) / along_y };
+        let hit = if is_upright { y + range * along_y } else { x + range * along_x };
+        let axis = usize::from(is_upright);
+        let within = from[axis].min(to[axis])..=from[axis].max(to[axis]);
+        (range > 0.0 && within.contains(&hit)).then_some(range)
+    }
+
+    /// The places that a robot senses on its way along the x-axis, each 0.25 m.
+    fn sensed(surfaces: &[Surface], until: f64) -> Vec<(f64, Place)> {
+        let mut sensor = ScanPlaceSensor::default();
+        let geometry = ScanGeometry {
+            angle_min: -PI,
+            angle_increment: PI / 180.0,
+            range_min: 0.1,
+            range_max: 30.0,
+        };
+        let steps = (until / 0.25).round() as u32;
+        let place = |step| {
+            let odometry = Odometry { position: [0.25 * f64::from(step), 0.0], heading: 0.0 };
+            let ray = |degree: u32| {
+                let bearing = -PI + f64::from(degree).to_radians();
+                let ranges =
+                    surfaces.iter().filter_map(|&one| range(odometry.position, bearing, one));
+                ranges.fold(f64::INFINITY, f64::min) as f32
+            };
+            let scan = Scan::new(geometry, (0..360).map(ray).collect(), ScannerPose::default());
+            (odometry.position[0], sensor.sense(&scan.unwrap(), &odometry))
+        };
+        (0..=steps).map(place).collect()
+    }
+
+    fn is_hidden(place: &Place) -> bool {
+        matches!(place, Place::Hallway(hallway) if hallway.confidence == HIDDEN_CONFIDENCE)
+    }
+
+    #[test]
+    fn a_hallway_goes_on_beside_furniture() {
+        let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0)].concat(), 5.0);
+        for (x, place) in &places {
+            let Place::Hallway(hallway) = place else { panic!("{place:?} after {x} m") };
+            assert!(hallway.heading.abs() < 0.1, "{hallway:?}");
+            assert!((hallway.left - 0.8).abs() < 0.1 || !is_hidden(place), "{hallway:?}");
+        }
+        assert!(places.iter().any(|(_, place)| is_hidden(place)));
+    }
+
+    #[test]
+    fn a_door_beside_the_robot_ends_a_hidden_hallway() {
+        let places = sensed(&[&HALLWAY[..], &cabinet(5.0, 9.5)].concat(), 9.0);
+        let hidden: Vec<_> = places.iter().filter(|(_, place)| is_hidden(place)).collect();
+        assert!(!hidden.is_empty());
+        for (x, _) in hidden {
+            assert!(!(7.0..9.0).contains(x), "after {x} m");
+        }
+    }
+
+    #[test]
+    fn what_is_in_the_way_ends_a_hidden_hallway() {
+        let crate_ahead = [[[3.4, -0.45], [3.4, 0.1]]];
+        let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0), &crate_ahead].concat(), 3.3);
+        for (x, place) in places {
+            assert!(!is_hidden(&place) || x < 3.4 - FREE_AHEAD, "after {x} m");
+        }
+    }
 }

@@ -11,7 +11,12 @@ const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
 
 fn recovering() -> MappingMethod {
     let noise = Some(log_noise());
-    MappingMethod::Recovering(RecoveryConfig { noise, ..RecoveryConfig::default() })
+    let retries_blocked = true;
+    MappingMethod::Recovering(RecoveryConfig {
+        noise,
+        retries_blocked,
+        ..RecoveryConfig::default()
+    })
 }
 
 fn building(name: &str) -> (Arc<FloorPlan>, Dart) {
@@ -66,9 +71,16 @@ fn departure(events: &RunEvents, question: &ConformConfig) -> Option<Departure> 
 fn each_door_of_a_robot_that_recovers_is_compared() {
     let place = building("shape-8");
     let settings = RunSettings::new(recovering(), DARTS);
-    for fault in ["carried@40", "carried@80", "blocked@20", "lights-out@40:120", "dropped@30"] {
+    for fault in [
+        "carried@40",
+        "carried@80",
+        "blocked@20",
+        "blocked@20:250",
+        "lights-out@40:120",
+        "dropped@30",
+    ] {
         let (events, mapped) = log_with(&settings, &place, Some(fault), 2);
-        let is_without = fault.starts_with("dropped") || fault.starts_with("blocked");
+        let is_without = ["dropped@30", "blocked@20"].contains(&fault);
         assert_eq!(mapped.unwrap().recoveries > 0, !is_without, "{fault}");
         let question = ConformConfig {
             driver: RunDriver::from(recovering()),
@@ -154,4 +166,21 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
             assert_eq!(departed, Some(at), "{most}");
         }
     }
+}
+
+#[test]
+fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() {
+    let place = building("shape-8");
+    let settings = RunSettings::new(recovering(), DARTS);
+    let (mut events, _) = log_with(&settings, &place, None, 1);
+    let driver = RunDriver::from(recovering());
+    let question = ConformConfig { driver, ..question(&place.0, Some(place.1)) };
+    assert_eq!(judged(&events, &question).algorithm.unwrap().reached, MatchEnd::Mapped);
+    // In the last hallway, which it knows, it measures 8 m more.
+    let last = events.events.last_mut().unwrap();
+    let CheckedKind::Arrival { hallway: Some(hallway), .. } = &mut last.kind else { panic!() };
+    hallway.length += 8.0;
+    let judgement = judged(&events, &question);
+    assert_eq!(judgement.algorithm.unwrap().reached, MatchEnd::EndOfTrace);
+    assert_eq!(judgement.divergence.unwrap().cause.name(), "moved");
 }
