@@ -16,7 +16,11 @@ use std::{
     time::Instant,
 };
 
-use toposlam::{journal::Journal, page, picture};
+use toposlam::{
+    journal::Journal,
+    page, picture,
+    story::{Story, StoryDetail},
+};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
     mapping::EarlierWalk,
@@ -40,7 +44,6 @@ use super::{
     budget_options::BudgetOptions,
     earlier_logs::earlier_walks_of,
     exit_codes::help_end,
-    explore::story::{Story, StoryDetail},
     input,
     method_options::{BlockedOptions, MethodOptions},
     noise, output,

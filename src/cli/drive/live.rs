@@ -7,6 +7,7 @@ use std::{
     time::Duration,
 };
 
+use toposlam::story::{Story, StoryDetail};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -36,7 +37,6 @@ use toposlam_vision::{
 use super::{CliError, DriveArguments, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
     earlier_logs::earlier_walks_of,
-    explore::story::{Story, StoryDetail},
     input,
     method_options::words_of,
     output,
