@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 use toposlam::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_model::{
-    driving::scene::{Place, Scene},
+    driving::{
+        odometry::Odometry,
+        scene::{Place, Scene},
+    },
     percept::{Door, Percept as ModelPercept},
 };
 use toposlam_robot::{
@@ -240,20 +243,24 @@ impl Tables {
                 let row = event("end", how);
                 self.events.push(row);
             }
-            Content::Event(EventKind::Odometry(odometry)) => {
-                let [x, y] = odometry.position;
-                self.poses.push([time, x, y, odometry.heading]);
-            }
+            Content::Event(EventKind::Odometry(odometry)) => self.add_pose(time, odometry),
             Content::Event(EventKind::Frame(frame)) => self.add_frame(time, message, &frame),
             Content::Run(_) | Content::Hypothesis(_) | Content::Fiducial(_) | Content::Event(_) => {
             }
         }
     }
 
+    /// Adds a pose, unless the last message recorded it already.
+    fn add_pose(&mut self, time: f64, Odometry { position: [x, y], heading }: Odometry) {
+        let pose = [time, x, y, heading];
+        if self.poses.last() != Some(&pose) {
+            self.poses.push(pose);
+        }
+    }
+
     fn add_frame(&mut self, time: f64, message: u64, frame: &Frame) {
         if frame.scan.is_some() {
-            let [x, y] = frame.odometry.position;
-            self.poses.push([time, x, y, frame.odometry.heading]);
+            self.add_pose(time, frame.odometry);
         }
         let Some(Scene { place, marker }) = &frame.scene else { return };
         let marker = marker.map(|marker| marker.position);

@@ -4,7 +4,7 @@
 >>> w = ts.World.load("worlds/figure-1a.toml")
 >>> run = ts.explore(w, algorithm="folding")
 >>> run.moves, run.certificate
-(14, 14)
+(14, 12)
 """
 
 from . import errors

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
-from typing import Any, Union
+from typing import Union
 
 from . import _core
 from .errors import (
@@ -305,9 +305,7 @@ def _size(
     return SizeReport(edges, starts, mapped, total, most, certificates, below)
 
 
-def _failure(
-    cls: str, start: _core.Start, robot: _core.Robot, error: ExplorerError
-) -> Failure:
+def _failure(cls: str, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
     name = f"{cls}-{start.edges}-{start.number}"
     core = start.world(name)
     error.start = f"{name} v0:{core.start_text(0).split(':', 1)[1]}"
@@ -330,17 +328,17 @@ def check(
     """Checks an explorer on every start of every world with `edges` edges: a number, or several.
 
     A map is right if it is isomorphic to the world, start to start, and the robot is where the explorer
-    says. After `max_moves` moves, or `seconds` seconds for a start, the explorer has failed there. With several
-    `processes` the report is the same.
+    says. After `max_moves` moves, or `seconds` seconds for a start, the explorer has failed there. With
+    several `processes` the report is the same.
 
     >>> import toposlam as ts
     >>> def there_and_back(robot):
     ...     return {0: [1], 1: [0]}, (0, 0)
     >>> report = ts.check(there_and_back, edges=[1, 2], cls="simple")
-    >>> report
-    <CheckReport violated: there_and_back, simple, edges 1, 2: 1 of 4 starts mapped right, 0.00 moves on average, at most 0, 0.00 times the certificate>
+    >>> report.verdict, report.mapped, report.starts, report.below_certificate
+    ('violated', 1, 3, 1)
     >>> print(report.failures[0])
-    start simple-2-0 v0:v1, after 0 moves: the map is not the world: 1 and 2 edges
+    start simple-2-0 v0:v1, after 0 moves: the map is not the world: 1 edges against 2
     """
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
     if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
@@ -353,9 +351,7 @@ def check(
     return report
 
 
-def _in_processes(
-    question: _Question, processes: int, advance: Advance | None
-) -> CheckReport:
+def _in_processes(question: _Question, processes: int, advance: Advance | None) -> CheckReport:
     try:
         pickle.dumps(question.explorer)
     except Exception as cause:
@@ -420,7 +416,7 @@ def check_shard(
 
 def merge(reports: Sequence[CheckReport]) -> CheckReport:
     """The report of several shards together. The order does not matter."""
-    listed: list[Any] = list(reports)
+    listed = list(reports)
     if not listed or not all(isinstance(report, CheckReport) for report in listed):
         raise ShardError("merge needs reports of shards")
     return listed[0].merge(*listed[1:])

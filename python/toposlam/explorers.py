@@ -20,8 +20,8 @@ from .errors import (
     DoorTypeError,
     ExplorerError,
     NoAnswerError,
-    NotAnExplorerError,
     NoSuchDoorError,
+    NotAnExplorerError,
     OutOfTimeError,
     RaisedError,
     ToposlamError,
@@ -136,9 +136,7 @@ def check_explorer(explorer: object) -> None:
         raise NotAnExplorerError(f"an explorer is a function of a robot, not a value of type {kind}")
 
 
-def judged(
-    explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock
-) -> ExplorerError | None:
+def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock) -> ExplorerError | None:
     """Runs an explorer, and returns what is wrong, or None."""
     try:
         answer = clock.run(explorer, robot)

@@ -193,8 +193,9 @@ def conform(
     """Checks a log against the specification, in a known world or with the smallest that explains it.
 
     `driver` is what chose the doors: `"algorithm"` as the log records it, or else `"algorithm1"` or
-    `"folding"`, or `"anyone"`. `marker` is the robot's marker, by default that of the log; `assume_marker` adds one
-    at the first junction of a laser log. `cls`, `max_edges` and `max_steps` bound the search for a world.
+    `"folding"`, or `"anyone"`. `marker` is the robot's marker, by default that of the log; `assume_marker`
+    adds one at the first junction of a laser log.
+    `cls`, `max_edges` and `max_steps` bound the search for a world.
     """
     reader = _open(path)
     for name, value in {"max_steps": max_steps, "max_darts": max_darts}.items():

@@ -149,8 +149,7 @@ def _of_neighbours(lists: Mapping[Hashable, list[Hashable]]) -> Doors:
         other = number.get((neighbour, vertex))
         if other is None:
             raise MissingEdgeError(
-                f"vertex {vertex!r} lists the neighbour {neighbour!r}, "
-                f"which does not list {vertex!r} back"
+                f"vertex {vertex!r} lists the neighbour {neighbour!r}, which does not list {vertex!r} back"
             )
         opposite.append(other)
     return Doors(list(lists), [len(listed) for listed in lists.values()], opposite)
@@ -226,8 +225,8 @@ def images_of(name: str, permutation: object, count: int | None = None) -> list[
 
 
 def _of_cycles(name: str, cycles: Iterable[Sequence[Any]], count: int | None) -> list[int]:
-    cycles = [[int(x) for x in cycle] for cycle in cycles]
-    moved = [x for cycle in cycles for x in cycle]
+    listed = [[int(x) for x in cycle] for cycle in cycles]
+    moved = [x for cycle in listed for x in cycle]
     if len(set(moved)) < len(moved):
         raise PermutationError(f"{name}: a number is in two cycles")
     base = 0 if 0 in moved else 1
@@ -235,7 +234,7 @@ def _of_cycles(name: str, cycles: Iterable[Sequence[Any]], count: int | None) ->
     if min(moved, default=base) < base or (count is not None and size > count):
         raise PermutationError(f"{name}: the numbers of the darts are not from {base}")
     images = list(range(size))
-    for cycle in cycles:
+    for cycle in listed:
         for here, there in zip(cycle, cycle[1:] + cycle[:1]):
             images[here - base] = there - base
     return images

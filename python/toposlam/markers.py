@@ -46,9 +46,7 @@ def sightings(function: MarkerFunction) -> Callable[[list[int], list[int]], list
     return table
 
 
-def _number(
-    function: MarkerFunction, pose: Dart, world: World, numbers: dict[Hashable, int]
-) -> int:
+def _number(function: MarkerFunction, pose: Dart, world: World, numbers: dict[Hashable, int]) -> int:
     place = f"pose {pose.vertex}:{pose.index} in {world!r}"
     try:
         sighting = function(pose, world)

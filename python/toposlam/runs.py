@@ -84,9 +84,7 @@ def explore(
     )
 
 
-def _explored(
-    world: World, explorer: Explorer, max_moves: int, seconds: float | None
-) -> Run:
+def _explored(world: World, explorer: Explorer, max_moves: int, seconds: float | None) -> Run:
     check_explorer(explorer)
     start = _core.Start.of(world._core, world.facing())
     robot = start.robot("directional", max_moves)

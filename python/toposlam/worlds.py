@@ -10,6 +10,8 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, Union
 
 from . import _core
+from ._core import Robot
+from ._core import World as CoreWorld
 from .errors import (
     FrozenError,
     NoEmbeddingError,
@@ -28,7 +30,7 @@ class Dart(NamedTuple):
     """One end of an edge: a vertex, and the index of the end in the vertex's clockwise order."""
 
     vertex: str
-    index: int
+    index: int  # type: ignore[assignment]
 
 
 Place = Union[str, "tuple[object, int]"]
@@ -86,7 +88,7 @@ class World:
 
     __slots__ = ("_core", "_degrees", "_first", "_opposite", "_places")
 
-    _core: _core.World
+    _core: CoreWorld
     _degrees: list[int]
     _first: dict[str, int]
     _opposite: list[int]
@@ -99,14 +101,12 @@ class World:
             core = value._core.with_start(value._core.start, name, about)
         else:
             doors = doors_of(value)
-            core = _core.World.from_doors(
-                doors.degrees, doors.opposite, _names(doors), None, name, about, 0
-            )
+            core = _core.World.from_doors(doors.degrees, doors.opposite, _names(doors), None, name, about, 0)
         self._set(core)
         if start is not None:
             self._set(core.with_start(self.number(start), name, about))
 
-    def _set(self, core: _core.World) -> None:
+    def _set(self, core: CoreWorld) -> None:
         degrees, opposite = core.doors
         first: dict[str, int] = {}
         places: list[Dart] = []
@@ -118,7 +118,7 @@ class World:
             object.__setattr__(self, slot, value)
 
     @classmethod
-    def _of(cls, core: _core.World) -> World:
+    def _of(cls, core: CoreWorld) -> World:
         world = cls.__new__(cls)
         world._set(core)
         return world
@@ -182,7 +182,7 @@ class World:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, World):
             return NotImplemented
-        return self.__reduce__()[1] == other.__reduce__()[1]
+        return bool(self.__reduce__()[1] == other.__reduce__()[1])
 
     def __hash__(self) -> int:
         return hash((tuple(self._opposite), self._core.start))
@@ -241,8 +241,7 @@ class World:
     def neighbours(self) -> Mapping[str, tuple[str, ...]]:
         """The neighbours of each vertex, in clockwise order."""
         listed = {
-            vertex: tuple(self.opposite(dart).vertex for dart in self.darts(vertex))
-            for vertex in self._first
+            vertex: tuple(self.opposite(dart).vertex for dart in self.darts(vertex)) for vertex in self._first
         }
         return MappingProxyType(listed)
 
@@ -250,10 +249,7 @@ class World:
     def far_ends(self) -> Mapping[str, tuple[Dart, ...]]:
         """The far end of each door of each vertex, in clockwise order: a dict from which `World` makes this
         graph again."""
-        listed = {
-            vertex: tuple(self.opposite(dart) for dart in self.darts(vertex))
-            for vertex in self._first
-        }
+        listed = {vertex: tuple(self.opposite(dart) for dart in self.darts(vertex)) for vertex in self._first}
         return MappingProxyType(listed)
 
     def degree(self, vertex: str) -> int:
@@ -349,11 +345,11 @@ class World:
 
         >>> import toposlam as ts
         >>> len(ts.World.load("worlds/figure-1a.toml").certificate())
-        14
+        12
         """
         return tuple(_core.certificate(self._core, self.facing()))
 
-    def robot(self, marker: str = "directional", max_moves: int = 1_000_000) -> _core.Robot:
+    def robot(self, marker: str = "directional", max_moves: int = 1_000_000) -> Robot:
         """A robot at the start.
 
         >>> import toposlam as ts
@@ -433,15 +429,13 @@ def _names(doors: Doors) -> list[str]:
     return names
 
 
-def _counts_from_one(permutation: object) -> int:
+def _counts_from_one(permutation: Any) -> int:
     """1 if the darts of a permutation are counted from 1, otherwise 0."""
     if isinstance(permutation, str):
         return int("0" not in re.findall(r"\d+", permutation))
     cycles = getattr(permutation, "cycle_tuples", None)
     values = cycles() if callable(cycles) else permutation
     flat = [
-        int(number)
-        for entry in values  # type: ignore[attr-defined]
-        for number in (entry if isinstance(entry, (tuple, list)) else [entry])
+        int(number) for entry in values for number in (entry if isinstance(entry, (tuple, list)) else [entry])
     ]
     return int(0 not in flat)
