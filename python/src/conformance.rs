@@ -14,10 +14,10 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractedRun, Judgement, KnownWorld,
-        Quirks, RunDriver, assume_marker, extract, judge, marker_at_start,
+        CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement,
+        KnownWorld, Quirks, RunDriver, assume_marker, extract, judge, marker_at_start,
     },
-    log::world_hash,
+    log::{topic_map::TopicMap, world_hash},
 };
 use toposlam_vision::{
     camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
@@ -115,8 +115,10 @@ pub(crate) fn conform<'py>(
 
 fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<Checked, String> {
     let text = |cause: &dyn std::fmt::Display| cause.to_string();
-    let evidence = Evidence::of(&log.mapping)
-        .ok_or("it has neither events nor images or scans with odometry")?;
+    let evidence = Evidence::of(&log.mapping).ok_or_else(|| {
+        let ambiguous = TopicMap::from_log(&log.log).err();
+        ambiguous.map_or_else(|| ExtractError::NothingMapped.to_string(), |cause| cause.to_string())
+    })?;
     let laser = LaserParams::default();
     let laser = LaserParams {
         corner: toposlam_vision::laser::params::CornerParams {
@@ -205,7 +207,7 @@ fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict
         Evidence::Laser => "laser",
     };
     fields.set_item("evidence", evidence)?;
-    fields.set_item("events", events(py, judgement)?)?;
+    fields.set_item("events", events(judgement))?;
     if let Some(divergence) = &judgement.divergence {
         let found = PyDict::new(py);
         found.set_item("event", divergence.event)?;
@@ -245,7 +247,7 @@ fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict
 /// The events: seconds, kind, percept, door, and the pose in the known world if only one fits.
 type EventFields = (f64, &'static str, Option<Percept>, Option<u32>, Option<u32>);
 
-fn events(_py: Python<'_>, judgement: &Judgement) -> PyResult<Vec<EventFields>> {
+fn events(judgement: &Judgement) -> Vec<EventFields> {
     let events = &judgement.events.events;
     let begun = events.first().map_or(0, |event| event.source.time);
     let alone = |index: usize| {
@@ -268,5 +270,5 @@ fn events(_py: Python<'_>, judgement: &Judgement) -> PyResult<Vec<EventFields>> 
         };
         (time, kind, percept, door, alone(index))
     };
-    Ok(events.iter().enumerate().map(fields).collect())
+    events.iter().enumerate().map(fields).collect()
 }

@@ -9,12 +9,14 @@ use toposlam_model::{
         odometry::Odometry,
         scene::{Place, Scene},
     },
+    enumerate::Watch,
     percept::{Door, Percept as ModelPercept},
 };
 use toposlam_robot::{
     log::{
         Format,
         entries::{Content, Entry},
+        error::LogError,
         messages::Run,
         reader::Log,
         topic_map::{Role, TopicMap},
@@ -25,7 +27,7 @@ use toposlam_robot::{
 use crate::{
     error::{error, interrupted},
     percept::Percept,
-    watched::watched,
+    watched::{Watcher, watched},
 };
 
 /// A log that is open for reading.
@@ -43,7 +45,6 @@ struct Tables {
     events: Vec<EventRow>,
     scenes: Vec<SceneRow>,
     poses: Vec<[f64; 4]>,
-    unreadable: Option<String>,
 }
 
 struct EventRow {
@@ -78,7 +79,7 @@ impl LogReader {
             let log = Log::open(&path)?;
             let mapping = TopicMap::unambiguous(&log);
             let run = head(&log, &mapping)?;
-            Ok::<_, toposlam_robot::log::error::LogError>((log, mapping, run))
+            Ok::<_, LogError>((log, mapping, run))
         })?;
         let (log, mapping, run) = opened.map_err(|cause| failed(&cause))?;
         Ok(Self { path, log, mapping, run })
@@ -166,10 +167,7 @@ impl LogReader {
 }
 
 /// The description of the run at the beginning of a log.
-fn head(
-    log: &Log,
-    mapping: &TopicMap,
-) -> Result<Option<Run>, toposlam_robot::log::error::LogError> {
+fn head(log: &Log, mapping: &TopicMap) -> Result<Option<Run>, LogError> {
     let Ok(bound) = mapping.only(&[Role::Run]).bind(log) else { return Ok(None) };
     for entry in log.entries(&bound) {
         if let Content::Run(run) = entry?.content {
@@ -181,25 +179,15 @@ fn head(
 
 impl LogReader {
     /// Reads the tables; `None` if the reading was stopped.
-    fn read(
-        &self,
-        watcher: &crate::watched::Watcher,
-    ) -> Result<Option<Tables>, toposlam_robot::log::error::LogError> {
-        use toposlam_model::enumerate::Watch;
+    fn read(&self, watcher: &Watcher) -> Result<Option<Tables>, String> {
         let mut tables = Tables::default();
-        let bound = match self.mapping.bind(&self.log) {
-            Ok(bound) => bound,
-            Err(cause) => {
-                tables.unreadable = Some(cause.to_string());
-                return Ok(Some(tables));
-            }
-        };
+        let bound = self.mapping.bind(&self.log).map_err(|cause| cause.to_string())?;
         let begun = self.log.start().unwrap_or_default();
         for entry in self.log.entries(&bound) {
             if watcher.stop() {
                 return Ok(None);
             }
-            tables.add(entry?, begun);
+            tables.add(entry.map_err(|cause| cause.to_string())?, begun);
             watcher.count(1);
         }
         Ok(Some(tables))
