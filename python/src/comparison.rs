@@ -2,7 +2,7 @@
 
 use pyo3::{IntoPyObjectExt, prelude::*};
 use toposlam_model::{
-    ambiguity::{Bisimulation, Comparison, Walk},
+    ambiguity::{Bisimulation, Comparison, Walk, state_count},
     embedded_graph::Dart,
     enumerate::Interrupted,
     isomorphism::{isomorphism, mirror_isomorphism},
@@ -41,6 +41,9 @@ pub(crate) struct Compared {
 /// The most pairs of a relation.
 const MOST_PAIRS: usize = 1 << 22;
 
+/// The most states of a world: they are numbered, and take memory accordingly.
+const MOST_STATES: usize = 1 << 26;
+
 /// What the robots can find out.
 struct Answer {
     start_like: Option<Dart>,
@@ -70,6 +73,10 @@ pub(crate) fn compare(
         own.as_ref().map_or(&toposlam_model::marker::NoMarker as &dyn Marker, |own| own)
     };
     let graphs = [&one.0.graph, &other.0.graph];
+    if graphs.iter().any(|graph| state_count(graph, kind) > MOST_STATES) {
+        let text = format!("a world has more than {MOST_STATES} states of robot and marker");
+        return Err(error(py, "SizeError", text));
+    }
     let answer = watched(py, None, |watcher| {
         let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
         let comparison = Comparison::new(kind, sides[0], sides[1]);

@@ -255,6 +255,11 @@ pub(crate) fn named_marker(py: Python<'_>, name: &str) -> PyResult<&'static dyn 
 
 /// The graph of doors: degrees, and for each door, vertex by vertex, the other end of its edge.
 pub(crate) fn graph_of(degrees: &[u32], opposite: &[u32]) -> Result<EmbeddedGraph, GraphError> {
+    let doors = degrees.iter().map(|&degree| u64::from(degree)).sum::<u64>();
+    if doors != opposite.len() as u64 {
+        let clockwise = usize::try_from(doors).unwrap_or(usize::MAX);
+        return Err(GraphError::LengthsDiffer { opposite: opposite.len(), clockwise });
+    }
     let mut clockwise = Vec::with_capacity(opposite.len());
     for &degree in degrees {
         let first = clockwise.len() as u32;
