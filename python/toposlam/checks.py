@@ -382,8 +382,8 @@ def shards(count: int) -> list[str]:
     >>> ts.shards(3)
     ['1/3', '2/3', '3/3']
     """
-    if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-        raise ShardError(f"a number of shards is at least 1, not {count!r}")
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
+        raise ShardError(f"a number of shards is from 1 to 1,000,000, not {count!r}")
     return [f"{index}/{count}" for index in range(1, count + 1)]
 
 

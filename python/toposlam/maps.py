@@ -225,14 +225,19 @@ def images_of(name: str, permutation: object, count: int | None = None) -> list[
 
 
 def _of_cycles(name: str, cycles: Iterable[Sequence[Any]], count: int | None) -> list[int]:
-    listed = [[int(x) for x in cycle] for cycle in cycles]
+    try:
+        listed = [[int(x) for x in cycle] for cycle in cycles]
+    except (TypeError, ValueError, OverflowError):
+        raise PermutationError(f"{name}: the entries of a cycle are numbers") from None
     moved = [x for cycle in listed for x in cycle]
     if len(set(moved)) < len(moved):
         raise PermutationError(f"{name}: a number is in two cycles")
     base = 0 if 0 in moved else 1
     size = max([count or 0, *(x - base + 1 for x in moved)])
-    if min(moved, default=base) < base or (count is not None and size > count):
-        raise PermutationError(f"{name}: the numbers of the darts are not from {base}")
+    # Without a count these are the edges, and each dart is in one.
+    if min(moved, default=base) < base or size > (len(moved) if count is None else count):
+        last = "" if count is None else f" to {count - 1 + base}"
+        raise PermutationError(f"{name}: the darts are not numbered from {base}{last}")
     images = list(range(size))
     for cycle in listed:
         for here, there in zip(cycle, cycle[1:] + cycle[:1]):
