@@ -109,8 +109,10 @@ def test_a_failure_is_drawn_and_can_be_repeated():
 
 def test_the_number_of_failures_that_are_kept():
     report = ts.check(wrong_sometimes, edges=[3, 4], max_failures=3)
-    assert len(report.failures) == 3
-    assert report.failed > 3
+    together = ts.check(wrong_sometimes, edges=[3, 4], max_failures=3, processes=2)
+    assert len(report.failures) == len(together.failures) == 3
+    assert [str(f) for f in report.failures] == [str(f) for f in together.failures]
+    assert report.failed == together.failed > 3
 
 
 def test_a_guess_is_below_the_certificate():
@@ -299,3 +301,11 @@ def test_the_moves_of_algorithm_1_are_those_of_the_robot():
         return run.map, run.pose
 
     assert ts.explore(world, algorithm=replay).moves == run.moves
+
+
+def test_a_map_that_is_a_world_has_its_own_start():
+    world = ts.World.load("worlds/figure-1a.toml").with_start(("a", 1))
+    assert ts.explore(world, algorithm=lambda robot: (world, world.start)).moves == 0
+    elsewhere = world.with_start(("x", 0))
+    with pytest.raises(errors.WrongMapError, match="its start is at another place"):
+        ts.explore(world, algorithm=lambda robot: (elsewhere, elsewhere.start))

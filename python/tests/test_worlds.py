@@ -100,6 +100,13 @@ def test_a_walk_in_a_world():
         assert percept.degree == world.degree(pose.vertex)
     assert world.walk(world.start, [1, 1, 2, 0]) == pose
     assert world.opposite(world.opposite(pose)) == pose
+    for dart in world.darts():
+        turns = [dart]
+        while world.clockwise(turns[-1]) != dart:
+            turns.append(world.clockwise(turns[-1]))
+        start = dart.index
+        around = world.darts(dart.vertex)
+        assert turns == around[start:] + around[:start]
     assert robot.actions == [1, 1, 2, 0]
 
 
