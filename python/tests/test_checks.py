@@ -309,3 +309,19 @@ def test_a_map_that_is_a_world_has_its_own_start():
     elsewhere = world.with_start(("x", 0))
     with pytest.raises(errors.WrongMapError, match="its start is at another place"):
         ts.explore(world, algorithm=lambda robot: (elsewhere, elsewhere.start))
+
+
+@pytest.mark.parametrize("algorithm, mean", [("algorithm1", 7.296), ("folding", 7.093)])
+def test_the_mean_moves_of_the_algorithms_on_all_starts(algorithm, mean):
+    """Simple worlds with 5 edges; the means are those that a prototype of both had."""
+    moves = []
+
+    def visit(start):
+        world = ts.World._of(start.world("start"))
+        moves.append(ts.explore(world, algorithm=algorithm).moves)
+
+    from toposlam import _core
+
+    _core.visit_starts("simple", 5, 0, 1, visit)
+    assert len(moves) == _core.count_starts("simple", 5) == 108
+    assert round(sum(moves) / len(moves), 3) == mean
