@@ -99,7 +99,7 @@ def test_a_simulated_robot(tmp_path, required):
     subprocess.run(command, check=True, capture_output=True)
     found = ts.read_log(log)
     assert found.format == "mcap" and found.head["algorithm"] == "algorithm1"
-    assert found.scenes.rows > 100 and found.poses.rows > 100
+    assert found.scenes.rows > 50 and found.poses.rows > 50
     assert {"hallway", "junction"} <= set(found.scenes["place"])
     report = ts.conform(log, ts.World.load("worlds/shape-6.toml"))
     assert (report.verdict, len(report.events)) == ("conforms", 15)
