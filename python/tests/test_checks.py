@@ -325,3 +325,14 @@ def test_the_mean_moves_of_the_algorithms_on_all_starts(algorithm, mean):
     _core.visit_starts("simple", 5, 0, 1, visit)
     assert len(moves) == _core.count_starts("simple", 5) == 108
     assert round(sum(moves) / len(moves), 3) == mean
+
+
+def test_a_map_that_is_a_planar_embedding():
+    pytest.importorskip("networkx")
+    world = ts.World.load("worlds/shape-6.toml")
+    first = world.start.vertex
+    order = [first, *(vertex for vertex in world.vertices if vertex != first)]
+    lists = {vertex: world.neighbours[vertex] for vertex in order}
+    turned = lists[first][world.start.index :] + lists[first][: world.start.index]
+    embedding = ts.World({**lists, first: turned}).to_networkx()
+    assert ts.explore(world, algorithm=lambda robot: (embedding, (first, 0))).moves == 0

@@ -12,15 +12,13 @@ import threading
 import time
 from collections.abc import Generator
 from types import GeneratorType
-from typing import Any, Callable, Protocol, Union
+from typing import Any, Callable, Union
 
 from . import _core
 from .errors import (
     AnswerError,
-    DoorTypeError,
     ExplorerError,
     NoAnswerError,
-    NoSuchDoorError,
     NotAnExplorerError,
     OutOfTimeError,
     RaisedError,
@@ -101,14 +99,6 @@ class Clock:
                     pass
         except _TimeIsUp:
             raise OutOfTimeError(f"it took more than {self.seconds:g} s") from None
-
-
-class RobotLike(Protocol):
-    """What an explorer can do."""
-
-    @property
-    def percept(self) -> _core.Percept: ...
-    def go(self, door: int) -> _core.Percept: ...
 
 
 def _called(explorer: Explorer, robot: _core.Robot) -> Answer:
@@ -218,18 +208,3 @@ def _numbers(map_: object, pose: object) -> tuple[Doors, int, int]:
 def _shown(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-__all__ = [
-    "MAX_MOVES",
-    "SECONDS",
-    "Answer",
-    "Clock",
-    "DoorTypeError",
-    "Explorer",
-    "NoSuchDoorError",
-    "RobotLike",
-    "check_explorer",
-    "judge",
-    "judged",
-]

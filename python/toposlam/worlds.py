@@ -86,10 +86,10 @@ class World:
     1
     """
 
-    __slots__ = ("_core", "_degrees", "_first", "_opposite", "_places")
+    __slots__ = ("_core", "_degree", "_first", "_opposite", "_places")
 
     _core: CoreWorld
-    _degrees: list[int]
+    _degree: dict[str, int]
     _first: dict[str, int]
     _opposite: list[int]
     _places: list[Dart]
@@ -113,7 +113,7 @@ class World:
         for vertex, degree in zip(core.vertex_names, degrees):
             first[vertex] = len(places)
             places.extend(Dart(vertex, index) for index in range(degree))
-        values = (core, degrees, first, opposite, places)
+        values = (core, dict(zip(first, degrees)), first, opposite, places)
         for slot, value in zip(self.__slots__, values):
             object.__setattr__(self, slot, value)
 
@@ -177,7 +177,7 @@ class World:
     def __reduce__(self) -> tuple[Any, ...]:
         core = self._core
         parts = (core.vertex_names, core.edge_names, core.name, core.about, core.start)
-        return _rebuilt, (self._degrees, self._opposite, *parts)
+        return _rebuilt, (list(self._degree.values()), self._opposite, *parts)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, World):
@@ -214,7 +214,7 @@ class World:
     @property
     def vertex_count(self) -> int:
         """The number of vertices, n."""
-        return len(self._degrees)
+        return len(self._degree)
 
     @property
     def edge_count(self) -> int:
@@ -263,11 +263,7 @@ class World:
         if vertex not in self._first:
             raise UnknownStartError(f"there is no vertex {vertex!r}")
         first = self._first[vertex]
-        return self._places[first : first + self._degrees[self._places_vertex(first)]]
-
-    def _places_vertex(self, number: int) -> int:
-        vertex = self._places[number].vertex
-        return list(self._first).index(vertex)
+        return self._places[first : first + self._degree[vertex]]
 
     def number(self, place: Place) -> int:
         """The number of a dart, counted vertex by vertex."""
