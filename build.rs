@@ -68,9 +68,10 @@ fn git(root: &Path, arguments: &[&str]) -> Option<String> {
     Some(text.trim_end().to_owned())
 }
 
-/// Whether a folder of the workspace is a member.
+/// Whether a folder of the workspace is a member. Some are workspaces of their own.
 fn is_member(root: &Path, name: &str) -> bool {
-    root.join(name).join("Cargo.toml").is_file()
+    let manifest = fs::read_to_string(root.join(name).join("Cargo.toml"));
+    manifest.is_ok_and(|text| text.lines().all(|line| line != "[workspace]"))
 }
 
 /// Writes the value of the library's `CITATIONS`.

@@ -2,8 +2,8 @@
 //!
 //! This package contains the command line and what it draws and writes: pictures of worlds and runs
 //! ([`picture`]), pages for a browser ([`page`]), the trace of the paper ([`paper`]), the record of a
-//! simulated run ([`journal`]) and the conformance report of a log ([`report`]). The specification is
-//! [`model`].
+//! simulated run ([`journal`]), the story of a mapping run ([`story`]) and the conformance report of a log
+//! ([`report`]). The specification is [`model`].
 
 pub mod journal;
 pub mod moment;
@@ -11,5 +11,7 @@ pub mod page;
 pub mod paper;
 pub mod picture;
 pub mod report;
+pub mod story;
+pub mod text;
 
 pub use toposlam_model as model;

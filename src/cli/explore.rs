@@ -3,7 +3,6 @@
 mod certificate;
 mod doors_writer;
 mod result;
-pub(super) mod story;
 mod summary;
 
 use std::{
@@ -12,7 +11,10 @@ use std::{
     slice,
 };
 
-use toposlam::picture::{self, WorldPicture};
+use toposlam::{
+    picture::{self, WorldPicture},
+    story::{Story, StoryDetail, head},
+};
 use toposlam_model::{
     check::{
         Algorithm, Algorithm1, Flaw, Folding, MappingAlgorithm, MovableMarker, RunState, judge,
@@ -35,7 +37,6 @@ use super::{
 use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
-use story::{Story, StoryDetail, head};
 use summary::Summary;
 
 /// Map one world and print the story: each door, percept and hypothesis, and the map

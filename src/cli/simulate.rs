@@ -16,7 +16,11 @@ use std::{
     time::Instant,
 };
 
-use toposlam::{journal::Journal, page, picture};
+use toposlam::{
+    journal::Journal,
+    page, picture,
+    story::{Story, StoryDetail},
+};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
@@ -37,7 +41,6 @@ use super::{
     CliError, Outcome,
     appearance::{Appearance, ImageSize, camera_with},
     exit_codes::help_end,
-    explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::{Progress, StopSignal},
     robot_sensor::SensorChoice,

@@ -1,24 +1,13 @@
 //! Text for people: numbers, sentences, wrapped lines and tables.
 
-use std::{
-    borrow::Cow,
-    io::{self, IsTerminal, Write},
-    sync::LazyLock,
+use std::io::{self, Write};
+
+use textwrap::core::display_width;
+
+pub(crate) use toposlam::{
+    moment::{grouped, moment, since_start},
+    text::{WIDTH, counted, print_hanging, print_indented, print_paragraph, vertices, wrapped},
 };
-
-use textwrap::{Options, WordSplitter, core::display_width};
-
-pub(crate) use toposlam::moment::{grouped, moment, since_start};
-
-/// The widest line that is printed: the terminal's width, and at most 80 columns.
-static WIDTH: LazyLock<usize> = LazyLock::new(|| {
-    let terminal = io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
-    terminal.map_or(MAX_WIDTH, |(width, _)| usize::from(width.0).clamp(MIN_WIDTH, MAX_WIDTH))
-});
-
-const MAX_WIDTH: usize = 80;
-/// Narrower text is not readable.
-const MIN_WIDTH: usize = 40;
 
 /// The three finite numbers in a text, with commas between them.
 pub(super) fn three_numbers(text: &str) -> Option<[f64; 3]> {
@@ -27,46 +16,10 @@ pub(super) fn three_numbers(text: &str) -> Option<[f64; 3]> {
     numbers?.try_into().ok()
 }
 
-/// Prints a text after its head. The lines that follow are indented as far as the head is wide.
-pub(super) fn print_hanging(out: &mut dyn Write, head: &str, text: &str) -> io::Result<()> {
-    print_indented(out, head, display_width(head), text)
-}
-
-/// Prints a text after its head. The lines that follow are indented by `indent` columns.
-pub(super) fn print_indented(
-    out: &mut dyn Write,
-    head: &str,
-    indent: usize,
-    text: &str,
-) -> io::Result<()> {
-    for line in wrapped(*WIDTH, head, indent, text) {
-        writeln!(out, "{}", line.trim_end())?;
-    }
-    Ok(())
-}
-
 /// Prints a command. A line that is too long continues after a backslash, as in a shell.
 pub(super) fn print_command(out: &mut dyn Write, head: &str, command: &str) -> io::Result<()> {
     let lines = wrapped(*WIDTH - 2, head, display_width(head) + 2, command);
     writeln!(out, "{}", lines.join(" \\\n"))
-}
-
-fn wrapped(width: usize, head: &str, indent: usize, text: &str) -> Vec<String> {
-    if text.is_empty() {
-        return vec![head.to_owned()];
-    }
-    let indent = " ".repeat(indent);
-    let options = Options::new(width)
-        .initial_indent(head)
-        .subsequent_indent(&indent)
-        .break_words(false)
-        .word_splitter(WordSplitter::NoHyphenation);
-    textwrap::wrap(text, options).into_iter().map(Cow::into_owned).collect()
-}
-
-/// Prints a paragraph.
-pub(super) fn print_paragraph(out: &mut dyn Write, text: &str) -> io::Result<()> {
-    print_indented(out, "", 0, text)
 }
 
 /// Prints short texts in columns, row by row, each line indented by two columns.
@@ -124,19 +77,6 @@ pub(crate) fn rough(number: f64) -> String {
     }
     let step = 10_f64.powi(number.log10().floor() as i32 - 1);
     grouped(((number / step).round() * step) as u128)
-}
-
-/// A number and its noun, as in "1 edge", "2 edges".
-pub(crate) fn counted(number: usize, noun: &str) -> String {
-    format!("{} {noun}{}", grouped(number as u128), if number == 1 { "" } else { "s" })
-}
-
-pub(crate) fn vertices(number: usize) -> String {
-    if number == 1 {
-        "1 vertex".to_owned()
-    } else {
-        format!("{} vertices", grouped(number as u128))
-    }
 }
 
 /// Starts with a capital and ends with a full stop, or with its own question mark.

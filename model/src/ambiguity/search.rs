@@ -24,10 +24,10 @@ use crate::{
 
 /// A search over all placed worlds of a class with 1 to some number of edges.
 #[derive(Clone, Debug)]
-pub struct AmbiguitySearch {
+pub struct AmbiguitySearch<'m> {
     /// The worlds of each size, from 1 edge.
     sizes: Vec<Enumeration>,
-    marker: &'static dyn Marker,
+    marker: &'m dyn Marker,
 }
 
 /// The result of one part of the search.
@@ -39,12 +39,12 @@ struct Seen {
     interrupted: bool,
 }
 
-impl AmbiguitySearch {
+impl<'m> AmbiguitySearch<'m> {
     /// A search over the worlds with 1 to `edges` edges.
     ///
     /// # Errors
     /// Returns an error if they cannot be enumerated.
-    pub fn new(class: Class, edges: usize, marker: &'static dyn Marker) -> Result<Self, SizeError> {
+    pub fn new(class: Class, edges: usize, marker: &'m dyn Marker) -> Result<Self, SizeError> {
         // A number of edges that is refused is refused before those below it.
         Enumeration::new(Each::World, class, edges)?;
         let sizes = (1..=edges).map(|edges| Enumeration::new(Each::World, class, edges));

@@ -7,6 +7,7 @@ use std::{
     time::Duration,
 };
 
+use toposlam::story::{Story, StoryDetail};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -35,7 +36,6 @@ use toposlam_vision::{
 
 use super::{CliError, DriveArguments, Outcome, result::DriveResult};
 use crate::cli::{
-    explore::story::{Story, StoryDetail},
     input, output,
     progress::Progress,
     robot_sensor::{SensorChoice, needs_camera},

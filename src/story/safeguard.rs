@@ -2,10 +2,13 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Journey, SafeguardEvent};
+use crate::model::mapping::{Journey, SafeguardEvent};
 
 use super::Story;
-use crate::cli::text::{counted, grouped, print_paragraph};
+use crate::{
+    moment::grouped,
+    text::{counted, print_paragraph},
+};
 
 impl<W: Write> Story<W> {
     pub(super) fn print_safeguard(

@@ -10,7 +10,7 @@ use std::{
     mem,
 };
 
-use toposlam_model::{
+use crate::model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::{Journey, MappingEvent, Observer, PartialMap},
@@ -18,24 +18,26 @@ use toposlam_model::{
     world::Action,
 };
 
-use crate::cli::text::{
-    counted, grouped, print_hanging, print_indented, print_paragraph, vertices,
+use crate::{
+    moment::grouped,
+    text::{counted, print_hanging, print_indented, print_paragraph, vertices},
 };
 
 /// How much a story contains.
-#[derive(Clone, Copy)]
-pub(crate) struct StoryDetail {
+#[derive(Clone, Copy, Debug)]
+pub struct StoryDetail {
     /// Every rejected candidate, and not only the first few of each round.
-    pub(crate) every_hypothesis: bool,
+    pub every_hypothesis: bool,
     /// The doors taken, and each pick-up and drop of the marker.
-    pub(crate) doors: bool,
+    pub doors: bool,
 }
 
 /// How many rejected candidates of a round are printed unless all are wanted.
 const PRINTED_REJECTIONS: usize = 4;
 
 /// Prints a run while it goes on.
-pub(crate) struct Story<W> {
+#[derive(Debug)]
+pub struct Story<W> {
     out: W,
     detail: StoryDetail,
     result: io::Result<()>,
@@ -50,23 +52,29 @@ pub(crate) struct Story<W> {
 }
 
 impl<W: Write> Story<W> {
-    pub(crate) fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
+    /// The story of a run in a world, from its start.
+    pub fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
         Self::with_head(out, &head(world, facing), detail)
     }
 
     /// The story of a run in a world that the head describes.
-    pub(crate) fn with_head(mut out: W, head: &str, detail: StoryDetail) -> Self {
+    pub fn with_head(mut out: W, head: &str, detail: StoryDetail) -> Self {
         let result = print_paragraph(&mut out, head);
         let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
         Self { out, detail, result, round: 0, actions, rejected, moves_not_printed, moves: 0 }
     }
 
     /// The output.
-    pub(crate) fn out(&self) -> &W {
+    #[must_use]
+    pub fn out(&self) -> &W {
         &self.out
     }
 
-    pub(crate) fn finish(self) -> io::Result<W> {
+    /// The output, after the last event.
+    ///
+    /// # Errors
+    /// Returns the first error of the output.
+    pub fn finish(self) -> io::Result<W> {
         self.result.map(|()| self.out)
     }
 
@@ -218,7 +226,8 @@ impl<W: ?Sized, O: Write> Observer<W> for Story<O> {
 }
 
 /// The world and the start of a run.
-pub(super) fn head(world: &NamedWorld, facing: Dart) -> String {
+#[must_use]
+pub fn head(world: &NamedWorld, facing: Dart) -> String {
     let NamedWorld { name, edge_names, .. } = world;
     let (at, behind) = (world.at_text(facing), world.facing_text(facing));
     let behind = match edge_names {

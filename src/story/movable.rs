@@ -2,10 +2,13 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Journey, MovableEvent};
+use crate::model::mapping::{Journey, MovableEvent};
 
 use super::{Story, dart};
-use crate::cli::text::{counted, grouped, print_paragraph};
+use crate::{
+    moment::grouped,
+    text::{counted, print_paragraph},
+};
 
 impl<W: Write> Story<W> {
     pub(super) fn print_movable(

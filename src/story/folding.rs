@@ -2,13 +2,16 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::{
+use crate::model::{
     embedded_graph::Dart,
     mapping::{FoldingEvent, Journey, PartialMap},
 };
 
 use super::{Story, dart, percept_text};
-use crate::cli::text::{counted, grouped, print_hanging, vertices};
+use crate::{
+    moment::grouped,
+    text::{counted, print_hanging, vertices},
+};
 
 impl<W: Write> Story<W> {
     pub(super) fn print_folding(

@@ -1,0 +1,149 @@
+//! Are two worlds isomorphic? Can a robot distinguish them?
+
+use pyo3::{IntoPyObjectExt, prelude::*};
+use toposlam_model::{
+    ambiguity::{Bisimulation, Comparison, Walk, state_count},
+    embedded_graph::Dart,
+    enumerate::Interrupted,
+    isomorphism::{isomorphism, mirror_isomorphism},
+    marker::Marker,
+    world::{Action, State},
+};
+
+use crate::{
+    error::{error, interrupted},
+    own_marker::OwnMarker,
+    percept::Percept,
+    watched::{Watcher, watched},
+    world::{CoreWorld, named_marker},
+};
+
+/// A robot's state: its pose, and the dart that places the marker, or none while the robot carries it.
+type StateNumbers = (u32, Option<u32>);
+
+/// The result of a comparison.
+#[derive(IntoPyObject)]
+pub(crate) struct Compared {
+    /// The image of each dart, if the worlds are isomorphic.
+    bijection: Option<Vec<u32>>,
+    /// The first difference, if they are not.
+    difference: Option<String>,
+    mirror: bool,
+    /// The start in the second world that is indistinguishable from that in the first.
+    start_like: Option<u32>,
+    relation: Option<Vec<(StateNumbers, StateNumbers)>>,
+    verified: bool,
+    /// The shortest walk that distinguishes them: what both robots do.
+    walk: Option<Vec<Py<PyAny>>>,
+    percepts: Option<(Percept, Percept)>,
+}
+
+/// The most pairs of a relation.
+const MOST_PAIRS: usize = 1 << 22;
+
+/// The most states of a world: they are numbered, and take memory accordingly.
+const MOST_STATES: usize = 1 << 26;
+
+/// What the robots can find out.
+struct Answer {
+    start_like: Option<Dart>,
+    relation: Option<Vec<(State, State)>>,
+    verified: bool,
+    walk: Option<Walk>,
+}
+
+/// Compares two worlds with their starts. `marker` is the name of a kind, or a function from doors to a
+/// table of sightings.
+#[pyfunction]
+pub(crate) fn compare(
+    py: Python<'_>,
+    one: &CoreWorld,
+    facing: u32,
+    other: &CoreWorld,
+    other_facing: u32,
+    marker: &Bound<'_, PyAny>,
+) -> PyResult<Compared> {
+    let facings = [one.dart(py, facing)?, other.dart(py, other_facing)?];
+    let own;
+    let kind: &dyn Marker = if let Ok(name) = marker.extract::<String>() {
+        own = None;
+        named_marker(py, &name)?
+    } else {
+        own = Some(OwnMarker::new(marker.clone().unbind()));
+        own.as_ref().map_or(&toposlam_model::marker::NoMarker as &dyn Marker, |own| own)
+    };
+    let graphs = [&one.0.graph, &other.0.graph];
+    if graphs.iter().any(|graph| state_count(graph, kind) > MOST_STATES) {
+        let text = format!("a world has more than {MOST_STATES} states of robot and marker");
+        return Err(error(py, "SizeError", text));
+    }
+    let answer = watched(py, None, |watcher| {
+        let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
+        let comparison = Comparison::new(kind, sides[0], sides[1]);
+        answer(&comparison, kind, sides[1], facings, watcher)
+    })?;
+    if let Some(failure) = own.as_ref().and_then(OwnMarker::failure) {
+        return Err(failure);
+    }
+    let answer = answer.map_err(|Interrupted| interrupted())?;
+    let relation_is_missing = answer.start_like.is_some() && answer.relation.is_none();
+    if relation_is_missing {
+        let text = format!("the relation has more than {MOST_PAIRS} pairs");
+        return Err(error(py, "SizeError", text));
+    }
+    let same = isomorphism(graphs[0], graphs[1]);
+    let numbers = |state: State| (state.pose.0, state.placed.map(|placed| placed.0));
+    let relation = answer.relation.map(|pairs| {
+        pairs.into_iter().map(|(here, there)| (numbers(here), numbers(there))).collect()
+    });
+    Ok(Compared {
+        difference: same.as_ref().err().map(ToString::to_string),
+        bijection: same.ok().map(|same| same.images().iter().map(|dart| dart.0).collect()),
+        mirror: mirror_isomorphism(graphs[0], graphs[1]).is_some(),
+        start_like: answer.start_like.map(|start| start.0),
+        relation,
+        verified: answer.verified,
+        percepts: answer.walk.as_ref().map(|walk| {
+            let [here, there] = walk.percepts;
+            (Percept(here), Percept(there))
+        }),
+        walk: answer.walk.map(|walk| actions(py, &walk.actions)).transpose()?,
+    })
+}
+
+fn answer(
+    comparison: &Comparison,
+    marker: &dyn Marker,
+    (graph, other_facing): (&toposlam_model::embedded_graph::EmbeddedGraph, Dart),
+    facings: [Dart; 2],
+    watcher: &Watcher,
+) -> Result<Answer, Interrupted> {
+    // The robot in the second world may begin in any pose that places the marker alike.
+    let mut starts = marker.starts(graph, other_facing);
+    starts.sort_by_key(|&start| start != other_facing);
+    for start in starts {
+        let poses = [facings[0], start];
+        if let Some(found) = comparison.bisimulation(poses, MOST_PAIRS, watcher)? {
+            let [here, there] = comparison.starts(poses);
+            let verified = found.verify(&here, &there);
+            let relation = match found {
+                Bisimulation::Relation(relation) => Some(relation.0),
+                Bisimulation::Classes(_) => None,
+            };
+            return Ok(Answer { start_like: Some(start), relation, verified, walk: None });
+        }
+    }
+    let walk = comparison.walk_watched(facings, watcher)?;
+    let [here, there] = comparison.starts(facings);
+    let verified = walk.as_ref().is_some_and(|walk| walk.verify(&here, &there));
+    Ok(Answer { start_like: None, relation: None, verified, walk })
+}
+
+/// Actions for Python: doors as numbers, "pick-up" and "drop".
+pub(crate) fn actions(py: Python<'_>, actions: &[Action]) -> PyResult<Vec<Py<PyAny>>> {
+    let action = |action: &Action| match action {
+        Action::Take(door) => door.0.into_py_any(py),
+        other => other.to_string().into_py_any(py),
+    };
+    actions.iter().map(action).collect()
+}

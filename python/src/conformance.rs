@@ -1,0 +1,274 @@
+//! A log, checked against the specification.
+
+use pyo3::{prelude::*, types::PyDict};
+use toposlam_model::{
+    embedded_graph::Dart,
+    enumerate::Class,
+    folding::{SmallestWorld, WorldSearch},
+    format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
+    marker::{Directional, Marker},
+    percept::{Percept as ModelPercept, Sighting},
+    trace::{AlgorithmCase, anywhere},
+    world::{GraphWorld, State},
+};
+use toposlam_robot::{
+    conform::{
+        CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement,
+        KnownWorld, Quirks, RunDriver, assume_marker, extract, judge, marker_at_start,
+    },
+    log::{topic_map::TopicMap, world_hash},
+};
+use toposlam_vision::{
+    camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
+};
+
+use crate::{
+    error::{error, interrupted},
+    log::{LogReader, shown},
+    percept::Percept,
+    watched::{Watcher, watched},
+    world::{CoreWorld, named_marker},
+};
+
+/// How a log is checked.
+struct Question {
+    world: Option<NamedWorld>,
+    start: Option<Dart>,
+    marker: &'static dyn Marker,
+    driver: RunDriver,
+    class: Class,
+    corners: bool,
+    assume_marker: bool,
+    max_edges: Option<usize>,
+    max_steps: u64,
+    max_darts: usize,
+}
+
+/// A log that was checked.
+struct Checked {
+    gathered: ExtractedRun,
+    judgement: Judgement,
+}
+
+/// Checks a log. Returns what the report contains.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+pub(crate) fn conform<'py>(
+    py: Python<'py>,
+    log: &LogReader,
+    world: Option<&CoreWorld>,
+    marker: Option<&str>,
+    driver: &str,
+    class: &str,
+    corners: bool,
+    assumed: bool,
+    max_edges: Option<usize>,
+    max_steps: u64,
+    max_darts: usize,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let recorded = |text: fn(&toposlam_robot::log::messages::Run) -> &String| {
+        log.run.as_ref().map(text).filter(|text| !text.is_empty())
+    };
+    let marker = match (marker, recorded(|run| &run.marker)) {
+        (Some(name), _) => named_marker(py, name)?,
+        (None, Some(name)) => named_marker(py, name)?,
+        (None, None) => &Directional,
+    };
+    let algorithm = match driver {
+        "anyone" => None,
+        "algorithm" => {
+            let name = recorded(|run| &run.algorithm).map_or("algorithm1", String::as_str);
+            Some(name.parse::<DirectionalAlgorithm>())
+        }
+        name => Some(name.parse::<DirectionalAlgorithm>()),
+    };
+    let driver = match algorithm {
+        None => RunDriver::Anyone,
+        Some(Ok(algorithm)) => RunDriver::Algorithm(algorithm),
+        Some(Err(unknown)) => return Err(error(py, "UnknownAlgorithmError", unknown)),
+    };
+    let class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let question = Question {
+        world: world.map(|world| world.0.clone()),
+        start: None,
+        marker,
+        driver,
+        class,
+        corners,
+        assume_marker: assumed,
+        max_edges,
+        max_steps,
+        max_darts,
+    };
+    let checked = watched(py, progress, |watcher| {
+        let checked = check(log, question, watcher);
+        (checked, toposlam_model::enumerate::Watch::stop(watcher))
+    })?;
+    match checked {
+        (_, true) => Err(interrupted()),
+        (Err(cause), false) => Err(error(py, "LogError", format!("{}: {cause}", shown(&log.path)))),
+        (Ok(checked), false) => report(py, &checked),
+    }
+}
+
+fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<Checked, String> {
+    let text = |cause: &dyn std::fmt::Display| cause.to_string();
+    let evidence = Evidence::of(&log.mapping).ok_or_else(|| {
+        let ambiguous = TopicMap::from_log(&log.log).err();
+        ambiguous.map_or_else(|| ExtractError::NothingMapped.to_string(), |cause| cause.to_string())
+    })?;
+    let laser = LaserParams::default();
+    let laser = LaserParams {
+        corner: toposlam_vision::laser::params::CornerParams {
+            corners: question.corners,
+            ..laser.corner
+        },
+        ..laser
+    };
+    let sensor = sensor(log)?;
+    let marked = question.marker.name() == Directional.name();
+    let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
+    let mut gathered =
+        extract(&log.log, &log.mapping, &config, watcher).map_err(|cause| text(&cause))?;
+    if question.assume_marker {
+        let place = marker_at_start(&gathered.junctions).ok_or("no junction is visited")?;
+        let events = &mut gathered.events.events;
+        assume_marker(events, &gathered.junctions, question.marker, place)
+            .map_err(|cause| text(&cause))?;
+    }
+    if evidence == Evidence::Laser && !question.corners {
+        // In a laser log bends of corridors are vertices only if that is asked for.
+        question.world = question.world.as_ref().map(NamedWorld::smoothed);
+    }
+    question.start = question.world.as_ref().and_then(|world| {
+        let run = log.run.as_ref()?;
+        let start = world.start_from_text(&run.start).ok()?;
+        (world_hash(&world.graph, start) == run.world_hash).then_some(start)
+    });
+    let known = question.world.as_ref().map(|world| {
+        let start = question.start.or(world.start);
+        KnownWorld { graph: &world.graph, states: states(world, question.marker, start) }
+    });
+    let search = WorldSearch {
+        class: question.class,
+        max_edges: question.max_edges,
+        steps: question.max_steps,
+    };
+    let config = ConformConfig {
+        world: known,
+        marker: question.marker,
+        driver: question.driver,
+        search,
+        dart_bound: question.max_darts,
+    };
+    // Whoever drives may turn back between junctions. The algorithms do not.
+    let events = match question.driver {
+        RunDriver::Anyone => gathered.events.without_excursions(),
+        RunDriver::Algorithm(_) | RunDriver::Audited { .. } => gathered.events.clone(),
+    };
+    let judgement =
+        judge(events, &config, &Quirks::default(), watcher).map_err(|cause| text(&cause))?;
+    Ok(Checked { gathered, judgement })
+}
+
+/// The possible states of the robot and its marker at the start.
+fn states(world: &NamedWorld, marker: &'static dyn Marker, start: Option<Dart>) -> Vec<State> {
+    match start {
+        None => anywhere(&world.graph, &marker),
+        Some(facing) => vec![GraphWorld::with_marker(&world.graph, marker, facing).state()],
+    }
+}
+
+/// The sensor for the images of a log, if it records a calibration and colours.
+fn sensor(log: &LogReader) -> Result<Option<Sensor>, String> {
+    let Some(run) = &log.run else { return Ok(None) };
+    if run.calibration.is_empty() || run.colours.is_empty() {
+        return Ok(None);
+    }
+    let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let camera = calibration::read(run.calibration.as_bytes(), &mut { no_file });
+    let camera = camera.map_err(|cause| format!("its calibration: {cause}"))?;
+    let colours = ColourModel::read(run.colours.as_bytes());
+    let colours = colours.map_err(|cause| format!("its colours: {cause}"))?;
+    Ok(Some(Sensor::new(&camera, &colours)))
+}
+
+/// The fields of the report.
+fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+    let Checked { gathered, judgement } = checked;
+    let fields = PyDict::new(py);
+    fields.set_item("verdict", judgement.verdict().name())?;
+    let evidence = match gathered.evidence {
+        Evidence::Recorded => "recorded",
+        Evidence::Scenes => "scenes",
+        Evidence::Pictures => "pictures",
+        Evidence::Laser => "laser",
+    };
+    fields.set_item("evidence", evidence)?;
+    fields.set_item("events", events(judgement))?;
+    if let Some(divergence) = &judgement.divergence {
+        let found = PyDict::new(py);
+        found.set_item("event", divergence.event)?;
+        found.set_item("cause", divergence.cause.name())?;
+        found.set_item("fault", divergence.fault.name())?;
+        found.set_item("why", divergence.cause.to_string())?;
+        fields.set_item("divergence", found)?;
+    }
+    let coverage = PyDict::new(py);
+    for case in AlgorithmCase::ALL {
+        coverage.set_item(case.name(), judgement.coverage.algorithm.count(case))?;
+    }
+    fields.set_item("coverage", coverage)?;
+    fields.set_item("determines_world", judgement.determines_world())?;
+    fields.set_item("candidates", judgement.candidates())?;
+    fields.set_item(
+        "hallways",
+        (judgement.measured.moves, judgement.measured.measured, judgement.measured.compared),
+    )?;
+    if let Some(SmallestWorld::World { graph, marker, limit }) = &judgement.smallest {
+        let start = marker.or(Some(Dart(0)));
+        let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
+        fields.set_item("smallest", Py::new(py, CoreWorld(world))?)?;
+        fields.set_item("is_least", limit.is_none())?;
+    }
+    fields.set_item(
+        "junctions",
+        gathered
+            .junctions
+            .iter()
+            .map(|junction| (junction.event, junction.centre, junction.doors.clone()))
+            .collect::<Vec<_>>(),
+    )?;
+    Ok(fields)
+}
+
+/// The events: seconds, kind, percept, door, and the pose in the known world if only one fits.
+type EventFields = (f64, &'static str, Option<Percept>, Option<u32>, Option<u32>);
+
+fn events(judgement: &Judgement) -> Vec<EventFields> {
+    let events = &judgement.events.events;
+    let begun = events.first().map_or(0, |event| event.source.time);
+    let alone = |index: usize| {
+        let poses = judgement.poses.as_ref()?;
+        let state = poses.alone.get(judgement.trace.index_of(index))?.as_ref()?;
+        Some(state.pose.0)
+    };
+    let fields = |(index, event): (usize, &toposlam_robot::conform::CheckedEvent)| {
+        let time = event.source.time.saturating_sub(begun) as f64 / 1e9;
+        let (kind, percept, door) = match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => {
+                let sighting = arrival.sighting.unwrap_or(Sighting::Nothing);
+                let percept = ModelPercept { degree: arrival.degree, sighting };
+                ("percept", Some(Percept(percept)), None)
+            }
+            CheckedKind::Door { door, .. } => ("door", None, Some(door.0)),
+            CheckedKind::Aside { .. } => ("aside", None, None),
+            CheckedKind::TurnedBack => ("turned-back", None, None),
+            CheckedKind::Undecided(_) => ("undecided", None, None),
+        };
+        (time, kind, percept, door, alone(index))
+    };
+    events.iter().enumerate().map(fields).collect()
+}

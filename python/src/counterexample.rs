@@ -1,0 +1,87 @@
+//! The smallest worlds that a marker cannot tell apart.
+
+use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+use toposlam_model::{
+    ambiguity::{AmbiguitySearch, Findings, PlacedWorld, Unfinished},
+    enumerate::{Class, Watch},
+    format::named_world::NamedWorld,
+    marker::Marker,
+};
+
+use crate::{
+    error::{error, interrupted},
+    own_marker::OwnMarker,
+    watched::{Watcher, watched},
+    world::{CoreWorld, named_marker},
+};
+
+/// The sizes searched, each as its number of edges, of placed worlds and of ambiguous ones; and the groups
+/// of worlds that are indistinguishable.
+type Found = (Vec<(usize, u64, u64)>, Vec<Vec<CoreWorld>>);
+
+/// Stops as well if a function in Python has failed.
+struct OwnWatch<'w> {
+    watcher: &'w Watcher,
+    marker: &'w OwnMarker,
+}
+
+impl Watch for OwnWatch<'_> {
+    fn part_done(&self, cases: u64) {
+        self.watcher.count(cases);
+    }
+
+    fn stop(&self) -> bool {
+        self.watcher.stop() || self.marker.has_failed()
+    }
+}
+
+/// Searches all placed worlds of a class with up to `edges` edges. `marker` is the name of a kind, or a function
+/// from doors to a table of sightings. `progress` is called with the number of worlds since the last call.
+#[pyfunction]
+pub(crate) fn counterexample(
+    py: Python<'_>,
+    marker: &Bound<'_, PyAny>,
+    class: &str,
+    edges: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Found> {
+    let class: Class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let size = |cause| error(py, "SizeError", cause);
+    let findings = if let Ok(name) = marker.extract::<String>() {
+        let kind = named_marker(py, &name)?;
+        let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
+        watched(py, progress, |watcher| search.run(watcher))?
+    } else {
+        let own = OwnMarker::new(marker.clone().unbind());
+        let kind: &dyn Marker = &own;
+        let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
+        // The function is called by one thread at a time, and always in the same order.
+        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+        let pool = pool.map_err(|cause| error(py, "InternalError", cause))?;
+        let findings = watched(py, progress, |watcher| {
+            pool.install(|| search.run(&OwnWatch { watcher, marker: &own }))
+        })?;
+        if let Some(failure) = own.failure() {
+            return Err(failure);
+        }
+        findings
+    };
+    match findings {
+        Ok(findings) => Ok(found(&findings)),
+        Err(Unfinished::Interrupted) => Err(interrupted()),
+        Err(unconfirmed @ Unfinished::Unconfirmed(_)) => {
+            Err(error(py, "InternalError", unconfirmed))
+        }
+    }
+}
+
+fn found(findings: &Findings) -> Found {
+    let sizes = findings.sizes.iter();
+    let sizes = sizes.map(|size| (size.edges, size.placed_worlds, size.ambiguous)).collect();
+    let world = |placed: &PlacedWorld| {
+        CoreWorld(NamedWorld::discovered("", "", &placed.graph, PlacedWorld::FACING))
+    };
+    let groups = findings.groups.iter();
+    (sizes, groups.map(|group| group.worlds.iter().map(world).collect()).collect())
+}

@@ -1,0 +1,38 @@
+//! The Rust half of the Python package `toposlam`. `toposlam/_core.pyi` describes what is in it. The
+//! classes that people use are in the Python half.
+
+mod comparison;
+mod conformance;
+mod counterexample;
+mod error;
+mod exploration;
+mod log;
+mod own_marker;
+mod percept;
+mod robot;
+mod starts;
+mod watched;
+mod world;
+
+/// The module `toposlam._core`.
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::comparison::compare;
+    #[pymodule_export]
+    use super::conformance::conform;
+    #[pymodule_export]
+    use super::counterexample::counterexample;
+    #[pymodule_export]
+    use super::exploration::{certificate, explore};
+    #[pymodule_export]
+    use super::log::{LogReader, log_picture};
+    #[pymodule_export]
+    use super::percept::Percept;
+    #[pymodule_export]
+    use super::robot::Robot;
+    #[pymodule_export]
+    use super::starts::{Start, count_starts, visit_starts};
+    #[pymodule_export]
+    use super::world::CoreWorld;
+}

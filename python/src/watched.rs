@@ -1,0 +1,104 @@
+//! Long work: without the interpreter lock, on a thread of its own, while the thread of the caller handles
+//! signals and shows progress.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{
+        atomic::{AtomicBool, AtomicU64, Ordering},
+        mpsc,
+    },
+    thread,
+    time::Duration,
+};
+
+use pyo3::prelude::*;
+use toposlam_model::enumerate::Watch;
+use toposlam_robot::conform::SensingProgress;
+
+use crate::error::error;
+
+/// Counts the cases that are done, and stops the work.
+#[derive(Default)]
+pub(crate) struct Watcher {
+    done: AtomicU64,
+    stopped: AtomicBool,
+}
+
+impl Watcher {
+    /// Stops the work at its next question.
+    pub(crate) fn stop_work(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Counts cases.
+    pub(crate) fn count(&self, cases: u64) {
+        self.done.fetch_add(cases, Ordering::Relaxed);
+    }
+}
+
+impl Watch for Watcher {
+    fn part_done(&self, cases: u64) {
+        self.count(cases);
+    }
+
+    fn stop(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+impl SensingProgress for Watcher {
+    fn sensed(&self, pictures: u64) {
+        self.count(pictures);
+    }
+}
+
+/// How long the caller's thread waits before it looks at signals again.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Does long work. `progress` is called with the number of cases since the last call. After a signal the work
+/// is stopped, and the exception of the signal is raised.
+pub(crate) fn watched<R: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Watcher) -> R + Send,
+) -> PyResult<R> {
+    let watcher = Watcher::default();
+    let progress = progress.map(|progress| progress.clone().unbind());
+    let result = py.detach(|| {
+        thread::scope(|scope| {
+            let (done, end) = mpsc::channel();
+            let watched = &watcher;
+            scope.spawn(move || {
+                let result = catch_unwind(AssertUnwindSafe(|| work(watched)));
+                // The caller waits for it.
+                let _ = done.send(result);
+            });
+            let mut shown = 0;
+            loop {
+                let ended = end.recv_timeout(PATIENCE);
+                let signalled: PyResult<()> = Python::attach(|py| {
+                    py.check_signals()?;
+                    let counted = watcher.done.load(Ordering::Relaxed);
+                    if let Some(progress) = &progress
+                        && counted > shown
+                    {
+                        progress.call1(py, (counted - shown,))?;
+                        shown = counted;
+                    }
+                    Ok(())
+                });
+                if let Err(signal) = signalled {
+                    watcher.stop_work();
+                    return Err(signal);
+                }
+                match ended {
+                    Ok(result) => return Ok(result.ok()),
+                    Err(mpsc::RecvTimeoutError::Timeout) => {}
+                    Err(mpsc::RecvTimeoutError::Disconnected) => return Ok(None),
+                }
+            }
+        })
+    })?;
+    let cause = "this is a bug in toposlam; please report it, with what you called";
+    result.ok_or_else(|| error(py, "InternalError", cause))
+}

@@ -1,0 +1,335 @@
+//! Worlds with names, for Python.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::{prelude::*, types::PyBytes};
+use toposlam::picture::{Placement, WorldPicture, png, svg};
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph, GraphError},
+    format::{
+        dot,
+        named_world::NamedWorld,
+        plantri,
+        world_file::{self, WorldFileErrorKind},
+    },
+    isomorphism::{canonical, code},
+    marker::{self, Marker},
+};
+
+use crate::error::error;
+
+/// A world with names.
+#[pyclass(frozen, name = "World", module = "toposlam._core")]
+#[derive(Clone)]
+pub(crate) struct CoreWorld(pub(crate) NamedWorld);
+
+/// The doors of a world: for each vertex its degree, and for each door, vertex by vertex, the other end of
+/// its edge.
+type Doors = (Vec<u32>, Vec<u32>);
+
+#[pymethods]
+impl CoreWorld {
+    /// The worlds of a file: one of a world file, any number of a plantri file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, bytes: &[u8]) -> PyResult<Vec<Self>> {
+        let failed = |class, cause: &dyn std::fmt::Display| {
+            error(py, class, format!("{}: {cause}", path.display()))
+        };
+        let worlds = match plantri_code(&path, bytes) {
+            None => {
+                let read = world_file::read(bytes);
+                vec![read.map_err(|error| failed(file_error(&error.kind), &error))?]
+            }
+            Some(code) => {
+                let worlds = if bytes.starts_with(b">>") {
+                    plantri::read(bytes)
+                } else {
+                    plantri::read_headerless(bytes, code)
+                };
+                let graphs = worlds.collect::<Result<Vec<_>, _>>();
+                let numbered = |graph| NamedWorld::numbered("", "", graph, None);
+                graphs
+                    .map(|graphs| graphs.into_iter().map(numbered).collect())
+                    .map_err(|error| failed("WorldFileError", &error))?
+            }
+        };
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let named = |mut world: NamedWorld| {
+            if world.name.is_empty() {
+                world.name.clone_from(&name);
+            }
+            Self(world)
+        };
+        Ok(worlds.into_iter().map(named).collect())
+    }
+
+    /// A world from its doors. `opposite` is numbered door by door, vertex by vertex.
+    #[staticmethod]
+    #[pyo3(signature = (degrees, opposite, vertex_names, edge_names, name, about, start))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+    fn from_doors(
+        py: Python<'_>,
+        degrees: Vec<u32>,
+        opposite: Vec<u32>,
+        vertex_names: Vec<String>,
+        edge_names: Option<Vec<String>>,
+        name: String,
+        about: String,
+        start: Option<u32>,
+    ) -> PyResult<Self> {
+        let graph = graph_of(&degrees, &opposite)
+            .map_err(|fault| graph_error(py, fault, &degrees, &vertex_names))?;
+        if vertex_names.len() != graph.vertex_count()
+            || edge_names.as_ref().is_some_and(|names| names.len() != graph.dart_count())
+            || start.is_some_and(|start| start as usize >= graph.dart_count())
+        {
+            return Err(error(py, "WorldError", "the names and the start do not fit the doors"));
+        }
+        let start = start.map(Dart);
+        let world = NamedWorld::numbered(&name, &about, graph, start);
+        let edge_names = edge_names.or(world.edge_names);
+        Ok(Self(NamedWorld { vertex_names, edge_names, ..world }))
+    }
+
+    /// A world from two permutations, and the number of each dart in it.
+    #[staticmethod]
+    fn from_permutations(
+        py: Python<'_>,
+        opposite: Vec<u32>,
+        clockwise: Vec<u32>,
+    ) -> PyResult<(Self, Vec<u32>)> {
+        let (graph, number) = EmbeddedGraph::from_permutations(&opposite, &clockwise)
+            .map_err(|fault| error(py, fault_class(&fault), fault))?;
+        let world = NamedWorld::numbered("", "", graph, None);
+        Ok((Self(world), number.into_iter().map(|dart| dart.0).collect()))
+    }
+
+    /// The same world with another start, name and description.
+    #[pyo3(signature = (start, name, about))]
+    fn with_start(
+        &self,
+        py: Python<'_>,
+        start: Option<u32>,
+        name: &str,
+        about: &str,
+    ) -> PyResult<Self> {
+        let start = start.map(|start| self.dart(py, start)).transpose()?;
+        let (name, about) = (name.to_owned(), about.to_owned());
+        Ok(Self(NamedWorld { start, name, about, ..self.0.clone() }))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    #[getter]
+    fn about(&self) -> &str {
+        &self.0.about
+    }
+
+    #[getter]
+    fn vertex_names(&self) -> Vec<String> {
+        self.0.vertex_names.clone()
+    }
+
+    #[getter]
+    fn edge_names(&self) -> Option<Vec<String>> {
+        self.0.edge_names.clone()
+    }
+
+    #[getter]
+    fn positions(&self) -> Option<Vec<[f64; 2]>> {
+        self.0.positions.clone()
+    }
+
+    #[getter]
+    fn start(&self) -> Option<u32> {
+        self.0.start.map(|dart| dart.0)
+    }
+
+    #[getter]
+    fn marker(&self) -> Option<&'static str> {
+        self.0.marker.map(Marker::name)
+    }
+
+    #[getter]
+    fn doors(&self) -> Doors {
+        let graph = &self.0.graph;
+        let degrees = graph.vertices().map(|vertex| graph.degree(vertex)).collect();
+        (degrees, graph.darts().map(|dart| graph.opposite(dart).0).collect())
+    }
+
+    #[getter]
+    fn genus(&self) -> usize {
+        self.0.graph.genus()
+    }
+
+    #[getter]
+    fn face_count(&self) -> usize {
+        self.0.graph.face_count()
+    }
+
+    #[getter]
+    fn is_simple(&self) -> bool {
+        self.0.graph.is_simple()
+    }
+
+    /// A dart from `vertex:facing`.
+    fn start_from_text(&self, py: Python<'_>, text: &str) -> PyResult<u32> {
+        let start = self.0.start_from_text(text);
+        start.map(|dart| dart.0).map_err(|cause| error(py, "UnknownStartError", cause))
+    }
+
+    /// The text `vertex:facing` of a dart.
+    fn start_text(&self, py: Python<'_>, dart: u32) -> PyResult<String> {
+        Ok(self.0.start_text(self.dart(py, dart)?))
+    }
+
+    /// The code of the start: equal for isomorphic starts. Without a start, that of the graph.
+    fn code(&self) -> Vec<u32> {
+        let graph = &self.0.graph;
+        let code = match self.0.start {
+            Some(start) => code(graph, start),
+            None => canonical(graph).code,
+        };
+        code.words().to_vec()
+    }
+
+    fn mirror_image(&self) -> Self {
+        let graph = self.0.graph.mirror_image();
+        let world = NamedWorld::numbered(&self.0.name, &self.0.about, graph, self.0.start);
+        let vertex_names = self.0.vertex_names.clone();
+        Self(NamedWorld { vertex_names, marker: self.0.marker, ..world })
+    }
+
+    fn smoothed(&self) -> Self {
+        Self(self.0.smoothed())
+    }
+
+    fn to_toml(&self) -> String {
+        world_file::to_toml(&self.0)
+    }
+
+    fn to_json(&self) -> String {
+        world_file::to_json_text(&self.0)
+    }
+
+    fn to_dot(&self) -> String {
+        dot::write(&self.0)
+    }
+
+    /// A picture as an SVG document.
+    fn svg(&self, py: Python<'_>, title: &str, caption: &str, marker: &str) -> PyResult<String> {
+        let kind = named_marker(py, marker)?;
+        let placement = Placement::from(&self.0);
+        let picture =
+            WorldPicture { title, caption, marker: kind, placement, ..WorldPicture::from(&self.0) };
+        Ok(py.detach(|| svg(&picture)))
+    }
+
+    /// An SVG document as a PNG image.
+    #[staticmethod]
+    fn png<'py>(py: Python<'py>, document: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| png(document));
+        bytes
+            .map(|bytes| PyBytes::new(py, &bytes))
+            .map_err(|cause| error(py, "PictureError", cause))
+    }
+}
+
+impl CoreWorld {
+    /// A dart of the world.
+    pub(crate) fn dart(&self, py: Python<'_>, dart: u32) -> PyResult<Dart> {
+        if (dart as usize) < self.0.graph.dart_count() {
+            return Ok(Dart(dart));
+        }
+        Err(error(py, "UnknownStartError", format!("the world has no dart {dart}")))
+    }
+}
+
+/// The kind of marker with this name.
+pub(crate) fn named_marker(py: Python<'_>, name: &str) -> PyResult<&'static dyn Marker> {
+    marker::named(name).map_err(|unknown| error(py, "UnknownMarkerError", unknown))
+}
+
+/// The graph of doors: degrees, and for each door, vertex by vertex, the other end of its edge.
+pub(crate) fn graph_of(degrees: &[u32], opposite: &[u32]) -> Result<EmbeddedGraph, GraphError> {
+    let doors = degrees.iter().map(|&degree| u64::from(degree)).sum::<u64>();
+    if doors != opposite.len() as u64 {
+        let clockwise = usize::try_from(doors).unwrap_or(usize::MAX);
+        return Err(GraphError::LengthsDiffer { opposite: opposite.len(), clockwise });
+    }
+    let mut clockwise = Vec::with_capacity(opposite.len());
+    for &degree in degrees {
+        let first = clockwise.len() as u32;
+        clockwise.extend((0..degree).map(|index| first + (index + 1) % degree));
+    }
+    EmbeddedGraph::from_permutations(opposite, &clockwise).map(|(graph, _)| graph)
+}
+
+/// The error for doors that are not a graph, in the names of its vertices.
+fn graph_error(py: Python<'_>, fault: GraphError, degrees: &[u32], names: &[String]) -> PyErr {
+    let name = |dart: u32| {
+        let mut end = 0_u64;
+        let ends = degrees.iter().map(|&degree| {
+            end += u64::from(degree);
+            end
+        });
+        let vertex = ends.into_iter().position(|end| u64::from(dart) < end);
+        vertex.and_then(|vertex| names.get(vertex)).map_or("?", String::as_str)
+    };
+    let text = match fault {
+        GraphError::NotConnected { dart } => format!(
+            "the world is not connected: vertex {} cannot be reached from {}",
+            name(dart),
+            name(0)
+        ),
+        other => other.to_string(),
+    };
+    error(py, fault_class(&fault), text)
+}
+
+/// The class of the error for two arrays that are not a graph.
+fn fault_class(fault: &GraphError) -> &'static str {
+    match fault {
+        GraphError::NoEdge => "NoEdgeError",
+        GraphError::NotConnected { .. } => "NotConnectedError",
+        GraphError::TooManyEdges => "SizeError",
+        GraphError::LengthsDiffer { .. }
+        | GraphError::OppositeOutOfRange { .. }
+        | GraphError::OppositeFixed { .. }
+        | GraphError::OppositeNotMutual { .. }
+        | GraphError::ClockwiseOutOfRange { .. }
+        | GraphError::ClockwiseRepeated { .. } => "PermutationError",
+    }
+}
+
+/// The class of the error for a world file.
+fn file_error(kind: &WorldFileErrorKind) -> &'static str {
+    use toposlam_model::embedded_graph::ListError;
+    match kind {
+        WorldFileErrorKind::Lists(
+            ListError::UnknownNeighbour { .. }
+            | ListError::OneSided { .. }
+            | ListError::NotTwoEnds { .. },
+        ) => "MissingEdgeError",
+        WorldFileErrorKind::Lists(ListError::NotConnected { .. }) => "NotConnectedError",
+        _ => "WorldFileError",
+    }
+}
+
+/// The code of a plantri file.
+fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
+    if bytes.starts_with(b">>edge_code") {
+        return Some(plantri::PlantriCode::Edge);
+    }
+    if bytes.starts_with(b">>planar_code") {
+        return Some(plantri::PlantriCode::Planar);
+    }
+    match path.extension()?.to_str()? {
+        "ec" | "edge_code" => Some(plantri::PlantriCode::Edge),
+        "pc" | "plc" | "planar_code" => Some(plantri::PlantriCode::Planar),
+        _ => None,
+    }
+}

@@ -1,0 +1,338 @@
+"""Explorers, checked on every start."""
+
+import contextlib
+import pickle
+import random
+import re
+import time
+
+import pytest
+from depth_first import depth_first
+
+import toposlam as ts
+from toposlam import errors
+
+
+def by_algorithm(robot):
+    """Cannot be: an explorer gets a robot and nothing else."""
+    raise NotImplementedError("no")
+
+
+def test_a_depth_first_explorer_maps_every_start():
+    """The numbers of starts are those of `toposlam check`."""
+    report = ts.check(depth_first, edges=range(1, 6))
+    assert [size.starts for size in report.sizes] == [2, 10, 74, 706, 8162]
+    assert (report.verdict, report.failed, report.failures) == ("holds", 0, ())
+    # Certificate totals of all starts.
+    assert [size.certificate for size in report.sizes] == [2, 22, 266, 3625, 55411]
+    assert report.below_certificate == 0
+    assert report.vs_certificate > 1
+
+
+@pytest.mark.parametrize("cls, starts", [("simple", [1, 3, 9, 32]), ("corridor", [1, 3, 8])])
+def test_the_classes(cls, starts):
+    report = ts.check(depth_first, edges=range(1, len(starts) + 1), cls=cls)
+    assert report.verdict == "holds"
+    assert report.starts == report.mapped
+
+
+def test_a_generator_is_an_explorer():
+    def path(robot):
+        """Right on paths that begin at their end."""
+        degrees = [robot.percept.degree]
+        percept = yield 0
+        degrees.append(percept.degree)
+        while percept.degree == 2:
+            percept = yield 1
+            degrees.append(percept.degree)
+        last = len(degrees) - 1
+        lists = {0: [1], last: [last - 1]}
+        lists.update({v: [v - 1, v + 1] for v in range(1, last)})
+        return {v: lists[v] for v in sorted(lists)}, (last, 0)
+
+    chain = ts.World.load("worlds/chain-5.toml")
+    run = ts.explore(chain, algorithm=path)
+    assert run.moves == run.certificate == 5
+    report = ts.check(path, edges=[1, 2], cls="simple")
+    assert (report.starts, report.mapped) == (3, 2)
+
+
+@pytest.mark.parametrize("processes", [2, 3])
+def test_the_report_does_not_depend_on_the_number_of_processes(processes):
+    alone = ts.check(wrong_sometimes, edges=[3, 4])
+    together = ts.check(wrong_sometimes, edges=[3, 4], processes=processes)
+    assert repr(alone) == repr(together)
+    assert [str(failure) for failure in alone.failures] == [str(f) for f in together.failures]
+    assert [f.world for f in alone.failures] == [f.world for f in together.failures]
+    assert alone.sizes == together.sizes
+
+
+def wrong_sometimes(robot):
+    """Wrong where the start has degree 2."""
+    map_, pose = depth_first(robot)
+    if len(map_[0]) == 2:
+        return {0: [1], 1: [0]}, (0, 0)
+    return map_, pose
+
+
+def test_shards_together_are_the_whole_check_in_any_order():
+    whole = ts.check(wrong_sometimes, edges=[3, 4])
+    shards = [ts.check_shard(s, wrong_sometimes, edges=[3, 4]) for s in ts.shards(5)]
+    assert shards[0].verdict in ("not known", "violated")
+    random.Random(1).shuffle(shards)
+    merged = ts.merge(pickle.loads(pickle.dumps(shards)))
+    assert merged.is_complete and merged.sizes == whole.sizes
+    assert [str(f) for f in merged.failures] == [str(f) for f in whole.failures]
+    assert ts.merge(shards[:4]).verdict == "violated"
+    right = [ts.check_shard(s, depth_first, edges=3) for s in ts.shards(3)]
+    assert ts.merge(right[:2]).verdict == "not known"
+    assert ts.merge(right).verdict == "holds"
+    with pytest.raises(errors.ShardError, match="twice"):
+        ts.merge([right[0], right[0]])
+    with pytest.raises(errors.ShardError, match="one check"):
+        ts.merge([right[0], shards[1]])
+    with pytest.raises(errors.ShardError):
+        ts.merge([])
+
+
+def test_a_failure_is_drawn_and_can_be_repeated():
+    report = ts.check(wrong_sometimes, edges=[2, 3])
+    failure = report.failures[0]
+    assert failure.world.edge_count == 2
+    assert "<svg" in failure.draw().svg and "after" in failure.draw().svg
+    with pytest.raises(type(failure.error)) as raised:
+        ts.explore(failure.world, algorithm=wrong_sometimes)
+    assert raised.value.message == failure.error.message
+    again = pickle.loads(pickle.dumps(failure))
+    assert str(again) == str(failure) and again.world == failure.world
+
+
+def test_the_number_of_failures_that_are_kept():
+    report = ts.check(wrong_sometimes, edges=[3, 4], max_failures=3)
+    together = ts.check(wrong_sometimes, edges=[3, 4], max_failures=3, processes=2)
+    assert len(report.failures) == len(together.failures) == 3
+    assert [str(f) for f in report.failures] == [str(f) for f in together.failures]
+    assert report.failed == together.failed > 3
+
+
+def test_a_guess_is_below_the_certificate():
+    def guess(robot):
+        return {0: [(1, 0)], 1: [(0, 0)]}, (0, 0)
+
+    report = ts.check(guess, edges=[1])
+    assert (report.mapped, report.starts, report.below_certificate) == (1, 2, 1)
+
+
+def looks_at(robot):
+    return robot.percept.marker
+
+
+EXPLORERS = [
+    (lambda robot: None, errors.NoAnswerError, "returned None", 0),
+    (lambda robot: 7, errors.AnswerError, "returned 7", 0),
+    (lambda robot: {0: [1], 1: [0]}, errors.AnswerError, "pair of a map and a pose", 0),
+    (lambda robot: ({0: [1]}, (0, 0)), errors.AnswerError, "neither a vertex", 0),
+    (lambda robot: ({0: [1], 1: []}, (0, 0)), errors.AnswerError, "does not list 0 back", 0),
+    (lambda robot: ({0: [1], 1: [0]}, (2, 0)), errors.AnswerError, "no vertex 2", 0),
+    (lambda robot: ({0: [1], 1: [0]}, (0, 1)), errors.AnswerError, "no door 1", 0),
+    (lambda robot: ({0: [1], 1: [0]}, None), errors.AnswerError, "pair", 0),
+    (lambda robot: ({0: [1], 1: [0]}, (1, 0)), errors.WrongPoseError, r"by \(0, 0\) of the map", 0),
+    (lambda robot: (ts.World({0: [1], 1: [0]}), "v:w"), errors.AnswerError, "pose 'v:w'", 0),
+    (lambda robot: ({0: [1, 2], 1: [0], 2: [0]}, (0, 0)), errors.WrongMapError, "not the world", 0),
+    (
+        lambda robot: robot.go(7),
+        errors.NoSuchDoorError,
+        "door 7 was taken at a vertex with 1 door",
+        0,
+    ),
+    (lambda robot: robot.go(-1), errors.NoSuchDoorError, "door -1", 0),
+    (lambda robot: robot.go(10**30), errors.NoSuchDoorError, "door 1000", 0),
+    (lambda robot: robot.go("1"), errors.DoorTypeError, "not '1'", 0),
+    (lambda robot: robot.go(None), errors.DoorTypeError, "not None", 0),
+    (lambda robot: robot.go(0.5), errors.DoorTypeError, "not 0.5", 0),
+    (lambda robot: robot.go(0).nothing, errors.RaisedError, "AttributeError", 1),
+    (lambda robot: 1 / 0, errors.RaisedError, "ZeroDivisionError", 0),
+    (lambda robot: robot.drop(), errors.NoMarkerError, "no marker that it could drop", 0),
+    (lambda robot: setattr(robot, "moves", 3), errors.RaisedError, "AttributeError", 0),
+    (lambda robot: setattr(robot, "speed", 3), errors.RaisedError, "AttributeError", 0),
+    (lambda: None, errors.RaisedError, "TypeError", 0),
+]
+
+
+@pytest.mark.parametrize("explorer, kind, text, moves", EXPLORERS)
+def test_every_mistake_has_an_error_of_its_own_with_start_and_step(explorer, kind, text, moves):
+    report = ts.check(explorer, edges=1, cls="simple")
+    assert (report.verdict, report.starts) == ("violated", 1)
+    error = report.failures[0].error
+    assert type(error) is kind
+    assert error.start == "simple-1-0 v0:v1" and error.moves == moves
+    assert re.search(text, error.message), error.message
+    assert str(error).startswith(f"start simple-1-0 v0:v1, after {moves} move")
+    with pytest.raises(kind, match="after"):
+        ts.explore(ts.World({0: [1], 1: [0]}), algorithm=explorer)
+
+
+def test_generators_fail_like_functions():
+    def seven(robot):
+        yield 7
+
+    def nothing(robot):
+        yield 0
+
+    def stubborn(robot):
+        while True:
+            with contextlib.suppress(Exception):
+                yield 7
+
+    kinds = [errors.NoSuchDoorError, errors.NoAnswerError, errors.NoSuchDoorError]
+    for explorer, kind in zip([seven, nothing, stubborn], kinds):
+        assert type(ts.check(explorer, edges=1).failures[0].error) is kind
+
+
+def test_an_explorer_that_never_ends():
+    def walks(robot):
+        while True:
+            robot.go(0)
+
+    def swallows(robot):
+        while True:
+            with contextlib.suppress(Exception):
+                robot.go(0)
+
+    def thinks(robot):
+        while True:
+            pass
+
+    def recurses(robot):
+        return recurses(robot)
+
+    error = ts.check(walks, edges=1, max_moves=50).failures[0].error
+    assert type(error) is errors.OutOfMovesError and error.moves == 50
+    for explorer in (swallows, thinks):
+        begun = time.monotonic()
+        report = ts.check(explorer, edges=1, cls="simple", seconds=0.3)
+        assert type(report.failures[0].error) is errors.OutOfTimeError
+        assert time.monotonic() - begun < 5
+    error = ts.check(recurses, edges=1).failures[0].error
+    assert type(error) is errors.RaisedError and "RecursionError" in error.message
+    # What comes after is not disturbed.
+    assert ts.check(depth_first, edges=[1, 2, 3]).verdict == "holds"
+
+
+def test_the_cause_of_an_exception_is_kept():
+    def raises(robot):
+        raise KeyError("lost")
+
+    error = ts.check(raises, edges=1).failures[0].error
+    assert isinstance(error.__cause__, KeyError)
+    assert "KeyError: 'lost' (in raises, line " in error.message
+
+
+def test_ctrl_c_in_an_explorer_ends_the_check():
+    def impatient(robot):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ts.check(impatient, edges=3)
+
+
+@pytest.mark.parametrize(
+    "arguments, kind",
+    [
+        ({"explorer": 7}, errors.NotAnExplorerError),
+        ({"explorer": None}, errors.NotAnExplorerError),
+        ({"edges": 0}, errors.SizeError),
+        ({"edges": 33}, errors.SizeError),
+        ({"edges": "5"}, errors.SizeError),
+        ({"edges": 2.0}, errors.SizeError),
+        ({"edges": []}, errors.SizeError),
+        ({"edges": None}, errors.SizeError),
+        ({"edges": True}, errors.SizeError),
+        ({"cls": "tree"}, errors.UnknownClassError),
+        ({"cls": None}, errors.UnknownClassError),
+        ({"marker": "chalk"}, errors.UnknownMarkerError),
+        ({"max_moves": 0}, errors.SizeError),
+        ({"max_failures": -1}, errors.SizeError),
+        ({"seconds": 0}, errors.SizeError),
+        ({"processes": 0}, errors.SizeError),
+        ({"processes": 2, "explorer": lambda robot: None}, errors.NotPicklableError),
+    ],
+)
+def test_wrong_arguments(arguments, kind):
+    with pytest.raises(kind):
+        ts.check(**{"explorer": depth_first, "edges": 1, **arguments})
+
+
+@pytest.mark.parametrize("shard", ["0/3", "4/3", "1", "a/b", None, 3, "1/0", "1/2/3", "-1/3"])
+def test_what_is_not_a_shard(shard):
+    with pytest.raises(errors.ShardError):
+        ts.check_shard(shard, depth_first, edges=1)
+
+
+def test_the_algorithms_of_the_package():
+    world = ts.World.load("worlds/shape-8.toml")
+    for algorithm in ["algorithm1", "folding", "movable"]:
+        run = ts.explore(world, algorithm=algorithm)
+        assert run.map.is_isomorphic(world)
+        assert run.moves == sum(isinstance(action, int) for action in run.actions)
+        assert run.moves >= run.certificate or algorithm == "movable"
+        assert run.story.startswith("World shape-8.")
+        assert "<svg" in run._repr_svg_()
+    with pytest.raises(errors.UnknownAlgorithmError, match="`magic` is not an algorithm"):
+        ts.explore(world, algorithm="magic")
+    with pytest.raises(errors.NotSimpleError):
+        ts.explore(ts.World.load("worlds/theta-plane.toml"), algorithm="movable")
+    with pytest.raises(errors.MapTooLargeError, match="more than 3 darts"):
+        ts.explore(world, max_darts=3)
+    with pytest.raises(errors.NotAnExplorerError):
+        ts.explore(world, algorithm=3)
+    with pytest.raises(errors.SizeError):
+        ts.explore(world, max_darts="many")
+
+
+def test_the_moves_of_algorithm_1_are_those_of_the_robot():
+    """An explorer that replays the doors of Algorithm 1 and returns its map is right."""
+    world = ts.World.load("worlds/figure-1b.toml")
+    run = ts.explore(world)
+
+    def replay(robot):
+        for door in run.actions:
+            robot.go(door)
+        return run.map, run.pose
+
+    assert ts.explore(world, algorithm=replay).moves == run.moves
+
+
+def test_a_map_that_is_a_world_has_its_own_start():
+    world = ts.World.load("worlds/figure-1a.toml").with_start(("a", 1))
+    assert ts.explore(world, algorithm=lambda robot: (world, world.start)).moves == 0
+    elsewhere = world.with_start(("x", 0))
+    with pytest.raises(errors.WrongMapError, match="its start is at another place"):
+        ts.explore(world, algorithm=lambda robot: (elsewhere, elsewhere.start))
+
+
+@pytest.mark.parametrize("algorithm, mean", [("algorithm1", 7.296), ("folding", 7.093)])
+def test_the_mean_moves_of_the_algorithms_on_all_starts(algorithm, mean):
+    """Simple worlds with 5 edges; the means are those that a prototype of both had."""
+    moves = []
+
+    def visit(start):
+        world = ts.World._of(start.world("start"))
+        moves.append(ts.explore(world, algorithm=algorithm).moves)
+
+    from toposlam import _core
+
+    _core.visit_starts("simple", 5, 0, 1, visit)
+    assert len(moves) == _core.count_starts("simple", 5) == 108
+    assert round(sum(moves) / len(moves), 3) == mean
+
+
+def test_a_map_that_is_a_planar_embedding():
+    pytest.importorskip("networkx")
+    world = ts.World.load("worlds/shape-6.toml")
+    first = world.start.vertex
+    order = [first, *(vertex for vertex in world.vertices if vertex != first)]
+    lists = {vertex: world.neighbours[vertex] for vertex in order}
+    turned = lists[first][world.start.index :] + lists[first][: world.start.index]
+    embedding = ts.World({**lists, first: turned}).to_networkx()
+    assert ts.explore(world, algorithm=lambda robot: (embedding, (first, 0))).moves == 0

@@ -1,0 +1,158 @@
+"""Worlds that a marker cannot tell apart; numbers from docs/commands.md and the paper."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+import toposlam as ts
+from toposlam import errors
+
+A, B = "worlds/figure-1a.toml", "worlds/figure-1b.toml"
+
+
+def figure_1():
+    return ts.World.load(A), ts.World.load(B)
+
+
+def test_figure_1_with_an_undirected_marker():
+    one, other = figure_1()
+    found = ts.compare(one, other, marker="undirected")
+    assert not found.is_isomorphic and not found.is_distinguishable
+    pairs = set(found.relation)
+    assert (one.start, found.start_like) in pairs
+    # The relation is a bisimulation: each door leads from a pair to a pair, and the percepts agree.
+    for here, there in pairs:
+        assert one.degree(here.vertex) == other.degree(there.vertex)
+        assert (here.vertex == one.start.vertex) == (there.vertex == other.start.vertex)
+        for door in range(one.degree(here.vertex)):
+            assert (one.after(here, door), other.after(there, door)) in pairs
+
+
+def test_figure_1_with_a_directional_marker():
+    one, other = figure_1()
+    walk = ts.compare(one, other).walk
+    robots = [one.robot(), other.robot()]
+    senses = [[robot.percept, *(robot.go(door) for door in walk.actions)] for robot in robots]
+    assert senses[0][:-1] == senses[1][:-1]
+    assert (senses[0][-1], senses[1][-1]) == walk.percepts
+    assert walk.percepts[0] != walk.percepts[1]
+
+
+def test_a_world_and_itself():
+    one, _ = figure_1()
+    found = ts.compare(one, one)
+    assert found.is_isomorphic and found.relation is not None
+    for dart, image in found.bijection.items():
+        assert found.bijection[one.opposite(dart)] == one.opposite(image)
+        assert found.bijection[one.clockwise(dart)] == one.clockwise(image)
+
+
+def test_the_smallest_worlds_of_each_marker():
+    found = ts.counterexample(marker="undirected", cls="simple", edges=8)
+    pair = found.smallest
+    assert (pair.one.edge_count, pair.other.edge_count) == (6, 6) or pair.one.edge_count <= 8
+    assert pair.compare().relation is not None
+    assert "<svg" in pair._repr_svg_()
+    assert ts.counterexample(marker="directional", cls="multigraph", edges=4).smallest is None
+
+
+def test_a_marker_of_your_own_that_is_a_known_one():
+    def undirected(pose, world):
+        return "here" if pose.vertex == world.start.vertex else None
+
+    def directional(pose, world):
+        if pose.vertex != world.start.vertex:
+            return None
+        return (world.start.index - pose.index) % world.degree(pose.vertex)
+
+    for own, name, edges in [(undirected, "undirected", 6), (directional, "directional", 5)]:
+        mine, known = (ts.counterexample(m, "simple", edges) for m in (own, name))
+        assert mine.sizes == known.sizes
+        assert [[w.neighbours for w in group] for group in mine.groups] == [
+            [w.neighbours for w in group] for group in known.groups
+        ]
+    one, other = figure_1()
+    assert ts.compare(one, other, marker=undirected).relation is not None
+    assert ts.compare(one, other, marker=directional).walk is not None
+
+
+def test_a_beacon_tells_no_more_apart_than_an_undirected_marker():
+    """As model/examples/own_marker.rs, which prints the same numbers for both."""
+
+    def beacon(pose, world):
+        if pose.vertex == world.start.vertex:
+            return "loud"
+        return "faint" if world.start.vertex in world.neighbours[pose.vertex] else None
+
+    loud = ts.counterexample(beacon, "simple", 6).sizes
+    assert loud == ts.counterexample("undirected", "simple", 6).sizes
+
+
+@pytest.mark.parametrize(
+    "marker, kind, text",
+    [
+        ("chalk", errors.UnknownMarkerError, "`chalk` is not a marker"),
+        (lambda pose, world: 1 / 0, errors.MarkerFunctionError, "ZeroDivisionError"),
+        (lambda pose, world: [], errors.MarkerFunctionError, "unhashable"),
+        (lambda: 1, errors.MarkerFunctionError, "positional argument"),
+        (7, errors.MarkerFunctionError, "a name or a function"),
+    ],
+)
+def test_what_is_not_a_marker(marker, kind, text):
+    with pytest.raises(kind, match=text):
+        ts.counterexample(marker, "simple", 3)
+    with pytest.raises(kind, match=text):
+        ts.compare(*figure_1(), marker=marker)
+
+
+@pytest.mark.parametrize(
+    "cls, edges, kind",
+    [
+        ("tree", 3, errors.UnknownClassError),
+        ("simple", 0, errors.SizeError),
+        ("simple", 99, errors.SizeError),
+        ("simple", "3", errors.SizeError),
+        ("simple", 2.5, errors.SizeError),
+    ],
+)
+def test_what_cannot_be_searched(cls, edges, kind):
+    with pytest.raises(kind):
+        ts.counterexample("none", cls, edges)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Ctrl-C is a signal on POSIX")
+def test_a_long_search_lets_other_threads_run_and_ends_at_ctrl_c():
+    """The search would take hours."""
+    code = (
+        "import threading, time, toposlam as ts\n"
+        "ticks = []\n"
+        "def tick():\n"
+        "    while True: time.sleep(0.01); ticks.append(1)\n"
+        "threading.Thread(target=tick, daemon=True).start()\n"
+        "print('ready', flush=True)\n"
+        "try: ts.counterexample('undirected', 'multigraph', 12)\n"
+        "except KeyboardInterrupt: print('stopped', len(ticks) > 20)\n"
+    )
+    command = [sys.executable, "-c", code]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        assert process.stdout.readline() == "stopped True\n"
+        assert time.monotonic() - begun < 10
+        assert process.wait(10) == 0
+
+
+def test_progress_is_shown_if_it_is_wanted(capsys):
+    pytest.importorskip("tqdm")
+    ts.counterexample("none", "simple", 6, progress=True)
+    assert "searching" in capsys.readouterr().err
+    ts.counterexample("none", "simple", 6, progress=False)
+    assert capsys.readouterr().err == ""
+    assert threading.active_count() < 10

@@ -1,0 +1,246 @@
+"""Worlds from dicts, networkx, permutations and files, and what is wrong with others."""
+
+import pickle
+
+import pytest
+
+import toposlam as ts
+from toposlam import errors
+
+K4 = {"a": "bcd", "b": "adc", "c": "abd", "d": "acb"}
+
+
+def lists(text):
+    return {vertex: list(neighbours) for vertex, neighbours in text.items()}
+
+
+def test_a_dict_of_neighbours():
+    world = ts.World(lists(K4), name="k4")
+    assert (world.vertex_count, world.edge_count, world.genus, world.is_simple) == (4, 6, 0, True)
+    assert world.start == ("a", 0)
+    assert world.neighbours["b"] == ("a", "d", "c")
+    assert world.is_isomorphic(ts.World.load("worlds/k4-plane.toml")) in (True, False)
+    assert world.with_start(None).is_isomorphic(ts.World.load("worlds/k4-plane.toml").with_start(None))
+    assert not world.is_isomorphic(ts.World.load("worlds/k4-torus.toml"))
+
+
+def test_a_dict_of_far_ends_has_loops_and_parallel_edges():
+    theta = ts.World({"u": [("v", 2), ("v", 1), ("v", 0)], "v": [("u", 2), ("u", 1), ("u", 0)]})
+    assert theta.genus == 0
+    assert theta.with_start(None).is_isomorphic(ts.World.load("worlds/theta-plane.toml").with_start(None))
+    torus = ts.World({0: [(0, 2), (0, 3), (0, 0), (0, 1)]})
+    assert (torus.genus, torus.vertex_count, torus.edge_count) == (1, 1, 2)
+    assert ts.World(dict(torus.far_ends)).is_isomorphic(torus)
+
+
+@pytest.mark.parametrize(
+    "opposite, clockwise",
+    [
+        ([1, 0, 3, 2], [0, 2, 1, 3]),
+        ([2, 1, 4, 3], [1, 3, 2, 4]),
+        ("(1,2)(3,4)", "(2,3)"),
+        ("(1,2)(3,4)", [(2, 3)]),
+        ([(0, 1), (2, 3)], [(0,), (1, 2), (3,)]),
+    ],
+)
+def test_permutations_of_all_kinds(opposite, clockwise):
+    path = ts.World({1: [2], 2: [1, 3], 3: [2]})
+    assert ts.World.from_permutations(opposite, clockwise).is_isomorphic(path)
+
+
+def test_permutations_of_sage():
+    class Element:
+        """As SageMath's PermutationGroupElement."""
+
+        def __init__(self, *cycles):
+            self.cycles = cycles
+
+        def cycle_tuples(self):
+            return list(self.cycles)
+
+    path = ts.World({1: [2], 2: [1, 3], 3: [2]})
+    found = ts.World.from_permutations(Element((1, 2), (3, 4)), Element((2, 3)), start=4)
+    assert found.is_isomorphic(path.with_start((3, 0)))
+
+
+def test_a_planar_embedding_there_and_back():
+    networkx = pytest.importorskip("networkx")
+    _, embedding = networkx.check_planarity(networkx.wheel_graph(5))
+    world = ts.World(embedding, name="wheel")
+    wheel = ts.World.load("worlds/figure-1a.toml")
+    plain = wheel.with_start(None)
+    assert world.with_start(None).is_isomorphic(plain) or world.mirror_image().with_start(None).is_isomorphic(
+        plain
+    )
+    assert ts.World(wheel.to_networkx(), start="x:a").is_isomorphic(wheel)
+    with pytest.raises(errors.NoEmbeddingError, match="genus is 1"):
+        ts.World.load("worlds/figure-1b.toml").to_networkx()
+
+
+def test_a_world_is_saved_pickled_and_drawn(tmp_path):
+    for name in ["figure-1b", "theta-torus", "shape-6", "two-loops-plane"]:
+        world = ts.World.load(f"worlds/{name}.toml")
+        assert pickle.loads(pickle.dumps(world)) == world
+        world.save(tmp_path / "world.json")
+        assert ts.World.load(tmp_path / "world.json").is_isomorphic(world)
+        world.draw().save(tmp_path / "world.png")
+        assert (tmp_path / "world.png").read_bytes().startswith(b"\x89PNG")
+        assert world._repr_svg_().startswith("<svg")
+    with pytest.raises(errors.PictureError):
+        world.draw().save(tmp_path / "world.gif")
+
+
+def test_a_walk_in_a_world():
+    world = ts.World.load("worlds/figure-1a.toml")
+    robot = world.robot()
+    pose = world.start
+    for door in [1, 1, 2, 0]:
+        percept = robot.go(door)
+        pose = world.after(pose, door)
+        assert percept.degree == world.degree(pose.vertex)
+    assert world.walk(world.start, [1, 1, 2, 0]) == pose
+    assert world.opposite(world.opposite(pose)) == pose
+    for dart in world.darts():
+        turns = [dart]
+        while world.clockwise(turns[-1]) != dart:
+            turns.append(world.clockwise(turns[-1]))
+        start = dart.index
+        around = world.darts(dart.vertex)
+        assert turns == around[start:] + around[:start]
+    assert robot.actions == [1, 1, 2, 0]
+
+
+def test_the_mirror_image_and_corners():
+    world = ts.World.load("worlds/figure-1a.toml")
+    assert world.mirror_image().mirror_image().is_isomorphic(world)
+    assert ts.World.load("worlds/cycle-4.toml").edge_count == 4
+    assert ts.World.load("worlds/shape-6.toml").without_corners().edge_count == 2
+
+
+WRONG = [
+    ({}, errors.NoEdgeError, "no vertex"),
+    ({"a": []}, errors.NoEdgeError, "no edge"),
+    ({"a": ["b"], "b": []}, errors.MissingEdgeError, "'a' lists the neighbour 'b', which does not"),
+    ({"a": ["b"]}, errors.MissingEdgeError, "'a' lists 'b', which is neither a vertex"),
+    ({"a": ["b", None], "b": ["a"]}, errors.MissingEdgeError, "leads nowhere"),
+    ({"a": ["a"]}, errors.RepeatedEdgeError, "lists itself"),
+    ({"a": ["b", "b"], "b": ["a", "a"]}, errors.RepeatedEdgeError, "'b' twice"),
+    ({"a": ["b"], "b": ["a"], "c": ["d"], "d": ["c"]}, errors.NotConnectedError, "c cannot be"),
+    ({0: [(0, 0)]}, errors.MissingEdgeError, "leads to itself"),
+    ({0: [(1, 0)], 1: [(0, 1)]}, errors.MissingEdgeError, "which leads to"),
+    ({0: [(1, 5)], 1: [(0, 0)]}, errors.MissingEdgeError, "does not exist"),
+    ({"a": 7}, errors.WorldTypeError, "needs a list"),
+    ({"a": "b", "b": "a"}, errors.WorldTypeError, "needs a list"),
+    ({1: [2], "1": [2], 2: [1, "1"]}, errors.WorldError, "two vertices have the name 1"),
+    (None, errors.WorldTypeError, "NoneType"),
+    ([1, 2], errors.WorldTypeError, "list"),
+    ("worlds/figure-1a.toml", errors.WorldTypeError, "str"),
+]
+
+
+@pytest.mark.parametrize("value, kind, text", WRONG)
+def test_what_is_not_a_world_has_an_error_of_its_own(value, kind, text):
+    with pytest.raises(errors.WorldError, match=text) as raised:
+        ts.World(value)
+    assert type(raised.value) is kind
+
+
+def test_a_graph_of_networkx_without_embedding():
+    networkx = pytest.importorskip("networkx")
+    with pytest.raises(errors.NoEmbeddingError, match="check_planarity"):
+        ts.World(networkx.complete_graph(4))
+    torus = networkx.PlanarEmbedding()
+    lists = ts.World.load("worlds/figure-1b.toml").neighbours
+    torus.set_data({vertex: list(listed) for vertex, listed in lists.items()})
+    with pytest.raises(errors.NoEmbeddingError, match="not valid"):
+        ts.World(torus)
+
+
+@pytest.mark.parametrize(
+    "opposite, clockwise",
+    [
+        ([1, 0], [0, 0]),
+        ([0, 1], [0, 1]),
+        ([1, 2, 0], [0, 1, 2]),
+        ("(1,2)(2,3)", "()"),
+        ("hello", "()"),
+        (5, [0]),
+        ([1, 0], ["a", "b"]),
+        ([1, 0], [0, 1, 2]),
+        ([], []),
+        ([(0, -1)], [0, 1]),
+    ],
+)
+def test_what_are_not_permutations(opposite, clockwise):
+    with pytest.raises((errors.PermutationError, errors.NoEdgeError)):
+        ts.World.from_permutations(opposite, clockwise)
+
+
+def test_permutations_of_two_components():
+    with pytest.raises(errors.NotConnectedError):
+        ts.World.from_permutations("(1,2)(3,4)", "()")
+    with pytest.raises(errors.UnknownStartError):
+        ts.World.from_permutations("(1,2)", "()", start=3)
+
+
+@pytest.mark.parametrize(
+    "text, kind, message",
+    [
+        ('name = "x"\n[clockwise]\na = ["b"]\n', errors.MissingEdgeError, "a.toml: .*`b`"),
+        ("[clockwise", errors.WorldFileError, "a.toml: "),
+        ("", errors.WorldFileError, "the file is empty"),
+        ('name = "x"', errors.WorldFileError, "no world"),
+        (
+            '[clockwise]\na = ["b"]\nb = ["a"]\nc = ["d"]\nd = ["c"]\n',
+            errors.NotConnectedError,
+            "c",
+        ),
+        ("\0\1\2", errors.WorldFileError, "a.toml"),
+    ],
+)
+def test_a_file_that_is_not_a_world(tmp_path, text, kind, message):
+    file = tmp_path / "a.toml"
+    file.write_text(text)
+    with pytest.raises(errors.WorldError, match=message) as raised:
+        ts.World.load(file)
+    assert type(raised.value) is kind
+
+
+def test_a_file_that_does_not_exist():
+    with pytest.raises(errors.WorldFileError, match="No such file"):
+        ts.World.load("worlds/nowhere.toml")
+
+
+@pytest.mark.parametrize(
+    "start", ["x", "x:q", ("x", 4), ("x", -1), ("q", 0), ("x", "a"), 3, None.__class__, ("x",)]
+)
+def test_a_start_that_is_not_there(start):
+    with pytest.raises(errors.UnknownStartError):
+        ts.World.load("worlds/figure-1a.toml").with_start(start)
+
+
+def test_a_world_without_start():
+    world = ts.World.load("worlds/figure-1a.toml").with_start(None)
+    for ask in [
+        ts.explore,
+        certificate_of,
+        lambda world: world.robot(),
+        lambda w: ts.compare(w, w),
+    ]:
+        with pytest.raises(errors.NoStartError, match="figure-1a has no start"):
+            ask(world)
+
+
+def certificate_of(world):
+    return world.certificate()
+
+
+def test_a_world_cannot_be_changed():
+    world = ts.World.load("worlds/figure-1a.toml")
+    with pytest.raises(errors.FrozenError):
+        world.name = "other"
+    with pytest.raises(errors.FrozenError):
+        del world._core
+    with pytest.raises(TypeError):
+        world.neighbours["x"] = ()
+    assert world == ts.World.load("worlds/figure-1a.toml")

@@ -1,0 +1,76 @@
+"""Deterministic topological SLAM: explore worlds, check explorers, and compare markers.
+
+>>> import toposlam as ts
+>>> w = ts.World.load("worlds/figure-1a.toml")
+>>> run = ts.explore(w, algorithm="folding")
+>>> run.moves, run.certificate
+(14, 12)
+"""
+
+from . import errors
+from ._core import Percept, Robot
+from .checks import (
+    CLASSES,
+    CheckReport,
+    Failure,
+    SizeReport,
+    check,
+    check_shard,
+    merge,
+    shards,
+)
+from .comparisons import (
+    Comparison,
+    Counterexamples,
+    SearchedSize,
+    Walk,
+    WorldPair,
+    compare,
+    counterexample,
+)
+from .errors import ExplorerError, ToposlamError, WorldError
+from .logs import ConformReport, Divergence, Log, LogEvent, Table, conform, read_log
+from .markers import MARKERS
+from .plots import plot_costs, plot_visits, plot_way
+from .runs import Run, explore
+from .worlds import Dart, Picture, World
+
+__all__ = [
+    "CLASSES",
+    "MARKERS",
+    "CheckReport",
+    "Comparison",
+    "ConformReport",
+    "Counterexamples",
+    "Dart",
+    "Divergence",
+    "ExplorerError",
+    "Failure",
+    "Log",
+    "LogEvent",
+    "Percept",
+    "Picture",
+    "Robot",
+    "Run",
+    "SearchedSize",
+    "SizeReport",
+    "Table",
+    "ToposlamError",
+    "Walk",
+    "World",
+    "WorldError",
+    "WorldPair",
+    "check",
+    "check_shard",
+    "compare",
+    "conform",
+    "counterexample",
+    "errors",
+    "explore",
+    "merge",
+    "plot_costs",
+    "plot_visits",
+    "plot_way",
+    "read_log",
+    "shards",
+]

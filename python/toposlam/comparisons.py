@@ -1,0 +1,200 @@
+"""Worlds that a marker cannot tell apart."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Union
+
+from . import _core
+from .errors import SizeError
+from .markers import Marker, of_core
+from .progress import bar
+from .worlds import Dart, Picture, World
+
+Action = Union[int, str]
+"""What a robot does: a door, "pick-up" or "drop"."""
+
+
+@dataclass(frozen=True)
+class Walk:
+    """A walk that distinguishes two worlds: what both robots do, and what they sense at its end."""
+
+    actions: tuple[Action, ...]
+    percepts: tuple[_core.Percept, _core.Percept]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two worlds, compared."""
+
+    one: World
+    other: World
+    bijection: dict[Dart, Dart] | None
+    """From the darts of one to those of the other, if they are isomorphic as graphs."""
+    difference: str | None
+    """What differs first, if they are not."""
+    are_mirror_images: bool
+    start_like: Dart | None
+    """The start of the other world that is indistinguishable from that of the one."""
+    relation: tuple[tuple[Dart, Dart], ...] | None
+    """All pairs of poses in which two robots that do the same can be, if they never sense a difference. It
+    proves that, and was verified. With a movable marker, a pair of poses may occur several times."""
+    walk: Walk | None
+    """The shortest walk that distinguishes the worlds, if there is one. It was verified."""
+
+    @property
+    def is_isomorphic(self) -> bool:
+        """Whether the worlds are isomorphic as graphs."""
+        return self.bijection is not None
+
+    @property
+    def is_distinguishable(self) -> bool:
+        """Whether a robot can tell the worlds apart."""
+        return self.walk is not None
+
+    def __repr__(self) -> str:
+        same = "isomorphic" if self.is_isomorphic else f"not isomorphic: {self.difference}"
+        if self.relation is not None:
+            told = f"indistinguishable, by a relation of {len(self.relation)} pairs"
+        else:
+            doors = () if self.walk is None else self.walk.actions
+            told = f"distinguished by {list(doors)}"
+        return f"<Comparison of {self.one.name} and {self.other.name}: {same}; {told}>"
+
+
+def compare(one: World, other: World, marker: Marker = "directional") -> Comparison:
+    """Compares two worlds, and what a robot with a marker can find out about them.
+
+    >>> import toposlam as ts
+    >>> a, b = ts.World.load("worlds/figure-1a.toml"), ts.World.load("worlds/figure-1b.toml")
+    >>> found = ts.compare(a, b, marker="undirected")
+    >>> found.difference, len(found.relation)
+    ('genus 0 against 1', 32)
+    >>> ts.compare(a, b).walk.actions
+    (0, 1, 1)
+    """
+    found = _core.compare(one._core, one.facing(), other._core, other.facing(), of_core(marker))
+    here, there = one.darts(), other.darts()
+    images, pairs, percepts = found["bijection"], found["relation"], found["percepts"]
+    walk = None
+    if found["walk"] is not None and percepts is not None:
+        walk = Walk(tuple(found["walk"]), percepts)
+    start = found["start_like"]
+    return Comparison(
+        one=one,
+        other=other,
+        bijection=None if images is None else dict(zip(here, (there[image] for image in images))),
+        difference=found["difference"],
+        are_mirror_images=found["mirror"],
+        start_like=None if start is None else there[start],
+        relation=None if pairs is None else tuple((here[a[0]], there[b[0]]) for a, b in pairs),
+        walk=walk,
+    )
+
+
+@dataclass(frozen=True)
+class WorldPair:
+    """Two worlds that a marker cannot tell apart."""
+
+    one: World
+    other: World
+    marker: Marker
+
+    def compare(self) -> Comparison:
+        """The relation that proves it."""
+        return compare(self.one, self.other, self.marker)
+
+    def draw(self) -> Picture:
+        """Both worlds, side by side."""
+        kind = self.marker if isinstance(self.marker, str) else "directional"
+        return side_by_side([world.draw(marker=kind).svg for world in (self.one, self.other)])
+
+    def _repr_svg_(self) -> str:
+        return self.draw().svg
+
+
+@dataclass(frozen=True)
+class SearchedSize:
+    """What a search found among the worlds with one number of edges."""
+
+    edges: int
+    placed_worlds: int
+    ambiguous: int
+
+
+@dataclass(frozen=True)
+class Counterexamples:
+    """All worlds up to a size that a marker cannot tell apart."""
+
+    marker: Marker
+    cls: str
+    sizes: tuple[SearchedSize, ...]
+    groups: tuple[tuple[World, ...], ...]
+    """Worlds that are indistinguishable from each other; the group with the smallest pair first."""
+
+    @property
+    def smallest(self) -> WorldPair | None:
+        """The smallest pair, or None if there is none."""
+        return next(iter(self.pairs()), None)
+
+    def pairs(self) -> list[WorldPair]:
+        """All pairs, group by group."""
+        return [
+            WorldPair(one, other, self.marker)
+            for group in self.groups
+            for one, other in combinations(group, 2)
+        ]
+
+    def __repr__(self) -> str:
+        marker = self.marker if isinstance(self.marker, str) else self.marker.__name__
+        edges = self.sizes[-1].edges if self.sizes else 0
+        found = f"{sum(map(len, self.groups))} worlds in {len(self.groups)} groups"
+        return f"<Counterexamples: {marker}, {self.cls}, up to {edges} edges: {found}>"
+
+
+def counterexample(
+    marker: Marker = "undirected",
+    cls: str = "simple",
+    edges: int = 6,
+    *,
+    progress: bool | None = None,
+) -> Counterexamples:
+    """Searches all worlds of a class with up to `edges` edges for those that a marker cannot tell apart.
+
+    `marker` is a name, or a function of your own: see `MarkerFunction`.
+
+    >>> import toposlam as ts
+    >>> ts.counterexample(marker="directional", cls="simple", edges=5).smallest is None
+    True
+    >>> ts.counterexample(marker="none", cls="simple", edges=4).smallest.other
+    <World none-2: 4 vertices, 4 edges, genus 0, start v0:v1>
+    """
+    if isinstance(edges, bool) or not isinstance(edges, int) or edges < 1:
+        raise SizeError(f"a number of edges is at least 1, not {edges!r}")
+    with bar("searching", "worlds", progress) as advance:
+        sizes, groups = _core.counterexample(of_core(marker), cls, edges, advance)
+    name = marker if isinstance(marker, str) else "world"
+    number = 0
+    named = []
+    for group in groups:
+        worlds = []
+        for core in group:
+            number += 1
+            worlds.append(World._of(core.with_start(core.start, f"{name}-{number}", core.about)))
+        named.append(tuple(worlds))
+    return Counterexamples(marker, cls, tuple(SearchedSize(*size) for size in sizes), tuple(named))
+
+
+def side_by_side(documents: list[str]) -> Picture:
+    """Several SVG documents in one, side by side."""
+    left, height, parts = 0.0, 0.0, []
+    for document in documents:
+        size = re.search(r'viewBox="([-\d. ]+)"', document)
+        width, tall = (float(part) for part in size[1].split()[2:]) if size else (400.0, 400.0)
+        inner = document[document.index("<svg") :].rstrip()
+        parts.append(f'<g transform="translate({left:g} 0)">{inner}</g>')
+        left, height = left + width, max(height, tall)
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left:g} {height:g}" '
+    return Picture(f'{head}width="{left:g}" height="{height:g}">{"".join(parts)}</svg>\n')

@@ -1,0 +1,197 @@
+"""The exceptions of the package: one class for each cause.
+
+Every exception is a `ToposlamError`. Those about an explorer, an `ExplorerError`, also give the start at
+which it failed and the number of moves that it had made.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class ToposlamError(Exception):
+    """Something that this package reports."""
+
+    def __init__(self, message: str, /) -> None:
+        super().__init__(message)
+        self.message = message
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class InternalError(ToposlamError):
+    """A bug in this package."""
+
+
+class MissingLibraryError(ToposlamError, ImportError):
+    """An optional library is not installed."""
+
+
+class FrozenError(ToposlamError, AttributeError):
+    """A value that cannot be changed was to be changed."""
+
+
+# Names and sizes
+
+
+class UnknownMarkerError(ToposlamError, ValueError):
+    """There is no kind of marker with this name."""
+
+
+class UnknownClassError(ToposlamError, ValueError):
+    """There is no class of worlds with this name."""
+
+
+class UnknownAlgorithmError(ToposlamError, ValueError):
+    """There is no algorithm with this name."""
+
+
+class SizeError(ToposlamError, ValueError):
+    """A number of edges is too small, or too large."""
+
+
+class ShardError(ToposlamError, ValueError):
+    """A text is not a shard `i/n`, or reports are not of disjoint shards of one check."""
+
+
+class MapTooLargeError(ToposlamError):
+    """A map has more darts than a bound allows."""
+
+
+class PictureError(ToposlamError):
+    """A picture cannot be made."""
+
+
+class LogError(ToposlamError, ValueError):
+    """A log cannot be read or checked."""
+
+
+# Worlds
+
+
+class WorldError(ToposlamError, ValueError):
+    """Something is not a world."""
+
+
+class WorldFileError(WorldError):
+    """A file is not a world file."""
+
+
+class WorldTypeError(WorldError, TypeError):
+    """A value of this type cannot be a world."""
+
+
+class NoEmbeddingError(WorldError):
+    """A graph has no clockwise order of its edges."""
+
+
+class MissingEdgeError(WorldError):
+    """One end of an edge is missing, or leads to nothing."""
+
+
+class RepeatedEdgeError(WorldError):
+    """Neighbours describe a loop or parallel edges, which need doors."""
+
+
+class NotConnectedError(WorldError):
+    """A world is not connected."""
+
+
+class NoEdgeError(WorldError):
+    """A world has no edge."""
+
+
+class NotSimpleError(WorldError):
+    """A world has a loop or parallel edges."""
+
+
+class PermutationError(WorldError):
+    """Two permutations are not those of a world."""
+
+
+class NoStartError(WorldError):
+    """A world has no start, and none is given."""
+
+
+class UnknownStartError(WorldError):
+    """A start is not in its world."""
+
+
+# Markers
+
+
+class MarkerFunctionError(ToposlamError):
+    """A marker's function raised an exception, or returned something that is not hashable."""
+
+
+# Explorers
+
+
+class ExplorerError(ToposlamError):
+    """An explorer failed.
+
+    `start` is the start, as a text, and `moves` the number of moves made by then.
+    """
+
+    def __init__(self, message: str, /, start: str | None = None, moves: int | None = None) -> None:
+        super().__init__(message)
+        self.start = start
+        self.moves = moves
+
+    def __str__(self) -> str:
+        place = [] if self.start is None else [f"start {self.start}"]
+        if self.moves is not None:
+            place.append(f"after {self.moves} move{'' if self.moves == 1 else 's'}")
+        return f"{', '.join(place)}: {self.message}" if place else self.message
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.message, self.start, self.moves)
+
+
+class NotAnExplorerError(ExplorerError, TypeError):
+    """An explorer cannot be called with a robot."""
+
+
+class DoorTypeError(ExplorerError, TypeError):
+    """A door is not a number."""
+
+
+class NoSuchDoorError(ExplorerError, ValueError):
+    """An explorer took a door that its vertex does not have."""
+
+
+class NoMarkerError(ExplorerError):
+    """An explorer picked up a marker that is not there, or dropped one that it does not carry."""
+
+
+class OutOfMovesError(ExplorerError):
+    """An explorer made more moves than are allowed."""
+
+
+class OutOfTimeError(ExplorerError):
+    """An explorer took more time than is allowed."""
+
+
+class RaisedError(ExplorerError):
+    """An explorer raised an exception, which is the `__cause__`."""
+
+
+class NoAnswerError(ExplorerError):
+    """An explorer returned None."""
+
+
+class AnswerError(ExplorerError):
+    """An explorer returned something that is not a map and a pose."""
+
+
+class WrongMapError(ExplorerError):
+    """An explorer's map is not its world."""
+
+
+class WrongPoseError(ExplorerError):
+    """An explorer's map is right, and the robot is elsewhere."""
+
+
+class NotPicklableError(ToposlamError, TypeError):
+    """An explorer cannot be sent to another process."""

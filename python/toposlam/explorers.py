@@ -1,0 +1,210 @@
+"""Runs an explorer on a start, and judges its answer.
+
+An explorer is a function of a robot. It senses with `robot.percept`, moves with `robot.go(door)`, and returns
+a map and the robot's pose in it, a dart `(vertex, index)` of the map. It may also be a generator: then
+`yield door` moves, and gives the percept behind the door.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from collections.abc import Generator
+from types import GeneratorType
+from typing import Any, Callable, Union
+
+from . import _core
+from .errors import (
+    AnswerError,
+    ExplorerError,
+    NoAnswerError,
+    NotAnExplorerError,
+    OutOfTimeError,
+    RaisedError,
+    ToposlamError,
+    UnknownStartError,
+    WorldError,
+    WrongMapError,
+    WrongPoseError,
+)
+from .maps import Doors, doors_of
+from .worlds import World
+
+Answer = Any
+"""A map and the robot's pose in it."""
+
+Explorer = Callable[[_core.Robot], Union[Answer, "Generator[int, _core.Percept, Answer]"]]
+"""An explorer: a function of a robot, or a generator."""
+
+MAX_MOVES = 10_000
+"""How many moves an explorer may make in a small world, unless the caller says otherwise."""
+
+SECONDS = 10.0
+"""How many seconds an explorer may take for a start, unless the caller says otherwise."""
+
+
+class _TimeIsUp(BaseException):
+    """Raised in the thread of an explorer, which cannot catch it by accident."""
+
+
+class Clock:
+    """Stops an explorer that takes too long: `with Clock(10.0) as clock: clock.run(explorer, robot)`."""
+
+    def __init__(self, seconds: float | None) -> None:
+        self.seconds = seconds
+        self._thread = threading.get_ident()
+        self._lock = threading.Lock()
+        self._runs = 0
+        self._running = False
+        self._stopped = threading.Event()
+        self._watch: threading.Thread | None = None
+
+    def __enter__(self) -> Clock:
+        if self.seconds is not None:
+            self._watch = threading.Thread(target=self._look, daemon=True)
+            self._watch.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stopped.set()
+        if self._watch is not None:
+            self._watch.join()
+
+    def _look(self) -> None:
+        assert self.seconds is not None
+        seen, since = -1, time.monotonic()
+        while not self._stopped.wait(min(self.seconds / 4, 0.5)):
+            with self._lock:
+                if not self._running or self._runs != seen:
+                    seen, since = self._runs, time.monotonic()
+                elif time.monotonic() - since > self.seconds:
+                    since = time.monotonic()
+                    target, raised = ctypes.c_ulong(self._thread), ctypes.py_object(_TimeIsUp)
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(target, raised)
+
+    def run(self, explorer: Explorer, robot: _core.Robot) -> Answer:
+        """What the explorer returns."""
+        with self._lock:
+            self._runs += 1
+            self._running = True
+        try:
+            try:
+                return _called(explorer, robot)
+            finally:
+                with self._lock:
+                    self._running = False
+                # An exception that the clock has raised by now arrives here, and not later.
+                for _ in range(4):
+                    pass
+        except _TimeIsUp:
+            raise OutOfTimeError(f"it took more than {self.seconds:g} s") from None
+
+
+def _called(explorer: Explorer, robot: _core.Robot) -> Answer:
+    answer = explorer(robot)
+    if isinstance(answer, GeneratorType):
+        try:
+            door = next(answer)
+            while True:
+                try:
+                    percept = robot.go(door)
+                except ExplorerError as error:
+                    # The generator may end in peace, and no more.
+                    answer.close()
+                    raise error from None
+                door = answer.send(percept)
+        except StopIteration as end:
+            return end.value
+    return answer
+
+
+def check_explorer(explorer: object) -> None:
+    """Raises an exception if a value cannot be an explorer."""
+    if not callable(explorer):
+        kind = type(explorer).__name__
+        raise NotAnExplorerError(f"an explorer is a function of a robot, not a value of type {kind}")
+
+
+def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock) -> ExplorerError | None:
+    """Runs an explorer, and returns what is wrong, or None."""
+    try:
+        answer = clock.run(explorer, robot)
+        return judge(answer, start, robot)
+    except ExplorerError as error:
+        return error
+    except _TimeIsUp:
+        return OutOfTimeError(f"it took more than {clock.seconds:g} s")
+    except RecursionError as cause:
+        return _raised(cause)
+    except Exception as cause:
+        return _raised(cause)
+
+
+def _raised(cause: Exception) -> RaisedError:
+    error = RaisedError(f"it raised {type(cause).__name__}: {cause}{_line(cause)}")
+    error.__cause__ = cause
+    return error
+
+
+def _line(cause: Exception) -> str:
+    trace = cause.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return ""
+    code = trace.tb_frame.f_code
+    return f" (in {code.co_name}, line {trace.tb_lineno})"
+
+
+def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerError | None:
+    """What is wrong with an answer, or None."""
+    if answer is None:
+        return NoAnswerError("it returned None, and not a map and a pose; is a return missing?")
+    if not (isinstance(answer, (tuple, list)) and len(answer) == 2):
+        return AnswerError(
+            "it returned " + _shown(answer) + ", and not a pair of a map and a pose (vertex, index)"
+        )
+    map_, pose = answer
+    try:
+        doors, facing, place = _numbers(map_, pose)
+    except (WorldError, ToposlamError) as cause:
+        error = AnswerError(f"its map: {cause.message}")
+        error.__cause__ = cause
+        return error
+    try:
+        wrong = start.judge(robot, (doors.degrees, doors.opposite), facing, place)
+    except (ValueError, OverflowError) as cause:
+        return AnswerError(f"its map: {cause}")
+    if wrong is None:
+        return None
+    text, right = wrong
+    if right is None:
+        return WrongMapError(text)
+    believed, truly = doors.place(place), doors.place(right)
+    return WrongPoseError(
+        f"the map is right, but the robot came in by {truly!r} of the map, and not by {believed!r}"
+    )
+
+
+def _numbers(map_: object, pose: object) -> tuple[Doors, int, int]:
+    """The doors of a map, the number of its start and that of the pose."""
+    if isinstance(map_, World):
+        degrees, opposite = map_._core.doors
+        doors = Doors(list(map_.vertices), degrees, opposite)
+        facing = map_._core.start or 0
+        try:
+            place = map_.number(pose)  # type: ignore[arg-type]
+        except UnknownStartError as cause:
+            raise UnknownStartError(f"the pose {pose!r} is not in the map") from cause
+        return doors, facing, place
+    doors = doors_of(map_)
+    try:
+        return doors, 0, doors.number(pose)
+    except UnknownStartError as cause:
+        raise UnknownStartError(f"the pose {pose!r} is not in the map: {cause.message}") from None
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,245 @@
+"""Reads worlds and explorers' maps from what Python people have: dicts, networkx, permutations."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from .errors import (
+    MissingEdgeError,
+    NoEdgeError,
+    NoEmbeddingError,
+    PermutationError,
+    RepeatedEdgeError,
+    UnknownStartError,
+    WorldError,
+    WorldTypeError,
+)
+
+
+class Doors(NamedTuple):
+    """A graph as its doors: vertex by vertex, each in clockwise order."""
+
+    vertices: list[Hashable]
+    degrees: list[int]
+    opposite: list[int]
+    """For each door, in the order of the vertices, the number of the other end of its edge."""
+
+    def first(self, vertex: Hashable) -> int:
+        """The number of the first door of a vertex."""
+        try:
+            index = self.vertices.index(vertex)
+        except ValueError:
+            raise UnknownStartError(f"there is no vertex {vertex!r}") from None
+        return sum(self.degrees[:index])
+
+    def number(self, place: object) -> int:
+        """The number of a place `(vertex, index)`."""
+        if not (isinstance(place, tuple) and len(place) == 2):
+            raise UnknownStartError(f"a place is a pair (vertex, index), not {place!r}")
+        vertex, index = place
+        first = self.first(vertex)
+        degree = self.degrees[self.vertices.index(vertex)]
+        if not _is_int(index):
+            raise UnknownStartError(f"the index in {place!r} is not a number")
+        if not 0 <= index < degree:
+            raise UnknownStartError(
+                f"vertex {vertex!r} has {degree} doors, from 0 to {degree - 1}, and no door {index}"
+            )
+        return first + int(index)
+
+    def place(self, number: int) -> tuple[Hashable, int]:
+        """The place of a door."""
+        for vertex, degree in zip(self.vertices, self.degrees):
+            if number < degree:
+                return vertex, number
+            number -= degree
+        raise UnknownStartError("there is no such door")
+
+
+def _is_int(value: object) -> bool:
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, int) or (hasattr(value, "__index__") and not hasattr(value, "__len__"))
+
+
+def is_networkx(value: object) -> bool:
+    """Whether a value is a graph of networkx, which is not imported for this."""
+    networkx = sys.modules.get("networkx")
+    return networkx is not None and isinstance(value, networkx.Graph)
+
+
+def doors_of(value: object) -> Doors:
+    """The doors of a dict or of a networkx graph."""
+    if is_networkx(value):
+        return of_networkx(value)
+    if isinstance(value, Mapping):
+        return of_dict(value)
+    raise WorldTypeError(
+        f"a map is a dict, a networkx.PlanarEmbedding or a toposlam.World, not {_kind(value)}"
+    )
+
+
+def _kind(value: object) -> str:
+    return f"a value of type {type(value).__name__}"
+
+
+def of_dict(lists: Mapping[Any, Any]) -> Doors:
+    """The doors of a dict of neighbours, or of a dict of far ends `(vertex, index)`."""
+    if not lists:
+        raise NoEdgeError("there is no vertex; a world has at least one edge")
+    entries: dict[Hashable, list[Any]] = {}
+    for vertex, listed in lists.items():
+        if isinstance(listed, (str, bytes)) or not isinstance(listed, Iterable):
+            raise WorldTypeError(
+                f"vertex {vertex!r} needs a list of its neighbours in clockwise order, not {listed!r}"
+            )
+        entries[vertex] = list(listed)
+    if not any(entries.values()):
+        raise NoEdgeError("there is no edge; a world has at least one")
+    if all(_is_vertex(entry, lists) for listed in entries.values() for entry in listed):
+        return _of_neighbours(entries)
+    if all(_is_far_end(entry, lists) for listed in entries.values() for entry in listed):
+        return _of_far_ends(entries)
+    for vertex, listed in entries.items():
+        for entry in listed:
+            if entry is None:
+                raise MissingEdgeError(f"vertex {vertex!r} has a door that leads nowhere: None")
+            if not _is_vertex(entry, lists) and not _is_far_end(entry, lists):
+                raise MissingEdgeError(
+                    f"vertex {vertex!r} lists {entry!r}, which is neither a vertex nor (vertex, index)"
+                )
+    raise WorldError("some vertices list neighbours, and others far ends (vertex, index)")
+
+
+def _is_vertex(entry: object, lists: Mapping[Any, Any]) -> bool:
+    try:
+        return entry in lists
+    except TypeError:
+        return False
+
+
+def _is_far_end(entry: object, lists: Mapping[Any, Any]) -> bool:
+    return (
+        isinstance(entry, (tuple, list))
+        and len(entry) == 2
+        and _is_vertex(entry[0], lists)
+        and _is_int(entry[1])
+    )
+
+
+def _of_neighbours(lists: Mapping[Hashable, list[Hashable]]) -> Doors:
+    number: dict[tuple[Hashable, Hashable], int] = {}
+    for vertex, neighbours in lists.items():
+        for neighbour in neighbours:
+            if neighbour == vertex:
+                raise RepeatedEdgeError(
+                    f"vertex {vertex!r} lists itself; a loop needs far ends: (vertex, index)"
+                )
+            if (vertex, neighbour) in number:
+                raise RepeatedEdgeError(
+                    f"vertex {vertex!r} lists the neighbour {neighbour!r} twice; "
+                    "parallel edges need far ends: (vertex, index)"
+                )
+            number[vertex, neighbour] = len(number)
+    opposite = []
+    for vertex, neighbour in number:
+        other = number.get((neighbour, vertex))
+        if other is None:
+            raise MissingEdgeError(
+                f"vertex {vertex!r} lists the neighbour {neighbour!r}, which does not list {vertex!r} back"
+            )
+        opposite.append(other)
+    return Doors(list(lists), [len(listed) for listed in lists.values()], opposite)
+
+
+def _of_far_ends(lists: Mapping[Hashable, list[Any]]) -> Doors:
+    first: dict[Hashable, int] = {}
+    doors = 0
+    for vertex, ends in lists.items():
+        first[vertex] = doors
+        doors += len(ends)
+    opposite = []
+    for vertex, ends in lists.items():
+        for index, (neighbour, at) in enumerate(ends):
+            back = lists[neighbour][at] if 0 <= at < len(lists[neighbour]) else None
+            if back is None or tuple(back) != (vertex, index):
+                leads = "does not exist" if back is None else f"leads to {tuple(back)!r}"
+                raise MissingEdgeError(
+                    f"door {index} of vertex {vertex!r} leads to {(neighbour, at)!r}, which {leads}"
+                )
+            opposite.append(first[neighbour] + at)
+    if any(number == other for number, other in enumerate(opposite)):
+        raise MissingEdgeError("a door leads to itself; an edge has two ends")
+    return Doors(list(lists), [len(ends) for ends in lists.values()], opposite)
+
+
+def of_networkx(graph: Any) -> Doors:
+    """The doors of a `networkx.PlanarEmbedding`."""
+    import networkx
+
+    if not isinstance(graph, networkx.PlanarEmbedding):
+        raise NoEmbeddingError(
+            f"a networkx.{type(graph).__name__} has no clockwise order; "
+            "is_planar, embedding = networkx.check_planarity(graph) makes one of a planar graph"
+        )
+    try:
+        graph.check_structure()
+    except networkx.NetworkXException as cause:
+        raise NoEmbeddingError(f"the PlanarEmbedding is not valid: {cause}") from None
+    return of_dict({vertex: list(graph.neighbors_cw_order(vertex)) for vertex in graph})
+
+
+# Permutations
+
+_CYCLES = re.compile(r"\s*(\(\s*\d*(\s*,\s*\d+)*\s*\)\s*)*")
+
+
+def images_of(name: str, permutation: object, count: int | None = None) -> list[int]:
+    """The images of a permutation, as it is given: cycles, a text of cycles, a list, or an object of Sage."""
+    if isinstance(permutation, str):
+        if not _CYCLES.fullmatch(permutation):
+            raise PermutationError(f"{name}: {permutation!r} is not a product of cycles: (1,2)(3,4)")
+        cycles = [part.split(",") for part in re.findall(r"\(([^)]*)\)", permutation)]
+        return _of_cycles(name, [[int(x) for x in cycle if x.strip()] for cycle in cycles], count)
+    cycle_tuples = getattr(permutation, "cycle_tuples", None)
+    if callable(cycle_tuples):
+        return _of_cycles(name, cycle_tuples(), count)
+    if isinstance(permutation, Mapping):
+        permutation = [permutation.get(key) for key in sorted(permutation)]
+    if not isinstance(permutation, Iterable):
+        raise PermutationError(f"{name}: {_kind(permutation)} is not a permutation")
+    listed = list(permutation)
+    if listed and all(isinstance(cycle, (tuple, list)) for cycle in listed):
+        return _of_cycles(name, listed, count)
+    if not all(_is_int(image) for image in listed):
+        raise PermutationError(f"{name}: the images of a permutation are numbers")
+    images = [int(image) for image in listed]
+    if images and min(images) == 1:
+        images = [image - 1 for image in images]
+    if sorted(images) != list(range(len(images))):
+        raise PermutationError(f"{name}: the images are not those of a permutation of 0 .. or of 1 ..")
+    return images
+
+
+def _of_cycles(name: str, cycles: Iterable[Sequence[Any]], count: int | None) -> list[int]:
+    try:
+        listed = [[int(x) for x in cycle] for cycle in cycles]
+    except (TypeError, ValueError, OverflowError):
+        raise PermutationError(f"{name}: the entries of a cycle are numbers") from None
+    moved = [x for cycle in listed for x in cycle]
+    if len(set(moved)) < len(moved):
+        raise PermutationError(f"{name}: a number is in two cycles")
+    base = 0 if 0 in moved else 1
+    size = max([count or 0, *(x - base + 1 for x in moved)])
+    # Without a count these are the edges, and each dart is in one.
+    if min(moved, default=base) < base or size > (len(moved) if count is None else count):
+        last = "" if count is None else f" to {count - 1 + base}"
+        raise PermutationError(f"{name}: the darts are not numbered from {base}{last}")
+    images = list(range(size))
+    for cycle in listed:
+        for here, there in zip(cycle, cycle[1:] + cycle[:1]):
+            images[here - base] = there - base
+    return images

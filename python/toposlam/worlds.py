@@ -1,0 +1,437 @@
+"""Worlds: embedded graphs, with names and perhaps a start."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple, Union
+
+from . import _core
+from ._core import Robot
+from ._core import World as CoreWorld
+from .errors import (
+    FrozenError,
+    NoEmbeddingError,
+    NoStartError,
+    NotSimpleError,
+    PictureError,
+    UnknownStartError,
+    WorldError,
+    WorldFileError,
+)
+from .maps import Doors, doors_of, images_of
+from .progress import library
+
+
+class Dart(NamedTuple):
+    """One end of an edge: a vertex, and the index of the end in the vertex's clockwise order."""
+
+    vertex: str
+    index: int  # type: ignore[assignment]
+
+
+Place = Union[str, "tuple[object, int]"]
+"""A dart of a world: `"vertex:facing"` as on the command line, or `(vertex, index)`."""
+
+
+class Picture:
+    """A picture as SVG. A notebook shows it."""
+
+    __slots__ = ("svg",)
+
+    svg: str
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<Picture, {len(self.svg)} characters of SVG>"
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a .svg or .png file."""
+        file = Path(path)
+        if file.suffix == ".svg":
+            file.write_text(self.svg, encoding="utf-8")
+        elif file.suffix == ".png":
+            file.write_bytes(_core.World.png(self.svg))
+        else:
+            raise PictureError(f"{file}: the name of a picture ends with .svg or .png")
+
+
+class World:
+    """A connected embedded graph: each vertex has its edges in clockwise order.
+
+    `value` is one of
+
+    * a dict of neighbours in clockwise order: `{"a": ["b", "c"], "b": ["a"], "c": ["a"]}`;
+    * a dict of far ends, for loops and parallel edges: door `i` of vertex `v` leads to `(w, j)`, door `j` of
+      `w`;
+    * a `networkx.PlanarEmbedding`.
+
+    `start` is the dart behind the robot at the start, along which a directional marker points. Without
+    one, it is the first door of the first vertex.
+
+    >>> import toposlam as ts
+    >>> triangle = ts.World({"a": ["b", "c"], "b": ["a", "c"], "c": ["a", "b"]}, name="triangle")
+    >>> triangle
+    <World triangle: 3 vertices, 3 edges, genus 0, start a:b>
+    >>> two_loops = ts.World({0: [(0, 2), (0, 3), (0, 0), (0, 1)]})
+    >>> two_loops.genus
+    1
+    """
+
+    __slots__ = ("_core", "_degree", "_first", "_opposite", "_places")
+
+    _core: CoreWorld
+    _degree: dict[str, int]
+    _first: dict[str, int]
+    _opposite: list[int]
+    _places: list[Dart]
+
+    def __init__(
+        self, value: object, start: Place | None = None, *, name: str = "world", about: str = ""
+    ) -> None:
+        if isinstance(value, World):
+            core = value._core.with_start(value._core.start, name, about)
+        else:
+            doors = doors_of(value)
+            core = _core.World.from_doors(doors.degrees, doors.opposite, _names(doors), None, name, about, 0)
+        self._set(core)
+        if start is not None:
+            self._set(core.with_start(self.number(start), name, about))
+
+    def _set(self, core: CoreWorld) -> None:
+        degrees, opposite = core.doors
+        first: dict[str, int] = {}
+        places: list[Dart] = []
+        for vertex, degree in zip(core.vertex_names, degrees):
+            first[vertex] = len(places)
+            places.extend(Dart(vertex, index) for index in range(degree))
+        values = (core, dict(zip(first, degrees)), first, opposite, places)
+        for slot, value in zip(self.__slots__, values):
+            object.__setattr__(self, slot, value)
+
+    @classmethod
+    def _of(cls, core: CoreWorld) -> World:
+        world = cls.__new__(cls)
+        world._set(core)
+        return world
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> World:
+        """The world of a world file (TOML or JSON), or of a plantri file with one world.
+
+        >>> import toposlam as ts
+        >>> ts.World.load("worlds/figure-1a.toml")
+        <World figure-1a: 5 vertices, 8 edges, genus 0, start x:a>
+        """
+        worlds = cls.load_all(path)
+        if len(worlds) != 1:
+            raise WorldFileError(f"{os.fspath(path)}: expected one world, found {len(worlds)}")
+        return worlds[0]
+
+    @classmethod
+    def load_all(cls, path: str | os.PathLike[str]) -> list[World]:
+        """The worlds of a plantri file, or the one of a world file."""
+        try:
+            data = Path(path).read_bytes()
+        except OSError as cause:
+            raise WorldFileError(f"{os.fspath(path)}: {cause.strerror}") from cause
+        return [cls._of(core) for core in _core.World.read(Path(path), data)]
+
+    @classmethod
+    def from_permutations(
+        cls, opposite: object, clockwise: object, start: int | None = None, *, name: str = "world"
+    ) -> World:
+        """A world from two permutations of its darts: the other end of each edge, and the next dart
+        clockwise around the vertex.
+
+        A permutation is a list of images, counted from 0 or from 1, as in GAP's `ListPerm`; a list or a text
+        of cycles, `"(1,2)(3,4)"`; or an object of SageMath. `start` is a dart, counted as in them.
+
+        >>> import toposlam as ts
+        >>> ts.World.from_permutations("(1,2)(3,4)", "(2,3)")
+        <World world: 3 vertices, 2 edges, genus 0, start v0:v1>
+        """
+        pairs = images_of("opposite", opposite)
+        turns = images_of("clockwise", clockwise, len(pairs))
+        core, numbers = _core.World.from_permutations(pairs, turns)
+        one = _counts_from_one(opposite)
+        first = (1 if one else 0) if start is None else start
+        if not 0 <= first - one < len(numbers):
+            raise UnknownStartError(f"there is no dart {start}")
+        return cls._of(core.with_start(numbers[first - one], name, ""))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise FrozenError("a World cannot be changed; World(...) makes another one")
+
+    def __delattr__(self, name: str) -> None:
+        raise FrozenError("a World cannot be changed; World(...) makes another one")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        core = self._core
+        parts = (core.vertex_names, core.edge_names, core.name, core.about, core.start)
+        return _rebuilt, (list(self._degree.values()), self._opposite, *parts)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, World):
+            return NotImplemented
+        return bool(self.__reduce__()[1] == other.__reduce__()[1])
+
+    def __hash__(self) -> int:
+        return hash((tuple(self._opposite), self._core.start))
+
+    def __repr__(self) -> str:
+        vertices, edges = self.vertex_count, self.edge_count
+        start = self._core.start
+        at = "no start" if start is None else f"start {self._core.start_text(start)}"
+        return (
+            f"<World {self.name}: {vertices} {'vertex' if vertices == 1 else 'vertices'}, "
+            f"{edges} edge{'' if edges == 1 else 's'}, genus {self.genus}, {at}>"
+        )
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._core.name
+
+    @property
+    def about(self) -> str:
+        """A short description."""
+        return self._core.about
+
+    @property
+    def vertices(self) -> tuple[str, ...]:
+        """The names of the vertices."""
+        return tuple(self._first)
+
+    @property
+    def vertex_count(self) -> int:
+        """The number of vertices, n."""
+        return len(self._degree)
+
+    @property
+    def edge_count(self) -> int:
+        """The number of edges, m."""
+        return len(self._opposite) // 2
+
+    @property
+    def genus(self) -> int:
+        """The genus of the surface on which the graph lies: 0 in the plane, 1 on the torus."""
+        return self._core.genus
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether it has neither a loop nor parallel edges."""
+        return self._core.is_simple
+
+    @property
+    def start(self) -> Dart | None:
+        """The dart behind the robot at the start."""
+        start = self._core.start
+        return None if start is None else self._places[start]
+
+    @property
+    def neighbours(self) -> Mapping[str, tuple[str, ...]]:
+        """The neighbours of each vertex, in clockwise order."""
+        listed = {
+            vertex: tuple(self.opposite(dart).vertex for dart in self.darts(vertex)) for vertex in self._first
+        }
+        return MappingProxyType(listed)
+
+    @property
+    def far_ends(self) -> Mapping[str, tuple[Dart, ...]]:
+        """The far end of each door of each vertex, in clockwise order: a dict from which `World` makes this
+        graph again."""
+        listed = {vertex: tuple(self.opposite(dart) for dart in self.darts(vertex)) for vertex in self._first}
+        return MappingProxyType(listed)
+
+    def degree(self, vertex: str) -> int:
+        """The number of doors of a vertex."""
+        return len(self.darts(vertex))
+
+    def darts(self, vertex: str | None = None) -> list[Dart]:
+        """The darts of a vertex in clockwise order, or all darts."""
+        if vertex is None:
+            return list(self._places)
+        if vertex not in self._first:
+            raise UnknownStartError(f"there is no vertex {vertex!r}")
+        first = self._first[vertex]
+        return self._places[first : first + self._degree[vertex]]
+
+    def number(self, place: Place) -> int:
+        """The number of a dart, counted vertex by vertex."""
+        if isinstance(place, str):
+            return self._core.start_from_text(place)
+        try:
+            vertex, index = place
+            first = self._first[str(vertex)]
+            found = self._places[first + index]
+        except (TypeError, ValueError, KeyError, IndexError):
+            found = Dart("", -1)
+        if found.index < 0 or found != (str(vertex), index):
+            raise UnknownStartError(
+                f"{place!r} is not a dart of {self.name}; write 'vertex:facing' or (vertex, index)"
+            )
+        return first + index
+
+    def opposite(self, dart: Place) -> Dart:
+        """The other end of the dart's edge."""
+        return self._places[self._opposite[self.number(dart)]]
+
+    def clockwise(self, dart: Place) -> Dart:
+        """The next dart around the same vertex."""
+        vertex, index = self._places[self.number(dart)]
+        return Dart(vertex, (index + 1) % self.degree(vertex))
+
+    def after(self, pose: Place, door: int) -> Dart:
+        """The pose of a robot that came in by the dart `pose` and leaves by a door."""
+        vertex, index = self._places[self.number(pose)]
+        return self.opposite(Dart(vertex, (index + door) % self.degree(vertex)))
+
+    def walk(self, pose: Place, doors: Iterator[int] | list[int] | tuple[int, ...]) -> Dart:
+        """The pose at the end of a door sequence."""
+        for door in doors:
+            pose = self.after(pose, door)
+        return self._places[self.number(pose)]
+
+    def with_start(self, start: Place | None) -> World:
+        """The same world with another start."""
+        number = None if start is None else self.number(start)
+        return World._of(self._core.with_start(number, self.name, self.about))
+
+    def facing(self) -> int:
+        """The number of the start's dart."""
+        if self._core.start is None:
+            raise NoStartError(f"{self.name} has no start; with_start('vertex:facing') gives it one")
+        return self._core.start
+
+    def is_isomorphic(self, other: World) -> bool:
+        """Whether two worlds are the same start: there is a bijection of darts that keeps edges, orders
+        and the start. Worlds without starts are compared as graphs.
+
+        >>> import toposlam as ts
+        >>> path = ts.World({1: [2], 2: [1, 3], 3: [2]})
+        >>> path.is_isomorphic(ts.World({"c": ["b"], "b": ["c", "a"], "a": ["b"]}))
+        True
+        >>> path.is_isomorphic(path.with_start((2, 0)))
+        False
+        """
+        if (self._core.start is None) != (other._core.start is None):
+            return self.with_start(None).is_isomorphic(other.with_start(None))
+        return self._core.code() == other._core.code()
+
+    def mirror_image(self) -> World:
+        """The same graph with every order reversed."""
+        return World._of(self._core.mirror_image())
+
+    def without_corners(self) -> World:
+        """The same world without vertices of degree 2."""
+        return World._of(self._core.smoothed())
+
+    def certificate(self) -> tuple[int, ...]:
+        """A shortest walk, as doors, that proves a map of the world from its start: no correct explorer
+        makes fewer moves.
+
+        >>> import toposlam as ts
+        >>> len(ts.World.load("worlds/figure-1a.toml").certificate())
+        12
+        """
+        return tuple(_core.certificate(self._core, self.facing()))
+
+    def robot(self, marker: str = "directional", max_moves: int = 1_000_000) -> Robot:
+        """A robot at the start.
+
+        >>> import toposlam as ts
+        >>> robot = ts.World.load("worlds/figure-1a.toml").robot()
+        >>> robot.percept
+        Percept(degree=4, marker=0)
+        >>> robot.go(1)
+        Percept(degree=3, marker=None)
+        """
+        return _core.Robot(self._core, self.facing(), marker, max_moves)
+
+    def draw(
+        self, *, title: str | None = None, caption: str | None = None, marker: str | None = None
+    ) -> Picture:
+        """A picture that shows the clockwise order of the doors at each vertex."""
+        kind = marker or self._core.marker or "directional"
+        title = self.name if title is None else title
+        caption = self.about if caption is None else caption
+        return Picture(self._core.svg(title, caption, kind))
+
+    def _repr_svg_(self) -> str:
+        return self.draw().svg
+
+    def to_toml(self) -> str:
+        """The text of a world file."""
+        return self._core.to_toml()
+
+    def to_json(self) -> str:
+        """The text of a world file in JSON."""
+        return self._core.to_json()
+
+    def to_dot(self) -> str:
+        """The text of a Graphviz file."""
+        return self._core.to_dot()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a world file: .toml, .json or .dot."""
+        file = Path(path)
+        texts = {".toml": self.to_toml, ".json": self.to_json, ".dot": self.to_dot}
+        if file.suffix not in texts:
+            raise WorldFileError(f"{file}: the name of a world file ends with .toml, .json or .dot")
+        file.write_text(texts[file.suffix](), encoding="utf-8")
+
+    def to_networkx(self) -> Any:
+        """A `networkx.PlanarEmbedding`; for simple worlds in the plane."""
+        networkx = library("networkx", "to_networkx")
+        if not self.is_simple:
+            raise NotSimpleError(f"{self.name} has a loop or parallel edges")
+        if self.genus > 0:
+            raise NoEmbeddingError(f"{self.name} is not in the plane: its genus is {self.genus}")
+        embedding = networkx.PlanarEmbedding()
+        embedding.set_data({vertex: list(listed) for vertex, listed in self.neighbours.items()})
+        return embedding
+
+
+def _rebuilt(
+    degrees: list[int],
+    opposite: list[int],
+    vertex_names: list[str],
+    edge_names: list[str] | None,
+    name: str,
+    about: str,
+    start: int | None,
+) -> World:
+    core = _core.World.from_doors(degrees, opposite, vertex_names, edge_names, name, about, start)
+    return World._of(core)
+
+
+def _names(doors: Doors) -> list[str]:
+    """The names of the vertices: their texts, with other letters for those that no name has."""
+    names = [re.sub(r"[\"'/\\\s]+", "_", str(vertex)).strip("_") for vertex in doors.vertices]
+    if "" in names:
+        names = [name or f"v{number}" for number, name in enumerate(names)]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise WorldError(f"two vertices have the name {twice}")
+    return names
+
+
+def _counts_from_one(permutation: Any) -> int:
+    """1 if the darts of a permutation are counted from 1, otherwise 0."""
+    if isinstance(permutation, str):
+        return int("0" not in re.findall(r"\d+", permutation))
+    cycles = getattr(permutation, "cycle_tuples", None)
+    values = cycles() if callable(cycles) else permutation
+    flat = [
+        int(number) for entry in values for number in (entry if isinstance(entry, (tuple, list)) else [entry])
+    ]
+    return int(0 not in flat)
