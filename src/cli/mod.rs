@@ -9,6 +9,7 @@ mod appearance;
 mod budget_options;
 mod calibrate;
 mod check;
+mod children;
 mod ci_report;
 mod compare;
 mod completions;
