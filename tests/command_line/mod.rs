@@ -12,6 +12,7 @@ mod counterexample;
 mod draw;
 mod evaluate;
 mod explore;
+mod explorer;
 mod files;
 mod folding;
 mod help;

@@ -53,7 +53,7 @@ pub(super) enum ExplorerFault {
     )]
     Guessed { moves: u64, certificate: u64 },
     /// An answer takes too long.
-    #[error("did not answer within {seconds} s")]
+    #[error("did not read a percept and answer it within {seconds} s")]
     TimedOut { seconds: f64 },
     /// The run takes too long.
     #[error("did not end within {limit} moves")]

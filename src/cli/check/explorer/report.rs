@@ -53,7 +53,7 @@ impl ExplorerSize<'_> {
 
 /// The start as a world.
 pub(super) fn failed_world(explorer: &str, start: &UnmappedStart) -> NamedWorld {
-    let about = format!("{explorer} {} here", start.fault.name());
+    let about = format!("The explorer {explorer} does not map it: {}", start.fault.name());
     NamedWorld::discovered("failed", &about, &start.graph, start.facing)
 }
 
