@@ -15,7 +15,7 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
-    marker::Marker,
+    marker::{self, Marker},
 };
 
 use super::{
@@ -25,7 +25,7 @@ use super::{
     exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
-    marker_kinds, output,
+    output,
     progress::Progress,
     use_threads,
 };
@@ -77,8 +77,7 @@ pub(super) struct CheckArguments {
         long,
         default_value = "directional",
         value_name = "KIND",
-        value_parser = marker_kinds(),
-        hide_possible_values = true
+        value_parser = marker_kind
     )]
     marker: &'static dyn Marker,
 
@@ -124,6 +123,12 @@ pub(super) struct CheckArguments {
 
     #[command(flatten)]
     ci: CiOptions,
+}
+
+/// Parses the name of a kind of marker.
+fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
+    // For a name that no marker has, the error lists the markers of the algorithms.
+    marker::named(name).map_err(|_| name.parse::<MappingMarker>().err().unwrap_or_default())
 }
 
 /// What is checked for one number of edges.

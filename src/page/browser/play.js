@@ -127,6 +127,7 @@ function restart() {
   names = new Map([[0, "v0"]]);
   finished = false;
   find(".result").hidden = true;
+  find(".controls").hidden = false;
   find(".solution .ground").replaceChildren();
   find(".percepts tbody").replaceChildren();
   drawing.clear();
@@ -159,8 +160,8 @@ function finish() {
   find(".solution .ground").replaceChildren(find(".solution template").content.cloneNode(true));
   keepReadable(find(".solution svg"));
   find(".result").hidden = false;
+  find(".controls").hidden = true;
   show();
-  say(`${find("#result-heading").textContent}. ${movesText(doors.length)}.`);
   find("#result-heading").focus();
   find(".result").scrollIntoView();
 }
@@ -263,7 +264,6 @@ function showDoors(degree) {
     button.type = "button";
     button.textContent = door === 0 ? "0 back" : door;
     button.setAttribute("aria-label", door === 0 ? "door 0, back" : `door ${door}`);
-    button.setAttribute("aria-disabled", String(finished));
     button.addEventListener("click", () => go(door));
     return button;
   });

@@ -55,7 +55,7 @@ class MapDrawing {
         const marked = place.marker === dart;
         discs.append(drawn("circle", { class: marked ? "knob marker" : "knob", cx: knob.x, cy: knob.y, r: marked ? 6 : 3 }));
         if (index === here) discs.append(this.robot(spot, angle));
-        const label = polar(spot, angle + 0.42, DISC + 9);
+        const label = polar(spot, angle + 0.46, DISC + 11);
         discs.append(drawn("text", { class: "index", x: label.x, y: label.y + 4, "font-size": 11 }, String(index)));
         const reach = polar(spot, angle, DISC + 8);
         const target = drawn("circle", { class: "reach", cx: reach.x, cy: reach.y, r: 15 });
@@ -80,21 +80,23 @@ class MapDrawing {
     const [a, b] = [this.spots.get(one.number), this.spots.get(other.number)];
     const [out, into] = [this.angle(one, i), this.angle(other, j)];
     const [from, to] = [polar(a, out, DISC), polar(b, into, DISC)];
-    const far = one === other ? 58 : Math.max(22, 0.42 * Math.hypot(to.x - from.x, to.y - from.y));
+    const gap = Math.min(Math.abs(i - j), one.darts.length - Math.abs(i - j));
+    const loop = 34 + 26 * gap;
+    const far = one === other ? loop : Math.max(22, 0.42 * Math.hypot(to.x - from.x, to.y - from.y));
     const [p, q] = [polar(from, out, far), polar(to, into, far)];
     // A curve stays between its controls.
     for (const control of [p, q]) include(polar(control, between(control, a), 0.25 * far), 4);
     edges.append(drawn("path", { d: `M${from.x} ${from.y}C${p.x} ${p.y} ${q.x} ${q.y} ${to.x} ${to.y}` }));
   }
 
-  /** The robot: outside of its place, before the door by which it came in. */
+  /** The robot, in the door by which it came in. */
   robot(spot, angle) {
-    const at = polar(spot, angle, DISC - 6);
+    const at = polar(spot, angle, DISC + 11);
     const corner = (turn, away) => {
       const { x, y } = polar(at, angle + turn, away);
       return `${x.toFixed(1)} ${y.toFixed(1)}`;
     };
-    return drawn("path", { class: "robot", d: `M${corner(Math.PI, 7)}L${corner(1.2, 6)}L${corner(-1.2, 6)}Z` });
+    return drawn("path", { class: "robot", d: `M${corner(Math.PI, 9)}L${corner(0.8, 9)}L${corner(-0.8, 9)}Z` });
   }
 
   /** Finds a spot for each place, beginning with those of the map before. */

@@ -6,7 +6,11 @@ mod data;
 
 use super::{PAGE_SCRIPT, PAGE_STYLE, filled};
 use crate::{
-    model::{embedded_graph::Dart, format::named_world::NamedWorld},
+    model::{
+        embedded_graph::Dart,
+        format::named_world::NamedWorld,
+        marker::{Directional, Marker},
+    },
     picture::{WorldPicture, escaped, svg},
 };
 
@@ -25,11 +29,14 @@ const SCRIPT: [&str; 6] = [
 /// The page as an HTML document: the robot starts by this dart. The same start gives the same bytes.
 #[must_use]
 pub fn play_page(world: &NamedWorld, facing: Dart) -> String {
-    let drawn = WorldPicture { start: Some(facing), ..WorldPicture::from(world) };
+    let (title, caption, marker) = ("", "", &Directional as &dyn Marker);
+    let start = Some(facing);
+    let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
     filled(PAGE, |place| match place {
         "style" => [PAGE_STYLE, STYLE].concat(),
         "name" => escaped(&world.name),
         "picture" => svg(&drawn),
+        "marker" => escaped(&drawn.marker_place().unwrap_or_default()),
         "data" => data::json(world, facing),
         "script" => SCRIPT.concat(),
         _ => String::new(),
@@ -65,7 +72,7 @@ mod tests {
             places.borrow_mut().insert(place.to_owned());
             String::new()
         });
-        let known = ["data", "name", "picture", "script", "style"].map(str::to_owned);
+        let known = ["data", "marker", "name", "picture", "script", "style"].map(str::to_owned);
         assert_eq!(places.into_inner(), known.into());
     }
 
