@@ -211,6 +211,7 @@ function show() {
   here.show(now);
   write(".percept", perceptText(now));
   write(".moves", movesText(doors.length));
+  document.body.classList.toggle("begun", doors.length > 0);
   drawing.show(map, places, nameOf, contradiction === null ? map.find(map.poses.at(-1)) : null);
   find(".map").classList.toggle("differs", contradiction !== null);
   showSize();
