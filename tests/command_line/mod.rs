@@ -24,6 +24,7 @@ mod log;
 mod mistakes;
 mod names;
 mod options;
+mod play;
 mod proofs;
 mod render;
 mod replay;

@@ -98,7 +98,7 @@ impl CheckArguments {
             Some(path) => listed(path)?,
             None => self.enumerated()?,
         };
-        self.check_explorer_places()?;
+        self.check_explorer_places(work.values().all(ExplorerWorlds::is_simple))?;
         let sweep = ExplorerSweep {
             command: &command,
             marker: self.marker,
@@ -151,10 +151,9 @@ impl CheckArguments {
     }
 
     /// Checks that the output files can be written, before long work begins.
-    fn check_explorer_places(&self) -> Result<(), CliError> {
-        // Only a file that holds a simple graph may be in planar code; that is not known here.
+    fn check_explorer_places(&self, simple: bool) -> Result<(), CliError> {
         if let Some(worst) = &self.worst {
-            output::check_world_place(worst, self.class().is_simple() && self.from.is_none())?;
+            output::check_world_place(worst, simple)?;
         }
         match &self.explorer.failed {
             Some(failed) => output::check_place(failed, &["toml", "json", "dot", "svg", "png"]),

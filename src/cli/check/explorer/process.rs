@@ -19,8 +19,9 @@ use crate::cli::{
     progress::must_stop,
 };
 
-/// The longest line that is read, in bytes: a map of some 100,000 edges.
-const LONGEST_LINE: u64 = 4 << 20;
+/// The longest line that is read, in bytes: a map of some 40,000 edges. The parser takes less than 100 bytes
+/// for each byte.
+const LONGEST_LINE: u64 = 1 << 20;
 
 /// The end of the standard error that is kept, in bytes.
 const KEPT_ERRORS: usize = 2000;

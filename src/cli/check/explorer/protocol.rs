@@ -110,19 +110,15 @@ type ReportedDart = (usize, usize);
 
 impl ReportedMap {
     fn from_fields(fields: &Map<String, Value>) -> Result<Self, String> {
-        let lists = |value: &Value, what: &str| match value {
-            Value::Array(items) => Ok(items.clone()),
-            other => Err(format!("{} is not {what}", shortened(&other.to_string()))),
-        };
         let end = |value: &Value| match value {
             Value::Null => Ok(None),
             value => dart(value).map(Some),
         };
         let vertex = |value: &Value| {
-            let darts = lists(value, "the list of the darts of a vertex")?;
+            let darts = list(value, "the list of the darts of a vertex")?;
             darts.iter().map(end).collect::<Result<Vec<_>, _>>()
         };
-        let vertices = lists(&fields["map"], "a list of vertices")?;
+        let vertices = list(&fields["map"], "a list of vertices")?;
         let ends = vertices.iter().map(vertex).collect::<Result<_, _>>()?;
         Ok(Self { ends, pose: dart(&fields["pose"])? })
     }
@@ -193,6 +189,13 @@ impl ReportedMap {
             index -= ends.len();
         }
         dart.0.to_string()
+    }
+}
+
+fn list<'v>(value: &'v Value, what: &str) -> Result<&'v [Value], String> {
+    match value {
+        Value::Array(items) => Ok(items),
+        other => Err(format!("{} is not {what}", shortened(&other.to_string()))),
     }
 }
 

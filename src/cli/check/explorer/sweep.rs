@@ -63,6 +63,14 @@ struct Batch {
 type BatchResult = Result<(usize, Vec<ExplorerTally>), CliError>;
 
 impl ExplorerWorlds {
+    /// Whether no world has a loop or parallel edges.
+    pub(super) fn is_simple(&self) -> bool {
+        match self {
+            Self::Enumerated(enumeration) => enumeration.class().is_simple(),
+            Self::Listed(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
+        }
+    }
+
     /// Sends the batches until nobody receives them.
     fn send_batches(&self, batches: &SyncSender<Batch>) {
         let mut number = 0;
