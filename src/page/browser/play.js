@@ -214,6 +214,9 @@ function show() {
   document.body.classList.toggle("begun", doors.length > 0);
   drawing.show(map, places, nameOf, contradiction === null ? map.find(map.poses.at(-1)) : null);
   find(".map").classList.toggle("differs", contradiction !== null);
+  // A large map is scrolled.
+  const robot = find(".drawing .disc.here");
+  if (robot) reveal(find(".map .ground"), robot);
   showSize();
   showList();
   showWalk();
