@@ -12,6 +12,7 @@ mod fuzz;
 mod journal;
 mod oracle;
 mod paper;
+mod play_page;
 mod run_page;
 mod schema;
 mod walk_page;

@@ -36,6 +36,7 @@ const COMMANDS: [(&str, &[&str]); 19] = [
             "check --edges 4 --shard 1/4",
             "check --from worlds/petersen.toml",
             "check --marker movable --class corridor --edges 4",
+            "check --explorer cat --edges 1",
         ],
     ),
     ("counterexample", &["counterexample --marker undirected --all"]),
@@ -216,6 +217,11 @@ pub(crate) fn fits_a_schema(line: &Value) -> bool {
     static SCHEMAS: LazyLock<Vec<Value>> =
         LazyLock::new(|| names().iter().map(|name| schema(name)).collect());
     SCHEMAS.iter().any(|schema| problem(schema, line).is_none())
+}
+
+/// What does not fit a schema in a folder of `docs/schema`, if something does not.
+pub(crate) fn misfit(name: &str, line: &Value) -> Option<String> {
+    problem(&schema(name), line)
 }
 
 #[test]

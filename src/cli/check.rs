@@ -1,5 +1,6 @@
 //! `toposlam check`: an algorithm runs on every start of every world up to a size.
 
+mod explorer;
 mod report;
 
 use std::{
@@ -14,6 +15,7 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
+    marker::{self, Marker},
 };
 
 use super::{
@@ -27,6 +29,7 @@ use super::{
     progress::Progress,
     use_threads,
 };
+use explorer::ExplorerOptions;
 use report::{AlgorithmInfo, CheckReport, SizeResult};
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
@@ -36,6 +39,8 @@ use report::{AlgorithmInfo, CheckReport, SizeResult};
 ///
 /// With --marker movable, the algorithm for one movable marker is checked instead, on worlds without
 /// loops and parallel edges. Its bound is 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7) moves.
+///
+/// With --explorer, a program of yours is checked instead, in any language.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -47,6 +52,7 @@ Examples:
   toposlam check --from worlds/petersen.toml  the worlds in a file
   toposlam check --marker movable             a marker that the robot carries
   toposlam check --algorithm folding          the folding explorer
+  toposlam check --explorer ./mine --edges 5  your own program
 
 Ctrl-C stops the check and prints the results so far.",
     &[
@@ -66,9 +72,14 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     class: Option<Class>,
 
-    /// The robot's marker: directional (Algorithm 1) or movable
-    #[arg(long, default_value = "directional")]
-    marker: MappingMarker,
+    /// The robot's marker: directional (Algorithm 1) or movable; any kind with --explorer
+    #[arg(
+        long,
+        default_value = "directional",
+        value_name = "KIND",
+        value_parser = marker_kind
+    )]
+    marker: &'static dyn Marker,
 
     /// The algorithm that maps with the directional marker: algorithm1 or folding
     #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
@@ -108,7 +119,16 @@ pub(super) struct CheckArguments {
     keep_going: bool,
 
     #[command(flatten)]
+    explorer: ExplorerOptions,
+
+    #[command(flatten)]
     ci: CiOptions,
+}
+
+/// Parses the name of a kind of marker.
+fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
+    // For a name that no marker has, the error lists the markers of the algorithms.
+    marker::named(name).map_err(|_| name.parse::<MappingMarker>().err().unwrap_or_default())
 }
 
 /// What is checked for one number of edges.
@@ -122,7 +142,10 @@ impl CheckArguments {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.ci.check_places()?;
-        let algorithm = self.algorithm.with(self.marker, choice)?;
+        if self.explorer.is_given() {
+            return self.check_explorer(out);
+        }
+        let algorithm = self.algorithm.with(self.mapping_marker()?, choice)?;
         let work = match &self.from {
             Some(path) => self.worlds_by_size(path)?,
             None => self.sweeps()?,
@@ -173,16 +196,19 @@ impl CheckArguments {
     }
 
     fn class(&self) -> Class {
-        self.class.unwrap_or(match self.marker {
-            MappingMarker::Directional => Class::Multigraph,
-            MappingMarker::Movable => Class::Simple,
-        })
+        let usual = if self.marker.is_movable() { Class::Simple } else { Class::Multigraph };
+        self.class.unwrap_or(usual)
+    }
+
+    /// The marker of an algorithm.
+    fn mapping_marker(&self) -> Result<MappingMarker, CliError> {
+        self.marker.name().parse().map_err(|cause| CliError::at("--marker", cause))
     }
 
     /// A sweep for each number of edges.
     fn sweeps(&self) -> Result<BTreeMap<usize, Work>, CliError> {
         let class = self.class();
-        if self.marker == MappingMarker::Movable && !class.is_simple() {
+        if self.marker.is_movable() && !class.is_simple() {
             return Err(CliError::at("--class", movable_not_sufficient(format!("class {class}"))));
         }
         let sweep = |edges| {
@@ -195,7 +221,7 @@ impl CheckArguments {
     /// The worlds of a file, by their number of edges.
     fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
         let graphs = input::read_graphs(path)?;
-        self.marker.check_worlds(path, &graphs)?;
+        self.mapping_marker()?.check_worlds(path, &graphs)?;
         let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
         for graph in graphs {
             sizes.entry(graph.edge_count()).or_default().push(graph);

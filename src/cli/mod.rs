@@ -9,6 +9,7 @@ mod appearance;
 mod budget_options;
 mod calibrate;
 mod check;
+mod children;
 mod ci_report;
 mod compare;
 mod completions;
@@ -34,6 +35,7 @@ mod outcome;
 mod output;
 mod paper;
 mod picture_file;
+mod play;
 mod progress;
 mod proofs;
 mod renamed;
@@ -104,6 +106,7 @@ enum Verb {
     Compare(compare::CompareArguments),
     Counterexample(counterexample::CounterexampleArguments),
     Draw(draw::DrawArguments),
+    Play(play::PlayArguments),
     Paper(paper::PaperArguments),
     Proofs(proofs::ProofsArguments),
     Simulate(simulate::SimulateArguments),
@@ -203,6 +206,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Compare(verb)) => verb.run(&mut out),
         Some(Verb::Counterexample(verb)) => verb.run(&mut out),
         Some(Verb::Draw(verb)) => verb.run(&mut out),
+        Some(Verb::Play(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Simulate(verb)) => verb.run(&mut out),

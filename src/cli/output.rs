@@ -11,13 +11,14 @@ use std::{
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
-use super::{CliError, files::files, input};
+use super::{CliError, children, files::files, input};
 
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Ends the program when no file is being written.
+/// Ends the program, and those that it started, when no file is being written.
 pub(crate) fn exit_between_files(code: i32) -> ! {
+    children::end_all();
     let _not_writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     process::exit(code)
 }

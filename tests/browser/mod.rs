@@ -5,6 +5,7 @@
 
 use std::{
     env,
+    ffi::OsStr,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -18,10 +19,15 @@ fn program(names: &[&str]) -> Option<PathBuf> {
     places.into_iter().find(|place| place.is_file())
 }
 
+const NO_NODE: &str = "there is no node; on Debian: apt-get install nodejs npm";
+
+fn node() -> Option<PathBuf> {
+    program(&["node", "nodejs"])
+}
+
 /// Node and a Chromium, or what is missing and how to install it.
 fn browser() -> Result<(PathBuf, PathBuf), String> {
-    let node = program(&["node", "nodejs"])
-        .ok_or("there is no node; on Debian: apt-get install nodejs npm")?;
+    let node = node().ok_or(NO_NODE)?;
     let chromium = program(&["chromium", "chromium-browser", "google-chrome"])
         .ok_or("there is no Chromium; on Debian: apt-get install chromium")?;
     let client = Path::new(ROOT).join("tests/browser/node_modules/playwright-core");
@@ -37,18 +43,35 @@ pub(crate) fn open(script: &str, pages: &[String]) {
     let (node, chromium) = match browser() {
         Ok(found) => found,
         Err(missing) => {
-            let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|wish| wish == "required");
-            assert!(!required, "{missing}");
-            eprintln!("skipped, {script} opened no page in a browser: {missing}");
-            return;
+            skip(&missing);
+            return eprintln!("skipped, {script} opened no page in a browser: {missing}");
         }
     };
-    let output = Command::new(node)
-        .arg(Path::new(ROOT).join("tests/browser").join(script))
-        .arg(chromium)
-        .args(pages)
-        .output()
-        .unwrap();
-    let said = [output.stdout, output.stderr].concat();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&said));
+    let mut arguments = vec![chromium.as_os_str()];
+    arguments.extend(pages.iter().map(OsStr::new));
+    run(&node, script, &arguments);
+}
+
+/// Runs a script of this folder without a browser, and returns what it prints; `None` if there is no Node.
+pub(crate) fn run_in_node(script: &str, arguments: &[&OsStr]) -> Option<String> {
+    let Some(node) = node() else {
+        skip(NO_NODE);
+        eprintln!("skipped, {script} was not run: {NO_NODE}");
+        return None;
+    };
+    Some(run(&node, script, arguments))
+}
+
+/// Panics if no test may be skipped.
+fn skip(missing: &str) {
+    let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|wish| wish == "required");
+    assert!(!required, "{missing}");
+}
+
+fn run(node: &Path, script: &str, arguments: &[&OsStr]) -> String {
+    let script = Path::new(ROOT).join("tests/browser").join(script);
+    let output = Command::new(node).arg(script).args(arguments).output().unwrap();
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{printed}{}", String::from_utf8_lossy(&output.stderr));
+    printed
 }

@@ -15,8 +15,8 @@ export const PHONE = { width: 360, height: 740 };
 export const DESK = { width: 1280, height: 900 };
 /** A small screen of a computer. */
 export const LAPTOP = { width: 1280, height: 800 };
-/** The width of a phone on which names have to be readable, and the smallest font, in pixels. */
-const READER = { width: 390, height: 844 };
+/** A phone on which names have to be readable, and the smallest font, in pixels. */
+export const READER = { width: 390, height: 844 };
 const READABLE = 10;
 
 /** Makes the window as small as a phone, and sees that there is nothing to scroll sideways. */

@@ -4,8 +4,20 @@ use std::{io::Read, process::Stdio};
 
 use super::{exit_codes, folder, names_in, run, stderr, stdout, stdout_of, toposlam};
 
-const VERBS: [(&str, &[&str]); 19] = [
-    ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
+const VERBS: [(&str, &[&str]); 20] = [
+    (
+        "check",
+        &[
+            "--edges",
+            "--class",
+            "--marker",
+            "--choices",
+            "--shard",
+            "--from",
+            "--worst",
+            "--explorer",
+        ],
+    ),
     (
         "explore",
         &["--start", "--marker", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"],
@@ -25,6 +37,7 @@ const VERBS: [(&str, &[&str]); 19] = [
         ],
     ),
     ("draw", &["--start", "--marker", "--out", "--format"]),
+    ("play", &["--random", "--edges", "--class", "--seed", "--start", "--out"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
     (
@@ -183,7 +196,7 @@ fn the_help_of_every_verb_ends_with_its_exit_codes() {
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
     let without_verdict =
-        ["compare", "draw", "calibrate", "train", "sense", "render", "completions", "man"];
+        ["compare", "draw", "play", "calibrate", "train", "sense", "render", "completions", "man"];
     for verb in verbs {
         let words: Vec<_> = verb.split(' ').filter(|word| !word.is_empty()).collect();
         for help in ["-h", "--help"] {

@@ -1,0 +1,119 @@
+//! What can be wrong with a run of an explorer that is another program.
+
+use thiserror::Error;
+use toposlam_model::world::Refused;
+
+/// What is wrong with a run. Its message is a clause without a subject: the explorer.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(super) enum ExplorerFault {
+    /// A line is not JSON.
+    #[error("wrote `{line}`, which is not JSON: {cause}")]
+    NotJson { line: String, cause: String },
+    /// A line is JSON, and not an answer.
+    #[error("wrote `{line}`, which is not an answer: {cause}")]
+    NotAnAnswer { line: String, cause: String },
+    /// A line does not end.
+    #[error("wrote a line of more than {limit} bytes")]
+    LineTooLong { limit: u64 },
+    /// The process ended, or closed its standard output.
+    #[error("{}", match status {
+        Some(status) => format!("ended with {status}"),
+        None => "closed its standard output".to_owned(),
+    })]
+    Ended {
+        status: Option<String>,
+        /// Whether the status is that of a failure.
+        failed: bool,
+    },
+    /// An action is not possible.
+    #[error("{}", refusal(refused))]
+    Refused { refused: Refused },
+    /// It gave up.
+    #[error("gave up: {reason}")]
+    GaveUp { reason: String },
+    /// An edge of the map has one end only.
+    #[error("returned a map in which an edge is missing: dart {dart} leads nowhere")]
+    MissingEdge { dart: String },
+    /// The map or the pose contradicts itself.
+    #[error("returned a map that is not an embedded graph: {cause}")]
+    InvalidMap { cause: String },
+    /// The map is not isomorphic to the world.
+    #[error("returned a map that is not isomorphic to the world{difference}")]
+    WrongMap {
+        /// A shortest walk with different percepts in the map and in the world; empty if none was searched.
+        difference: String,
+    },
+    /// The robot is elsewhere.
+    #[error("returned the pose {believed}; the robot came in by dart {truly} of the map")]
+    WrongPose { believed: String, truly: String },
+    /// It returned a right map too early.
+    #[error(
+        "guessed: it returned the right map after {moves} moves, but there is another world in which \
+         it makes the same walk; the shortest walk that determines this one takes {certificate}"
+    )]
+    Guessed { moves: u64, certificate: u64 },
+    /// An answer takes too long.
+    #[error("did not read a percept and answer it within {seconds} s")]
+    TimedOut { seconds: f64 },
+    /// The run takes too long.
+    #[error("did not end within {limit} moves")]
+    OutOfMoves { limit: u64 },
+}
+
+fn refusal(refused: &Refused) -> String {
+    match refused {
+        Refused::NoSuchDoor { door, degree } => {
+            format!("took door {} at a vertex with {degree} doors, 0 to {}", door.0, degree - 1)
+        }
+        Refused::NothingToPickUp => "picked up a marker where there is none".to_owned(),
+        Refused::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
+        Refused::OutOfMoves { bound } => format!("made more than {bound} moves"),
+    }
+}
+
+impl ExplorerFault {
+    /// Its name in `--json` and in the table of causes.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::NotJson { .. } => "not-json",
+            Self::NotAnAnswer { .. } => "not-an-answer",
+            Self::LineTooLong { .. } => "line-too-long",
+            Self::Ended { failed: true, .. } => "crashed",
+            Self::Ended { .. } => "ended",
+            Self::Refused { refused: Refused::NoSuchDoor { .. } } => "no-such-door",
+            Self::Refused { .. } => "no-such-marker",
+            Self::GaveUp { .. } => "gave-up",
+            Self::MissingEdge { .. } => "missing-edge",
+            Self::InvalidMap { .. } => "invalid-map",
+            Self::WrongMap { .. } => "wrong-map",
+            Self::WrongPose { .. } => "wrong-pose",
+            Self::Guessed { .. } => "guessed",
+            Self::TimedOut { .. } => "timeout",
+            Self::OutOfMoves { .. } => "max-moves",
+        }
+    }
+
+    /// Whether a limit was reached. Then it is not known whether the explorer would have mapped the start.
+    pub(super) fn is_limit(&self) -> bool {
+        matches!(self, Self::TimedOut { .. } | Self::OutOfMoves { .. })
+    }
+
+    /// Whether the run ended without the explorer's last answer, so that the process cannot begin another.
+    pub(super) fn ends_process(&self) -> bool {
+        match self {
+            Self::NotJson { .. }
+            | Self::NotAnAnswer { .. }
+            | Self::LineTooLong { .. }
+            | Self::Ended { .. }
+            | Self::Refused { .. }
+            | Self::TimedOut { .. }
+            | Self::OutOfMoves { .. } => true,
+            Self::GaveUp { .. }
+            | Self::MissingEdge { .. }
+            | Self::InvalidMap { .. }
+            | Self::WrongMap { .. }
+            | Self::WrongPose { .. }
+            | Self::Guessed { .. } => false,
+        }
+    }
+}

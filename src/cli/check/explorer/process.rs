@@ -1,0 +1,208 @@
+//! A process that runs an explorer: a line goes to its standard input, and a line comes back.
+
+use std::{
+    collections::VecDeque,
+    io::{BufRead, BufReader, Read, Write},
+    process::{Command, ExitStatus},
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::fault::ExplorerFault;
+use crate::cli::{
+    CliError,
+    children::{ProgramStreams, RunningProgram},
+    progress::must_stop,
+};
+
+/// The longest line that is read, in bytes: a map of some 40,000 edges. The parser takes less than 100 bytes
+/// for each byte.
+const LONGEST_LINE: u64 = 1 << 20;
+
+/// The end of the standard error that is kept, in bytes.
+const KEPT_ERRORS: usize = 2000;
+
+/// How long a process may take to end: after the end of its input, and after the end of its output.
+const TO_END: Duration = Duration::from_secs(1);
+
+/// The longest time between two looks at whether to stop.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A command: a program and its arguments.
+#[derive(Clone, Debug)]
+pub(super) struct ExplorerCommand {
+    /// As on the command line.
+    pub(super) text: String,
+    words: Vec<String>,
+}
+
+impl ExplorerCommand {
+    /// The command in a text, whose words are separated and quoted as in a shell.
+    pub(super) fn from_text(text: &str) -> Result<Self, CliError> {
+        let cause = |cause| CliError::at("--explorer", format!("`{text}` {cause}"));
+        let words = shlex::split(text).ok_or_else(|| cause("has a quote that is not closed"))?;
+        if words.is_empty() {
+            return Err(cause("names no program"));
+        }
+        Ok(Self { text: text.to_owned(), words })
+    }
+
+    /// Starts a process.
+    pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
+        let mut words = self.words.iter();
+        let program = words.next().map_or("", String::as_str);
+        let mut command = Command::new(program);
+        command.args(words);
+        let (running, streams) = RunningProgram::start(&mut command).map_err(|error| {
+            CliError::at("--explorer", format!("{program} cannot be started: {error}"))
+        })?;
+        let ProgramStreams { stdin, stdout, stderr } = streams;
+        let (requests, to_send) = mpsc::channel();
+        let (answers, received) = mpsc::channel();
+        let converse = move || converse(stdin, BufReader::new(stdout), &to_send, &answers);
+        let errors = Arc::new(Mutex::new(VecDeque::new()));
+        let (kept, (all_kept, ended)) = (Arc::clone(&errors), mpsc::channel());
+        let keep = move || {
+            keep_end(stderr, &kept);
+            // Without a receiver, nobody waits.
+            let _ = all_kept.send(());
+        };
+        for work in [Box::new(converse) as Box<dyn FnOnce() + Send>, Box::new(keep)] {
+            thread::Builder::new().spawn(work).map_err(|error| {
+                CliError::at("--explorer", format!("a thread cannot be started: {error}"))
+            })?;
+        }
+        Ok(ExplorerProcess { running, requests: Some(requests), received, errors, ended })
+    }
+}
+
+/// What came back.
+enum Reply {
+    Line(Vec<u8>),
+    TooLong,
+    /// The standard output is closed.
+    End,
+}
+
+/// Why there is no answer.
+pub(super) enum NoAnswer {
+    Fault(ExplorerFault),
+    /// The check is to stop.
+    Stopped,
+}
+
+/// A running process.
+pub(super) struct ExplorerProcess {
+    running: RunningProgram,
+    /// `None` after the end of its input.
+    requests: Option<Sender<String>>,
+    received: Receiver<Reply>,
+    /// The end of its standard error.
+    errors: Arc<Mutex<VecDeque<u8>>>,
+    /// Receives when its standard error is closed.
+    ended: Receiver<()>,
+}
+
+impl ExplorerProcess {
+    /// Sends a line and returns the next one, without its end.
+    pub(super) fn ask(&mut self, line: String, timeout: Duration) -> Result<Vec<u8>, NoAnswer> {
+        if let Some(requests) = &self.requests {
+            // It fails if the process has ended, which is found below.
+            let _ = requests.send(line);
+        }
+        let begun = Instant::now();
+        loop {
+            let left = timeout.saturating_sub(begun.elapsed());
+            match self.received.recv_timeout(left.min(LOOK)) {
+                Ok(Reply::Line(line)) => return Ok(line),
+                Ok(Reply::TooLong) => {
+                    return Err(NoAnswer::Fault(ExplorerFault::LineTooLong {
+                        limit: LONGEST_LINE,
+                    }));
+                }
+                Ok(Reply::End) | Err(RecvTimeoutError::Disconnected) => {
+                    let status = self.running.wait(TO_END);
+                    let failed = status.is_some_and(|status| !status.success());
+                    let status = status.map(status_text);
+                    return Err(NoAnswer::Fault(ExplorerFault::Ended { status, failed }));
+                }
+                Err(RecvTimeoutError::Timeout) if must_stop() => return Err(NoAnswer::Stopped),
+                Err(RecvTimeoutError::Timeout) if begun.elapsed() >= timeout => {
+                    let seconds = timeout.as_secs_f64();
+                    return Err(NoAnswer::Fault(ExplorerFault::TimedOut { seconds }));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// Ends the process and returns the end of its standard error.
+    pub(super) fn end(self) -> String {
+        let Self { running, requests, received, errors, ended } = self;
+        drop((running, requests, received));
+        // Another program may keep it open.
+        let _ = ended.recv_timeout(TO_END);
+        let mut errors = errors.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = String::from_utf8_lossy(errors.make_contiguous()).into_owned();
+        text.trim().to_owned()
+    }
+
+    /// Ends its input, and the process if it does not end soon.
+    pub(super) fn finish(mut self) {
+        self.requests = None;
+        self.running.wait(TO_END);
+    }
+}
+
+/// Sends each line and then receives one.
+fn converse(
+    mut stdin: impl Write,
+    mut stdout: impl BufRead,
+    requests: &Receiver<String>,
+    answers: &Sender<Reply>,
+) {
+    for request in requests {
+        // A process that has ended does not read, and has no more output either.
+        let _ = stdin.write_all(request.as_bytes()).and_then(|()| stdin.flush());
+        let mut line = Vec::new();
+        let read = stdout.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
+        let reply = match (read, line.last()) {
+            (Ok(_), Some(b'\n')) => {
+                line.pop();
+                Reply::Line(line)
+            }
+            (Ok(_), Some(_)) if line.len() as u64 == LONGEST_LINE => Reply::TooLong,
+            // A last line may have no end.
+            (Ok(_), Some(_)) => Reply::Line(line),
+            (Ok(_), None) | (Err(_), _) => Reply::End,
+        };
+        if answers.send(reply).is_err() {
+            break;
+        }
+    }
+}
+
+/// Reads a stream and keeps its end.
+fn keep_end(mut stream: impl Read, kept: &Mutex<VecDeque<u8>>) {
+    let mut buffer = [0; 1024];
+    while let Ok(count @ 1..) = stream.read(&mut buffer) {
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.extend(&buffer[..count]);
+        let more = kept.len().saturating_sub(KEPT_ERRORS);
+        kept.drain(..more);
+    }
+}
+
+/// How a process ended.
+fn status_text(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        let name = nix::sys::signal::Signal::try_from(signal);
+        return name.map_or(format!("signal {signal}"), |name| format!("signal {name}"));
+    }
+    status.code().map_or_else(|| status.to_string(), |code| format!("exit code {code}"))
+}

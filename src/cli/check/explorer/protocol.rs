@@ -1,0 +1,325 @@
+//! The lines between the check and an explorer that is another program: docs/protocol.md.
+
+use serde_json::{Map, Value};
+use toposlam_model::{
+    check::{ExploredMap, Flaw},
+    embedded_graph::Dart,
+    percept::{Door, Percept, Sighting},
+    world::Action,
+};
+
+use super::fault::ExplorerFault;
+
+/// The most characters of a line that a message shows.
+const SHOWN: usize = 60;
+
+/// The line of a percept.
+pub(super) fn percept_line(percept: Percept) -> String {
+    let Percept { degree, sighting } = percept;
+    let marker = match sighting {
+        Sighting::Nothing => "null".to_owned(),
+        Sighting::Pointing(door) => door.0.to_string(),
+        Sighting::Lying(count) => count.to_string(),
+        Sighting::First => "\"first\"".to_owned(),
+        Sighting::Second => "\"second\"".to_owned(),
+        Sighting::Both => "\"both\"".to_owned(),
+        Sighting::Passed => "\"passed\"".to_owned(),
+        Sighting::PassedAlong => "\"along\"".to_owned(),
+        Sighting::PassedAgainst => "\"against\"".to_owned(),
+    };
+    format!("{{\"percept\":{{\"degree\":{degree},\"marker\":{marker}}}}}\n")
+}
+
+/// What an explorer answers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum ExplorerAnswer {
+    Act(Action),
+    /// The last answer of a run.
+    Done(ReportedMap),
+    GiveUp(String),
+}
+
+impl ExplorerAnswer {
+    /// The answer in a line without its end.
+    pub(super) fn from_line(line: &[u8]) -> Result<Self, ExplorerFault> {
+        let text = String::from_utf8_lossy(line);
+        let shown = || shortened(text.trim());
+        let value: Value = serde_json::from_slice(line).map_err(|error| {
+            // There is only one line.
+            let cause = error.to_string().replace(" at line 1 column ", " at column ");
+            ExplorerFault::NotJson { line: shown(), cause }
+        })?;
+        Self::from_value(&value)
+            .map_err(|cause| ExplorerFault::NotAnAnswer { line: shown(), cause })
+    }
+
+    fn from_value(value: &Value) -> Result<Self, String> {
+        let Value::Object(fields) = value else {
+            return Err("an answer is an object, as in {\"door\":2}".to_owned());
+        };
+        let keys: Vec<_> = fields.keys().map(String::as_str).collect();
+        match keys[..] {
+            ["door"] => match fields["door"].as_u64().and_then(|door| u32::try_from(door).ok()) {
+                Some(door) => Ok(Self::Act(Action::Take(Door(door)))),
+                None => Err(format!("{} is not the number of a door", fields["door"])),
+            },
+            ["action"] => match fields["action"].as_str() {
+                Some("pick-up") => Ok(Self::Act(Action::PickUp)),
+                Some("drop") => Ok(Self::Act(Action::Drop)),
+                _ => Err(format!("{} is not \"pick-up\" or \"drop\"", fields["action"])),
+            },
+            ["give_up"] => match fields["give_up"].as_str() {
+                Some(reason) => Ok(Self::GiveUp(shortened(reason))),
+                None => Err(format!("{} is not a text", fields["give_up"])),
+            },
+            ["map", "pose"] | ["pose", "map"] => ReportedMap::from_fields(fields).map(Self::Done),
+            ["map"] => Err("a map needs a \"pose\" beside it".to_owned()),
+            ["pose"] => Err("a pose needs a \"map\" beside it".to_owned()),
+            [] => Err("it is empty".to_owned()),
+            _ => {
+                let known = ["door", "action", "map", "pose", "give_up"];
+                let other = keys.iter().find(|key| !known.contains(key));
+                Err(match other {
+                    Some(key) => format!("there is no key \"{}\"", shortened(key)),
+                    None => "it is more than one answer".to_owned(),
+                })
+            }
+        }
+    }
+}
+
+/// The beginning of a text in one line.
+fn shortened(text: &str) -> String {
+    let plain = |letter: char| if letter.is_control() { '\u{fffd}' } else { letter };
+    let mut letters = text.chars().map(plain);
+    let beginning: String = letters.by_ref().take(SHOWN).collect();
+    if letters.next().is_some() { beginning + "…" } else { beginning }
+}
+
+/// A map as an explorer returns it: for each vertex and each dart, clockwise, the vertex and the index of
+/// the dart's other end. Dart 0 of vertex 0 is the facing dart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ReportedMap {
+    /// `None` where an explorer does not state the other end.
+    ends: Vec<Vec<Option<ReportedDart>>>,
+    pose: ReportedDart,
+}
+
+/// A dart: its vertex, and its index there.
+type ReportedDart = (usize, usize);
+
+impl ReportedMap {
+    fn from_fields(fields: &Map<String, Value>) -> Result<Self, String> {
+        let end = |value: &Value| match value {
+            Value::Null => Ok(None),
+            value => dart(value).map(Some),
+        };
+        let vertex = |value: &Value| {
+            let darts = list(value, "the list of the darts of a vertex")?;
+            darts.iter().map(end).collect::<Result<Vec<_>, _>>()
+        };
+        let vertices = list(&fields["map"], "a list of vertices")?;
+        let ends = vertices.iter().map(vertex).collect::<Result<_, _>>()?;
+        Ok(Self { ends, pose: dart(&fields["pose"])? })
+    }
+
+    /// The map as an embedded graph.
+    pub(super) fn explored(&self) -> Result<ExploredMap<'static>, ExplorerFault> {
+        let invalid = |cause: String| ExplorerFault::InvalidMap { cause };
+        let mut firsts = Vec::with_capacity(self.ends.len());
+        let mut darts = Vec::new();
+        for (vertex, ends) in self.ends.iter().enumerate() {
+            if ends.is_empty() {
+                return Err(invalid(format!("vertex v{vertex} has no dart")));
+            }
+            firsts.push(darts.len());
+            darts.extend((0..ends.len()).map(|index| (vertex, index)));
+        }
+        let end_of = |(vertex, index): ReportedDart| self.ends.get(vertex)?.get(index).copied();
+        let number = |dart: ReportedDart| end_of(dart).map(|_| (firsts[dart.0] + dart.1) as u32);
+        let opposite = |&from: &ReportedDart| {
+            let name = dart_text(from);
+            let Some(Some(to)) = end_of(from) else {
+                return Err(ExplorerFault::MissingEdge { dart: name });
+            };
+            let Some(there) = number(to) else {
+                return Err(invalid(format!(
+                    "dart {name} leads to {}, which it lacks",
+                    dart_text(to)
+                )));
+            };
+            match end_of(to).flatten() {
+                _ if to == from => Err(invalid(format!("dart {name} leads to itself"))),
+                Some(back) if back != from => {
+                    let (to, back) = (dart_text(to), dart_text(back));
+                    Err(invalid(format!("dart {name} leads to {to}, and {to} leads to {back}")))
+                }
+                None => Err(ExplorerFault::MissingEdge { dart: dart_text(to) }),
+                Some(_) => Ok(there),
+            }
+        };
+        let opposite = darts.iter().map(opposite).collect::<Result<Vec<_>, _>>()?;
+        let next = |&(vertex, index): &ReportedDart| {
+            (firsts[vertex] + (index + 1) % self.ends[vertex].len()) as u32
+        };
+        let clockwise: Vec<_> = darts.iter().map(next).collect();
+        let pose = number(self.pose)
+            .ok_or_else(|| invalid(format!("it has no dart {}, the pose", dart_text(self.pose))))?;
+        ExploredMap::from_permutations(&opposite, &clockwise, 0, pose).map_err(|flaw| match flaw {
+            Flaw::NoGraph(toposlam_model::embedded_graph::GraphError::NotConnected { dart }) => {
+                let dart = dart_text(darts[dart as usize]);
+                invalid(format!("dart {dart} cannot be reached from the start"))
+            }
+            flaw => invalid(flaw.to_string()),
+        })
+    }
+
+    /// The pose, as a message shows it.
+    pub(super) fn pose_text(&self) -> String {
+        dart_text(self.pose)
+    }
+
+    /// A dart of the embedded graph of the map, as a message shows it.
+    pub(super) fn dart_name(&self, dart: Dart) -> String {
+        let mut index = dart.at();
+        for (vertex, ends) in self.ends.iter().enumerate() {
+            if index < ends.len() {
+                return dart_text((vertex, index));
+            }
+            index -= ends.len();
+        }
+        dart.0.to_string()
+    }
+}
+
+fn list<'v>(value: &'v Value, what: &str) -> Result<&'v [Value], String> {
+    match value {
+        Value::Array(items) => Ok(items),
+        other => Err(format!("{} is not {what}", shortened(&other.to_string()))),
+    }
+}
+
+fn dart(value: &Value) -> Result<ReportedDart, String> {
+    let number = |value: &Value| value.as_u64().and_then(|number| usize::try_from(number).ok());
+    match value.as_array().map(Vec::as_slice) {
+        Some([vertex, index]) => number(vertex).zip(number(index)),
+        _ => None,
+    }
+    .ok_or_else(|| {
+        let value = shortened(&value.to_string());
+        format!("{value} is not a dart, as in [1,0]: dart 0 of vertex 1")
+    })
+}
+
+fn dart_text((vertex, index): ReportedDart) -> String {
+    format!("v{vertex}.{index}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(line: &str) -> Result<ExplorerAnswer, ExplorerFault> {
+        ExplorerAnswer::from_line(line.as_bytes())
+    }
+
+    fn map(line: &str) -> Result<ExploredMap<'static>, ExplorerFault> {
+        match answer(line).unwrap() {
+            ExplorerAnswer::Done(map) => map.explored(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_percept_is_a_line_without_spaces() {
+        let line = |degree, sighting| percept_line(Percept { degree, sighting });
+        let pointing = Sighting::Pointing(Door(1));
+        assert_eq!(line(3, pointing), "{\"percept\":{\"degree\":3,\"marker\":1}}\n");
+        assert_eq!(line(1, Sighting::Nothing), "{\"percept\":{\"degree\":1,\"marker\":null}}\n");
+        assert_eq!(line(2, Sighting::Both), "{\"percept\":{\"degree\":2,\"marker\":\"both\"}}\n");
+    }
+
+    #[test]
+    fn an_action_is_a_door_or_a_word() {
+        assert_eq!(answer("{\"door\":2}\r"), Ok(ExplorerAnswer::Act(Action::Take(Door(2)))));
+        assert_eq!(answer(" {\"action\": \"drop\"}"), Ok(ExplorerAnswer::Act(Action::Drop)));
+        assert_eq!(answer("{\"give_up\":\"lost\"}"), Ok(ExplorerAnswer::GiveUp("lost".to_owned())));
+    }
+
+    #[test]
+    fn what_is_no_answer_is_named_with_its_line() {
+        let cases = [
+            ("", "not-json", "EOF while parsing a value at column 0"),
+            ("door 1", "not-json", "expected value at column 1"),
+            ("{\"door\":1} {}", "not-json", "trailing characters at column 12"),
+            ("7", "not-an-answer", "an answer is an object, as in {\"door\":2}"),
+            ("{}", "not-an-answer", "it is empty"),
+            ("{\"door\":-1}", "not-an-answer", "-1 is not the number of a door"),
+            ("{\"door\":1.5}", "not-an-answer", "1.5 is not the number of a door"),
+            ("{\"door\":\"1\"}", "not-an-answer", "\"1\" is not the number of a door"),
+            ("{\"door\":4294967296}", "not-an-answer", "4294967296 is not the number of a door"),
+            ("{\"dor\":1}", "not-an-answer", "there is no key \"dor\""),
+            ("{\"door\":1,\"action\":\"drop\"}", "not-an-answer", "it is more than one answer"),
+            ("{\"action\":\"jump\"}", "not-an-answer", "\"jump\" is not \"pick-up\" or \"drop\""),
+            ("{\"map\":[]}", "not-an-answer", "a map needs a \"pose\" beside it"),
+            ("{\"map\":3,\"pose\":[0,0]}", "not-an-answer", "3 is not a list of vertices"),
+            (
+                "{\"map\":[[3]],\"pose\":[0,0]}",
+                "not-an-answer",
+                "3 is not a dart, as in [1,0]: dart 0 of vertex 1",
+            ),
+        ];
+        for (line, name, cause) in cases {
+            let fault = answer(line).unwrap_err();
+            assert_eq!(fault.name(), name, "{line}");
+            assert!(fault.to_string().ends_with(&format!(": {cause}")), "{line}: {fault}");
+        }
+        let fault = ExplorerAnswer::from_line(&[0xff, b'\x07']).unwrap_err();
+        assert_eq!(fault.name(), "not-json");
+        assert!(!fault.to_string().contains('\u{7}'));
+        assert!(answer(&"[".repeat(1000)).is_err());
+    }
+
+    #[test]
+    fn a_map_is_an_embedded_graph() {
+        // An edge with a loop at its end.
+        let loops = map("{\"map\":[[[1,0]],[[0,0],[1,2],[1,1]]],\"pose\":[1,2]}").unwrap();
+        assert_eq!((loops.graph.edge_count(), loops.graph.vertex_count()), (2, 2));
+        assert_eq!((loops.facing, loops.pose), (Dart(0), Dart(3)));
+    }
+
+    #[test]
+    fn a_map_that_contradicts_itself_is_rejected_with_its_dart() {
+        let cases = [
+            ("[]", "[0,0]", "invalid-map", "it has no dart v0.0, the pose"),
+            ("[[]]", "[0,0]", "invalid-map", "vertex v0 has no dart"),
+            ("[[[1,0]],[[0,0]]]", "[1,1]", "invalid-map", "it has no dart v1.1, the pose"),
+            ("[[[0,0]]]", "[0,0]", "invalid-map", "dart v0.0 leads to itself"),
+            (
+                "[[[1,1]],[[0,0]]]",
+                "[0,0]",
+                "invalid-map",
+                "dart v0.0 leads to v1.1, which it lacks",
+            ),
+            (
+                "[[[0,1],[1,0]],[[0,1]]]",
+                "[0,0]",
+                "invalid-map",
+                "dart v0.0 leads to v0.1, and v0.1 leads to v1.0",
+            ),
+            ("[[null]]", "[0,0]", "missing-edge", "dart v0.0 leads nowhere"),
+            ("[[[1,0]],[null]]", "[0,0]", "missing-edge", "dart v1.0 leads nowhere"),
+            (
+                "[[[0,1],[0,0]],[[1,1],[1,0]]]",
+                "[0,0]",
+                "invalid-map",
+                "dart v1.0 cannot be reached from the start",
+            ),
+        ];
+        for (ends, pose, name, cause) in cases {
+            let fault = map(&format!("{{\"map\":{ends},\"pose\":{pose}}}")).unwrap_err();
+            assert_eq!(fault.name(), name, "{ends}: {fault}");
+            assert!(fault.to_string().ends_with(&format!(": {cause}")), "{ends}: {fault}");
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Runs an explorer that is another program on every start of many worlds, in several processes at once.
+//!
+//! The starts are cut into batches, in their order. Each batch has a process of its own, so that the result
+//! does not depend on the number of processes, even if a program remembers its earlier runs.
+
+use std::{
+    collections::BTreeMap,
+    ops::ControlFlow,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, Receiver, Sender, SyncSender},
+    },
+    thread,
+};
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Enumeration, Watch},
+    folding::certificate_length,
+    isomorphism::{Candidate, canonical},
+    marker::{Directional, Marker},
+};
+
+use super::{
+    fault::ExplorerFault,
+    process::{ExplorerCommand, ExplorerProcess},
+    run::{ExplorerStart, RunLimits},
+    tally::ExplorerTally,
+};
+use crate::cli::{
+    CliError,
+    progress::{Progress, must_stop},
+};
+
+/// A batch is complete with its first world that gives it so many starts.
+const BATCH: usize = 256;
+
+/// The worlds of one number of edges.
+pub(super) enum ExplorerWorlds {
+    Enumerated(Enumeration),
+    Listed(Vec<EmbeddedGraph>),
+}
+
+/// What is run, and within which limits.
+pub(super) struct ExplorerSweep<'a> {
+    pub(super) command: &'a ExplorerCommand,
+    pub(super) marker: &'static dyn Marker,
+    pub(super) limits: RunLimits,
+    /// So many runs may end their process; then the rest of the starts is left out.
+    pub(super) restarts: u64,
+    /// The number of processes at once.
+    pub(super) processes: usize,
+}
+
+/// Worlds with the facing darts of their starts.
+struct Batch {
+    number: usize,
+    worlds: Vec<(EmbeddedGraph, Vec<Dart>)>,
+}
+
+/// The tallies of a batch. Each but the last ends with a run that ended its process.
+type BatchResult = Result<(usize, Vec<ExplorerTally>), CliError>;
+
+impl ExplorerWorlds {
+    /// Whether no world has a loop or parallel edges.
+    pub(super) fn is_simple(&self) -> bool {
+        match self {
+            Self::Enumerated(enumeration) => enumeration.class().is_simple(),
+            Self::Listed(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
+        }
+    }
+
+    /// Sends the batches until nobody receives them.
+    fn send_batches(&self, batches: &SyncSender<Batch>) {
+        let mut number = 0;
+        let mut worlds = Vec::new();
+        let mut starts = 0;
+        let mut add = |graph: &EmbeddedGraph| {
+            let orbit = canonical(graph).orbit;
+            // Darts that an automorphism takes to each other are the same start.
+            let facing: Vec<_> = graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect();
+            starts += facing.len();
+            worlds.push((graph.clone(), facing));
+            if starts < BATCH {
+                return ControlFlow::Continue(());
+            }
+            starts = 0;
+            number += 1;
+            let batch = Batch { number: number - 1, worlds: std::mem::take(&mut worlds) };
+            if batches.send(batch).is_ok() {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let all = match self {
+            Self::Enumerated(enumeration) => enumeration.for_each(&mut |found| add(found.graph)),
+            Self::Listed(graphs) => graphs.iter().try_for_each(add),
+        };
+        if all.is_continue() && !worlds.is_empty() {
+            // Nobody receives it if the check stops.
+            let _ = batches.send(Batch { number, worlds });
+        }
+    }
+}
+
+impl ExplorerSweep<'_> {
+    /// Runs the explorer on every start.
+    ///
+    /// # Errors
+    /// Returns an error if a process cannot be started.
+    pub(super) fn run(
+        &self,
+        worlds: &ExplorerWorlds,
+        progress: &Progress,
+    ) -> Result<ExplorerTally, CliError> {
+        let enough = AtomicBool::new(false);
+        thread::scope(|scope| {
+            let (batches, to_run) = mpsc::sync_channel(2 * self.processes);
+            let (results, to_merge) = mpsc::channel();
+            scope.spawn(move || worlds.send_batches(&batches));
+            let to_run = Arc::new(Mutex::new(to_run));
+            for _ in 0..self.processes {
+                let (to_run, results, enough) = (Arc::clone(&to_run), results.clone(), &enough);
+                scope.spawn(move || self.work(&to_run, &results, enough, progress));
+            }
+            // When the last worker ends, nobody receives batches, and nobody sends results.
+            drop((to_run, results));
+            let merged = self.merge(&to_merge, &enough);
+            enough.store(true, Ordering::Relaxed);
+            merged
+        })
+    }
+
+    /// Runs one batch after the other.
+    fn work(
+        &self,
+        batches: &Mutex<Receiver<Batch>>,
+        results: &Sender<BatchResult>,
+        enough: &AtomicBool,
+        progress: &Progress,
+    ) {
+        while !enough.load(Ordering::Relaxed) {
+            let next = batches.lock().unwrap_or_else(PoisonError::into_inner).recv();
+            let Ok(batch) = next else { break };
+            let result = self.run_batch(&batch, enough);
+            let starts = result.iter().flatten().map(|tally| tally.starts).sum();
+            progress.part_done(starts);
+            if results.send(result.map(|tallies| (batch.number, tallies))).is_err() {
+                break;
+            }
+        }
+    }
+
+    /// Runs the explorer on the starts of a batch.
+    fn run_batch(
+        &self,
+        batch: &Batch,
+        enough: &AtomicBool,
+    ) -> Result<Vec<ExplorerTally>, CliError> {
+        let mut tallies = Vec::new();
+        let mut tally = ExplorerTally::default();
+        let mut process: Option<ExplorerProcess> = None;
+        let mut candidate = Candidate::default();
+        let directional = self.marker.name() == Directional.name();
+        for (graph, facing) in &batch.worlds {
+            tally.worlds += 1;
+            for &facing in facing {
+                if must_stop() {
+                    tally.interrupted = true;
+                }
+                if tally.interrupted || enough.load(Ordering::Relaxed) {
+                    tallies.push(tally);
+                    return Ok(tallies);
+                }
+                let certificate = directional.then(|| certificate_length(graph, facing) as u64);
+                let start = ExplorerStart { graph, facing, marker: self.marker, certificate };
+                let mut running = match process.take() {
+                    Some(process) => process,
+                    None => self.command.start()?,
+                };
+                let Ok(run) = start.run(&mut running, self.limits, &mut candidate) else {
+                    tally.interrupted = true;
+                    continue;
+                };
+                if !run.result.as_ref().is_err_and(ExplorerFault::ends_process) {
+                    process = Some(running);
+                    tally.count(&start, run, String::new());
+                    continue;
+                }
+                tally.count(&start, run, running.end());
+                tallies.push(std::mem::take(&mut tally));
+                if tallies.len() as u64 == self.restarts {
+                    return Ok(tallies);
+                }
+            }
+        }
+        if let Some(process) = process {
+            process.finish();
+        }
+        tallies.push(tally);
+        Ok(tallies)
+    }
+
+    /// Merges the results in the order of the starts, up to the run that ends the last process.
+    fn merge(
+        &self,
+        results: &Receiver<BatchResult>,
+        enough: &AtomicBool,
+    ) -> Result<ExplorerTally, CliError> {
+        let mut total = ExplorerTally::default();
+        let mut waiting = BTreeMap::new();
+        let mut next = 0;
+        for result in results {
+            let (number, tallies) = result?;
+            waiting.insert(number, tallies);
+            while let Some(tallies) = waiting.remove(&next) {
+                next += 1;
+                for tally in tallies {
+                    total.merge(tally);
+                    if total.processes_ended == self.restarts {
+                        enough.store(true, Ordering::Relaxed);
+                        total.stopped = true;
+                        return Ok(total);
+                    }
+                }
+            }
+        }
+        // After Ctrl-C, a batch may be missing.
+        waiting.into_values().flatten().for_each(|tally| total.merge(tally));
+        total.interrupted |= must_stop();
+        Ok(total)
+    }
+}

@@ -1,0 +1,109 @@
+//! A page on which a person is the robot: it shows percepts only, and judges the person's map at the end. The
+//! person is compared with Algorithm 1, with the folding explorer and with the certificate. Sections 2.1 and
+//! 2.3.
+
+mod data;
+
+use super::{PAGE_SCRIPT, PAGE_STYLE, filled};
+use crate::{
+    model::{
+        embedded_graph::Dart,
+        format::named_world::NamedWorld,
+        marker::{Directional, Marker},
+    },
+    picture::{WorldPicture, escaped, svg},
+};
+
+const PAGE: &str = include_str!("../browser/play.html");
+const STYLE: &str = include_str!("../browser/play.css");
+/// In the order of their dependencies; they share one scope.
+const SCRIPT: [&str; 6] = [
+    PAGE_SCRIPT,
+    include_str!("../browser/play_map.js"),
+    include_str!("../browser/play_judge.js"),
+    include_str!("../browser/play_drawing.js"),
+    include_str!("../browser/play_here.js"),
+    include_str!("../browser/play.js"),
+];
+
+/// The page as an HTML document: the robot starts by this dart. The same start gives the same bytes.
+#[must_use]
+pub fn play_page(world: &NamedWorld, facing: Dart) -> String {
+    let (title, caption, marker) = ("", "", &Directional as &dyn Marker);
+    let start = Some(facing);
+    let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
+    filled(PAGE, |place| match place {
+        "style" => [PAGE_STYLE, STYLE].concat(),
+        "name" => escaped(&world.name),
+        "picture" => svg(&drawn),
+        "marker" => escaped(&drawn.marker_place().unwrap_or_default()),
+        "data" => data::json(world, facing),
+        "script" => SCRIPT.concat(),
+        _ => String::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{cell::RefCell, collections::BTreeSet};
+
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::model::{embedded_graph::EmbeddedGraph, folding};
+
+    fn data_of(document: &str) -> Value {
+        let (_, from) =
+            document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
+        serde_json::from_str(from.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    /// An edge with a loop at its end; the start is the other end.
+    fn world(name: &str) -> NamedWorld {
+        let lists = [("a", vec!["e"]), ("b", vec!["e", "l", "l"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        NamedWorld::numbered(name, "", graph, Some(Dart(0)))
+    }
+
+    #[test]
+    fn every_place_of_the_template_is_filled() {
+        let places = RefCell::new(BTreeSet::new());
+        filled(PAGE, |place| {
+            places.borrow_mut().insert(place.to_owned());
+            String::new()
+        });
+        let known = ["data", "marker", "name", "picture", "script", "style"].map(str::to_owned);
+        assert_eq!(places.into_inner(), known.into());
+    }
+
+    #[test]
+    fn the_data_is_the_world_and_the_walks_to_compare_with() {
+        let world = world("loop");
+        let data = data_of(&play_page(&world, Dart(0)));
+        assert_eq!(data["world"], json!([[[1, 0]], [[0, 0], [1, 2], [1, 1]]]));
+        assert_eq!(data["start"], json!([0, 0]));
+        let walks = data["walks"].as_array().unwrap();
+        let names: Vec<_> = walks.iter().map(|walk| walk["name"].as_str().unwrap()).collect();
+        assert_eq!(names, ["Certificate", "Folding explorer", "Algorithm 1"]);
+        // Over the edge, around the loop, and back: the marker is seen again.
+        let certificate = folding::certificate(&world.graph, Dart(0));
+        assert_eq!(walks[0]["doors"].as_array().unwrap().len(), certificate.len());
+        assert_eq!(walks[0]["doors"], json!([0, 1, 1]));
+        for walk in walks {
+            assert!(walk["doors"].as_array().unwrap().len() >= certificate.len(), "{walk}");
+        }
+        assert_eq!(data_of(&play_page(&world, Dart(2)))["start"], json!([1, 1]));
+    }
+
+    #[test]
+    fn names_are_escaped_everywhere() {
+        let nasty = "</script><!--<i>&\"{{data}}";
+        let document = play_page(&world(nasty), Dart(0));
+        assert!(!document.contains("<i>"));
+        assert_eq!(document.matches("</script>").count(), 2);
+        assert_eq!(document.matches("<!--").count(), 1, "the template's own");
+        // The inserted text is not searched for places.
+        assert!(document.contains("{{data}}"));
+        assert_eq!(document, play_page(&world(nasty), Dart(0)));
+    }
+}
