@@ -157,6 +157,21 @@ impl Exploration {
         Some(MappingChoice::Hypothesis(chosen))
     }
 
+    /// The first part of line 6: goes through the known map to the known end of an unexplored edge. To
+    /// [`explore`](Self::explore) it then takes one move.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, or if a known place is not as it was.
+    pub fn approach<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let known_end = self.map().vertex(edge);
+        self.journey.travel_to(known_end, PartialMap::expected, world, observer)
+    }
+
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
     /// to its unknown end, and lists the hypotheses about that: each unexplored dart by which the
     /// robot may have come in, except those that its percept contradicts at once.

@@ -232,6 +232,24 @@ impl FoldingExploration {
         self.settle(world, observer)
     }
 
+    /// The first part of a step: goes through the trail to the open dart that it takes. The step itself
+    /// then begins with that dart.
+    ///
+    /// # Errors
+    /// See [`map_by_folding`].
+    pub fn approach<W: World>(
+        &mut self,
+        step: FoldingStep,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let open = match step {
+            FoldingStep::Explore(edge) => self.in_trail[edge.at()],
+            FoldingStep::Test(test) => test.open,
+        };
+        self.go_to(open, world, observer)
+    }
+
     /// Makes a step, and draws all conclusions.
     ///
     /// # Errors
