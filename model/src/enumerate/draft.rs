@@ -99,6 +99,13 @@ impl Draft {
         };
         let (dart, left) = (dart.at(), growth.edges_left() - 1);
         let mut options = Options::default();
+        if !growth.can_get_stuck() {
+            if growth.can_join() {
+                options.free = growth.partners(dart);
+            }
+            options.degrees = growth.new_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
+            return options;
+        }
         if growth.can_join() {
             for other in bits(growth.partners(dart)) {
                 growth.join(dart, other, other as u8);

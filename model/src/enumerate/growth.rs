@@ -245,11 +245,16 @@ impl Growth {
         }
     }
 
+    /// Whether the class can leave no way to use up the free darts.
+    pub(super) fn can_get_stuck(&self) -> bool {
+        self.class.is_simple()
+    }
+
     /// Whether the class leaves a way to use up the free darts in `left` more edges. (A necessary
     /// condition; that of [`can_end`] has been checked.)
     pub(super) fn can_still_end(&self, left: usize) -> bool {
         // As many edges as free darts are always enough: a dead end at each.
-        if !self.class.is_simple() || self.free.count_ones() as usize <= left {
+        if !self.can_get_stuck() || self.free.count_ones() as usize <= left {
             return true;
         }
         if self.class == Class::Planar {

@@ -5,13 +5,14 @@ use crate::{
         Algorithm, Algorithm1, DEFAULT_MOVE_BOUND, ExploredMap, Explorer, ExplorerWorld, Flaw,
         Folding, MovableMarker, judge::explored,
     },
+    clone_in_place::clone_in_place,
+    embedded_graph::Dart,
     mapping::{
         Exploration, FoldingExploration, FoldingStep, InvalidStep, MappingChoice, MappingError,
         MarkerSearch, Nearest, explore_edge, step,
     },
-    embedded_graph::Dart,
     marker::{Directional, Marker, Movable},
-    world::{MovableMarkerWorld, Refused},
+    world::{MovableMarkerWorld, Refused, World},
 };
 
 /// Whether a run goes on.
@@ -95,34 +96,28 @@ impl<E: StepExplorer> Explorer for Stepwise<E> {
     }
 }
 
-macro_rules! clone_in_place {
-    ($type:ident { $($field:ident),* }) => {
-        impl Clone for $type {
-            fn clone(&self) -> Self {
-                Self { $($field: self.$field.clone()),* }
-            }
-
-            fn clone_from(&mut self, source: &Self) {
-                let Self { $($field),* } = source;
-                $(self.$field.clone_from($field);)*
-            }
-        }
-    };
-}
-
-/// Algorithm 1 with the default choices, as a [`StepExplorer`]: it goes to an unexplored edge, explores it,
-/// and tries one hypothesis after the other.
+/// Algorithm 1 with the default choices, as a [`StepExplorer`]. Between two steps it has made its next choice, and
+/// is at the known end of the edge if that is one.
 #[derive(Debug)]
 pub struct Algorithm1Explorer {
     exploration: Exploration,
-    /// The edge to explore: the robot is at its known end.
-    edge: Option<Dart>,
+    next: Option<MappingChoice>,
 }
-clone_in_place!(Algorithm1Explorer { exploration, edge });
+clone_in_place!(Algorithm1Explorer { exploration, next });
 
 impl Default for Algorithm1Explorer {
     fn default() -> Self {
-        Self { exploration: Exploration::new(0), edge: None }
+        Self { exploration: Exploration::new(0), next: None }
+    }
+}
+
+impl Algorithm1Explorer {
+    fn choose<W: World<Error = Refused>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+        self.next = self.exploration.choose(&mut Nearest);
+        if let Some(MappingChoice::Edge(edge)) = self.next {
+            self.exploration.approach(edge, world, &mut ())?;
+        }
+        Ok(if self.next.is_some() { StepProgress::GoesOn } else { StepProgress::Done })
     }
 }
 
@@ -138,30 +133,20 @@ impl StepExplorer for Algorithm1Explorer {
         world: &mut W,
         max_darts: usize,
     ) -> Result<StepProgress, Flaw> {
-        self.edge = None;
         self.exploration.set_bound(max_darts);
         self.exploration.begin(world, &mut ())?;
-        Ok(StepProgress::GoesOn)
+        self.choose(world)
     }
 
+    #[inline]
     fn step<W: MovableMarkerWorld<Error = Refused>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
-        let exploration = &mut self.exploration;
-        if let Some(edge) = self.edge.take() {
-            step(exploration, MappingChoice::Edge(edge), world, &mut ())?;
-            return Ok(StepProgress::GoesOn);
+        if let Some(choice) = self.next {
+            step(&mut self.exploration, choice, world, &mut ())?;
         }
-        match exploration.choose(&mut Nearest) {
-            None => return Ok(StepProgress::Done),
-            Some(MappingChoice::Edge(edge)) => {
-                exploration.approach(edge, world, &mut ())?;
-                self.edge = Some(edge);
-            }
-            Some(hypothesis) => step(exploration, hypothesis, world, &mut ())?,
-        }
-        Ok(StepProgress::GoesOn)
+        self.choose(world)
     }
 
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
@@ -173,12 +158,11 @@ impl StepExplorer for Algorithm1Explorer {
     }
 }
 
-/// The movable marker algorithm with the default choices, as a [`StepExplorer`]: it goes to an unexplored
-/// edge, and explores it.
+/// The movable marker algorithm with the default choices, as a [`StepExplorer`]. Between two steps it is at the
+/// known end of an unexplored edge.
 #[derive(Debug)]
 pub struct MovableMarkerExplorer {
     search: MarkerSearch,
-    /// The edge to explore: the robot is at its known end.
     edge: Option<Dart>,
 }
 clone_in_place!(MovableMarkerExplorer { search, edge });
@@ -186,6 +170,18 @@ clone_in_place!(MovableMarkerExplorer { search, edge });
 impl Default for MovableMarkerExplorer {
     fn default() -> Self {
         Self { search: MarkerSearch::new(0), edge: None }
+    }
+}
+
+impl MovableMarkerExplorer {
+    fn choose<W: MovableMarkerWorld<Error = Refused>>(
+        &mut self,
+        world: &mut W,
+    ) -> Result<StepProgress, Flaw> {
+        self.edge = self.search.choose_edge(&mut Nearest);
+        let Some(edge) = self.edge else { return Ok(StepProgress::Done) };
+        self.search.travel_to(self.search.map().vertex(edge), world, &mut ())?;
+        Ok(StepProgress::GoesOn)
     }
 }
 
@@ -201,26 +197,19 @@ impl StepExplorer for MovableMarkerExplorer {
         world: &mut W,
         max_darts: usize,
     ) -> Result<StepProgress, Flaw> {
-        self.edge = None;
         self.search.set_bound(max_darts);
         self.search.begin(world, &mut ())?;
-        Ok(StepProgress::GoesOn)
+        self.choose(world)
     }
 
     fn step<W: MovableMarkerWorld<Error = Refused>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
-        if let Some(edge) = self.edge.take() {
+        if let Some(edge) = self.edge {
             explore_edge(edge, &mut self.search, world, &mut ())?;
-            return Ok(StepProgress::GoesOn);
         }
-        let Some(edge) = self.search.choose_edge(&mut Nearest) else {
-            return Ok(StepProgress::Done);
-        };
-        self.search.travel_to(self.search.map().vertex(edge), world, &mut ())?;
-        self.edge = Some(edge);
-        Ok(StepProgress::GoesOn)
+        self.choose(world)
     }
 
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
@@ -232,19 +221,31 @@ impl StepExplorer for MovableMarkerExplorer {
     }
 }
 
-/// The folding explorer as a [`StepExplorer`]: it goes to an open dart, and then takes it and draws all
-/// conclusions.
+/// The folding explorer as a [`StepExplorer`]. Between two steps it is at the open dart that it takes next.
 #[derive(Debug)]
 pub struct FoldingStepExplorer {
     exploration: FoldingExploration,
-    /// The step to make: the robot is at its open dart.
-    step: Option<FoldingStep>,
+    next: Option<FoldingStep>,
 }
-clone_in_place!(FoldingStepExplorer { exploration, step });
+clone_in_place!(FoldingStepExplorer { exploration, next });
 
 impl Default for FoldingStepExplorer {
     fn default() -> Self {
-        Self { exploration: FoldingExploration::new(0), step: None }
+        Self { exploration: FoldingExploration::new(0), next: None }
+    }
+}
+
+impl FoldingStepExplorer {
+    fn choose<W: World<Error = Refused>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+        self.next = self.exploration.next_step();
+        match self.next {
+            Some(step) => {
+                self.exploration.approach(step, world, &mut ())?;
+                Ok(StepProgress::GoesOn)
+            }
+            None if self.exploration.is_complete() => Ok(StepProgress::Done),
+            None => Err(MappingError::from(InvalidStep::NoPlan).into()),
+        }
     }
 }
 
@@ -260,30 +261,19 @@ impl StepExplorer for FoldingStepExplorer {
         world: &mut W,
         max_darts: usize,
     ) -> Result<StepProgress, Flaw> {
-        self.step = None;
         self.exploration.set_bound(max_darts);
         self.exploration.begin(world, &mut ())?;
-        Ok(StepProgress::GoesOn)
+        self.choose(world)
     }
 
     fn step<W: MovableMarkerWorld<Error = Refused>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
-        let exploration = &mut self.exploration;
-        if let Some(step) = self.step.take() {
-            exploration.make_step(step, world, &mut ())?;
-            return Ok(StepProgress::GoesOn);
+        if let Some(step) = self.next {
+            self.exploration.make_step(step, world, &mut ())?;
         }
-        match exploration.next_step() {
-            Some(step) => {
-                exploration.approach(step, world, &mut ())?;
-                self.step = Some(step);
-                Ok(StepProgress::GoesOn)
-            }
-            None if exploration.is_complete() => Ok(StepProgress::Done),
-            None => Err(MappingError::from(InvalidStep::NoPlan).into()),
-        }
+        self.choose(world)
     }
 
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {

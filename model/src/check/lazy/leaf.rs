@@ -1,12 +1,9 @@
 //! Judges the end of a run: by the explorer's map and the record of what was revealed, and nothing else.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 
 use super::{
-    LazyTally, LazyWorld, StepExplorer,
-    search::RunEnd,
-    tally::EnumeratedStart,
-    world::FACING,
+    LazyTally, LazyWorld, StepExplorer, search::RunEnd, tally::EnumeratedStart, world::FACING,
 };
 use crate::{
     check::{Flaw, judge_map},
@@ -17,18 +14,21 @@ use crate::{
 };
 
 /// Judges one end after the other. Memory is kept.
-pub(super) struct LeafJudge {
+pub(super) struct LeafJudge<'m> {
     pub(super) tally: LazyTally,
     candidate: Candidate,
     /// Measures certificates, if the marker has them.
     certificates: Option<MarkerTree>,
+    /// The most moves of any run of the check so far.
+    most_moves: &'m AtomicU64,
 }
 
-impl LeafJudge {
-    pub(super) fn new(marker: &impl Marker) -> Self {
+impl<'m> LeafJudge<'m> {
+    pub(super) fn new(marker: &impl Marker, most_moves: &'m AtomicU64) -> Self {
         let directional = marker.name() == Directional.name();
         let certificates = directional.then(MarkerTree::default);
-        Self { tally: LazyTally::default(), candidate: Candidate::default(), certificates }
+        let (tally, candidate) = (LazyTally::default(), Candidate::default());
+        Self { tally, candidate, certificates, most_moves }
     }
 
     /// Judges each start that agrees with the record.
@@ -73,7 +73,7 @@ impl LeafJudge {
         tally.certificate_max = tally.certificate_max.max(certificate);
         if is_right {
             tally.below_certificate += u64::from(moves < certificate);
-            tally.count_run(graph, FACING, moves);
+            tally.count_run((graph, FACING), moves, self.most_moves);
         } else {
             tally.count_failure(EnumeratedStart::new(graph, FACING));
         }

@@ -1,6 +1,6 @@
 //! The lazy check of a class and a size, in units that can be run in any order and on any machine.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 
 use super::{
     LazyTally, StepExplorer, Stepwise,
@@ -17,7 +17,10 @@ use crate::{
 };
 
 /// The number of edges that are decided in the beginning that a unit's runs have in common.
-const BEGINNING: usize = 4;
+const BEGINNING: usize = 3;
+
+/// The number of units from which the most moves of a run are first estimated.
+const SAMPLE: usize = 16;
 
 /// A check of every start of every world of a class with a number of edges, without repetition.
 #[derive(Clone, Debug)]
@@ -66,7 +69,12 @@ impl LazySweep {
     /// Checks explorers, each on one unit. The result does not depend on the number of threads.
     pub fn run<E: StepExplorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
         let units = self.units(&new, watch);
-        let check = |unit: &Unit| self.check_unit(unit, new(), watch);
+        let most_moves = AtomicU64::new(0);
+        // Some runs from all over the tree, so that few others can be the worst one.
+        for unit in units.iter().step_by(units.len().div_ceil(SAMPLE).max(1)) {
+            self.check_unit(unit, new(), &most_moves, watch);
+        }
+        let check = |unit: &Unit| self.check_unit(unit, new(), &most_moves, watch);
         let merge = |mut sum: LazyTally, other: LazyTally| {
             sum.merge(other);
             sum
@@ -83,8 +91,14 @@ impl LazySweep {
     }
 
     /// Checks the starts of a unit.
-    fn check_unit<E: StepExplorer>(&self, unit: &Unit, explorer: E, watch: &dyn Watch) -> LazyTally {
-        let mut judge = LeafJudge::new(&explorer.marker());
+    fn check_unit<E: StepExplorer>(
+        &self,
+        unit: &Unit,
+        explorer: E,
+        most_moves: &AtomicU64,
+        watch: &dyn Watch,
+    ) -> LazyTally {
+        let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
         if watch.stop() {
             return LazyTally { interrupted: true, ..LazyTally::default() };
         }

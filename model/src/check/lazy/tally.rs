@@ -1,6 +1,9 @@
 //! The counts of a part of a lazy check. They do not depend on the order in which starts are counted.
 
-use std::cmp::Reverse;
+use std::{
+    cmp::Reverse,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +38,8 @@ impl EnumeratedStart {
     pub fn start(&self) -> Option<(EmbeddedGraph, Dart)> {
         let (&first, words) = self.code.split_first()?;
         let edges = words.len();
-        let degree_of = |word: u32| Some(u32::MAX - word).filter(|&d| (1..=2 * edges as u32).contains(&d));
+        let degree_of =
+            |word: u32| Some(u32::MAX - word).filter(|&d| (1..=2 * edges as u32).contains(&d));
         let mut graph = EmbeddedGraph::unfinished();
         graph.add_vertex(degree_of(first)?);
         let mut next = 0;
@@ -78,7 +82,8 @@ pub struct LazyTally {
     pub certificate_max: u64,
     /// Starts that were mapped right in fewer moves than their certificate has.
     pub below_certificate: u64,
-    /// The most moves of a right run, and the first start that took them.
+    /// The most moves of a right run, and the first start that took them; none if another part of the
+    /// check is known to have a run with more.
     pub worst: Option<(u64, EnumeratedStart)>,
     /// The moves and the vertices of the run with the most moves per vertex.
     pub dearest: Option<(u64, u64)>,
@@ -89,12 +94,19 @@ pub struct LazyTally {
 }
 
 impl LazyTally {
-    /// Counts a right run.
-    pub(super) fn count_run(&mut self, graph: &EmbeddedGraph, facing: Dart, moves: u64) {
+    /// Counts a right run. The most moves of any run of the check so far are updated; a start with fewer
+    /// moves cannot be the worst one.
+    pub(super) fn count_run(
+        &mut self,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        moves: u64,
+        most: &AtomicU64,
+    ) {
         self.mapped += 1;
         self.moves_total += moves;
         self.count_dearest((moves, graph.vertex_count() as u64));
-        if self.worst.as_ref().is_none_or(|&(most, _)| moves >= most) {
+        if moves >= most.load(Ordering::Relaxed) {
+            most.fetch_max(moves, Ordering::Relaxed);
             self.count_worst((moves, EnumeratedStart::new(graph, facing)));
         }
     }

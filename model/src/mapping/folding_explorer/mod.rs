@@ -28,6 +28,7 @@ use super::{
     tree::BreadthFirstTree,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     folding::{FoldedTrail, MAX_DARTS, TrailError},
     percept::{Door, Sighting},
@@ -80,7 +81,7 @@ struct Pending {
 /// The state of a run of the folding explorer. Memory is reused from run to run.
 ///
 /// It is a plain value. To try every choice, clone it together with the world between two steps.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct FoldingExploration {
     /// Whether it only makes strict tests.
     strict: bool,
@@ -104,6 +105,22 @@ pub struct FoldingExploration {
     /// Scratch: the darts on the way to somewhere known.
     way: Vec<Dart>,
 }
+
+clone_in_place!(FoldingExploration {
+    strict,
+    journey,
+    trail,
+    in_trail,
+    unexplored,
+    open,
+    pending,
+    hypotheses,
+    to_marker,
+    to_marker_is_current,
+    from_robot,
+    tests,
+    way
+});
 
 impl Default for FoldingExploration {
     fn default() -> Self {
