@@ -27,8 +27,8 @@ pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
 pub use lazy::{
-    Algorithm1Explorer, EnumeratedStart, FoldingStepExplorer, LazyCheck, LazySweep, LazyTally,
-    LazyWorld, MovableMarkerExplorer, StepExplorer, StepProgress, Stepwise,
+    Algorithm1Explorer, EnumeratedStart, FinishedUnits, FoldingStepExplorer, LazyCheck, LazySweep,
+    LazyTally, LazyWorld, MovableMarkerExplorer, Probe, StepExplorer, StepProgress, Stepwise,
 };
 pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{

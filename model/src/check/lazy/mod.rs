@@ -52,6 +52,6 @@ pub use explorers::{
     Algorithm1Explorer, FoldingStepExplorer, MovableMarkerExplorer, StepExplorer, StepProgress,
     Stepwise,
 };
-pub use sweep::{LazyCheck, LazySweep};
+pub use sweep::{FinishedUnits, LazyCheck, LazySweep, Probe};
 pub use tally::{EnumeratedStart, LazyTally};
 pub use world::LazyWorld;

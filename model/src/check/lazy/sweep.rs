@@ -39,6 +39,34 @@ pub struct LazyCheck {
     pub moves_made: u64,
 }
 
+/// A random probe of the tree of all runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// The product of the numbers of answers that were possible where one was drawn.
+    pub weight: f64,
+    /// The counts of the subtree. The worst start is not looked for.
+    pub tally: LazyTally,
+}
+
+/// The units that were finished before, and those that are finished now, for checks that can be resumed. A unit
+/// has an index among those of its shard.
+pub trait FinishedUnits: Sync {
+    /// The counts of a unit that was finished before.
+    fn finished(&self, unit: usize) -> Option<LazyTally>;
+
+    /// A unit is finished now. Units are finished in any order, and by several threads.
+    fn finish(&self, unit: usize, tally: &LazyTally);
+}
+
+/// No unit was finished before.
+impl FinishedUnits for () {
+    fn finished(&self, _: usize) -> Option<LazyTally> {
+        None
+    }
+
+    fn finish(&self, _: usize, _: &LazyTally) {}
+}
+
 /// A part of the tree of all runs: those that begin with the same answers.
 #[derive(Clone, Debug)]
 pub(super) struct Unit(Vec<Outcome>);
@@ -68,19 +96,60 @@ impl LazySweep {
 
     /// Checks explorers, each on one unit. The result does not depend on the number of threads.
     pub fn run<E: StepExplorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
-        let units = self.units(&new, watch);
+        self.resume(new, &(), watch)
+    }
+
+    /// Checks explorers on the units that were not finished before. The result is that of [`run`](Self::run).
+    pub fn resume<E: StepExplorer>(
+        &self,
+        new: impl Fn() -> E + Sync,
+        units: &dyn FinishedUnits,
+        watch: &dyn Watch,
+    ) -> LazyCheck {
+        let all: Vec<_> = self.units(&new, watch).into_iter().enumerate().collect();
         let most_moves = AtomicU64::new(0);
         // Some runs from all over the tree, so that few others can be the worst one.
-        for unit in units.iter().step_by(units.len().div_ceil(SAMPLE).max(1)) {
-            self.check_unit(unit, new(), &most_moves, watch);
+        for (index, unit) in all.iter().step_by(all.len().div_ceil(SAMPLE).max(1)) {
+            if units.finished(*index).is_none() {
+                self.check_unit(unit, new(), &most_moves, watch);
+            }
         }
-        let check = |unit: &Unit| self.check_unit(unit, new(), &most_moves, watch);
+        let check = |(index, unit): &(usize, Unit)| {
+            units.finished(*index).unwrap_or_else(|| {
+                let tally = self.check_unit(unit, new(), &most_moves, watch);
+                if !tally.interrupted {
+                    units.finish(*index, &tally);
+                }
+                tally
+            })
+        };
         let merge = |mut sum: LazyTally, other: LazyTally| {
             sum.merge(other);
             sum
         };
-        let found = in_parts(&units, watch, LazyTally::default, check, |tally| tally.starts, merge);
+        let found = in_parts(&all, watch, LazyTally::default, check, |tally| tally.starts, merge);
         self.finished(found, new, watch)
+    }
+
+    /// The number of units of the shard.
+    pub fn unit_count<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> usize {
+        self.units(new, watch).len()
+    }
+
+    /// Knuth's random probe of the tree of all runs. Each number draws one of the possible answers; then every
+    /// answer is given, until all is decided. The expected value of a count times the weight is that of the
+    /// whole tree. There is one decision for the degree of the start vertex, and one for each edge.
+    #[must_use]
+    pub fn probe<E: StepExplorer>(
+        &self,
+        explorer: E,
+        numbers: Vec<u64>,
+        watch: &dyn Watch,
+    ) -> Probe {
+        let most_moves = AtomicU64::new(u64::MAX);
+        let (tally, weight) =
+            self.check_subtree(Prefix::Drawn(numbers), explorer, &most_moves, watch);
+        Probe { weight, tally }
     }
 
     /// The units of the shard. They do not depend on the number of threads.
@@ -98,18 +167,28 @@ impl LazySweep {
         most_moves: &AtomicU64,
         watch: &dyn Watch,
     ) -> LazyTally {
-        let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
         if watch.stop() {
             return LazyTally { interrupted: true, ..LazyTally::default() };
         }
-        let prefix = Prefix::Given(unit.0.clone());
+        self.check_subtree(Prefix::Given(unit.0.clone()), explorer, most_moves, watch).0
+    }
+
+    /// Checks the starts of a subtree, and returns the weight of what was drawn.
+    fn check_subtree<E: StepExplorer>(
+        &self,
+        prefix: Prefix,
+        explorer: E,
+        most_moves: &AtomicU64,
+        watch: &dyn Watch,
+    ) -> (LazyTally, f64) {
+        let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
         let mut search = Search::new(explorer, self.draft.clone(), prefix, None, watch);
         let ended = search.for_each_end(&mut |world, explorer, end| {
             judge.judge(world, explorer, &end);
             ControlFlow::Continue(())
         });
-        let moves_made = search.world.moves_made;
-        LazyTally { moves_made, interrupted: ended.is_break(), ..judge.tally }
+        let (moves_made, interrupted) = (search.world.moves_made, ended.is_break());
+        (LazyTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
     }
 
     /// The result, from the counts of all units.
@@ -163,6 +242,7 @@ impl LazySweep {
             worlds: one.worlds + other.worlds,
             interrupted: one.interrupted || other.interrupted,
         };
-        in_parts(&parts, watch, WorldCount::default, count, |found| found.worlds, merge)
+        // The progress is that of the runs.
+        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, merge)
     }
 }
