@@ -34,6 +34,18 @@ impl Shard {
     /// The whole check.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
+    /// Its number, from 1.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.index
+    }
+
+    /// The number of shards.
+    #[must_use]
+    pub fn of(self) -> usize {
+        self.of
+    }
+
     /// The parts of the whole that belong to the shard.
     pub(super) fn select<P>(self, parts: Vec<P>) -> Vec<P> {
         parts.into_iter().skip(self.index - 1).step_by(self.of).collect()

@@ -16,8 +16,11 @@ use crate::{
     isomorphism::Candidate,
 };
 
-/// The number of edges that are decided in the beginning that a unit's runs have in common.
-const BEGINNING: usize = 3;
+/// The number of edges that are decided in the beginning that a unit's runs have in common. A unit of 7 edges
+/// then has about a thousand starts.
+fn beginning(edges: usize) -> usize {
+    if edges < 8 { 2 } else { 3 }
+}
 
 /// The number of units from which the most moves of a run are first estimated.
 const SAMPLE: usize = 16;
@@ -154,7 +157,8 @@ impl LazySweep {
 
     /// The units of the shard. They do not depend on the number of threads.
     fn units<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
-        let cut_at = self.draft.edges_left().saturating_sub(BEGINNING);
+        let edges = self.draft.edges_left();
+        let cut_at = edges.saturating_sub(beginning(edges));
         let all = beginnings(new(), self.draft.clone(), cut_at, watch);
         self.shard.select(all.into_iter().map(Unit).collect())
     }
