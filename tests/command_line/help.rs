@@ -4,8 +4,22 @@ use std::{io::Read, process::Stdio};
 
 use super::{exit_codes, folder, names_in, run, stderr, stdout, stdout_of, toposlam};
 
-const VERBS: [(&str, &[&str]); 19] = [
-    ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
+const VERBS: [(&str, &[&str]); 20] = [
+    (
+        "check",
+        &[
+            "--edges",
+            "--class",
+            "--marker",
+            "--choices",
+            "--shard",
+            "--from",
+            "--worst",
+            "--journal",
+            "--estimate",
+        ],
+    ),
+    ("merge", &["--json", "missing"]),
     (
         "explore",
         &["--start", "--marker", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"],
@@ -108,9 +122,10 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 30] = [
+    let runs: [&[&str]; 31] = [
         &[],
         &["check", "--edges", "1..=4"],
+        &["check", "--edges", "6", "--estimate", "--probes", "50"],
         &["check", "--edges", "1..=4", "--choices", "all"],
         &["check", "--marker", "movable", "--class", "corridor"],
         &["check", "--from", "worlds/building-25.toml"],
