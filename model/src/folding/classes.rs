@@ -32,7 +32,7 @@ pub(super) struct DartClasses {
     pairs: Vec<(u32, u32)>,
 }
 
-clone_in_place!(DartClasses { vertices, darts, count, open, changes, before_union, pairs });
+clone_in_place!(DartClasses { vertices, darts, count, open, changes, before_union; scratch pairs });
 
 /// A vertex for each percept at a place that was not known.
 #[derive(Clone, Copy, Debug)]

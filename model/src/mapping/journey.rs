@@ -47,12 +47,13 @@ pub struct Journey {
     pub(super) edge: Option<Dart>,
     /// The percept at its unknown end.
     pub(super) arrival: Percept,
+    /// A tree of the map that is grown again when it does not fit.
     pub(super) from_robot: BreadthFirstTree,
     /// Scratch: the darts on the way to somewhere known.
     pub(super) way: Vec<Dart>,
 }
 
-clone_in_place!(Journey { bound, moves, map, robot, edge, arrival, from_robot, way });
+clone_in_place!(Journey { bound, moves, map, robot, edge, arrival; scratch from_robot, way });
 
 pub(super) const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 

@@ -11,6 +11,9 @@ use crate::{
     enumerate::{Draft, Outcome, Watch},
 };
 
+/// The number of runs after which the watch is asked whether to stop.
+const RUNS_TO_A_QUESTION: u64 = 64;
+
 /// The end of a run.
 pub(super) enum RunEnd {
     /// The explorer returned its map.
@@ -62,16 +65,17 @@ impl<'w, E: StepExplorer> Search<'w, E> {
         visit: &mut impl FnMut(&LazyWorld<E::Marker>, &E, RunEnd) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         self.save(0);
-        loop {
+        for run in 1_u64.. {
             if let Some(end) = self.run() {
                 visit(&self.world, &self.explorer, end)?;
             }
-            let Some(step) = self.world.go_back() else { return ControlFlow::Continue(()) };
-            if self.watch.stop() {
+            let Some(step) = self.world.go_back() else { break };
+            if run % RUNS_TO_A_QUESTION == 0 && self.watch.stop() {
                 return ControlFlow::Break(());
             }
             self.restore(step);
         }
+        ControlFlow::Continue(())
     }
 
     fn save(&mut self, step: usize) {

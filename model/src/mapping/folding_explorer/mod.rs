@@ -117,9 +117,8 @@ clone_in_place!(FoldingExploration {
     hypotheses,
     to_marker,
     to_marker_is_current,
-    from_robot,
-    tests,
-    way
+    from_robot;
+    scratch tests, way
 });
 
 impl Default for FoldingExploration {

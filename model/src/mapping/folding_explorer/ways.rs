@@ -16,7 +16,7 @@ pub(super) struct Ways {
     queue: Vec<(Dart, usize)>,
 }
 
-clone_in_place!(Ways { way, found_after, queue });
+clone_in_place!(Ways { way, found_after; scratch queue });
 
 /// A shortest way to a vertex.
 #[derive(Clone, Copy, Debug)]
