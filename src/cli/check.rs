@@ -132,7 +132,7 @@ pub(super) struct CheckArguments {
 /// What is checked for one number of edges.
 enum Work {
     /// Runs share their beginnings.
-    Lazy(LazySweep),
+    Lazy(Box<LazySweep>),
     /// All choices.
     Sweep(Sweep),
     Worlds(Vec<EmbeddedGraph>),
@@ -184,16 +184,11 @@ impl CheckArguments {
 
     /// With all choices, runs do not share their beginnings.
     fn check_shared_options(&self) -> Result<(), CliError> {
-        let needs_default = "this needs --choices default";
+        let cause = "this needs --choices default";
         match self.choices {
-            ChoicesOption::Default => Ok(()),
-            ChoicesOption::All if self.estimate.estimate => {
-                Err(CliError::at("--estimate", needs_default))
-            }
-            ChoicesOption::All if self.journal.is_some() => {
-                Err(CliError::at("--journal", needs_default))
-            }
-            ChoicesOption::All => Ok(()),
+            ChoicesOption::All if self.estimate.estimate => Err(CliError::at("--estimate", cause)),
+            ChoicesOption::All if self.journal.is_some() => Err(CliError::at("--journal", cause)),
+            ChoicesOption::All | ChoicesOption::Default => Ok(()),
         }
     }
 
@@ -315,7 +310,9 @@ impl CheckArguments {
         }
         let sweep = |edges| {
             let work = match self.choices {
-                ChoicesOption::Default => LazySweep::new(class, edges, self.shard).map(Work::Lazy),
+                ChoicesOption::Default => {
+                    LazySweep::new(class, edges, self.shard).map(|lazy| Work::Lazy(Box::new(lazy)))
+                }
                 ChoicesOption::All => Sweep::new(class, edges, self.shard).map(Work::Sweep),
             };
             Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
