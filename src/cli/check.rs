@@ -33,10 +33,10 @@ use super::{
     version::VERSION,
 };
 use estimate::EstimateOptions;
-use journal::{Journal, JournalHeader};
-pub(super) use line::SizeLine;
-use report::SizeResult;
-pub(super) use report::{AlgorithmInfo, CheckReport};
+use journal::{CheckJournal, JournalHeader};
+use line::SizeResult;
+pub(super) use line::{AlgorithmInfo, SizeLine};
+pub(super) use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
 ///
@@ -233,11 +233,11 @@ impl CheckArguments {
         let journal = match (&self.journal, work) {
             (Some(folder), Work::Lazy(sweep)) => {
                 let header = self.journal_header(edges, sweep, algorithm);
-                Some(Journal::open(folder, &header)?)
+                Some(CheckJournal::open(folder, &header)?)
             }
             _ => None,
         };
-        if let Some(before @ 1..) = journal.as_ref().map(Journal::finished_before) {
+        if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
             remark!("{edges} edges: {} of the work finished before", counted(before, "unit"));
         }
         let checked = match work {

@@ -22,16 +22,16 @@ pub(crate) struct Draft {
 
 /// What is behind a free dart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
+pub(crate) enum Answer {
     /// Another free dart.
     Free(u8),
     /// The first dart of a new vertex of this degree.
     NewVertex(u8),
 }
 
-/// The outcomes that are possible. The free darts come first, then the degrees from the highest.
+/// The answers that are possible. The free darts come first, then the degrees from the highest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Options {
+pub(crate) struct Answers {
     /// The free darts, as bits.
     free: u64,
     /// The degrees of a new vertex, as bits: bit 63 for degree 1.
@@ -42,22 +42,22 @@ fn degree_bit(degree: usize) -> u64 {
     1 << (u64::BITS as usize - degree)
 }
 
-impl Options {
+impl Answers {
     /// Their number.
     pub(crate) fn count(self) -> u32 {
         self.free.count_ones() + self.degrees.count_ones()
     }
 
     /// Removes the first one.
-    pub(crate) fn take_first(&mut self) -> Option<Outcome> {
+    pub(crate) fn take_first(&mut self) -> Option<Answer> {
         if self.free != 0 {
             let lowest = self.free.trailing_zeros() as u8;
             self.free &= self.free - 1;
-            return Some(Outcome::Free(lowest));
+            return Some(Answer::Free(lowest));
         }
         let lowest = (self.degrees != 0).then(|| self.degrees.trailing_zeros())?;
         self.degrees &= self.degrees - 1;
-        Some(Outcome::NewVertex((u64::BITS - lowest) as u8))
+        Some(Answer::NewVertex((u64::BITS - lowest) as u8))
     }
 }
 
@@ -91,25 +91,25 @@ impl Draft {
 
     /// What may be behind a free dart; without a dart, the degree of the start vertex, of which nothing is
     /// decided. In the class `multigraph` each of these leads to a start; in others some may not.
-    pub(crate) fn options(&mut self, dart: Option<Dart>) -> Options {
+    pub(crate) fn answers(&mut self, dart: Option<Dart>) -> Answers {
         let growth = &mut self.growth;
         let Some(dart) = dart else {
             let degrees = growth.start_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
-            return Options { free: 0, degrees };
+            return Answers { free: 0, degrees };
         };
         let (dart, left) = (dart.at(), growth.edges_left() - 1);
-        let mut options = Options::default();
+        let mut answers = Answers::default();
         if !growth.can_get_stuck() {
             if growth.can_join() {
-                options.free = growth.partners(dart);
+                answers.free = growth.partners(dart);
             }
-            options.degrees = growth.new_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
-            return options;
+            answers.degrees = growth.new_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
+            return answers;
         }
         if growth.can_join() {
             for other in bits(growth.partners(dart)) {
                 growth.join(dart, other, other as u8);
-                options.free |= u64::from(growth.can_still_end(left)) << other;
+                answers.free |= u64::from(growth.can_still_end(left)) << other;
                 growth.unjoin(dart, other);
             }
         }
@@ -118,20 +118,20 @@ impl Draft {
             growth.add_vertex(degree);
             growth.join(dart, entry, new_vertex(degree as u8));
             if growth.can_still_end(left) {
-                options.degrees |= degree_bit(degree);
+                answers.degrees |= degree_bit(degree);
             }
             growth.unjoin(dart, entry);
             growth.remove_vertex();
         }
-        options
+        answers
     }
 
     /// Decides what is behind a free dart, or the degree of the start vertex.
     #[inline]
-    pub(crate) fn decide(&mut self, dart: Option<Dart>, outcome: Outcome) {
-        let (entry, word) = match outcome {
-            Outcome::Free(other) => (usize::from(other), other),
-            Outcome::NewVertex(degree) => {
+    pub(crate) fn decide(&mut self, dart: Option<Dart>, answer: Answer) {
+        let (entry, word) = match answer {
+            Answer::Free(other) => (usize::from(other), other),
+            Answer::NewVertex(degree) => {
                 let entry = self.growth.darts;
                 self.growth.add_vertex(degree.into());
                 self.graph.add_vertex(degree.into());
@@ -146,13 +146,13 @@ impl Draft {
 
     /// Undoes the latest decision.
     #[inline]
-    pub(crate) fn undo(&mut self, dart: Option<Dart>, outcome: Outcome) {
+    pub(crate) fn undo(&mut self, dart: Option<Dart>, answer: Answer) {
         if let Some(dart) = dart {
             let other = self.growth.opposite[dart.at()];
             self.growth.unjoin(dart.at(), other.into());
             self.graph.unjoin(dart, Dart(other.into()));
         }
-        if let Outcome::NewVertex(_) = outcome {
+        if let Answer::NewVertex(_) = answer {
             self.growth.remove_vertex();
             self.graph.remove_vertex();
         }
@@ -186,12 +186,12 @@ mod tests {
         }
         let graph = draft.graph();
         let dart = graph.darts().filter(|&dart| graph.joined(dart).is_none()).last();
-        let mut options = draft.options(dart);
+        let mut answers = draft.answers(dart);
         let mut found = 0;
-        while let Some(outcome) = options.take_first() {
-            draft.decide(dart, outcome);
+        while let Some(answer) = answers.take_first() {
+            draft.decide(dart, answer);
             found += count(draft);
-            draft.undo(dart, outcome);
+            draft.undo(dart, answer);
         }
         found
     }

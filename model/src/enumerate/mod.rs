@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 pub use class::{Class, UnknownClass};
-pub(crate) use draft::{Draft, Options, Outcome};
+pub(crate) use draft::{Answer, Answers, Draft};
 pub(crate) use watch::in_parts;
 pub use watch::{Interrupted, Watch};
 

@@ -66,7 +66,7 @@ struct FinishedUnit {
 }
 
 /// An open journal.
-pub(super) struct Journal {
+pub(super) struct CheckJournal {
     path: PathBuf,
     finished: BTreeMap<usize, LazyTally>,
     file: Mutex<Result<fs::File, io::Error>>,
@@ -84,7 +84,7 @@ fn object_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     (checksum == expected.as_bytes()).then(|| serde_json::from_slice(json).ok()).flatten()
 }
 
-impl Journal {
+impl CheckJournal {
     /// Opens the journal of a check in a folder, or begins it.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl Journal {
     }
 }
 
-impl FinishedUnits for Journal {
+impl FinishedUnits for CheckJournal {
     fn finished(&self, unit: usize) -> Option<LazyTally> {
         self.finished.get(&unit).cloned()
     }

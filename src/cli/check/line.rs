@@ -1,15 +1,51 @@
 //! A line of `check --json`: the result for one number of edges. `merge` reads the lines of shards.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
 use serde::{Deserialize, Serialize};
 use toposlam_model::{
-    check::{EnumeratedStart, FailedStart, Shard, Tally},
+    check::{CostOrder, EnumeratedStart, FailedStart, MappingAlgorithm, Shard, Tally},
+    enumerate::Class,
     format::{named_world::NamedWorld, world_file},
+    marker::{Directional, Marker},
 };
 
-use super::report::{AlgorithmInfo, SizeResult};
 use crate::cli::{Outcome, RunChoices, version::VERSION};
+
+/// The algorithm that is checked, and its marker.
+#[derive(Clone, Copy)]
+pub(in crate::cli) struct AlgorithmInfo {
+    pub(super) algorithm: &'static str,
+    pub(super) marker: &'static str,
+    /// Whether the starts have certificates.
+    pub(super) certificates: bool,
+    /// The order of its cost.
+    pub(super) order: CostOrder,
+}
+
+impl AlgorithmInfo {
+    pub(in crate::cli) fn of(algorithm: &MappingAlgorithm) -> Self {
+        Self {
+            algorithm: algorithm.name(),
+            marker: algorithm.marker().name(),
+            certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
+            order: algorithm.order(),
+        }
+    }
+}
+
+/// The result for one number of edges.
+pub(super) struct SizeResult<'a> {
+    pub(super) edges: usize,
+    /// The class of the worlds, unless they are from a file.
+    pub(super) class: Class,
+    pub(super) from: Option<&'a Path>,
+    /// The share of the worlds.
+    pub(super) shard: Shard,
+    pub(super) tally: &'a Tally,
+    /// The moves that were made, if runs share their beginnings.
+    pub(super) moves_made: Option<u64>,
+}
 
 /// The result for one number of edges, as it is printed.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

@@ -1,56 +1,16 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
-use std::{fmt::Write as _, io::Write, path::Path, time::Duration};
+use std::{fmt::Write as _, io::Write, time::Duration};
 
-use toposlam_model::{
-    check::{CostOrder, MappingAlgorithm, Shard, Tally},
-    enumerate::Class,
-    format::world_file,
-    marker::{Directional, Marker},
-};
+use toposlam_model::format::world_file;
 
-use super::line::SizeLine;
+use super::line::{AlgorithmInfo, SizeLine, SizeResult};
 use crate::cli::{
     CliError, Outcome, RunChoices,
     ci_report::CiCase,
     json::print_line,
     text::{grouped, print_hanging, print_paragraph},
 };
-
-/// The algorithm that is checked, and its marker.
-#[derive(Clone, Copy)]
-pub(in crate::cli) struct AlgorithmInfo {
-    pub(super) algorithm: &'static str,
-    pub(super) marker: &'static str,
-    /// Whether the starts have certificates.
-    pub(super) certificates: bool,
-    /// The order of its cost.
-    pub(super) order: CostOrder,
-}
-
-impl AlgorithmInfo {
-    pub(in crate::cli) fn of(algorithm: &MappingAlgorithm) -> Self {
-        Self {
-            algorithm: algorithm.name(),
-            marker: algorithm.marker().name(),
-            certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
-            order: algorithm.order(),
-        }
-    }
-}
-
-/// The result for one number of edges.
-pub(super) struct SizeResult<'a> {
-    pub(super) edges: usize,
-    /// The class of the worlds, unless they are from a file.
-    pub(super) class: Class,
-    pub(super) from: Option<&'a Path>,
-    /// The share of the worlds.
-    pub(super) shard: Shard,
-    pub(super) tally: &'a Tally,
-    /// The moves that were made, if runs share their beginnings.
-    pub(super) moves_made: Option<u64>,
-}
 
 impl SizeLine {
     /// The worlds, in words.
@@ -229,6 +189,10 @@ impl<'o> CheckReport<'o> {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::{
+        check::{MappingAlgorithm, Shard, Tally},
+        enumerate::Class,
+    };
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 
 use super::{
-    LazyTally, LazyWorld, StepExplorer, search::RunEnd, tally::EnumeratedStart, world::FACING,
+    LazyTally, LazyWorld, StepExplorer, search::LazyRunEnd, tally::EnumeratedStart, world::FACING,
 };
 use crate::{
     check::{Flaw, judge_map},
@@ -36,12 +36,12 @@ impl<'m> LeafJudge<'m> {
         &mut self,
         world: &LazyWorld<E::Marker>,
         explorer: &E,
-        end: &RunEnd,
+        end: &LazyRunEnd,
     ) {
         let _ = world.draft.for_each_completion(&mut |graph| {
             let judged = match end {
-                RunEnd::Failed(flaw) => Err(flaw.clone()),
-                RunEnd::Done | RunEnd::Cut => self.judge_run(world, explorer, graph),
+                LazyRunEnd::Failed(flaw) => Err(flaw.clone()),
+                LazyRunEnd::Done | LazyRunEnd::Cut => self.judge_run(world, explorer, graph),
             };
             self.count(graph, world.robot().moves, judged.is_ok());
             ControlFlow::Continue(())

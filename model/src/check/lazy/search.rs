@@ -8,14 +8,14 @@ use super::{
 };
 use crate::{
     check::Flaw,
-    enumerate::{Draft, Outcome, Watch},
+    enumerate::{Answer, Draft, Watch},
 };
 
 /// The number of runs after which the watch is asked whether to stop.
 const RUNS_TO_A_QUESTION: u64 = 64;
 
 /// The end of a run.
-pub(super) enum RunEnd {
+pub(super) enum LazyRunEnd {
     /// The explorer returned its map.
     Done,
     /// The explorer failed.
@@ -62,7 +62,7 @@ impl<'w, E: StepExplorer> Search<'w, E> {
     /// Visits the end of each run, in a fixed order.
     pub(super) fn for_each_end(
         &mut self,
-        visit: &mut impl FnMut(&LazyWorld<E::Marker>, &E, RunEnd) -> ControlFlow<()>,
+        visit: &mut impl FnMut(&LazyWorld<E::Marker>, &E, LazyRunEnd) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         self.save(0);
         for run in 1_u64.. {
@@ -98,7 +98,7 @@ impl<'w, E: StepExplorer> Search<'w, E> {
     }
 
     /// Runs from the present state to an end, which is `None` where no answer was left.
-    fn run(&mut self) -> Option<RunEnd> {
+    fn run(&mut self) -> Option<LazyRunEnd> {
         loop {
             let progress = if self.world.robot().has_begun {
                 self.explorer.step(&mut self.world)
@@ -109,12 +109,12 @@ impl<'w, E: StepExplorer> Search<'w, E> {
                 return None;
             }
             match progress {
-                Err(flaw) => return Some(RunEnd::Failed(flaw)),
-                Ok(StepProgress::Done) => return Some(RunEnd::Done),
+                Err(flaw) => return Some(LazyRunEnd::Failed(flaw)),
+                Ok(StepProgress::Done) => return Some(LazyRunEnd::Done),
                 Ok(StepProgress::GoesOn) => {}
             }
             if self.cut_at.is_some_and(|left| self.world.draft.edges_left() <= left) {
-                return Some(RunEnd::Cut);
+                return Some(LazyRunEnd::Cut);
             }
             // What is decided now was decided in an earlier step.
             if self.world.may_branch() {
@@ -136,11 +136,11 @@ pub(super) fn beginnings<E: StepExplorer>(
     draft: Draft,
     cut_at: usize,
     watch: &dyn Watch,
-) -> Vec<Vec<Outcome>> {
+) -> Vec<Vec<Answer>> {
     let mut found = Vec::new();
     let mut search = Search::new(explorer, draft, Prefix::Open, Some(cut_at), watch);
     let _ = search.for_each_end(&mut |world, _, _| {
-        found.push(world.outcomes());
+        found.push(world.answers());
         ControlFlow::Continue(())
     });
     found

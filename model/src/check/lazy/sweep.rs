@@ -11,7 +11,7 @@ use super::{
 use crate::{
     check::{FailedStart, Shard, Tally, WorstStart, judge_start, sweep::go_on},
     enumerate::{
-        Class, Draft, Each, Enumeration, EnumerationPart, Outcome, SizeError, Watch, in_parts,
+        Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
     isomorphism::Candidate,
 };
@@ -72,7 +72,7 @@ impl FinishedUnits for () {
 
 /// A part of the tree of all runs: those that begin with the same answers.
 #[derive(Clone, Debug)]
-pub(super) struct Unit(Vec<Outcome>);
+pub(super) struct Unit(Vec<Answer>);
 
 /// Embedded graphs up to isomorphism.
 #[derive(Clone, Copy, Debug, Default)]

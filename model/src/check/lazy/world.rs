@@ -2,7 +2,7 @@
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Draft, Options, Outcome},
+    enumerate::{Answer, Answers, Draft},
     marker::Marker,
     percept::{Door, Percept, Sighting},
     world::{MovableMarkerWorld, Refused, State, World},
@@ -16,8 +16,8 @@ pub(super) const FACING: Dart = Dart(0);
 pub(super) struct Decision {
     /// The free dart; `None` for the degree of the start vertex.
     dart: Option<Dart>,
-    outcome: Outcome,
-    left: Options,
+    answer: Answer,
+    left: Answers,
     /// The step of the run in which it was made.
     pub(super) step: usize,
 }
@@ -29,7 +29,7 @@ pub(super) enum Prefix {
     #[default]
     Open,
     /// These answers are given.
-    Given(Vec<Outcome>),
+    Given(Vec<Answer>),
     /// Each number draws one answer.
     Drawn(Vec<u64>),
 }
@@ -111,8 +111,8 @@ impl<M: Marker> LazyWorld<M> {
     }
 
     /// The answers so far.
-    pub(super) fn outcomes(&self) -> Vec<Outcome> {
-        self.decisions.iter().map(|decision| decision.outcome).collect()
+    pub(super) fn answers(&self) -> Vec<Answer> {
+        self.decisions.iter().map(|decision| decision.answer).collect()
     }
 
     /// Gives the next answer at the latest decision that has one left, and returns the step of that decision;
@@ -120,9 +120,9 @@ impl<M: Marker> LazyWorld<M> {
     pub(super) fn go_back(&mut self) -> Option<usize> {
         self.dead_end = false;
         while let Some(decision) = self.decisions.last_mut() {
-            self.draft.undo(decision.dart, decision.outcome);
+            self.draft.undo(decision.dart, decision.answer);
             if let Some(next) = decision.left.take_first() {
-                decision.outcome = next;
+                decision.answer = next;
                 self.draft.decide(decision.dart, next);
                 return Some(decision.step);
             }
@@ -133,13 +133,13 @@ impl<M: Marker> LazyWorld<M> {
 
     /// Decides what is behind a free dart, or the degree of the start vertex.
     fn decide(&mut self, dart: Option<Dart>) -> Result<(), Refused> {
-        let mut left = self.draft.options(dart);
+        let mut left = self.draft.answers(dart);
         let count = left.count();
         let index = self.decisions.len();
-        let outcome = match &self.prefix {
-            Prefix::Given(outcomes) if index < outcomes.len() => {
-                left = Options::default();
-                Some(outcomes[index])
+        let answer = match &self.prefix {
+            Prefix::Given(answers) if index < answers.len() => {
+                left = Answers::default();
+                Some(answers[index])
             }
             Prefix::Drawn(numbers) if index < numbers.len() && count > 0 => {
                 for _ in 0..numbers[index] % u64::from(count) {
@@ -147,17 +147,17 @@ impl<M: Marker> LazyWorld<M> {
                 }
                 self.weight *= f64::from(count);
                 let drawn = left.take_first();
-                left = Options::default();
+                left = Answers::default();
                 drawn
             }
             _ => left.take_first(),
         };
-        let Some(outcome) = outcome else {
+        let Some(answer) = answer else {
             self.dead_end = true;
             return Err(Refused::NoWorldLeft);
         };
-        self.draft.decide(dart, outcome);
-        self.decisions.push(Decision { dart, outcome, left, step: self.step });
+        self.draft.decide(dart, answer);
+        self.decisions.push(Decision { dart, answer, left, step: self.step });
         Ok(())
     }
 
