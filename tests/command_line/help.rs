@@ -244,7 +244,9 @@ fn there_is_a_manual_page_of_every_verb() {
     assert_eq!(main, stdout_of(["man"]));
     let unknown = run(["man", "fly"]);
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(stderr(&unknown).contains("there is no command `fly`; there are: check, explore"));
+    assert!(
+        stderr(&unknown).contains("there is no command `fly`; there are: check, merge, explore")
+    );
 }
 
 /// The program that formats the pages for `man` finds no fault in them.

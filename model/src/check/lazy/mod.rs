@@ -14,7 +14,7 @@
 //!   pushes a *decision* for each answer that it chooses: the answer, and those that are left.
 //! * [`StepExplorer`] is an explorer whose run is a sequence of steps, and whose state can be cloned between
 //!   two of them.
-//! * `Search` runs steps until the explorer returns its map, and then goes back to the latest decision with an
+//! * `RunSearch` runs steps until the explorer returns its map, and then goes back to the latest decision with an
 //!   answer left. It restores the explorer and the robot as they were before the step of that decision, and
 //!   repeats this step. The record has the new answer already, so the step passes there without asking. Only
 //!   the moves of this step before the decision are made again.
@@ -32,8 +32,8 @@
 //! each is counted and judged. Their maps are equal, and no two of them are isomorphic, so at most one is
 //! right. If there are two or more, the explorer is wrong on all others. If there is only one (the number of
 //! edges can force what is behind the last doors), the map may be right, and it is then counted as right, as
-//! in a `Sweep`, although the explorer has guessed; where its run is shorter than the certificate,
-//! `below_certificate` counts it.
+//! in a `Sweep`, although the explorer has guessed. It is wrong in a world of another size in which it makes the
+//! same walk; and where its run is shorter than the certificate, `below_certificate` counts it.
 //!
 //! # Answers that lead to no start
 //!

@@ -32,7 +32,7 @@ struct Saved<E> {
 }
 
 /// A depth-first search through the runs of an explorer.
-pub(super) struct Search<'w, E: StepExplorer> {
+pub(super) struct RunSearch<'w, E: StepExplorer> {
     pub(super) world: LazyWorld<E::Marker>,
     pub(super) explorer: E,
     /// The state before each step in which something was decided. Memory is kept.
@@ -43,7 +43,7 @@ pub(super) struct Search<'w, E: StepExplorer> {
     watch: &'w dyn Watch,
 }
 
-impl<'w, E: StepExplorer> Search<'w, E> {
+impl<'w, E: StepExplorer> RunSearch<'w, E> {
     /// A search through the runs that begin with these answers.
     pub(super) fn new(
         explorer: E,
@@ -138,7 +138,7 @@ pub(super) fn beginnings<E: StepExplorer>(
     watch: &dyn Watch,
 ) -> Vec<Vec<Answer>> {
     let mut found = Vec::new();
-    let mut search = Search::new(explorer, draft, Prefix::Open, Some(cut_at), watch);
+    let mut search = RunSearch::new(explorer, draft, Prefix::Open, Some(cut_at), watch);
     let _ = search.for_each_end(&mut |world, _, _| {
         found.push(world.answers());
         ControlFlow::Continue(())

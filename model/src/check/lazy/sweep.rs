@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 use super::{
     LazyTally, StepExplorer, Stepwise,
     leaf::LeafJudge,
-    search::{Search, beginnings},
+    search::{RunSearch, beginnings},
     world::Prefix,
 };
 use crate::{
@@ -186,7 +186,7 @@ impl LazySweep {
         watch: &dyn Watch,
     ) -> (LazyTally, f64) {
         let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
-        let mut search = Search::new(explorer, self.draft.clone(), prefix, None, watch);
+        let mut search = RunSearch::new(explorer, self.draft.clone(), prefix, None, watch);
         let ended = search.for_each_end(&mut |world, explorer, end| {
             judge.judge(world, explorer, &end);
             ControlFlow::Continue(())
