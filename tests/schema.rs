@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 19] = [
+const COMMANDS: [(&str, &[&str]); 20] = [
     ("paper", &["paper --section 2.3"]),
     (
         "proofs",
@@ -37,8 +37,10 @@ const COMMANDS: [(&str, &[&str]); 19] = [
             "check --from worlds/petersen.toml",
             "check --marker movable --class corridor --edges 4",
             "check --explorer cat --edges 1",
+            "check --edges 5 --estimate --probes 9",
         ],
     ),
+    ("merge", &["merge shards.jsonl"]),
     ("counterexample", &["counterexample --marker undirected --all"]),
     (
         "compare",
@@ -201,6 +203,8 @@ fn folder() -> PathBuf {
     let ranges = vec!["3.0"; 181].join(" ");
     let scan = |x: u32| format!("FLASER 181 {ranges} {x} 0 0 {x} 0 0 {x} host {x}\n");
     fs::write(folder.join("scans.log"), scan(1) + &scan(2)).unwrap();
+    let shard = |n: u32| lines(&folder, &format!("check --edges 1..=3 --shard {n}/2 --json"));
+    fs::write(folder.join("shards.jsonl"), shard(1) + &shard(2)).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
         let render =

@@ -8,7 +8,10 @@ use std::ops::ControlFlow;
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Comparison},
-    check::{Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, MovableMarker, Shard, Sweep, judge},
+    check::{
+        Algorithm1, Algorithm1Explorer, AllChoices, DEFAULT_STATE_BUDGET, LazySweep, MovableMarker,
+        Shard, Sweep, judge,
+    },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, isomorphism},
@@ -46,6 +49,15 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
     let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
         assert_eq!(sweep.run(&Algorithm1, &()).mapped, starts);
+    });
+}
+
+/// The same with runs that share their beginnings.
+#[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
+fn check_lazily(bencher: Bencher, (edges, starts): (usize, u64)) {
+    let sweep = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    bencher.counter(ItemsCount::new(starts)).bench(|| {
+        assert_eq!(sweep.run(Algorithm1Explorer::default, &()).tally.mapped, starts);
     });
 }
 

@@ -42,6 +42,7 @@
 
 pub mod ambiguity;
 pub mod check;
+mod clone_in_place;
 pub mod driving;
 pub mod embedded_graph;
 pub mod enumerate;

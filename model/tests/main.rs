@@ -16,6 +16,7 @@ mod false_each_time;
 mod figure_1;
 mod folding;
 mod folding_explorer;
+mod lazy;
 mod markers;
 mod movable;
 mod optimum;

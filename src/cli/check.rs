@@ -1,6 +1,9 @@
 //! `toposlam check`: an algorithm runs on every start of every world up to a size.
 
+mod estimate;
 mod explorer;
+mod journal;
+mod line;
 mod report;
 
 use std::{
@@ -11,7 +14,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{MappingAlgorithm, Shard, Sweep, Tally, WorstStart},
+    check::{LazyCheck, LazySweep, MappingAlgorithm, Shard, Sweep, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -19,18 +22,24 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome,
+    ChoicesOption, CliError, Outcome, RunChoices,
     ci_report::{CiCase, CiOptions},
     edge_range::EdgeRange,
     exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
     output,
-    progress::Progress,
+    progress::{Progress, StopSignal},
+    text::counted,
     use_threads,
+    version::VERSION,
 };
+use estimate::EstimateOptions;
 use explorer::ExplorerOptions;
-use report::{AlgorithmInfo, CheckReport, SizeResult};
+use journal::{CheckJournal, JournalHeader};
+use line::SizeResult;
+pub(super) use line::{AlgorithmInfo, SizeLine};
+pub(super) use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
 ///
@@ -53,6 +62,8 @@ Examples:
   toposlam check --marker movable             a marker that the robot carries
   toposlam check --algorithm folding          the folding explorer
   toposlam check --explorer ./mine --edges 5  your own program
+  toposlam check --edges 10 --estimate        what a check will take
+  toposlam check --edges 9 --journal nine     a check that can be killed
 
 Ctrl-C stops the check and prints the results so far.",
     &[
@@ -94,7 +105,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 
-    /// Check one of N disjoint shares of the worlds, as in 2/4
+    /// Check one of N disjoint shares of the starts, as in 2/4; `merge` adds up the results of --json
     #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
     shard: Shard,
 
@@ -113,6 +124,13 @@ pub(super) struct CheckArguments {
     /// Print one JSON object for each number of edges
     #[arg(long)]
     json: bool,
+
+    /// Record finished parts of the work in a folder. A check that was killed goes on from there
+    #[arg(long, value_name = "DIR", conflicts_with = "from")]
+    journal: Option<PathBuf>,
+
+    #[command(flatten)]
+    estimate: EstimateOptions,
 
     /// Check larger worlds also after a map was wrong
     #[arg(long)]
@@ -133,6 +151,9 @@ fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
 
 /// What is checked for one number of edges.
 enum Work {
+    /// Runs share their beginnings.
+    Lazy(Box<LazySweep>),
+    /// All choices.
     Sweep(Sweep),
     Worlds(Vec<EmbeddedGraph>),
 }
@@ -141,6 +162,7 @@ impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
+        self.check_shared_options()?;
         self.ci.check_places()?;
         if self.explorer.is_given() {
             return self.check_explorer(out);
@@ -153,26 +175,33 @@ impl CheckArguments {
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
+        if self.estimate.estimate {
+            return self.print_estimates(&work, &algorithm, out);
+        }
         let start = Instant::now();
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
         for (edges, work) in sizes.by_ref() {
-            let tally = work.check(edges, &algorithm)?;
-            let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
-            let result = SizeResult { edges, class, from, shard, tally: &tally };
-            report.size(&result)?;
-            cases.push(result.ci_case());
+            let (tally, moves_made) = self.check(edges, &work, &algorithm)?;
+            let line = report.line(&self.result(edges, &tally, moves_made));
+            cases.push(line.ci_case());
+            report.size(line)?;
             let (failed, interrupted) = (tally.failed() > 0, tally.interrupted);
             keep_worse(&mut worst, tally.worst);
             if interrupted || (failed && !self.keep_going) {
                 break;
             }
         }
-        let outcome = report.verdict(start.elapsed())?;
+        let outcome = report.verdict(Some(start.elapsed()))?;
         if outcome == Outcome::Violated {
-            cases.extend(self.not_checked(sizes.map(|(edges, _)| edges)));
+            let (tally, subject) = (Tally::default(), AlgorithmInfo::of(&algorithm));
+            let name = |(edges, _)| {
+                let result = self.result(edges, &tally, None);
+                SizeLine::new(&result, subject, RunChoices::Default).name()
+            };
+            cases.extend(self.not_checked(sizes.map(name)));
         }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
@@ -181,18 +210,108 @@ impl CheckArguments {
         Ok(outcome)
     }
 
-    /// The sizes after one in which a map was wrong, for CI systems.
-    fn not_checked(&self, sizes: impl Iterator<Item = usize>) -> Vec<CiCase> {
-        let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
-        let tally = Tally::default();
-        let name = |edges| SizeResult { edges, class, from, shard, tally: &tally }.name();
-        let file = from.map(Path::to_owned);
-        let cases = sizes.map(|edges| CiCase::not_checked(name(edges), file.clone()));
+    /// With all choices, runs do not share their beginnings.
+    fn check_shared_options(&self) -> Result<(), CliError> {
+        let cause = "this needs --choices default";
+        match self.choices {
+            ChoicesOption::All if self.estimate.estimate => Err(CliError::at("--estimate", cause)),
+            ChoicesOption::All if self.journal.is_some() => Err(CliError::at("--journal", cause)),
+            ChoicesOption::All | ChoicesOption::Default => Ok(()),
+        }
+    }
+
+    /// The sizes after one in which a map was wrong, by their names, for CI systems.
+    fn not_checked(&self, names: impl Iterator<Item = String>) -> Vec<CiCase> {
+        let file = self.from.as_deref().map(Path::to_owned);
+        let cases = names.map(|name| CiCase::not_checked(name, file.clone()));
         let cases: Vec<_> = cases.collect();
         if !cases.is_empty() {
             remark!("worlds with more edges are not checked; --keep-going checks them");
         }
         cases
+    }
+
+    fn result<'t>(
+        &'t self,
+        edges: usize,
+        tally: &'t Tally,
+        moves_made: Option<u64>,
+    ) -> SizeResult<'t> {
+        let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
+        SizeResult { edges, class, from, shard, tally, moves_made }
+    }
+
+    /// Checks the starts with a number of edges. Returns the moves that were made, if runs shared some.
+    fn check(
+        &self,
+        edges: usize,
+        work: &Work,
+        algorithm: &MappingAlgorithm,
+    ) -> Result<(Tally, Option<u64>), CliError> {
+        let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+        let journal = match (&self.journal, work) {
+            (Some(folder), Work::Lazy(sweep)) => {
+                let header = self.journal_header(edges, sweep, algorithm);
+                Some(CheckJournal::open(folder, &header)?)
+            }
+            _ => None,
+        };
+        if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
+            remark!("{edges} edges: {} of the work finished before", counted(before, "unit"));
+        }
+        let checked = match work {
+            Work::Lazy(sweep) => match &journal {
+                Some(journal) => algorithm.lazy_sweep(sweep, journal, &progress),
+                None => algorithm.lazy_sweep(sweep, &(), &progress),
+            },
+            Work::Sweep(_) | Work::Worlds(_) => None,
+        };
+        let checked = match (checked, work) {
+            (Some(LazyCheck { tally, moves_made }), _) => (tally, Some(moves_made)),
+            (None, Work::Worlds(graphs)) => (algorithm.check_worlds(graphs, &progress), None),
+            (None, Work::Sweep(sweep)) => (algorithm.sweep(sweep, &progress), None),
+            (None, Work::Lazy(_)) => (Tally::default(), None),
+        };
+        progress.finish();
+        if let Some(journal) = journal {
+            journal.close()?;
+        }
+        Ok(checked)
+    }
+
+    fn journal_header(
+        &self,
+        edges: usize,
+        sweep: &LazySweep,
+        algorithm: &MappingAlgorithm,
+    ) -> JournalHeader {
+        JournalHeader {
+            journal: JournalHeader::FORMAT,
+            version: VERSION.to_owned(),
+            class: self.class().name().to_owned(),
+            edges,
+            marker: algorithm.marker().name().to_owned(),
+            algorithm: algorithm.name().to_owned(),
+            shard: self.shard.to_string(),
+            units: algorithm.unit_count(sweep, &StopSignal).unwrap_or_default(),
+        }
+    }
+
+    /// Prints what the checks will take.
+    fn print_estimates(
+        &self,
+        work: &BTreeMap<usize, Work>,
+        algorithm: &MappingAlgorithm,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
+        for (&edges, work) in work {
+            if let Work::Lazy(sweep) = work {
+                let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+                self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
+                progress.finish();
+            }
+        }
+        Ok(Outcome::Holds)
     }
 
     fn class(&self) -> Class {
@@ -212,8 +331,13 @@ impl CheckArguments {
             return Err(CliError::at("--class", movable_not_sufficient(format!("class {class}"))));
         }
         let sweep = |edges| {
-            let sweep = Sweep::new(class, edges, self.shard);
-            Ok((edges, Work::Sweep(sweep.map_err(|error| CliError::at("--edges", error))?)))
+            let work = match self.choices {
+                ChoicesOption::Default => {
+                    LazySweep::new(class, edges, self.shard).map(|lazy| Work::Lazy(Box::new(lazy)))
+                }
+                ChoicesOption::All => Sweep::new(class, edges, self.shard).map(Work::Sweep),
+            };
+            Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
         };
         self.edges.iter().map(sweep).collect()
     }
@@ -231,19 +355,10 @@ impl CheckArguments {
 }
 
 impl Work {
-    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, CliError> {
-        let progress = Progress::new(&format!("{edges} edges"), "starts")?;
-        let tally = match self {
-            Self::Sweep(sweep) => algorithm.sweep(sweep, &progress),
-            Self::Worlds(graphs) => algorithm.check_worlds(graphs, &progress),
-        };
-        progress.finish();
-        Ok(tally)
-    }
-
     /// Whether no world has a loop or parallel edges.
     fn is_simple(&self) -> bool {
         match self {
+            Self::Lazy(sweep) => sweep.class().is_simple(),
             Self::Sweep(sweep) => sweep.class().is_simple(),
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }

@@ -29,6 +29,7 @@ mod json;
 mod laser_options;
 mod man;
 mod mapping_marker;
+mod merge;
 mod method_options;
 mod open_log;
 mod outcome;
@@ -102,6 +103,7 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Verb {
     Check(check::CheckArguments),
+    Merge(merge::MergeArguments),
     Explore(explore::ExploreArguments),
     Compare(compare::CompareArguments),
     Counterexample(counterexample::CounterexampleArguments),
@@ -202,6 +204,7 @@ pub(crate) fn run() -> ExitCode {
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),
+        Some(Verb::Merge(verb)) => verb.run(&mut out),
         Some(Verb::Explore(verb)) => verb.run(&mut out),
         Some(Verb::Compare(verb)) => verb.run(&mut out),
         Some(Verb::Counterexample(verb)) => verb.run(&mut out),

@@ -3,7 +3,8 @@
 
 use std::{
     ffi::{OsStr, OsString},
-    fs, io,
+    fs,
+    io::{self, Read},
     path::Path,
     process,
     sync::{Mutex, PoisonError},
@@ -51,6 +52,18 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
 pub(crate) fn create_growing(path: &Path) -> Result<fs::File, CliError> {
     files().grow(path)?;
     fs::File::create(path).map_err(|error| not_writable(path, &error))
+}
+
+/// Opens a file to append to, or creates it, and returns what it contains.
+pub(crate) fn open_growing(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> {
+    files().grow(path)?;
+    let open = fs::OpenOptions::new().read(true).append(true).create(true).open(path);
+    let read = open.and_then(|mut file| {
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok((file, bytes))
+    });
+    read.map_err(|error| not_writable(path, &error))
 }
 
 /// Creates the folder if it does not exist.

@@ -26,7 +26,9 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 39] = [
+const OUTPUTS: [OutputOption; 40] = [
+    // Not with --from, so there is no input that it could replace.
+    output("check", "--journal", &[]),
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),

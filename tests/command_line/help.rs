@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use super::{exit_codes, folder, names_in, run, stderr, stdout, stdout_of, toposlam};
 
-const VERBS: [(&str, &[&str]); 20] = [
+const VERBS: [(&str, &[&str]); 21] = [
     (
         "check",
         &[
@@ -16,8 +16,11 @@ const VERBS: [(&str, &[&str]); 20] = [
             "--from",
             "--worst",
             "--explorer",
+            "--journal",
+            "--estimate",
         ],
     ),
+    ("merge", &["--json", "missing"]),
     (
         "explore",
         &["--start", "--marker", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"],
@@ -121,9 +124,10 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 30] = [
+    let runs: [&[&str]; 31] = [
         &[],
         &["check", "--edges", "1..=4"],
+        &["check", "--edges", "6", "--estimate", "--probes", "50"],
         &["check", "--edges", "1..=4", "--choices", "all"],
         &["check", "--marker", "movable", "--class", "corridor"],
         &["check", "--from", "worlds/building-25.toml"],
@@ -242,7 +246,9 @@ fn there_is_a_manual_page_of_every_verb() {
     assert_eq!(main, stdout_of(["man"]));
     let unknown = run(["man", "fly"]);
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(stderr(&unknown).contains("there is no command `fly`; there are: check, explore"));
+    assert!(
+        stderr(&unknown).contains("there is no command `fly`; there are: check, merge, explore")
+    );
 }
 
 /// The program that formats the pages for `man` finds no fault in them.

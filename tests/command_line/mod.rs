@@ -21,6 +21,7 @@ mod laser;
 mod laser_logs;
 mod lines;
 mod log;
+mod merge;
 mod mistakes;
 mod names;
 mod options;

@@ -59,6 +59,12 @@ impl<'g, M: Marker> ExplorerWorld<'g, M> {
     pub fn moves(&self) -> u64 {
         self.world.moves()
     }
+
+    /// The number of darts of the world. It is a bound for an explorer's memory, and nothing that the
+    /// explorer may know.
+    pub(super) fn dart_count(&self) -> usize {
+        self.world.graph().dart_count()
+    }
 }
 
 impl<M: Marker> World for ExplorerWorld<'_, M> {

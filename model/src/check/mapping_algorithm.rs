@@ -1,8 +1,9 @@
 //! The algorithms of this crate, to choose from at run time. Section 2.3.
 
 use super::{
-    Algorithm, Algorithm1, AllChoices, CostOrder, EveryWay, Flaw, Folding, MovableMarker, Sweep,
-    Tally, check_worlds,
+    Algorithm, Algorithm1, Algorithm1Explorer, AllChoices, CostOrder, EveryWay, FailedStart,
+    FinishedUnits, Flaw, Folding, FoldingStepExplorer, LazyCheck, LazySweep, MovableMarker,
+    MovableMarkerExplorer, Probe, RunState, Sweep, Tally, check_worlds, first_false_step,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -72,6 +73,56 @@ impl MappingAlgorithm {
         }
     }
 
+    /// Checks every start of a lazy sweep, as [`LazySweep::resume`]. `None` with all choices: then runs are not
+    /// shared.
+    #[must_use]
+    pub fn lazy_sweep(
+        &self,
+        sweep: &LazySweep,
+        units: &dyn FinishedUnits,
+        watch: &dyn Watch,
+    ) -> Option<LazyCheck> {
+        match self {
+            Self::Algorithm1 => {
+                let check = sweep.resume(Algorithm1Explorer::default, units, watch);
+                Some(with_false_step(&Algorithm1, check))
+            }
+            Self::MovableMarker => {
+                let check = sweep.resume(MovableMarkerExplorer::default, units, watch);
+                Some(with_false_step(&MovableMarker, check))
+            }
+            Self::Folding => {
+                let check = sweep.resume(FoldingStepExplorer::default, units, watch);
+                Some(with_false_step(&Folding, check))
+            }
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
+        }
+    }
+
+    /// The number of units of a lazy sweep; `None` with all choices.
+    #[must_use]
+    pub fn unit_count(&self, sweep: &LazySweep, watch: &dyn Watch) -> Option<usize> {
+        match self {
+            Self::Algorithm1 => Some(sweep.unit_count(Algorithm1Explorer::default, watch)),
+            Self::MovableMarker => Some(sweep.unit_count(MovableMarkerExplorer::default, watch)),
+            Self::Folding => Some(sweep.unit_count(FoldingStepExplorer::default, watch)),
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
+        }
+    }
+
+    /// A random probe, as [`LazySweep::probe`]; `None` with all choices.
+    #[must_use]
+    pub fn probe(&self, sweep: &LazySweep, numbers: Vec<u64>, watch: &dyn Watch) -> Option<Probe> {
+        match self {
+            Self::Algorithm1 => Some(sweep.probe(Algorithm1Explorer::default(), numbers, watch)),
+            Self::MovableMarker => {
+                Some(sweep.probe(MovableMarkerExplorer::default(), numbers, watch))
+            }
+            Self::Folding => Some(sweep.probe(FoldingStepExplorer::default(), numbers, watch)),
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
+        }
+    }
+
     /// Checks every start of some worlds, as [`check_worlds`].
     #[must_use]
     pub fn check_worlds(&self, graphs: &[EmbeddedGraph], watch: &dyn Watch) -> Tally {
@@ -100,4 +151,14 @@ impl MappingAlgorithm {
             Self::Algorithm1 | Self::MovableMarker | Self::Folding => Ok(None),
         }
     }
+}
+
+/// Adds the first wrong addition to the map to the first failure.
+fn with_false_step<A: Algorithm>(algorithm: &A, mut check: LazyCheck) -> LazyCheck {
+    if let Some(FailedStart { graph, facing, false_step, .. }) = &mut check.tally.failure {
+        // A wrong map can have more darts than the world.
+        let mut state = A::State::new(2 * graph.dart_count());
+        *false_step = first_false_step(algorithm, graph, *facing, &mut state);
+    }
+    check
 }

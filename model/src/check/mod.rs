@@ -9,6 +9,7 @@ mod explorer;
 mod flaw;
 mod folding_explorer;
 mod judge;
+mod lazy;
 mod mapping_algorithm;
 mod mistakes;
 mod sweep;
@@ -25,6 +26,10 @@ pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorl
 pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
+pub use lazy::{
+    Algorithm1Explorer, EnumeratedStart, FinishedUnits, FoldingStepExplorer, LazyCheck, LazySweep,
+    LazyTally, LazyWorld, MovableMarkerExplorer, Probe, StepExplorer, StepProgress, Stepwise,
+};
 pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,

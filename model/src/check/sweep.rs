@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    enumerate::{Class, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts},
+    enumerate::{Class, Each, Enumeration, SizeError, Watch, in_parts},
     folding::MarkerTree,
     isomorphism::{Candidate, canonical},
     marker::{Directional, Marker},
@@ -34,8 +34,20 @@ impl Shard {
     /// The whole check.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// The parts of an enumeration that belong to the shard.
-    fn select(self, parts: Vec<EnumerationPart>) -> Vec<EnumerationPart> {
+    /// Its number, from 1.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.index
+    }
+
+    /// The number of shards.
+    #[must_use]
+    pub fn of(self) -> usize {
+        self.of
+    }
+
+    /// The parts of the whole that belong to the shard.
+    pub(super) fn select<P>(self, parts: Vec<P>) -> Vec<P> {
         parts.into_iter().skip(self.index - 1).step_by(self.of).collect()
     }
 }
@@ -148,7 +160,7 @@ fn check_parts<C: StartChecker>(
     })
 }
 
-fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
+pub(super) fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
     if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 

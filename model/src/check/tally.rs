@@ -1,5 +1,7 @@
 //! The counts of a check.
 
+use std::cmp::Reverse;
+
 use super::{ChoicesLimit, CostOrder, EveryWay, FalseStep, Flaw};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
@@ -142,8 +144,12 @@ impl Tally {
         };
     }
 
+    /// Of equal ratios that with the fewest vertices.
     fn count_dearest(&mut self, (moves, vertices): (u64, u64)) {
-        if self.dearest.is_none_or(|(most, of)| moves * of > most * vertices) {
+        let dearer = |(most, of): (u64, u64)| {
+            (moves * of, Reverse(vertices)) > (most * vertices, Reverse(of))
+        };
+        if self.dearest.is_none_or(dearer) {
             self.dearest = Some((moves, vertices));
         }
     }

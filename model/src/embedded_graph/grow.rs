@@ -48,6 +48,22 @@ impl EmbeddedGraph {
         self.opposite[other.at()] = one;
     }
 
+    /// Undoes [`join`](Self::join).
+    pub(crate) fn unjoin(&mut self, one: Dart, other: Dart) {
+        self.opposite[one.at()] = FREE;
+        self.opposite[other.at()] = FREE;
+    }
+
+    /// Undoes the latest [`add_vertex`](Self::add_vertex). Its darts are free.
+    pub(crate) fn remove_vertex(&mut self) {
+        if let Some(Darts { first, .. }) = self.darts_of.pop() {
+            let count = first as usize;
+            self.vertex.truncate(count);
+            self.opposite.truncate(count);
+            self.around.truncate(count);
+        }
+    }
+
     /// The dart's opposite; `None` while it is free.
     #[inline]
     pub(crate) fn joined(&self, dart: Dart) -> Option<Dart> {

@@ -16,6 +16,8 @@ pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
 pub use list_error::ListError;
 pub use smooth::Smoothed;
 
+use crate::clone_in_place::clone_in_place;
+
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Dart(pub u32);
@@ -49,7 +51,7 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 /// other: `clockwise` is "the next number at the same vertex", and a door is an addition. Every
 /// constructor numbers the darts in this way.
 // paper: world.graph, world.embedding
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Debug, PartialEq, Eq, Hash)]
 pub struct EmbeddedGraph {
     /// The darts of each vertex.
     darts_of: Vec<Darts>,
@@ -60,6 +62,8 @@ pub struct EmbeddedGraph {
     /// The darts of each dart's vertex, once more, so that a motion needs one look-up.
     around: Vec<Darts>,
 }
+
+clone_in_place!(EmbeddedGraph { darts_of, vertex, opposite, around });
 
 /// The darts of a vertex: consecutive numbers in clockwise order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -39,11 +39,11 @@ pub(super) struct Growth {
     /// The first dart of each vertex, and its degree.
     pub(super) first: [u8; MAX_EDGES + 1],
     pub(super) degree: [u8; MAX_EDGES + 1],
-    /// For each vertex, as bits, itself and the later ones joined to it: a simple graph lets none of
-    /// these be joined to it again. (When its turn comes, earlier ones have no free dart.)
+    /// For each vertex, as bits, itself and those joined to it: a simple graph lets none of these be
+    /// joined to it again.
     adjacent: [u64; MAX_EDGES + 1],
     vertices: usize,
-    darts: usize,
+    pub(super) darts: usize,
     /// The free darts, as bits.
     free: u64,
     /// The code so far: a word an edge, as in `isomorphism::StartCode`, but in a byte.
@@ -66,7 +66,7 @@ fn can_end(free: usize, edges: usize) -> bool {
 }
 
 /// The numbers of the bits that are set, from the lowest.
-fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lowest = (set != 0).then(|| set.trailing_zeros() as usize)?;
         set &= set - 1;
@@ -126,12 +126,10 @@ impl Growth {
         if self.vertices > 0 {
             return self.grow_edge(edges, visit);
         }
-        for degree in (1..=self.highest_degree()).rev() {
-            if can_end(degree, self.target) {
-                self.add_vertex(degree);
-                self.grow_edge(edges, visit)?;
-                self.remove_vertex();
-            }
+        for degree in self.start_degrees() {
+            self.add_vertex(degree);
+            self.grow_edge(edges, visit)?;
+            self.remove_vertex();
         }
         ControlFlow::Continue(())
     }
@@ -153,11 +151,10 @@ impl Growth {
         if self.edges == edges {
             return visit(self);
         }
-        let dart = self.free.trailing_zeros() as usize;
-        let free = self.free.count_ones() as usize;
+        let Some(dart) = self.lowest_free() else { return ControlFlow::Continue(()) };
         let left = self.target - self.edges - 1;
         let rivals = self.rivals;
-        if can_end(free - 2.min(free), left) && free >= 2 {
+        if self.can_join() {
             for other in bits(self.partners(dart)) {
                 self.join(dart, other, other as u8);
                 if self.can_still_end(left) && self.may_be_least() {
@@ -167,25 +164,53 @@ impl Growth {
                 self.unjoin(dart, other);
             }
         }
-        let most = (2 * left + 2).saturating_sub(free);
-        for degree in (1..=self.highest_degree().min(most)).rev() {
-            if can_end(free + degree - 2, left) {
-                let entry = self.darts;
-                self.add_vertex(degree);
-                self.join(dart, entry, new_vertex(degree as u8));
-                if self.can_still_end(left) && self.may_be_least() {
-                    self.grow_edge(edges, visit)?;
-                }
-                self.rivals = rivals;
-                self.unjoin(dart, entry);
-                self.remove_vertex();
+        for degree in self.new_degrees() {
+            let entry = self.darts;
+            self.add_vertex(degree);
+            self.join(dart, entry, new_vertex(degree as u8));
+            if self.can_still_end(left) && self.may_be_least() {
+                self.grow_edge(edges, visit)?;
             }
+            self.rivals = rivals;
+            self.unjoin(dart, entry);
+            self.remove_vertex();
         }
         ControlFlow::Continue(())
     }
 
+    /// The free dart with the lowest number.
+    fn lowest_free(&self) -> Option<usize> {
+        (self.free != 0).then(|| self.free.trailing_zeros() as usize)
+    }
+
+    /// The number of edges that are still to be added.
+    pub(super) fn edges_left(&self) -> usize {
+        self.target - self.edges
+    }
+
+    /// Whether the number of edges lets the next edge join two free darts.
+    pub(super) fn can_join(&self) -> bool {
+        let free = self.free.count_ones() as usize;
+        free >= 2 && can_end(free - 2, self.edges_left() - 1)
+    }
+
+    /// The degrees, from the highest, that the number of edges allows for a vertex at the end of the next
+    /// edge. There is a free dart.
+    pub(super) fn new_degrees(&self) -> impl Iterator<Item = usize> + use<> {
+        let free = self.free.count_ones() as usize;
+        let left = self.edges_left() - 1;
+        let most = self.highest_degree().min((2 * left + 2).saturating_sub(free));
+        (1..=most).rev().filter(move |degree| can_end(free + degree - 2, left))
+    }
+
+    /// The degrees, from the highest, that the number of edges allows for the start vertex.
+    pub(super) fn start_degrees(&self) -> impl Iterator<Item = usize> + use<> {
+        let target = self.target;
+        (1..=self.highest_degree()).rev().filter(move |&degree| can_end(degree, target))
+    }
+
     /// The free darts, as bits, to which the class lets a dart be joined.
-    fn partners(&self, dart: usize) -> u64 {
+    pub(super) fn partners(&self, dart: usize) -> u64 {
         let mut partners = self.free & !(1 << dart);
         if self.class.is_simple() {
             let vertex = self.vertex[dart] as usize;
@@ -220,11 +245,16 @@ impl Growth {
         }
     }
 
+    /// Whether the class can leave no way to use up the free darts.
+    pub(super) fn can_get_stuck(&self) -> bool {
+        self.class.is_simple()
+    }
+
     /// Whether the class leaves a way to use up the free darts in `left` more edges. (A necessary
     /// condition; that of [`can_end`] has been checked.)
-    fn can_still_end(&self, left: usize) -> bool {
+    pub(super) fn can_still_end(&self, left: usize) -> bool {
         // As many edges as free darts are always enough: a dead end at each.
-        if !self.class.is_simple() || self.free.count_ones() as usize <= left {
+        if !self.can_get_stuck() || self.free.count_ones() as usize <= left {
             return true;
         }
         if self.class == Class::Planar {
@@ -254,7 +284,7 @@ impl Growth {
         if dart + 1 == first + self.degree[vertex] as usize { first } else { dart + 1 }
     }
 
-    fn add_vertex(&mut self, degree: usize) {
+    pub(super) fn add_vertex(&mut self, degree: usize) {
         let new = self.vertices;
         self.first[new] = self.darts as u8;
         self.degree[new] = degree as u8;
@@ -269,7 +299,7 @@ impl Growth {
         }
     }
 
-    fn remove_vertex(&mut self) {
+    pub(super) fn remove_vertex(&mut self) {
         self.vertices -= 1;
         let darts = self.darts_of(self.vertices);
         self.free &= !darts;
@@ -277,24 +307,28 @@ impl Growth {
         self.darts -= self.degree[self.vertices] as usize;
     }
 
-    fn join(&mut self, one: usize, other: usize, word: u8) {
+    pub(super) fn join(&mut self, one: usize, other: usize, word: u8) {
         self.opposite[one] = other as u8;
         self.opposite[other] = one as u8;
         self.free &= !(1 << one);
         self.free &= !(1 << other);
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
         self.adjacent[from] |= 1 << to;
+        self.adjacent[to] |= 1 << from;
         self.words[self.edges] = word;
         self.edges += 1;
     }
 
-    fn unjoin(&mut self, one: usize, other: usize) {
+    pub(super) fn unjoin(&mut self, one: usize, other: usize) {
         self.opposite[one] = FREE;
         self.opposite[other] = FREE;
         self.free |= 1 << one;
         self.free |= 1 << other;
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
-        self.adjacent[from] &= !(1 << to);
+        if from != to {
+            self.adjacent[from] &= !(1 << to);
+            self.adjacent[to] &= !(1 << from);
+        }
         self.edges -= 1;
     }
 

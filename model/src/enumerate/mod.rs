@@ -6,6 +6,7 @@
 //! graph is enumerated at its least start; a history that cannot become least is abandoned early.
 
 mod class;
+mod draft;
 mod growth;
 mod rivals;
 mod watch;
@@ -15,6 +16,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 pub use class::{Class, UnknownClass};
+pub(crate) use draft::{Answer, Answers, Draft};
 pub(crate) use watch::in_parts;
 pub use watch::{Interrupted, Watch};
 

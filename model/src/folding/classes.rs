@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::ContradictionReason;
+use crate::clone_in_place::clone_in_place;
 use crate::percept::{Door, Percept, Sighting};
 
 /// A dart whose opposite is not known.
@@ -15,7 +16,7 @@ const NO_NUMBER: u32 = u32::MAX;
 ///
 /// A class of trail vertices is represented by the darts of its root. If two poses are one, their
 /// vertices are one, and so are the vertices behind the same doors.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct DartClasses {
     vertices: Vec<TrailVertex>,
     darts: Vec<TrailDart>,
@@ -30,6 +31,8 @@ pub(super) struct DartClasses {
     /// Scratch: darts that have to be identified next.
     pairs: Vec<(u32, u32)>,
 }
+
+clone_in_place!(DartClasses { vertices, darts, count, open, changes, before_union; scratch pairs });
 
 /// A vertex for each percept at a place that was not known.
 #[derive(Clone, Copy, Debug)]

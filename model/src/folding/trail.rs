@@ -5,6 +5,7 @@ use super::{
     classes::{DartClasses, OPEN},
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     percept::{Door, Percept, Sighting},
 };
@@ -14,7 +15,7 @@ use crate::{
 /// The darts of all trail vertices are numbered in the order of the walk, those of a vertex clockwise
 /// from the one by which the robot first came in. Trail vertices that are proved to be one vertex form
 /// a class, which is represented by the darts of one of them, its root.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct FoldedTrail {
     classes: DartClasses,
     /// The dart along which the marker points.
@@ -23,6 +24,8 @@ pub struct FoldedTrail {
     pose: u32,
     moves: usize,
 }
+
+clone_in_place!(FoldedTrail { classes, marker, pose, moves });
 
 impl FoldedTrail {
     /// Begins another walk. Memory is kept.

@@ -10,6 +10,7 @@ use super::{
     Observer, PartialMap, journey::NOWHERE, partial_map::START, tree::BreadthFirstTree,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     percept::{Door, Percept, Sighting, retrace},
     world::World,
@@ -20,7 +21,7 @@ use crate::{
 pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 
 /// The state of a run of Algorithm 1: the robot's journey, and the hypotheses about its place.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Exploration {
     journey: Journey,
     here: Here,
@@ -32,6 +33,8 @@ pub struct Exploration {
     /// Whether `to_marker` fits the present map.
     to_marker_is_current: bool,
 }
+
+clone_in_place!(Exploration { journey, here, hypotheses, trail, to_marker, to_marker_is_current });
 
 /// The robot at its vertex.
 #[derive(Clone, Copy, Debug)]
@@ -155,6 +158,21 @@ impl Exploration {
         }
         let chosen = choices.next_hypothesis(self.journey.map(), &self.hypotheses);
         Some(MappingChoice::Hypothesis(chosen))
+    }
+
+    /// The first part of line 6: goes through the known map to the known end of an unexplored edge. To
+    /// [`explore`](Self::explore) it then takes one move.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, or if a known place is not as it was.
+    pub fn approach<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let known_end = self.map().vertex(edge);
+        self.journey.travel_to(known_end, PartialMap::expected, world, observer)
     }
 
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it

@@ -8,6 +8,7 @@ use super::{
     tree::BreadthFirstTree,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::{Dart, MAX_EDGES, Vertex},
     percept::{Door, Percept, Sighting},
     world::World,
@@ -35,7 +36,7 @@ impl<W: ?Sized, F: FnMut(&mut W, &Journey, MappingEvent)> Observer<W> for F {
 }
 
 /// The robot's map, its pose in the map and its moves.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Journey {
     bound: usize,
     moves: u64,
@@ -46,10 +47,13 @@ pub struct Journey {
     pub(super) edge: Option<Dart>,
     /// The percept at its unknown end.
     pub(super) arrival: Percept,
+    /// A tree of the map that is grown again when it does not fit.
     pub(super) from_robot: BreadthFirstTree,
     /// Scratch: the darts on the way to somewhere known.
     pub(super) way: Vec<Dart>,
 }
+
+clone_in_place!(Journey { bound, moves, map, robot, edge, arrival; scratch from_robot, way });
 
 pub(super) const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 

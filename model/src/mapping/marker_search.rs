@@ -5,13 +5,14 @@ use super::{
     Observer, PartialMap, ValidationResult,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept, Sighting},
     world::{MovableMarkerWorld, World},
 };
 
 /// The state of a run with a movable marker: the robot's journey, and the candidates.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct MarkerSearch {
     journey: Journey,
     /// The known vertices that the unknown end may be and that were not searched yet. The next one is
@@ -23,6 +24,8 @@ pub struct MarkerSearch {
     /// is the last.
     back_links: Vec<Dart>,
 }
+
+clone_in_place!(MarkerSearch { journey, candidates, is_candidate, back_links });
 
 /// The percept of the same place with the marker there.
 fn marked(place: Percept) -> Percept {

@@ -1,6 +1,7 @@
 //! The map S while it is built, with the unexplored edges U. Section 2.3, Algorithm 1.
 
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     percept::{Door, Percept, Sighting},
 };
@@ -10,13 +11,15 @@ use crate::{
 /// Vertices are numbered in the order of discovery; the darts of a vertex are numbered clockwise from the
 /// dart by which it was first entered, and at the start vertex, number 0, from the facing dart. A
 /// dart whose other end is not known is *unexplored*: together these are U.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Debug, PartialEq, Eq, Hash)]
 pub struct PartialMap {
     known: EmbeddedGraph,
     /// The number of unexplored darts at each vertex.
     unexplored_at: Vec<u32>,
     unexplored: u32,
 }
+
+clone_in_place!(PartialMap { known, unexplored_at, unexplored });
 
 /// The facing dart, along which the marker points.
 pub const FACING: Dart = Dart(0);

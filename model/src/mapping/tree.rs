@@ -3,12 +3,13 @@
 
 use super::partial_map::PartialMap;
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::{Dart, Vertex},
     percept::Door,
 };
 
 /// A breadth-first tree of the known map, grown on demand.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct BreadthFirstTree {
     /// For each vertex the number of edges to the root.
     hops: Vec<u32>,
@@ -19,6 +20,8 @@ pub(super) struct BreadthFirstTree {
     /// The number of `reached` vertices with all their neighbours in the tree.
     grown: usize,
 }
+
+clone_in_place!(BreadthFirstTree { hops, up, reached, grown });
 
 /// The hops of a vertex that is not in the tree.
 const UNREACHED: u32 = u32::MAX;

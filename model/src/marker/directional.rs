@@ -41,4 +41,8 @@ impl Marker for Directional {
     fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
         vec![MarkerPart::Pointing(facing)]
     }
+
+    fn is_local(&self) -> bool {
+        true
+    }
 }

@@ -67,6 +67,12 @@ pub trait Marker: Sync {
     fn is_movable(&self) -> bool {
         false
     }
+
+    /// Whether what it adds depends on the vertices of the facing dart and of the pose, and on their
+    /// indices there, and on nothing else. What is behind their doors may then be undecided.
+    fn is_local(&self) -> bool {
+        false
+    }
 }
 
 /// A part of a marker, and where it lies.
@@ -123,6 +129,10 @@ impl<M: Marker + ?Sized> Marker for &M {
 
     fn is_movable(&self) -> bool {
         (**self).is_movable()
+    }
+
+    fn is_local(&self) -> bool {
+        (**self).is_local()
     }
 }
 

@@ -41,4 +41,8 @@ impl Marker for Movable {
     fn is_movable(&self) -> bool {
         true
     }
+
+    fn is_local(&self) -> bool {
+        true
+    }
 }

@@ -35,4 +35,8 @@ impl Marker for NoMarker {
     fn parts(&self, _: &EmbeddedGraph, _: Dart) -> Vec<MarkerPart> {
         Vec::new()
     }
+
+    fn is_local(&self) -> bool {
+        true
+    }
 }

@@ -39,4 +39,8 @@ impl Marker for Undirected {
     fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
         vec![MarkerPart::At { vertex: graph.vertex(facing), look: MarkerLook::One }]
     }
+
+    fn is_local(&self) -> bool {
+        true
+    }
 }

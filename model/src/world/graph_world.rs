@@ -34,6 +34,9 @@ pub enum Refused {
         /// The number of moves allowed.
         bound: u64,
     },
+    /// The world is decided while the robot explores, and no answer is left.
+    #[error("no world of this class and size agrees with what the robot has perceived")]
+    NoWorldLeft,
 }
 
 /// The robot's pose, and the place of the marker.

@@ -1,9 +1,10 @@
 //! What is known about hypotheses: which are refuted, and one that is alive for each pending place.
 
+use crate::clone_in_place::clone_in_place;
 use crate::embedded_graph::Dart;
 
 /// What is known about the hypotheses that the place behind one dart of the map is entered by another.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Hypotheses {
     /// One bit for each pair of darts of the map. A refuted hypothesis stays refuted, because a trail
     /// only grows.
@@ -11,6 +12,8 @@ pub(super) struct Hypotheses {
     /// For each dart of the map, a hypothesis about its far end that was alive after so many moves.
     witness: Vec<Option<Witness>>,
 }
+
+clone_in_place!(Hypotheses { refuted, witness });
 
 /// A hypothesis that was alive.
 #[derive(Clone, Copy, Debug)]

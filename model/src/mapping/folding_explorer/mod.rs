@@ -28,6 +28,7 @@ use super::{
     tree::BreadthFirstTree,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     folding::{FoldedTrail, MAX_DARTS, TrailError},
     percept::{Door, Sighting},
@@ -80,7 +81,7 @@ struct Pending {
 /// The state of a run of the folding explorer. Memory is reused from run to run.
 ///
 /// It is a plain value. To try every choice, clone it together with the world between two steps.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct FoldingExploration {
     /// Whether it only makes strict tests.
     strict: bool,
@@ -104,6 +105,21 @@ pub struct FoldingExploration {
     /// Scratch: the darts on the way to somewhere known.
     way: Vec<Dart>,
 }
+
+clone_in_place!(FoldingExploration {
+    strict,
+    journey,
+    trail,
+    in_trail,
+    unexplored,
+    open,
+    pending,
+    hypotheses,
+    to_marker,
+    to_marker_is_current,
+    from_robot;
+    scratch tests, way
+});
 
 impl Default for FoldingExploration {
     fn default() -> Self {
@@ -230,6 +246,24 @@ impl FoldingExploration {
         self.trail.restart(percept)?;
         self.put_in_map(self.trail.pose());
         self.settle(world, observer)
+    }
+
+    /// The first part of a step: goes through the trail to the open dart that it takes. The step itself
+    /// then begins with that dart.
+    ///
+    /// # Errors
+    /// See [`map_by_folding`].
+    pub fn approach<W: World>(
+        &mut self,
+        step: FoldingStep,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let open = match step {
+            FoldingStep::Explore(edge) => self.in_trail[edge.at()],
+            FoldingStep::Test(test) => test.open,
+        };
+        self.go_to(open, world, observer)
     }
 
     /// Makes a step, and draws all conclusions.

@@ -66,17 +66,28 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
-        if self.trail.vertex(open) != self.trail.vertex(self.trail.pose()) {
+        self.go_to(open, world, observer)?;
+        self.take(self.trail.door(self.trail.pose(), open), world, observer)
+    }
+
+    /// Goes through the trail to the vertex of a dart.
+    pub(super) fn go_to<W: World>(
+        &mut self,
+        dart: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        if self.trail.vertex(dart) != self.trail.vertex(self.trail.pose()) {
             self.from_robot.find(&self.trail);
             let mut way = mem::take(&mut self.way);
-            self.from_robot.darts_to(&self.trail, open, &mut way);
+            self.from_robot.darts_to(&self.trail, dart, &mut way);
             for &dart in &way {
                 let door = self.trail.door(self.trail.pose(), dart);
                 self.take(door, world, observer)?;
             }
             self.way = way;
         }
-        self.take(self.trail.door(self.trail.pose(), open), world, observer)
+        Ok(())
     }
 
     /// Makes one move, and returns the percept after it.

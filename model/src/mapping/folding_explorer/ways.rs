@@ -1,11 +1,12 @@
 //! Shortest ways from the robot through the folded trail.
 
+use crate::clone_in_place::clone_in_place;
 use crate::{embedded_graph::Dart, folding::FoldedTrail};
 
 /// Shortest ways from the robot to each vertex of the folded trail. Of ways with equally many moves it
 /// is the one that a breadth-first search finds first, with the darts of a vertex clockwise from the
 /// first of its root.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Ways {
     /// For each trail vertex that is a root.
     way: Vec<Way>,
@@ -14,6 +15,8 @@ pub(super) struct Ways {
     /// Scratch: the vertices that are reached, with the darts by which.
     queue: Vec<(Dart, usize)>,
 }
+
+clone_in_place!(Ways { way, found_after; scratch queue });
 
 /// A shortest way to a vertex.
 #[derive(Clone, Copy, Debug)]

@@ -67,6 +67,7 @@ fn refusal(refused: &Refused) -> String {
         }
         Refused::NothingToPickUp => "picked up a marker where there is none".to_owned(),
         Refused::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
+        Refused::NoWorldLeft => refused.to_string(),
         Refused::OutOfMoves { bound } => format!("made more than {bound} moves"),
     }
 }

@@ -40,7 +40,7 @@ pub(super) struct ExplorerOptions {
     #[arg(
         long,
         value_name = "COMMAND",
-        conflicts_with_all = ["algorithm", "choices", "max_states", "shard"]
+        conflicts_with_all = ["algorithm", "choices", "max_states", "shard", "estimate", "journal"]
     )]
     explorer: Option<String>,
 
@@ -133,7 +133,10 @@ impl CheckArguments {
         }
         let outcome = report.verdict(begun.elapsed())?;
         if unmapped.is_some() {
-            cases.extend(self.not_checked(sizes.map(|(edges, _)| edges)));
+            let (class, from) = (self.class(), self.from.as_deref());
+            let tally = ExplorerTally::default();
+            let name = |(edges, _)| ExplorerSize { edges, class, from, tally: &tally }.name();
+            cases.extend(self.not_checked(sizes.map(name)));
         }
         self.ci.write("check", &cases)?;
         self.write_explorer_starts(&command.text, worst, unmapped)?;

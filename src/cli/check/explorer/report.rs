@@ -36,6 +36,11 @@ impl ExplorerSize<'_> {
         }
     }
 
+    /// Its name for CI systems.
+    pub(super) fn name(&self) -> String {
+        format!("{} edges, {}", self.edges, self.worlds())
+    }
+
     /// The result for CI systems.
     pub(super) fn ci_case(&self) -> CiCase {
         let tally = self.tally;
@@ -46,8 +51,12 @@ impl ExplorerSize<'_> {
         } else if tally.interrupted {
             message += "; interrupted";
         }
-        let name = format!("{} edges, {}", self.edges, self.worlds());
-        CiCase { name, outcome: tally.verdict().0, message, file: self.from.map(Path::to_owned) }
+        CiCase {
+            name: self.name(),
+            outcome: tally.verdict().0,
+            message,
+            file: self.from.map(Path::to_owned),
+        }
     }
 }
 

@@ -1,0 +1,81 @@
+//! Judges the end of a run: by the explorer's map and the record of what was revealed, and nothing else.
+
+use std::{ops::ControlFlow, sync::atomic::AtomicU64};
+
+use super::{
+    LazyTally, LazyWorld, StepExplorer, search::LazyRunEnd, tally::EnumeratedStart, world::FACING,
+};
+use crate::{
+    check::{Flaw, judge_map},
+    embedded_graph::EmbeddedGraph,
+    folding::MarkerTree,
+    isomorphism::Candidate,
+    marker::{Directional, Marker},
+};
+
+/// Judges one end after the other. Memory is kept.
+pub(super) struct LeafJudge<'m> {
+    pub(super) tally: LazyTally,
+    candidate: Candidate,
+    /// Measures certificates, if the marker has them.
+    certificates: Option<MarkerTree>,
+    /// The most moves of any run of the check so far.
+    most_moves: &'m AtomicU64,
+}
+
+impl<'m> LeafJudge<'m> {
+    pub(super) fn new(marker: &impl Marker, most_moves: &'m AtomicU64) -> Self {
+        let directional = marker.name() == Directional.name();
+        let certificates = directional.then(MarkerTree::default);
+        let (tally, candidate) = (LazyTally::default(), Candidate::default());
+        Self { tally, candidate, certificates, most_moves }
+    }
+
+    /// Judges each start that agrees with the record.
+    pub(super) fn judge<E: StepExplorer>(
+        &mut self,
+        world: &LazyWorld<E::Marker>,
+        explorer: &E,
+        end: &LazyRunEnd,
+    ) {
+        let _ = world.draft.for_each_completion(&mut |graph| {
+            let judged = match end {
+                LazyRunEnd::Failed(flaw) => Err(flaw.clone()),
+                LazyRunEnd::Done | LazyRunEnd::Cut => self.judge_run(world, explorer, graph),
+            };
+            self.count(graph, world.robot().moves, judged.is_ok());
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// Judges a run in one of these starts, as [`judge_start`](crate::check::judge_start).
+    fn judge_run<E: StepExplorer>(
+        &mut self,
+        world: &LazyWorld<E::Marker>,
+        explorer: &E,
+        graph: &EmbeddedGraph,
+    ) -> Result<(), Flaw> {
+        let map = explorer.explored()?;
+        judge_map(&map, (graph, FACING), world.pose(), &mut self.candidate)?;
+        let moves = world.robot().moves;
+        let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+        if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(()) }
+    }
+
+    fn count(&mut self, graph: &EmbeddedGraph, moves: u64, is_right: bool) {
+        let tally = &mut self.tally;
+        tally.starts += 1;
+        let certificate = self.certificates.as_mut().map_or(0, |tree| {
+            tree.grow(graph, graph.vertex(FACING));
+            tree.length(graph) as u64
+        });
+        tally.certificate_total += certificate;
+        tally.certificate_max = tally.certificate_max.max(certificate);
+        if is_right {
+            tally.below_certificate += u64::from(moves < certificate);
+            tally.count_run((graph, FACING), moves, self.most_moves);
+        } else {
+            tally.count_failure(EnumeratedStart::new(graph, FACING));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The search through all answers of a world that is decided while the robot explores it.
+
+use std::ops::ControlFlow;
+
+use super::{
+    LazyWorld, StepExplorer, StepProgress,
+    world::{Prefix, RobotState},
+};
+use crate::{
+    check::Flaw,
+    enumerate::{Answer, Draft, Watch},
+};
+
+/// The number of runs after which the watch is asked whether to stop.
+const RUNS_TO_A_QUESTION: u64 = 64;
+
+/// The end of a run.
+pub(super) enum LazyRunEnd {
+    /// The explorer returned its map.
+    Done,
+    /// The explorer failed.
+    Failed(Flaw),
+    /// The run was cut after a step: so many edges are decided.
+    Cut,
+}
+
+/// The explorer and its robot before a step.
+#[derive(Clone)]
+struct Saved<E> {
+    explorer: E,
+    robot: RobotState,
+}
+
+/// A depth-first search through the runs of an explorer.
+pub(super) struct RunSearch<'w, E: StepExplorer> {
+    pub(super) world: LazyWorld<E::Marker>,
+    pub(super) explorer: E,
+    /// The state before each step in which something was decided. Memory is kept.
+    saved: Vec<Saved<E>>,
+    /// Cut a run after a step if at most so many edges are not decided.
+    cut_at: Option<usize>,
+    max_darts: usize,
+    watch: &'w dyn Watch,
+}
+
+impl<'w, E: StepExplorer> RunSearch<'w, E> {
+    /// A search through the runs that begin with these answers.
+    pub(super) fn new(
+        explorer: E,
+        draft: Draft,
+        prefix: Prefix,
+        cut_at: Option<usize>,
+        watch: &'w dyn Watch,
+    ) -> Self {
+        let edges = draft.edges_left();
+        let bounds = (1..=edges + 1).map(|vertices| explorer.move_bound(edges, vertices));
+        let bound = bounds.max().unwrap_or(0);
+        let world = LazyWorld::new(draft, explorer.marker(), bound, prefix);
+        Self { world, explorer, saved: Vec::new(), cut_at, max_darts: 2 * edges, watch }
+    }
+
+    /// Visits the end of each run, in a fixed order.
+    pub(super) fn for_each_end(
+        &mut self,
+        visit: &mut impl FnMut(&LazyWorld<E::Marker>, &E, LazyRunEnd) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.save(0);
+        for run in 1_u64.. {
+            if let Some(end) = self.run() {
+                visit(&self.world, &self.explorer, end)?;
+            }
+            let Some(step) = self.world.go_back() else { break };
+            if run % RUNS_TO_A_QUESTION == 0 && self.watch.stop() {
+                return ControlFlow::Break(());
+            }
+            self.restore(step);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn save(&mut self, step: usize) {
+        let Self { world, explorer, saved, .. } = self;
+        match saved.get_mut(step) {
+            Some(saved) => {
+                saved.explorer.clone_from(explorer);
+                saved.robot = world.robot();
+            }
+            None => saved.push(Saved { explorer: explorer.clone(), robot: world.robot() }),
+        }
+        world.step = step;
+    }
+
+    fn restore(&mut self, step: usize) {
+        let Self { world, explorer, saved, .. } = self;
+        explorer.clone_from(&saved[step].explorer);
+        world.set_robot(saved[step].robot);
+        world.step = step;
+    }
+
+    /// Runs from the present state to an end, which is `None` where no answer was left.
+    fn run(&mut self) -> Option<LazyRunEnd> {
+        loop {
+            let progress = if self.world.robot().has_begun {
+                self.explorer.step(&mut self.world)
+            } else {
+                self.begin()
+            };
+            if self.world.dead_end {
+                return None;
+            }
+            match progress {
+                Err(flaw) => return Some(LazyRunEnd::Failed(flaw)),
+                Ok(StepProgress::Done) => return Some(LazyRunEnd::Done),
+                Ok(StepProgress::GoesOn) => {}
+            }
+            if self.cut_at.is_some_and(|left| self.world.draft.edges_left() <= left) {
+                return Some(LazyRunEnd::Cut);
+            }
+            // What is decided now was decided in an earlier step.
+            if self.world.may_branch() {
+                let step = self.world.decisions.last().map_or(0, |decision| decision.step + 1);
+                self.save(step);
+            }
+        }
+    }
+
+    fn begin(&mut self) -> Result<StepProgress, Flaw> {
+        self.world.open_start()?;
+        self.explorer.begin(&mut self.world, self.max_darts)
+    }
+}
+
+/// The beginnings of all runs, up to the step after which at most so many edges are not decided.
+pub(super) fn beginnings<E: StepExplorer>(
+    explorer: E,
+    draft: Draft,
+    cut_at: usize,
+    watch: &dyn Watch,
+) -> Vec<Vec<Answer>> {
+    let mut found = Vec::new();
+    let mut search = RunSearch::new(explorer, draft, Prefix::Open, Some(cut_at), watch);
+    let _ = search.for_each_end(&mut |world, _, _| {
+        found.push(world.answers());
+        ControlFlow::Continue(())
+    });
+    found
+}

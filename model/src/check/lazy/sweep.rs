@@ -1,0 +1,252 @@
+//! The lazy check of a class and a size, in units that can be run in any order and on any machine.
+
+use std::{ops::ControlFlow, sync::atomic::AtomicU64};
+
+use super::{
+    LazyTally, StepExplorer, Stepwise,
+    leaf::LeafJudge,
+    search::{RunSearch, beginnings},
+    world::Prefix,
+};
+use crate::{
+    check::{FailedStart, Shard, Tally, WorstStart, judge_start, sweep::go_on},
+    enumerate::{
+        Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
+    },
+    isomorphism::Candidate,
+};
+
+/// The number of edges that are decided in the beginning that a unit's runs have in common. A unit of 7 edges
+/// then has about a thousand starts.
+fn beginning(edges: usize) -> usize {
+    if edges < 8 { 2 } else { 3 }
+}
+
+/// The number of units from which the most moves of a run are first estimated.
+const SAMPLE: usize = 16;
+
+/// A check of every start of every world of a class with a number of edges, without repetition.
+#[derive(Clone, Debug)]
+pub struct LazySweep {
+    worlds: Enumeration,
+    draft: Draft,
+    shard: Shard,
+}
+
+/// The result of a lazy check.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LazyCheck {
+    /// The same as of a [`Sweep`](crate::check::Sweep).
+    pub tally: Tally,
+    /// The moves that were made. `tally.moves_total` would be made by one run for each start.
+    pub moves_made: u64,
+}
+
+/// A random probe of the tree of all runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// The product of the numbers of answers that were possible where one was drawn.
+    pub weight: f64,
+    /// The counts of the subtree. The worst start is not looked for.
+    pub tally: LazyTally,
+}
+
+/// The units that were finished before, and those that are finished now, for checks that can be resumed. A unit
+/// has an index among those of its shard.
+pub trait FinishedUnits: Sync {
+    /// The counts of a unit that was finished before.
+    fn finished(&self, unit: usize) -> Option<LazyTally>;
+
+    /// A unit is finished now. Units are finished in any order, and by several threads.
+    fn finish(&self, unit: usize, tally: &LazyTally);
+}
+
+/// No unit was finished before.
+impl FinishedUnits for () {
+    fn finished(&self, _: usize) -> Option<LazyTally> {
+        None
+    }
+
+    fn finish(&self, _: usize, _: &LazyTally) {}
+}
+
+/// A part of the tree of all runs: those that begin with the same answers.
+#[derive(Clone, Debug)]
+pub(super) struct Unit(Vec<Answer>);
+
+/// Embedded graphs up to isomorphism.
+#[derive(Clone, Copy, Debug, Default)]
+struct WorldCount {
+    worlds: u64,
+    interrupted: bool,
+}
+
+impl LazySweep {
+    /// A check of one shard of the starts.
+    ///
+    /// # Errors
+    /// Returns an error if the worlds cannot be enumerated.
+    pub fn new(class: Class, edges: usize, shard: Shard) -> Result<Self, SizeError> {
+        let worlds = Enumeration::new(Each::World, class, edges)?;
+        Ok(Self { worlds, draft: Draft::new(class, edges)?, shard })
+    }
+
+    /// The class of worlds.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.worlds.class()
+    }
+
+    /// Checks explorers, each on one unit. The result does not depend on the number of threads.
+    pub fn run<E: StepExplorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
+        self.resume(new, &(), watch)
+    }
+
+    /// Checks explorers on the units that were not finished before. The result is that of [`run`](Self::run).
+    pub fn resume<E: StepExplorer>(
+        &self,
+        new: impl Fn() -> E + Sync,
+        units: &dyn FinishedUnits,
+        watch: &dyn Watch,
+    ) -> LazyCheck {
+        let all: Vec<_> = self.units(&new, watch).into_iter().enumerate().collect();
+        let most_moves = AtomicU64::new(0);
+        // Some runs from all over the tree, so that few others can be the worst one.
+        for (index, unit) in all.iter().step_by(all.len().div_ceil(SAMPLE).max(1)) {
+            if units.finished(*index).is_none() {
+                self.check_unit(unit, new(), &most_moves, watch);
+            }
+        }
+        let check = |(index, unit): &(usize, Unit)| {
+            units.finished(*index).unwrap_or_else(|| {
+                let tally = self.check_unit(unit, new(), &most_moves, watch);
+                if !tally.interrupted {
+                    units.finish(*index, &tally);
+                }
+                tally
+            })
+        };
+        let merge = |mut sum: LazyTally, other: LazyTally| {
+            sum.merge(other);
+            sum
+        };
+        let found = in_parts(&all, watch, LazyTally::default, check, |tally| tally.starts, merge);
+        self.finished(found, new, watch)
+    }
+
+    /// The number of units of the shard.
+    pub fn unit_count<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> usize {
+        self.units(new, watch).len()
+    }
+
+    /// Knuth's random probe of the tree of all runs. Each number draws one of the possible answers; then every
+    /// answer is given, until all is decided. The expected value of a count times the weight is that of the
+    /// whole tree. There is one decision for the degree of the start vertex, and one for each edge.
+    #[must_use]
+    pub fn probe<E: StepExplorer>(
+        &self,
+        explorer: E,
+        numbers: Vec<u64>,
+        watch: &dyn Watch,
+    ) -> Probe {
+        let most_moves = AtomicU64::new(u64::MAX);
+        let (tally, weight) =
+            self.check_subtree(Prefix::Drawn(numbers), explorer, &most_moves, watch);
+        Probe { weight, tally }
+    }
+
+    /// The units of the shard. They do not depend on the number of threads.
+    fn units<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
+        let edges = self.draft.edges_left();
+        let cut_at = edges.saturating_sub(beginning(edges));
+        let all = beginnings(new(), self.draft.clone(), cut_at, watch);
+        self.shard.select(all.into_iter().map(Unit).collect())
+    }
+
+    /// Checks the starts of a unit.
+    fn check_unit<E: StepExplorer>(
+        &self,
+        unit: &Unit,
+        explorer: E,
+        most_moves: &AtomicU64,
+        watch: &dyn Watch,
+    ) -> LazyTally {
+        if watch.stop() {
+            return LazyTally { interrupted: true, ..LazyTally::default() };
+        }
+        self.check_subtree(Prefix::Given(unit.0.clone()), explorer, most_moves, watch).0
+    }
+
+    /// Checks the starts of a subtree, and returns the weight of what was drawn.
+    fn check_subtree<E: StepExplorer>(
+        &self,
+        prefix: Prefix,
+        explorer: E,
+        most_moves: &AtomicU64,
+        watch: &dyn Watch,
+    ) -> (LazyTally, f64) {
+        let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
+        let mut search = RunSearch::new(explorer, self.draft.clone(), prefix, None, watch);
+        let ended = search.for_each_end(&mut |world, explorer, end| {
+            judge.judge(world, explorer, &end);
+            ControlFlow::Continue(())
+        });
+        let (moves_made, interrupted) = (search.world.moves_made, ended.is_break());
+        (LazyTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
+    }
+
+    /// The result, from the counts of all units.
+    fn finished<E: StepExplorer>(
+        &self,
+        found: LazyTally,
+        new: impl Fn() -> E,
+        watch: &dyn Watch,
+    ) -> LazyCheck {
+        let WorldCount { worlds, interrupted } = self.count_worlds(watch);
+        let failure = found.failure.and_then(|start| start.start()).and_then(|(graph, facing)| {
+            let mut explorer = Stepwise(new());
+            let judged = judge_start(&mut explorer, &graph, facing, &mut Candidate::default());
+            let (moves, flaw) = (Some(judged.0), judged.1.err()?);
+            Some(FailedStart { graph, facing, flaw, moves, false_step: None })
+        });
+        let worst = found.worst.and_then(|(moves, start)| {
+            let (graph, facing) = start.start()?;
+            Some(WorstStart { graph, facing, moves })
+        });
+        let tally = Tally {
+            worlds,
+            starts: found.starts,
+            mapped: found.mapped,
+            moves_total: found.moves_total,
+            certificate_total: found.certificate_total,
+            certificate_max: found.certificate_max,
+            below_certificate: found.below_certificate,
+            worst,
+            dearest: found.dearest,
+            failure,
+            interrupted: found.interrupted || interrupted,
+            ..Tally::default()
+        };
+        LazyCheck { tally, moves_made: found.moves_made }
+    }
+
+    /// The embedded graphs of the shard.
+    fn count_worlds(&self, watch: &dyn Watch) -> WorldCount {
+        let parts = self.shard.select(self.worlds.parts());
+        let count = |part: &EnumerationPart| {
+            let mut found = WorldCount::default();
+            let ended = part.for_each(&mut |_| {
+                found.worlds += 1;
+                go_on(watch)
+            });
+            found.interrupted = ended.is_break();
+            found
+        };
+        let merge = |one: WorldCount, other: WorldCount| WorldCount {
+            worlds: one.worlds + other.worlds,
+            interrupted: one.interrupted || other.interrupted,
+        };
+        // The progress is that of the runs.
+        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, merge)
+    }
+}

@@ -1,0 +1,288 @@
+//! The check without repetition against the check of one start after the other.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+
+use toposlam_model::{
+    check::{
+        Algorithm1, Algorithm1Explorer, EnumeratedStart, ExploredMap, FinishedUnits, Flaw, Folding,
+        FoldingStepExplorer, LazyCheck, LazySweep, LazyTally, MappingAlgorithm, MovableMarker,
+        MovableMarkerExplorer, Shard, StepExplorer, StepProgress, Stepwise, Sweep, Tally,
+    },
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Watch},
+    marker::{DirectedEdge, Directional, Marker, TwoIdentical},
+    percept::Door,
+    world::{MovableMarkerWorld, Refused},
+};
+
+fn lazy<E: StepExplorer + Default>(class: Class, edges: usize) -> LazyCheck {
+    LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(E::default, &())
+}
+
+fn stepwise<E: StepExplorer + Default>(class: Class, edges: usize) -> Tally {
+    let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+    sweep.run_explorers(|| Stepwise(E::default()), &())
+}
+
+/// A000698.
+#[test]
+fn the_tree_has_a_leaf_for_each_start() {
+    let leaves = |edges| lazy::<Algorithm1Explorer>(Class::Multigraph, edges).tally.starts;
+    assert_eq!([1, 2, 3, 4, 5, 6, 7].map(leaves), [2, 10, 74, 706, 8162, 110_410, 1_708_394]);
+}
+
+#[test]
+fn both_checks_have_the_same_result() {
+    for class in Class::ALL {
+        let most = if class == Class::Multigraph { 6 } else { 8 };
+        for edges in 1..=most {
+            let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+            let lazily = lazy::<Algorithm1Explorer>(class, edges).tally;
+            assert_eq!(lazily, sweep.run(&Algorithm1, &()), "{class} {edges}");
+            if class == Class::Multigraph && edges == 6 {
+                continue;
+            }
+            let lazily = lazy::<FoldingStepExplorer>(class, edges).tally;
+            assert_eq!(lazily, sweep.run(&Folding, &()), "{class} {edges}");
+            if class.is_simple() {
+                let lazily = lazy::<MovableMarkerExplorer>(class, edges).tally;
+                assert_eq!(lazily, sweep.run(&MovableMarker, &()), "{class} {edges}");
+            }
+        }
+    }
+}
+
+/// One movable marker does not suffice in multigraphs, and both checks find the same failures.
+#[test]
+fn both_checks_find_the_same_failures() {
+    for edges in 1..=5 {
+        let lazily = lazy::<MovableMarkerExplorer>(Class::Multigraph, edges).tally;
+        assert!(edges == 1 || lazily.failed() > 0);
+        assert_eq!(lazily, stepwise::<MovableMarkerExplorer>(Class::Multigraph, edges));
+    }
+}
+
+/// Walks through the door with a number at each vertex, a few times, and then returns a fixed map or fails.
+#[derive(Clone)]
+struct Walker<M> {
+    marker: M,
+    moves: u32,
+    most: u32,
+    map: EmbeddedGraph,
+}
+
+impl<M: Marker + Clone> StepExplorer for Walker<M> {
+    type Marker = M;
+
+    fn marker(&self) -> M {
+        self.marker.clone()
+    }
+
+    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+        &mut self,
+        _: &mut W,
+        _: usize,
+    ) -> Result<StepProgress, Flaw> {
+        self.moves = 0;
+        Ok(if self.most == 0 { StepProgress::Done } else { StepProgress::GoesOn })
+    }
+
+    fn step<W: MovableMarkerWorld<Error = Refused>>(
+        &mut self,
+        world: &mut W,
+    ) -> Result<StepProgress, Flaw> {
+        let degree = world.percept()?.degree;
+        // The sighting decides, too.
+        let marked = world.percept()?.sighting != toposlam_model::percept::Sighting::Nothing;
+        world.traverse(Door((1 + u32::from(marked)) % degree))?;
+        self.moves += 1;
+        if degree == 5 {
+            return Err(Flaw::GaveUp("five doors".to_owned()));
+        }
+        Ok(if self.moves >= self.most { StepProgress::Done } else { StepProgress::GoesOn })
+    }
+
+    fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
+        Ok(ExploredMap { graph: Cow::Borrowed(&self.map), facing: Dart(0), pose: Dart(0) })
+    }
+}
+
+/// A chain, with dart 0 at its end.
+fn chain(edges: usize) -> EmbeddedGraph {
+    let name = |vertex: usize| format!("v{vertex}");
+    let list = |vertex: usize| {
+        let before = vertex.checked_sub(1).map(name);
+        let after = (vertex < edges).then(|| name(vertex + 1));
+        (name(vertex), before.into_iter().chain(after).collect())
+    };
+    EmbeddedGraph::from_neighbour_lists(&(0..=edges).map(list).collect::<Vec<_>>()).unwrap()
+}
+
+fn compare_walkers<M: Marker + Clone>(marker: &M) {
+    for class in Class::ALL {
+        for edges in 1..=4 {
+            for most in 0..=8 {
+                let new = || Walker { marker: marker.clone(), moves: 0, most, map: chain(edges) };
+                let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+                let one_by_one = sweep.run_explorers(|| Stepwise(new()), &());
+                let lazily = LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
+                assert_eq!(lazily.tally, one_by_one, "{class} {edges} {most}");
+                // At most the one start that it guesses.
+                assert!(lazily.tally.mapped <= 1 && lazily.tally.starts > 0);
+            }
+        }
+    }
+}
+
+/// An explorer that returns its map too early: the end of its run stands for several starts, and all are
+/// counted and judged. It is right in one of them if it guesses.
+#[test]
+fn an_end_at_which_not_everything_is_revealed_stands_for_all_starts_that_agree() {
+    compare_walkers(&Directional);
+    let new = || Walker { marker: Directional, moves: 0, most: 0, map: chain(4) };
+    let at_once = LazySweep::new(Class::Multigraph, 4, Shard::WHOLE).unwrap().run(new, &());
+    assert_eq!((at_once.tally.starts, at_once.tally.mapped, at_once.moves_made), (706, 1, 0));
+    assert_eq!(at_once.tally.below_certificate, 1);
+}
+
+/// What these markers add depends on the edge of the facing dart, so the world is decided at once.
+#[test]
+fn with_a_marker_on_an_edge_both_checks_have_the_same_result() {
+    compare_walkers(&DirectedEdge);
+    compare_walkers(&TwoIdentical);
+}
+
+/// Without sharing, each start costs all its moves. How many are shared is pinned.
+#[test]
+fn runs_share_their_beginnings() {
+    let moves = |class, edges| {
+        let LazyCheck { tally, moves_made } = lazy::<Algorithm1Explorer>(class, edges);
+        (tally.moves_total, moves_made)
+    };
+    let (total, made) = moves(Class::Multigraph, 6);
+    assert_eq!(total, 1_257_094);
+    assert!(made < total * 6 / 10, "{made}");
+}
+
+fn shard(text: &str) -> LazySweep {
+    LazySweep::new(Class::Multigraph, 5, text.parse().unwrap()).unwrap()
+}
+
+#[test]
+fn the_shards_are_the_whole() {
+    let whole = shard("1/1").run(Algorithm1Explorer::default, &());
+    let mut sum = Tally::default();
+    let mut moves_made = 0;
+    for part in ["1/3", "2/3", "3/3"] {
+        let found = shard(part).run(Algorithm1Explorer::default, &());
+        assert!(found.tally.starts < 5000 && found.tally.worlds < 500, "{found:?}");
+        moves_made += found.moves_made;
+        sum.merge(found.tally);
+    }
+    assert_eq!(moves_made, whole.moves_made);
+    assert_eq!((sum.starts, sum.worlds, sum.mapped), (8162, 870, 8162));
+    assert_eq!((sum.moves_total, sum.moves_max()), (68_652, 36));
+    assert_eq!((sum.certificate_total, sum.dearest), (55_411, whole.tally.dearest));
+}
+
+/// Stops after some units, and remembers them.
+#[derive(Default)]
+struct SomeUnits {
+    known: BTreeMap<usize, LazyTally>,
+    new: Mutex<BTreeMap<usize, LazyTally>>,
+    left: AtomicUsize,
+}
+
+impl FinishedUnits for SomeUnits {
+    fn finished(&self, unit: usize) -> Option<LazyTally> {
+        self.known.get(&unit).cloned()
+    }
+
+    fn finish(&self, unit: usize, tally: &LazyTally) {
+        self.new.lock().unwrap().insert(unit, tally.clone());
+        self.left.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl Watch for SomeUnits {
+    fn stop(&self) -> bool {
+        self.left.load(Ordering::Relaxed) == 0
+    }
+}
+
+#[test]
+fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
+    let sweep = shard("1/1");
+    let whole = sweep.run(FoldingStepExplorer::default, &());
+    let mut known = BTreeMap::new();
+    let mut rounds = 0;
+    loop {
+        let some = SomeUnits { known: known.clone(), left: 200.into(), ..SomeUnits::default() };
+        let found = sweep.resume(FoldingStepExplorer::default, &some, &some);
+        let new = some.new.into_inner().unwrap();
+        assert!(new.keys().all(|unit| !known.contains_key(unit)));
+        known.extend(new);
+        rounds += 1;
+        if !found.tally.interrupted {
+            assert_eq!(found, whole);
+            break;
+        }
+        assert!(rounds < 100);
+    }
+    assert!(rounds > 1);
+    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default, &()));
+}
+
+/// All probes together, each branch once, are the whole tree.
+#[test]
+fn all_probes_together_are_the_whole_tree() {
+    let sweep = LazySweep::new(Class::Multigraph, 4, Shard::WHOLE).unwrap();
+    let algorithm = MappingAlgorithm::Algorithm1;
+    // The degree of the start vertex is drawn: 1 to 8.
+    let mut found = (0, 0);
+    for number in 0..8 {
+        let probe = algorithm.probe(&sweep, vec![number], &()).unwrap();
+        assert!((probe.weight - 8.0).abs() < 1e-9);
+        found.0 += probe.tally.starts;
+        found.1 += probe.tally.moves_total;
+    }
+    assert_eq!(found, (706, 4182));
+    let drawn = algorithm.probe(&sweep, vec![3, 1, 4, 1, 5], &()).unwrap();
+    assert_eq!(drawn.tally.starts, 1);
+}
+
+#[test]
+fn a_start_is_restored_from_its_place_in_the_enumeration() {
+    let graph = chain(3);
+    // From the other end the chain is the same start.
+    let places: Vec<_> = graph.darts().map(|facing| EnumeratedStart::new(&graph, facing)).collect();
+    let mut distinct = places.clone();
+    distinct.sort();
+    distinct.dedup();
+    assert_eq!(distinct.len(), 3);
+    for place in &places {
+        let (restored, facing) = place.start().unwrap();
+        assert_eq!(EnumeratedStart::new(&restored, facing), *place);
+        assert_eq!(restored.edge_count(), 3);
+    }
+    for wrong in [
+        r#"{"code":[],"facing":0}"#,
+        r#"{"code":[4294967294],"facing":0}"#,
+        r#"{"code":[4294967294,7],"facing":0}"#,
+        r#"{"code":[4294967294,4294967294],"facing":2}"#,
+        r#"{"code":[4294967293,4294967294],"facing":0}"#,
+        r#"{"code":[0,0],"facing":0}"#,
+    ] {
+        let place: EnumeratedStart = serde_json::from_str(wrong).unwrap();
+        assert_eq!(place.start(), None, "{wrong}");
+    }
+}

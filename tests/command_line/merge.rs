@@ -1,0 +1,204 @@
+//! `toposlam merge`, and the journal of a check.
+
+use std::{fs, path::Path, process::Stdio, thread, time::Duration};
+
+use super::{folder, objects, run, stderr, stdout, stdout_of, toposlam};
+
+/// Writes the lines of a shard, and returns the file.
+fn shard(folder: &Path, name: &str, arguments: &[&str]) -> String {
+    let file = folder.join(name);
+    fs::write(&file, stdout_of([&["check", "--json"], arguments].concat())).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert_eq!(stdout(&output), "");
+    stderr(&output)
+}
+
+#[test]
+fn the_shards_together_are_the_whole_check_byte_for_byte() {
+    let folder = folder("merge");
+    for options in [
+        &["--edges", "1..=5"][..],
+        &["--edges", "4..=7", "--class", "planar", "--marker", "movable"],
+        &["--edges", "5", "--algorithm", "folding"],
+        &["--edges", "2..=3", "--choices", "all"],
+    ] {
+        let file = |n: usize| {
+            let part = format!("{n}/3");
+            shard(&folder, &format!("{n}.jsonl"), &[options, &["--shard", &part]].concat())
+        };
+        let [one, two, three] = [1, 2, 3].map(file);
+        for format in [&["--json"][..], &[]] {
+            let whole = stdout_of([&["check"][..], options, format].concat());
+            // In any order.
+            let merged = stdout_of([&["merge", &*three, &one, &two][..], format].concat());
+            assert_eq!(merged, whole);
+        }
+    }
+}
+
+#[test]
+fn missing_double_and_foreign_shards_are_listed() {
+    let folder = folder("merge_refused");
+    let five = |n: &str| shard(&folder, &n.replace('/', "-"), &["--edges", "5", "--shard", n]);
+    let [one, two, four] = ["1/4", "2/4", "4/4"].map(five);
+    assert_eq!(refused(&["merge", &one, &two, &four]), "error: 5 edges: shard 3/4 is missing\n");
+    let message = refused(&["merge", &one, &two, &four, &two]);
+    let double = format!("5 edges: shard 2/4 is double: {two}: line 1, {two}: line 1");
+    assert!(message.contains(&double) && message.contains("3/4 is missing"), "{message}");
+    let third = five("1/3");
+    let message = refused(&["merge", &one, &third]);
+    assert!(
+        message.contains(&format!("{third}: line 1: 5 edges: 1/3 is not one of 4")),
+        "{message}"
+    );
+    let simple = ["--edges", "5", "--class", "simple", "--shard", "3/4"];
+    let simple = shard(&folder, "simple", &simple);
+    let message = refused(&["merge", &one, &two, &simple, &four]);
+    assert!(message.contains("line 1: class is simple, not multigraph"), "{message}");
+    let other = fs::read_to_string(&one).unwrap().replace("\"version\":\"", "\"version\":\"9.");
+    let newer = folder.join("newer");
+    fs::write(&newer, other).unwrap();
+    let message = refused(&["merge", &two, newer.to_str().unwrap()]);
+    assert!(message.contains("version is 9."), "{message}");
+    let whole = shard(&folder, "whole", &["--edges", "3"]);
+    let message = refused(&["merge", &whole]);
+    assert!(message.contains("line 1: this is the result of a whole check"), "{message}");
+    let message = refused(&["merge", "README.md"]);
+    assert!(message.contains("README.md: line 1: this is no line of `check --json`"), "{message}");
+    let huge = fs::read_to_string(&one).unwrap().replace("1/4", "1/18446744073709551615");
+    fs::write(&newer, huge).unwrap();
+    let message = refused(&["merge", newer.to_str().unwrap()]);
+    assert!(message.contains("2/18446744073709551615 is missing"), "{message}");
+}
+
+#[test]
+fn a_wrong_map_in_one_shard_is_the_first_of_the_whole() {
+    let folder = folder("merge_wrong");
+    let one = shard(&folder, "one", &["--edges", "3", "--shard", "1/2"]);
+    let two = shard(&folder, "two", &["--edges", "3", "--shard", "2/2"]);
+    let world = r#"{"name":"failed","about":"","doors":{"v0":["e0","e0"]},"start":{"at":"v0","facing":"e0:1"}}"#;
+    let wrong = |file: &str, cause: &str| {
+        let failure = format!(
+            r#""failure":{{"cause":"{cause}","step":null,"moves":1,"world":{world}}},"holds":false"#
+        );
+        let text = fs::read_to_string(file).unwrap();
+        fs::write(
+            file,
+            text.replace("\"failed\":0", "\"failed\":1").replace("\"holds\":true", &failure),
+        )
+        .unwrap();
+    };
+    wrong(&two, "the map is wrong");
+    let output = run(["merge", "--json", &one, &two]);
+    assert_eq!(output.status.code(), Some(1));
+    let line = &objects(&stdout(&output))[0];
+    assert_eq!((&line["failed"], &line["holds"]), (&1.into(), &false.into()));
+    assert_eq!(line["failure"]["cause"], "the map is wrong");
+    let text = stdout(&run(["merge", &one, &two]));
+    assert!(text.contains("Wrong: the map is wrong") && text.contains("violated"), "{text}");
+}
+
+fn journal_of(folder: &Path) -> (String, std::path::PathBuf) {
+    let journal = folder.join("journal");
+    (journal.to_str().unwrap().to_owned(), journal.join("7-edges.journal"))
+}
+
+/// Killed without a warning, again and again.
+#[test]
+fn a_check_that_was_killed_goes_on_and_prints_the_same_bytes() {
+    let folder = folder("journal");
+    let (journal, file) = journal_of(&folder);
+    let check = ["check", "--json", "--edges", "7"];
+    let with_journal = [&check[..], &["--journal", &journal]].concat();
+    let mut sizes = vec![0];
+    for _ in 0..2 {
+        let mut child = toposlam();
+        let mut child =
+            child.args(&with_journal).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let size = || fs::metadata(&file).map_or(0, |found| found.len());
+        let before = sizes[sizes.len() - 1];
+        while size() <= before + 2000 && child.try_wait().unwrap().is_none() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        sizes.push(size());
+    }
+    assert!(sizes.is_sorted() && sizes[1] > 2000, "{sizes:?}");
+    // A line that was being written.
+    let mut bytes = fs::read(&file).unwrap();
+    bytes.extend(b"01234567 {\"unit\":");
+    fs::write(&file, bytes).unwrap();
+    let resumed = run(&with_journal);
+    assert!(stderr(&resumed).contains("7 edges: "), "{resumed:?}");
+    assert_eq!(stdout(&resumed), stdout_of(check));
+    // Finished: nothing is left to do.
+    let finished = fs::read(&file).unwrap();
+    assert_eq!(stdout_of(&with_journal), stdout_of(check));
+    assert_eq!(fs::read(&file).unwrap(), finished);
+}
+
+#[test]
+fn a_corrupt_or_foreign_journal_is_refused() {
+    let folder = folder("journal_refused");
+    let (journal, _) = journal_of(&folder);
+    let check = ["check", "--edges", "4", "--journal", &journal];
+    let whole = stdout_of(check);
+    assert_eq!(stdout_of(check), whole);
+    let file = folder.join("journal/4-edges.journal");
+    let name = file.to_str().unwrap();
+    let message = refused(&[&check[..], &["--class", "simple"]].concat());
+    let foreign = "this is the journal of another check: the class is multigraph, not simple";
+    assert_eq!(message, format!("error: {name}: {foreign}\n"));
+    let message = refused(&[&check[..], &["--shard", "1/2"]].concat());
+    assert!(message.contains("the shard is 1/1, not 1/2"), "{message}");
+    let good = fs::read_to_string(&file).unwrap();
+    let lines: Vec<_> = good.lines().collect();
+    for (text, problem) in [
+        (
+            good.replacen("\"starts\":", "\"starts\":1", 1),
+            "line 2: the journal is corrupt: the checksum",
+        ),
+        (good.replacen("\"edges\":4", "\"edges\":5", 1), "line 1: this is not the first line"),
+        ("nothing\n".to_owned(), "line 1: this is not the first line"),
+        (format!("{good}{}\n", lines[1]), "a unit is there twice"),
+        (format!("{good}\n"), "the checksum is wrong"),
+    ] {
+        fs::write(&file, text).unwrap();
+        let message = refused(&check);
+        assert!(message.starts_with(&format!("error: {name}: ")), "{message}");
+        assert!(message.contains(problem), "{message}");
+    }
+    for without_effect in
+        [&["--choices", "all"][..], &["--from", "worlds/petersen.toml"], &["--estimate"]]
+    {
+        let arguments = [&["check", "--journal", &journal], without_effect].concat();
+        refused(&arguments);
+    }
+}
+
+/// A000698 and the published numbers of moves are within the intervals.
+#[test]
+fn an_estimate_is_near_the_truth_and_follows_its_seed() {
+    let estimate = |more: &[&str]| {
+        let arguments = ["check", "--estimate", "--json", "--edges", "7", "--probes", "400"];
+        objects(&stdout_of([&arguments[..], more].concat())).remove(0)
+    };
+    let [one, same, other] = [&["--seed", "1"][..], &[], &["--seed", "2"]].map(estimate);
+    for key in ["starts", "moves_total", "moves_made"] {
+        assert_eq!(one[key], same[key]);
+        assert_ne!(one[key], other[key]);
+    }
+    for (key, truth) in [("starts", 1_708_394.0), ("moves_total", 25_375_585.0)] {
+        let [low, high] = ["low", "high"].map(|bound| one[key][bound].as_f64().unwrap());
+        assert!(low < truth && truth < high && high < 2.0 * truth, "{key}: {}", one[key]);
+    }
+    refused(&["check", "--probes", "9"]);
+    refused(&["check", "--estimate", "--shard", "1/2"]);
+    refused(&["check", "--estimate", "--choices", "all"]);
+}
