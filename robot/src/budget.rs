@@ -309,4 +309,22 @@ mod tests {
         assert_eq!(limited(RunBudget { metres, ..none }), None);
         assert_eq!(limited(RunBudget { metres: Some(59.0), ..none }), Some(BudgetLimit::Way(59.0)));
     }
+
+    /// Far from the marker, with 10 s for each hallway: the way back may take half as much again.
+    #[test]
+    fn the_way_back_has_a_margin() {
+        let at =
+            |legs: u32| Spent { moves: legs.into(), seconds: 10.0 * f64::from(legs), metres: 0.0 };
+        let mut allowance =
+            Allowance::new(RunBudget { seconds: Some(380.0), ..RunBudget::default() });
+        let mut legs = 0;
+        allowance.arrive(2, true, at(0));
+        while allowance.forbids(Door(1), at(legs)).is_none() {
+            allowance.leave(Door(1), at(legs));
+            legs += 1;
+            allowance.arrive(2, false, at(legs));
+        }
+        // 10 s for each hallway so far, 15 s for each on the way back, and 30 s for the next one, twice.
+        assert_eq!(legs, (1..).find(|legs| 25 * legs + 30 > 380).unwrap());
+    }
 }

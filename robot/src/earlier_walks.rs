@@ -86,3 +86,46 @@ impl Walks {
         self.is_blocked = false;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::percept::Sighting;
+
+    use super::*;
+
+    #[test]
+    fn a_walk_to_an_obstacle_is_blocked() {
+        let sighting = Some(Sighting::Nothing);
+        let junction = Arrival { number: Some(0), degree: 2, sighting, form: None, entry: None };
+        let obstacle = Arrival { degree: 1, entry: Some(0.0), ..junction };
+        let walk = |far: &Arrival| {
+            let mut walks = Walks::default();
+            walks.arrive(&junction, false);
+            walks.leave(Door(1));
+            walks.arrive(far, false);
+            walks.end();
+            walks.done
+        };
+        for (far, is_blocked) in [(obstacle, true), (junction, false)] {
+            let percept = |arrival: &Arrival| arrival.percept().unwrap();
+            let moves = [(Door(1), percept(&far))];
+            let expected = EarlierWalk::new(percept(&junction), moves, is_blocked);
+            assert_eq!(walk(&far), [expected]);
+        }
+    }
+
+    #[test]
+    fn where_a_robot_got_lost_another_walk_begins() {
+        let sighting = Some(Sighting::Nothing);
+        let arrival = |degree| Arrival { number: None, degree, sighting, form: None, entry: None };
+        let mut walks = Walks::default();
+        for (degree, is_lost) in [(2, false), (3, false), (2, true), (4, false)] {
+            walks.arrive(&arrival(degree), is_lost);
+            walks.leave(Door(1));
+        }
+        walks.end();
+        let percept = |degree| arrival(degree).percept().unwrap();
+        let walk = |from, to| EarlierWalk::new(percept(from), [(Door(1), percept(to))], false);
+        assert_eq!(walks.done, [walk(2, 3), walk(2, 4)]);
+    }
+}

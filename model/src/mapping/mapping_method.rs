@@ -225,6 +225,7 @@ mod tests {
             let mapped = mapped.unwrap();
             assert_eq!(mapped.moves, world.moves());
             assert_eq!(mapped.moves, run.moves() + mapped.audit_moves);
+            assert_eq!(mapped.audited_percepts.len(), method.audits() as usize);
             let map = run.map().complete().unwrap();
             let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
             assert!(bijection.verify(map, &graph));

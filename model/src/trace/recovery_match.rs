@@ -144,3 +144,66 @@ impl Observer<RecordedWorld<'_>> for StepObserver {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        percept::Sighting,
+        trace::{MatchEnd, TraceEventKind},
+    };
+
+    /// A robot at the end of a chain whose next vertex has another degree each time.
+    fn contradictory(moves: usize) -> Trace {
+        let percept = |degree, sighting| TraceEventKind::Percept(Percept { degree, sighting });
+        let start = percept(1, Sighting::Pointing(Door::BACK));
+        let mut events = vec![start];
+        for at in 0..moves {
+            events.push(TraceEventKind::Door(Door::BACK));
+            let is_start = at % 2 == 1;
+            events.push(if is_start {
+                start
+            } else {
+                percept(1 + at as u32 % 4, Sighting::Nothing)
+            });
+        }
+        Trace::new(events).unwrap()
+    }
+
+    fn reached(trace: &Trace, most_recoveries: u32, bound: usize) -> MatchEnd {
+        let config = RecoveryConfig { most_recoveries, ..RecoveryConfig::default() };
+        match_recovering(config, trace, &[], bound).reached
+    }
+
+    #[test]
+    fn a_robot_gives_up_at_a_contradiction_after_its_last_recovery() {
+        // The vertex has one door, and the next time three: the audit contradicts itself.
+        let ended = (1..12).find(|&moves| {
+            matches!(reached(&contradictory(moves + 1), 0, 100), MatchEnd::Departure(_))
+        });
+        let ended = ended.unwrap();
+        assert_eq!(reached(&contradictory(ended), 0, 100), MatchEnd::EndOfTrace);
+        let MatchEnd::Departure(departure) = reached(&contradictory(ended + 1), 0, 100) else {
+            panic!()
+        };
+        assert_eq!(departure.event.id, 2 * ended + 1);
+        assert!(matches!(departure.allowed[0].purpose, StepPurpose::Contradicted(_)));
+        // With a recovery it goes on.
+        let goes_on = reached(&contradictory(ended + 1), 1, 100);
+        assert!(!matches!(goes_on, MatchEnd::Departure(_)), "{goes_on:?}");
+    }
+
+    #[test]
+    fn a_departure_after_the_bound_on_darts_is_not_known() {
+        // A vertex with three doors, of which the robot would not take the last.
+        let percept = |degree, sighting| TraceEventKind::Percept(Percept { degree, sighting });
+        let start = percept(1, Sighting::Pointing(Door::BACK));
+        let (far, end) = (percept(3, Sighting::Nothing), percept(1, Sighting::Nothing));
+        let door = |door| TraceEventKind::Door(Door(door));
+        let trace = Trace::new([start, door(0), far, door(2), end]);
+        let trace = trace.unwrap();
+        assert!(matches!(reached(&trace, 32, 100), MatchEnd::Departure(_)));
+        let MatchEnd::Bound { event, bound } = reached(&trace, 32, 2) else { panic!() };
+        assert_eq!((event.id, bound), (2, 2));
+    }
+}

@@ -24,7 +24,7 @@ impl FalsePercepts {
     };
     /// Of simulated laser scans.
     pub const BY_LASER: Self = Self {
-        seen: 8,
+        seen: 6,
         of: 2000,
         command: "toposlam evaluate control --sensor laser --traversals 2000 --plans 10",
     };
