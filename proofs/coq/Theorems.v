@@ -1,13 +1,13 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other
+    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the proofs are in the other
     files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours Lollipop.
+  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -550,6 +550,40 @@ exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipo
 split=> // robot maps_all n answer answered.
 by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
 Qed.
+
+(** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
+    darts it explores and hypotheses it tests, by any ways through the map and its trail, and whenever its tests
+    become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
+    As many actions suffice as 2 m (m + 1). Paper: beyond 2.3. *)
+Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
+  2 * edges W * (edges W + 1) <= bound ->
+  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => right_answer answer pose).
+Proof.
+move=> enough; have short k l : k <= l -> any_length k l by [].
+apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+by move=> answer pose k [[//|[_]]]; rewrite ltnNge enough.
+Qed.
+
+(** With any limit on actions, also with one that is too low, it answers nothing or rightly. Paper: beyond 2.3. *)
+Theorem folding_explorer_never_wrong (W : start) (patience : partial_map -> nat) (bound : nat) :
+  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => answer = None \/ right_answer answer pose).
+Proof.
+have short k l : k <= l -> any_length k l by [].
+apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+by move=> answer pose k [[right|[none _]] _]; [right | left].
+Qed.
+
+(** With ways and paths that are not longer than those through the map, and with strict tests after
+    4 n m + 200 moves, for a map with n vertices and m edges, it makes at most
+    6 n m^2 + 18 n m + 2 m + 2 n + 802 moves, with any other choices. Paper: beyond 2.3. *)
+Theorem folding_explorer_cost (W : start) (bound : nat) :
+  let m := edges W in
+  let n := vertices W in
+  always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
+    (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
+Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
 
 (** * Maps that can be checked *)
 

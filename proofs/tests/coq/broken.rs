@@ -163,3 +163,22 @@ fn without_a_theorem_nothing_holds() {
     let (stdout, _) = Changed::new("none", "Theorems.v", none, whole).violated();
     assert_eq!(stdout, "violated: there is no theorem in Theorems.v");
 }
+
+/// A test of the folding explorer that is not strict proves its hypothesis and refutes it; each needs a check.
+#[test]
+fn a_free_test_has_to_prove_and_to_refute() {
+    let both = "predicts K far h x entry & confirms K far h x entry";
+    let explorer = "FoldingExplorer.v";
+    assert_matters("free/proves", explorer, both, "true & predicts K far h x entry");
+    assert_matters("free/refutes", explorer, both, "true & confirms K far h x entry");
+}
+
+#[test]
+fn a_place_of_the_folding_explorer_joins_the_map_only_without_hypotheses() {
+    assert_matters(
+        "place",
+        "FoldingExplorer.v",
+        "[|| h == e, is_refuted K e h |",
+        "[|| true, is_refuted K e h |",
+    );
+}
