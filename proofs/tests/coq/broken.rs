@@ -169,8 +169,18 @@ fn without_a_theorem_nothing_holds() {
 fn a_free_test_has_to_prove_and_to_refute() {
     let both = "predicts K far h x entry & confirms K far h x entry";
     let explorer = "FoldingExplorer.v";
-    assert_matters("free/proves", explorer, both, "true & predicts K far h x entry");
-    assert_matters("free/refutes", explorer, both, "true & confirms K far h x entry");
+    assert_matters(
+        "free/proves",
+        explorer,
+        both,
+        "predicts K far h x entry & predicts K far h x entry",
+    );
+    assert_matters(
+        "free/refutes",
+        explorer,
+        both,
+        "confirms K far h x entry & confirms K far h x entry",
+    );
 }
 
 #[test]
