@@ -357,16 +357,20 @@ Qed.
 
 (** A marker is as good as a directional one if it identifies the facing dart: only near its vertex, and then
     behind its edge, the robot perceives certain percepts. Any robot with a directional marker can be
-    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more.
-    Paper: beyond 2.3. *)
+    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more. The
+    simulating robot takes only doors that exist, in every world. Paper: beyond 2.3. *)
 Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robot : strategy A) :
-  exists robot' : strategy A, forall (W : start) (bound : nat),
-    identifies M near beyond W -> (forall d : W, degree d <= bound) ->
-    forall n answer, robot (history robot directional W n) = Answer answer ->
-    exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer.
+  exists robot' : strategy A,
+    (forall (W : start) (bound : nat),
+       identifies M near beyond W -> (forall d : W, degree d <= bound) ->
+       forall n answer, robot (history robot directional W n) = Answer answer ->
+       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer) /\
+    (forall (W : start) j i,
+       robot' (history robot' M W j) = Leave i -> i < degree (situation robot' M W j).2).
 Proof.
-exists (Simulation.simulating near beyond robot) => W bound identifies_W small n answer.
-exact: Simulation.simulating_answers.
+exists (Simulation.simulating near beyond robot); split=> [W bound identifies_W small n answer|W j i].
+  exact: Simulation.simulating_answers.
+exact: Simulation.simulating_doors.
 Qed.
 
 (** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
