@@ -78,8 +78,8 @@ fn the_way_back_needs_its_first_turn() {
 
 #[test]
 fn a_hypothesis_is_not_validated_by_degrees_alone() {
-    let compared = "if seen == expected S pose'";
-    let degrees = "if seen.1 == (expected S pose').1";
+    let compared = "if ends then seen == expected S pose else";
+    let degrees = "if ends then seen.1 == (expected S pose).1 else";
     assert_matters("validation", "Algorithm1.v", compared, degrees);
 }
 
