@@ -83,6 +83,13 @@ fn a_hypothesis_is_not_validated_by_degrees_alone() {
     assert_matters("validation", "Algorithm1.v", compared, degrees);
 }
 
+/// It may have turned: a hypothesis about the marked vertex can be the second that it tests, as printed.
+#[test]
+fn a_robot_that_confirms_a_hypothesis_counts_its_turns() {
+    let turned = "(Confirmed (turned_to S pose turned))";
+    assert_matters("turned", "Algorithm1.v", turned, "(Confirmed pose)");
+}
+
 #[test]
 fn a_folded_trail_with_an_open_entry_dart_is_not_complete() {
     let followed = "i < degree_seen visit -> followed";
