@@ -78,9 +78,16 @@ fn the_way_back_needs_its_first_turn() {
 
 #[test]
 fn a_hypothesis_is_not_validated_by_degrees_alone() {
-    let compared = "if seen == expected S pose'";
-    let degrees = "if seen.1 == (expected S pose').1";
+    let compared = "if ends then seen == expected S pose else";
+    let degrees = "if ends then seen.1 == (expected S pose).1 else";
     assert_matters("validation", "Algorithm1.v", compared, degrees);
+}
+
+/// It may have turned: a hypothesis about the marked vertex can be the second that it tests, as printed.
+#[test]
+fn a_robot_that_confirms_a_hypothesis_counts_its_turns() {
+    let turned = "(Confirmed (turned_to S pose turned))";
+    assert_matters("turned", "Algorithm1.v", turned, "(Confirmed pose)");
 }
 
 #[test]
