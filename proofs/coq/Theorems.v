@@ -1,6 +1,6 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the proofs are in the other
-    files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the
+    proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer Markers Handling.
