@@ -1,10 +1,11 @@
 (** Algorithm 1: mapping with one directional marker that stays at the start. Section 2.3.
 
     The numbers are those of the printed lines. Coq needs the inner parts first, so read from the end:
-    [algorithm1] is lines 1 to 3, [rounds] line 4, [explore] 5 to 23, [try_all] 8 to 17, [follow] 11 to 17.
+    [algorithm1] is lines 1 to 3, [rounds] line 4, [explore] 5 to 23, [try_all] 8 to 17, [validate] 11 to 17.
     U is computed from S: the darts whose other end is not known. So lines 5, 20 and 23 change U by changing
     S. The open choices of the paper stay open: the edge of line 5, the hypothesis of line 9, the paths of
-    lines 6 and 10. The defaults are those of toposlam. Definitions only. *)
+    lines 6 and 10; so does the test of a hypothesis at lines 7 and 13. The defaults are those of toposlam.
+    Definitions only. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program.
@@ -52,6 +53,9 @@ Fixpoint leads v darts v' :=
   if darts is d :: darts' then
     (vertex d == v) && (if other d is Some d' then leads (vertex d') darts' v' else false)
   else v == v'.
+
+(** The dart that is this number of doors clockwise from [d]. *)
+Definition turned_to d (i : door) := vertex d + (d - vertex d + i) %% doors d.
 
 (** The pose behind these darts. *)
 Definition pose_behind pose darts := foldl (fun pose d => odflt pose (other d)) pose darts.
@@ -107,56 +111,99 @@ End Map.
 (** The map with two darts as the ends of one edge. *)
 Definition with_edge (S : partial_map) d d' : partial_map := set_other (set_other S d d') d' d.
 
+(** * The test of a hypothesis *)
+
+(** How a robot decides about a hypothesis.
+    - [raised S h seen]: line 7, whether there is a hypothesis that it came in by the dart [h], if it perceives
+      [seen].
+    - [matches S pose ends seen]: line 13, whether [seen] matches the percept expected after it comes in by the
+      dart [pose]; [ends] means that the path ends there.
+    - [goes_on]: whether it goes on after a percept that does not match, as far as the doors of the path exist;
+      otherwise it turns back there. *)
+Record hypothesis_test := HypothesisTest {
+  raised : partial_map -> nat -> percept -> bool;
+  matches : partial_map -> nat -> bool -> percept -> bool;
+  goes_on : bool
+}.
+
+(** As printed: a hypothesis for each edge in U. The robot traverses the path if it can, and compares the
+    degrees along it. At the end it also compares the marker with its direction. *)
+Definition as_printed : hypothesis_test :=
+  HypothesisTest (fun _ _ _ => true)
+    (fun S pose ends seen => if ends then seen == expected S pose else seen.1 == (expected S pose).1) true.
+
+(** As in toposlam: whole percepts are compared, so the marker must also be absent where it is expected to be
+    absent. The percept on arrival is the first to be compared: a hypothesis that it contradicts is not raised.
+    The robot turns back at the first mismatch. *)
+Definition step_by_step : hypothesis_test :=
+  HypothesisTest (fun S h seen => seen == expected S h) (fun S pose _ seen => seen == expected S pose) false.
+
+(** A test is valid if it accepts what is expected, and at the end of a path nothing else. *)
+Record valid (test : hypothesis_test) : Prop := Valid {
+  raises_expected : forall S h, raised test S h (expected S h);
+  matches_expected : forall S pose ends, matches test S pose ends (expected S pose);
+  matches_at_end : forall S pose seen, matches test S pose true seen -> seen = expected S pose
+}.
+
 (** * The algorithm *)
 
 Section Algorithm1.
+
+Variable test : hypothesis_test.
 
 (** The paths through the map that may be chosen at lines 6 and 10, among those that lead to their goals.
     *)
 Variable allowed : partial_map -> seq nat -> bool.
 
-(** The end of a hypothesis: confirmed, and the robot came to the marker by this dart of the map; or
-    rejected, and the robot is back, turned by this door. *)
+(** The end of a hypothesis: confirmed, and the robot has this pose in the map; or rejected, and the robot is
+    back, turned by this door. *)
 Inductive verdict := Confirmed of nat | Rejected of door.
 
 (** The robot's new place: the dart of a confirmed hypothesis, and the robot's pose; or a new vertex, where
     the robot stands, turned by this door. *)
 Inductive outcome := Loop of nat & nat | New of door.
 
-(** Lines 11 to 17. The robot should be at [pose], and leaves by these darts. It stands at a vertex of
-    this degree, turned by [turned]; [taken] are the doors of the path so far, with the degrees of their
-    vertices. *)
-Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdict :=
+(** Lines 11 to 17, on the way. The robot should be at [pose], and leaves by these darts. [matched]: all
+    percepts have matched so far. It stands at a vertex of this degree, turned by [turned]; [taken] are the
+    doors of the path so far, with the degrees of their vertices. *)
+Fixpoint follow (S : partial_map) (matched : bool) degree turned pose darts taken : program verdict :=
+  (* 14, 15: reject the hypothesis, retrace the path. *)
+  let reject := moves (way_back taken) ;; Return (Rejected (head (turned, 0) taken).1) in
   if darts is d :: darts' then
     let i := door_to S pose d in
     let pose' := odflt 0 (other S d) in
-    (* 11: try to traverse the path. *)
-    let* seen := move ((i + degree - turned) %% degree) in
-    let taken' := rcons taken (i, degree) in
-    (* 12, 13: compare the percept with the expected one, at each step: the first mismatch decides. *)
-    if seen == expected S pose' then follow S seen.1 0 pose' darts' taken'
-    (* 14, 15: reject the hypothesis, retrace the path. *)
-    else (moves (way_back taken') ;; Return (Rejected (head (0, 0) taken').1))
-  (* 16, 17: confirm the hypothesis. *)
-  else Return (Confirmed pose).
+    if (matched || goes_on test) && (i < degree) then
+      (* 11: try to traverse the path. *)
+      let* seen := move ((i + degree - turned) %% degree) in
+      (* 12, 13: compare the percept with the expected one. *)
+      let matched' := matched && matches test S pose' (nilp darts') seen in
+      follow S matched' seen.1 0 pose' darts' (rcons taken (i, degree))
+    else reject
+  (* 16, 17: confirm the hypothesis, if the percepts match throughout. *)
+  else if matched then Return (Confirmed (turned_to S pose turned)) else reject.
+
+(** Lines 11 to 17: the hypothesis [h] and its path. The robot perceived [seen] when it came to the place, and
+    has turned by [turned] since. *)
+Definition validate (S : partial_map) (seen : percept) turned h path : program verdict :=
+  follow S (matches test S h (nilp path) seen) seen.1 turned h path [::].
 
 (** Lines 8 to 17, for hypotheses [H]; each is the unexplored dart by which the robot would have come in.
     [fuel], the number of hypotheses, shows Coq that this ends. *)
-Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
+Fixpoint try_all fuel (S : partial_map) (seen : percept) turned H : program outcome :=
   let tree := tree_from S 0 in
   (* 8: while H is not empty. *)
   if H is [::] then Return (New turned) else
   if fuel is fuel'.+1 then
     (* 9: remove a hypothesis from H. *)
-    let* h := choose (fun h => h \in H) (nearest S tree H) in
+    let* h := choose_among H (nearest S tree H) in
     (* 10: a path to v0; the percepts along it should be [expected]. *)
     let* path := choose (fun path => leads S (vertex S h) path 0 && allowed S path)
                    (to_root S tree (vertex S h)) in
     (* 11 to 17. *)
-    let* ended := follow S degree turned h path [::] in
+    let* ended := validate S seen turned h path in
     match ended with
     | Confirmed pose => Return (Loop h pose)
-    | Rejected turned' => try_all fuel' S degree turned' (rem h H)
+    | Rejected turned' => try_all fuel' S seen turned' (rem h H)
     end
   else Return (New turned).
 
@@ -165,17 +212,16 @@ Definition explore (S : partial_map) pose : program (partial_map * nat) :=
   let U := unexplored S in
   let tree := tree_from S (vertex S pose) in
   (* 5: remove an unexplored edge from U. *)
-  let* e := choose (fun e => e \in U) (nearest S tree U) in
+  let* e := choose_among U (nearest S tree U) in
   (* 6: traverse S to its known end, then follow it to its unknown end. *)
   let* path := choose (fun path => leads S (vertex S pose) path (vertex S e) && allowed S path)
                  (from_root S tree (vertex S e)) in
   moves (doors_along S pose path) ;;
   let* seen := move (door_to S (pose_behind S pose path) e) in
-  (* 7: the hypotheses. Those that the percept on arrival contradicts are left out: they would be rejected
-     at line 13 without a move. *)
-  let H := [seq h <- U | (h != e) && (expected S h == seen)] in
+  (* 7: the hypotheses. *)
+  let H := [seq h <- U | (h != e) && raised test S h seen] in
   (* 8 to 17. *)
-  let* became := try_all (size H) S seen.1 0 H in
+  let* became := try_all (size H) S seen 0 H in
   match became with
   (* 18, 19, 20: a known vertex. *)
   | Loop h pose' => Return (with_edge S e h, pose')

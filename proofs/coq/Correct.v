@@ -1,5 +1,5 @@
-(** Algorithm 1 maps every world, within its bound on moves. Section 2.3; the bound is that of toposlam,
-    with its constant. *)
+(** Algorithm 1 maps every world, within its bound on moves, with any valid test of hypotheses. Section 2.3;
+    the bound is that of toposlam, with its constant. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Always Maps Embedding.
@@ -10,6 +10,9 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 Section Correct.
+
+Variable test : hypothesis_test.
+Hypothesis test_valid : valid test.
 
 Variable allowed : partial_map -> seq nat -> bool.
 Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
@@ -40,15 +43,15 @@ exact/roots_root/fconnect_sym/clockwise_injective.
 Qed.
 
 Lemma another_round bound S pose :
-  rounds allowed bound.+1 S pose =
+  rounds test allowed bound.+1 S pose =
   if unexplored S is [::] then Return (Some (S, pose))
-  else let* after := explore allowed S pose in rounds allowed bound after.1 after.2.
+  else let* after := explore test allowed S pose in rounds test allowed bound after.1 after.2.
 Proof. by []. Qed.
 
 Lemma rounds_spec left bound S (place : nat -> W) pose :
   embeds S place -> pose < size S -> size S + 2 * left = 2 * edges W + size (unexplored S) ->
   left <= bound ->
-  always directional (rounds allowed bound S pose) (place pose)
+  always directional (rounds test allowed bound S pose) (place pose)
     (fun answer r k =>
        (exists T pose' (place' : nat -> W),
           [/\ answer = Some (T, pose'), embeds T place', unexplored T = [::], pose' < size T
@@ -61,7 +64,7 @@ elim: bound left S place pose => [|bound IH] left S place pose em lt count le.
   by rewrite /= none; split=> //; exists S, pose, place.
 rewrite another_round; case UE: (unexplored S) => [|e U]; first by split=> //; exists S, pose, place.
 have some_left : unexplored S != [::] by rewrite UE.
-apply: always_bind; apply: always_weaken (explore_spec allowed_short em lt some_left).
+apply: always_bind; apply: always_weaken (explore_spec test_valid allowed_short em lt some_left).
 move=> [T pose'] r k [[place' [/= em' lt' -> counted]] cost_k].
 have known := size_known em.
 have left_gt0 : 0 < left by move: count; rewrite UE /= => count; arithmetic.
@@ -77,7 +80,7 @@ Qed.
 
 (** With any limit the rounds end with such a map, or without an answer. *)
 Lemma rounds_any bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
-  always directional (rounds allowed bound S pose) (place pose)
+  always directional (rounds test allowed bound S pose) (place pose)
     (fun answer r _ => answer = None \/ exists T pose' (place' : nat -> W),
        [/\ answer = Some (T, pose'), embeds T place', unexplored T = [::], pose' < size T
          & r = place' pose']).
@@ -86,7 +89,7 @@ elim: bound S place pose => [|bound IH] S place pose em lt.
   by rewrite /=; case UE: (unexplored S) => [|e U]; [right; exists S, pose, place | left].
 rewrite another_round; case UE: (unexplored S) => [|e U]; first by right; exists S, pose, place.
 have some_left : unexplored S != [::] by rewrite UE.
-apply: always_bind; apply: always_weaken (explore_spec allowed_short em lt some_left).
+apply: always_bind; apply: always_weaken (explore_spec test_valid allowed_short em lt some_left).
 by move=> [T pose'] r k [[place' [/= em' lt' -> _]] _]; apply: IH.
 Qed.
 
@@ -112,7 +115,7 @@ split; rewrite ?sz //.
 Qed.
 
 Lemma algorithm1_spec bound : edges W <= bound ->
-  always directional (algorithm1 allowed bound (perceive directional (facing W))) (facing W)
+  always directional (algorithm1 test allowed bound (perceive directional (facing W))) (facing W)
     (fun answer pose k => right_answer answer pose /\ (only_short -> k <= cost (edges W))).
 Proof.
 move=> le; have sz : size (with_vertex [::] g) = g by rewrite size_with_vertex.
@@ -126,7 +129,7 @@ Qed.
 
 (** With any limit on rounds, Algorithm 1 answers nothing or rightly. *)
 Lemma algorithm1_any bound :
-  always directional (algorithm1 allowed bound (perceive directional (facing W))) (facing W)
+  always directional (algorithm1 test allowed bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
 Proof.
 have lt : 0 < size (with_vertex [::] g) by rewrite size_with_vertex degree_gt0.
@@ -136,3 +139,11 @@ have [L drawn_L iso] := drawn_isomorphic em explored p_lt; by exists T, p, L; sp
 Qed.
 
 End Correct.
+
+(** * Two tests *)
+
+Lemma as_printed_valid : valid as_printed.
+Proof. by split=> [//|S pose ends|S pose seen /eqP//] /=; rewrite !eqxx if_same. Qed.
+
+Lemma step_by_step_valid : valid step_by_step.
+Proof. by split=> [S h|S pose ends|S pose seen /eqP//] /=. Qed.

@@ -1,9 +1,10 @@
 (** The two mapping algorithms as an OCaml program, which [compare/main.ml] runs and a test compares with
-    those of toposlam, on every small start. This trusts Coq's extraction, and its mapping of booleans,
+    those of toposlam: on every small start with the default choices and with all choices, on larger ones with
+    random choices. This trusts Coq's extraction, and its mapping of booleans,
     options, pairs and lists to OCaml's own. Numbers are not mapped: they are Coq's [nat], with Coq's
     arithmetic. *)
 
-From mathcomp Require Import ssreflect.
+From mathcomp Require Import all_ssreflect.
 From Coq Require Extraction ExtrOcamlBasic.
 From toposlam Require Import Spec Algorithm1.
 From toposlam Require Program MovableMarker.
@@ -12,37 +13,46 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** The decisions of a robot that runs a program with the default choices. *)
+(** What a robot does that runs a program. [Chooses n go]: it chooses one of the [n] listed options, by its
+    number from 0, or the default. It makes the default choice of what is not listed: of paths, and of places and
+    back-links for a movable marker. *)
 Inductive deeds (A : Type) :=
   | Answers of A
   | Leaves of door & (percept -> deeds A)
   | PicksUp of deeds A
-  | Drops of deeds A.
+  | Drops of deeds A
+  | Chooses of nat & (option nat -> deeds A).
 
 Arguments Answers {A}.
 Arguments Leaves {A}.
 Arguments PicksUp {A}.
 Arguments Drops {A}.
+Arguments Chooses {A}.
 
-Fixpoint by_default A (p : Program.program A) : deeds A :=
+Definition chooses A T (o : Program.options T) (default : T) (go : T -> deeds A) : deeds A :=
+  if Program.listed o is [::] then go default
+  else Chooses (size (Program.listed o))
+         (fun i => go (if i is Some i then nth default (Program.listed o) i else default)).
+
+Fixpoint deeds_of A (p : Program.program A) : deeds A :=
   match p with
   | Program.Return a => Answers a
-  | Program.Move i go => Leaves i (fun seen => by_default (go seen))
-  | Program.Choose T _ default go => by_default (go default)
+  | Program.Move i go => Leaves i (fun seen => deeds_of (go seen))
+  | Program.Choose T o default go => chooses o default (fun x => deeds_of (go x))
   end.
 
-Fixpoint handling_by_default A (p : MovableMarker.handling_program A) : deeds A :=
+Fixpoint handling_deeds_of A (p : MovableMarker.handling_program A) : deeds A :=
   match p with
   | MovableMarker.Return a => Answers a
-  | MovableMarker.Move i go => Leaves i (fun seen => handling_by_default (go seen))
-  | MovableMarker.PickUp go => PicksUp (handling_by_default go)
-  | MovableMarker.Drop go => Drops (handling_by_default go)
-  | MovableMarker.Choose T _ default go => handling_by_default (go default)
+  | MovableMarker.Move i go => Leaves i (fun seen => handling_deeds_of (go seen))
+  | MovableMarker.PickUp go => PicksUp (handling_deeds_of go)
+  | MovableMarker.Drop go => Drops (handling_deeds_of go)
+  | MovableMarker.Choose T o default go => chooses o default (fun x => handling_deeds_of (go x))
   end.
 
 (** With a limit on rounds, and the percept at the start. *)
-Definition directional_mapping bound seen := by_default (algorithm1 any_path bound seen).
-Definition movable_mapping bound seen := handling_by_default (MovableMarker.movable any_path bound seen).
+Definition directional_mapping bound seen := deeds_of (algorithm1 step_by_step any_path bound seen).
+Definition movable_mapping bound seen := handling_deeds_of (MovableMarker.movable any_path bound seen).
 
 Extraction Language OCaml.
 (* Extraction warns that it opens proofs of comparisons; no value depends on them. *)

@@ -3,7 +3,9 @@
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
-From toposlam Require MovableMarker.
+From toposlam Require Program MovableMarker.
+
+Import (coercions) Program.
 
 Set Implicit Arguments.
 Unset Strict Implicit.

@@ -20,7 +20,7 @@ Definition drawing (d : decision (option (partial_map * nat))) : decision locate
 (** The robot runs Algorithm 1 with its default choices. It has made fewer rounds than it has percepts, so
     their number is a sufficient limit, and it need not know the size of the world. *)
 Definition locating_mapper : strategy located := fun past =>
-  if past is first :: later then drawing (obey (algorithm1 short_paths (size past) first) later)
+  if past is first :: later then drawing (obey (algorithm1 step_by_step short_paths (size past) first) later)
   else Leave 0.
 
 (** The same robot, which answers without its pose. *)
@@ -56,16 +56,16 @@ exact: IH.
 Qed.
 
 (** Every round has a percept. *)
-Lemma explore_moves allowed S pose past a later :
-  finish (explore allowed S pose) past = inr (a, later) -> size later < size past.
+Lemma explore_moves test allowed S pose past a later :
+  finish (explore test allowed S pose) past = inr (a, later) -> size later < size past.
 Proof.
 rewrite /explore /= finish_bind; case moved: finish => [//|[u past']] /=.
 case: past' moved => // seen past' moved ended.
 exact: leq_ltn_trans (finish_le ended) (finish_le moved).
 Qed.
 
-Lemma same_rounds allowed b b' S pose past : size past < b -> size past < b' ->
-  obey (rounds allowed b S pose) past = obey (rounds allowed b' S pose) past.
+Lemma same_rounds test allowed b b' S pose past : size past < b -> size past < b' ->
+  obey (rounds test allowed b S pose) past = obey (rounds test allowed b' S pose) past.
 Proof.
 elim: b b' S pose past => // b IH [//|b'] S pose past le le'.
 rewrite !another_round; case: (unexplored S) => // _ _; rewrite !obey_bind.
@@ -146,13 +146,13 @@ move=> robot; have short S path : size path < known_vertices S -> short_paths S 
 pose first := perceive directional (facing W).
 pose bound := (edges W + cost W (edges W)).+1.
 have le : edges W <= bound by rewrite /bound -addnS leq_addr.
-have spec := algorithm1_spec short le.
+have spec := algorithm1_spec step_by_step_valid short le.
 have [_ [_ [_ cost_le]]] := always_heard spec.
 have {cost_le} moves_le := cost_le (fun S path => id).
 have at_first : situation robot directional W 0 = ([:: first], facing W) by [].
 have [//|later later_le|answer r k [[T [p [map [-> _ drawn_map _]]]] _]|] :=
   @obedient _ _ _ _ drawing _ robot _ _ _ _ _ at_first spec.
-- rewrite /robot /= (@same_rounds _ _ bound) //.
+- rewrite /robot /= (@same_rounds _ _ _ bound) //.
   by rewrite /bound !ltnS (leq_trans later_le) // (leq_trans moves_le) // leq_addl.
 - by exists map; rewrite /= drawn_map.
 move=> answer [n [answered [right cost_n] doors]]; move: right => [T [p [map [answerE _ drawn_map iso]]]].

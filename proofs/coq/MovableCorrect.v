@@ -86,7 +86,7 @@ Lemma choose_path_spec pose d (q : W) lying : pose < size S -> d < size S ->
     (fun path r l => [/\ leads S (vertex S pose) path (vertex S d), r = q & l = lying]).
 Proof.
 move=> pose_lt d_lt; have root := vertex_idem wf pose_lt; have root_lt := vertex_lt wf pose_lt.
-split; first by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
+split; first by rewrite /= from_root_leads //=; apply/allowed_short/from_root_short.
 by move=> path /andP[].
 Qed.
 
@@ -336,7 +336,7 @@ Lemma explore_edge_spec S (place : nat -> W) pose :
        [/\ after = Some (S', pose'), embeds S' place', pose' < size S', r = place' pose'
          & (size S + size (unexplored S')).+2 = size S' + size (unexplored S)]).
 Proof.
-move=> em pose_lt some_left; split=> [|e eU]; first exact: nearest_in.
+move=> em pose_lt some_left; split=> [|e /= eU]; first exact: nearest_in.
 have := eU; rewrite mem_unexplored => /andP[e_lt _].
 apply: always_handling_bind (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
 have [open_e ->] := leave_by em near_lt e_lt at_e; split=> //.

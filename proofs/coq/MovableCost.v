@@ -52,8 +52,9 @@ Lemma within_move k i (next : percept -> handling_program B) pose l :
   (forall seen (q : W), within k (next seen) q l) -> within k.+1 (let* seen := move i in next seen) pose l.
 Proof. by move=> all; apply: all. Qed.
 
-Lemma within_choose k T (ok : T -> bool) default (next : T -> handling_program B) pose l :
-  (forall x, ok x -> within k (next x) pose l) -> within k (let* x := choose ok default in next x) pose l.
+Lemma within_choose_among k (T : eqType) (xs : seq T) default (next : T -> handling_program B) pose l :
+  (forall x, x \in xs -> within k (next x) pose l) ->
+  within k (let* x := choose_among xs default in next x) pose l.
 Proof. by []. Qed.
 
 Lemma within_drop k (next : handling_program B) pose l :
@@ -181,7 +182,7 @@ have link_cost p e (q' : W) l' :
 apply: (within_le (k := B + ((2 + (vertices W * B + (B + 2))) +
                              (1 + (B + (1 + (B + (4 * edges W + 1)))))).+1)).
   by rewrite /round_cost -/B mulnDl; arithmetic.
-apply: within_choose => e _; apply: within_then => [|near r m]; first exact: travel_within.
+apply: within_choose_among => e _; apply: within_then => [|near r m]; first exact: travel_within.
 apply: within_move => seen r'; apply: within_then => [|[|p] r1 m1]; [exact: place_cost | by [] |].
 by rewrite -[1 + _]addn0; apply: within_then => [|link r2 m2]; first exact: link_cost.
 Qed.

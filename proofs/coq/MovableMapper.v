@@ -71,15 +71,15 @@ Lemma finish_move A i (next : percept -> handling_program A) past a later :
   finish (let* seen := move i in next seen) past = Some (a, later) -> size later < size past.
 Proof. by case: past => //= seen past ended; rewrite ltnS; apply: finish_le ended. Qed.
 
-Lemma finish_choose A T (ok : T -> bool) default (next : T -> handling_program A) past :
-  finish (let* x := choose ok default in next x) past = finish (next default) past.
+Lemma finish_choose_among A (T : eqType) (xs : seq T) default (next : T -> handling_program A) past :
+  finish (let* x := choose_among xs default in next x) past = finish (next default) past.
 Proof. by []. Qed.
 
 (** Every round has a percept. *)
 Lemma explore_edge_moves allowed S pose past a later :
   finish (explore_edge allowed S pose) past = Some (a, later) -> size later < size past.
 Proof.
-rewrite /explore_edge finish_choose finish_bind.
+rewrite /explore_edge finish_choose_among finish_bind.
 case went: (finish (travel _ _ _ _) past) => [[near past']|//] ended.
 by apply: leq_trans (finish_le went); apply: finish_move ended.
 Qed.

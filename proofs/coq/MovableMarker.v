@@ -6,6 +6,10 @@
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Algorithm1.
+From toposlam Require Program.
+
+Import (coercions) Program.
+Import Program(options, such_that, among).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -13,14 +17,14 @@ Unset Printing Implicit Defensive.
 
 (** * Programs of a robot that handles a marker *)
 
-(** As in [Program.v]; the robot may also pick up the marker, carry it and drop it. That file is not
-    imported: its names are defined here for such a marker. *)
+(** As in [Program.v]; the robot may also pick up the marker, carry it and drop it. Of that file only the
+    options are imported: its other names are defined here for such a marker. *)
 Inductive handling_program (A : Type) : Type :=
   | Return of A
   | Move of door & (percept -> handling_program A)
   | PickUp of handling_program A
   | Drop of handling_program A
-  | Choose (T : Type) of T -> bool & T & (T -> handling_program A).
+  | Choose (T : Type) of options T & T & (T -> handling_program A).
 
 Fixpoint bind A B (first : handling_program A) (next : A -> handling_program B) : handling_program B :=
   match first with
@@ -40,7 +44,9 @@ Definition move (i : door) : handling_program percept := Move i (@Return percept
 Definition pick_up : handling_program unit := PickUp (Return tt).
 Definition drop : handling_program unit := Drop (Return tt).
 Definition choose T (allowed : T -> bool) (default : T) : handling_program T :=
-  Choose allowed default (@Return T).
+  Choose (such_that allowed) default (@Return T).
+Definition choose_among (T : eqType) (xs : seq T) (default : T) : handling_program T :=
+  Choose (among xs) default (@Return T).
 
 (** Moves by one door after the other, for any percepts. *)
 Fixpoint moves (doors : seq door) : handling_program unit :=
@@ -206,8 +212,7 @@ Definition validate_back_link (S : partial_map) pose e : handling_program (optio
 (** One round: an edge is explored. The robot is at [pose] in the map [S], and carries the marker. *)
 Definition explore_edge (S : partial_map) pose : handling_program (option (partial_map * nat)) :=
   (* Remove an unexplored edge from U. *)
-  let* e := choose (fun e => e \in unexplored S)
-              (nearest S (tree_from S (vertex S pose)) (unexplored S)) in
+  let* e := choose_among (unexplored S) (nearest S (tree_from S (vertex S pose)) (unexplored S)) in
   (* Carry the marker through S to its known end, and over it to its unknown end. *)
   let* near := travel S pose (vertex S e) in
   let* seen := move (door_to S near e) in

@@ -9,12 +9,19 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
+(** What may be chosen: everything for which [allows] holds. If it is one of a list, this is [listed]: only such
+    a choice is made otherwise than by default when the program runs. *)
+Record options (T : Type) := Options { allows :> T -> bool; listed : seq T }.
+
+Definition such_that T (allowed : T -> bool) : options T := Options allowed [::].
+Definition among (T : eqType) (xs : seq T) : options T := Options (fun x => x \in xs) xs.
+
 (** Return an answer; move by a door, and continue with the percept behind it; or choose anything that is
     allowed, the default unless stated otherwise. *)
 Inductive program (A : Type) : Type :=
   | Return of A
   | Move of door & (percept -> program A)
-  | Choose (T : Type) of T -> bool & T & (T -> program A).
+  | Choose (T : Type) of options T & T & (T -> program A).
 
 Fixpoint bind A B (first : program A) (next : A -> program B) : program B :=
   match first with
@@ -29,7 +36,10 @@ Notation "first ;; next" := (bind first (fun=> next))
   (at level 100, next at level 200, right associativity).
 
 Definition move (i : door) : program percept := Move i (@Return percept).
-Definition choose T (allowed : T -> bool) (default : T) : program T := Choose allowed default (@Return T).
+Definition choose T (allowed : T -> bool) (default : T) : program T :=
+  Choose (such_that allowed) default (@Return T).
+Definition choose_among (T : eqType) (xs : seq T) (default : T) : program T :=
+  Choose (among xs) default (@Return T).
 
 (** Moves by one door after the other, for any percepts. *)
 Fixpoint moves (doors : seq door) : program unit :=

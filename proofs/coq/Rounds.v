@@ -10,6 +10,9 @@ Unset Printing Implicit Defensive.
 
 Section Rounds.
 
+Variable test : hypothesis_test.
+Hypothesis test_valid : valid test.
+
 Variable allowed : partial_map -> seq nat -> bool.
 
 (** The allowed paths include the short ones, so that there is always one. *)
@@ -32,10 +35,8 @@ Definition longest B := forall path, allowed S path -> size path <= B.
 
 (** Lines 8 to 17, for a robot that came to [t]. *)
 Lemma try_all_spec (t : W) n turned H :
-  size H = n -> {subset H <= unexplored S} ->
-  (forall h, h \in H -> expected S h = perceive directional t) ->
-  turned < degree t -> (turned = 0 \/ directional t = Nothing) ->
-  always directional (try_all allowed n S (degree t) turned H) (turn t turned)
+  size H = n -> {subset H <= unexplored S} -> turned < degree t ->
+  always directional (try_all test allowed n S (perceive directional t) turned H) (turn t turned)
     (fun became r k =>
        (forall B, longest B -> k <= n * (2 * B)) /\
        match became with
@@ -43,30 +44,22 @@ Lemma try_all_spec (t : W) n turned H :
        | New i => [/\ r = turn t i, i < degree t & forall h, h \in H -> place h <> t]
        end).
 Proof.
-elim: n turned H => [|n IH] turned H /=; first by move/size0nil=> -> _ _ lt _ /=; split.
-case: H => // h0 H0; set H := h0 :: H0 => sizeH sub fits turned_lt unmarked; split.
+elim: n turned H => [|n IH] turned H /=; first by move/size0nil=> -> _ lt /=; split.
+case: H => // h0 H0; set H := h0 :: H0 => sizeH sub turned_lt; split.
   exact: nearest_in.
 move=> h inH; have := sub h inH; rewrite mem_unexplored => /andP[h_lt _].
 have v_lt := vertex_lt wf h_lt; split.
-  rewrite to_root_leads ?wf_first ?wf_some //=.
+  rewrite /= to_root_leads ?wf_first ?wf_some //=.
   by apply/allowed_short/to_root_short; rewrite ?wf_first ?wf_some.
 move=> path /andP[path_ok path_allowed]; apply: always_bind.
-have empty : path = [::] -> turned = 0.
-  move=> empty; rewrite empty /= in path_ok; case: unmarked => // unmarked.
-  by have := fits h inH; rewrite /perceive unmarked /expected path_ok.
-apply: always_weaken (follow_once em h_lt path_ok turned_lt empty (fits h inH)).
+apply: always_weaken (validate_spec em test_valid h_lt path_ok turned_lt).
 case=> [pose|i] r k [].
   move=> placed pose_lt -> k_le /=; rewrite addn0; split=> // B /(_ path path_allowed) le.
   by rewrite mulSn mul2n -addnn -addnA; apply: leq_trans k_le (leq_trans le (leq_addr _ _)).
 move=> wrong -> i_lt k_le.
-have rest_fits g : g \in rem h H -> expected S g = perceive directional t by move/mem_rem/fits.
 have rest_sub : {subset rem h H <= unexplored S} by move=> g /mem_rem/sub.
 have rest_size : size (rem h H) = n by rewrite size_rem // sizeH.
-have still_unmarked : directional t = Nothing.
-  have := fits h inH; rewrite /perceive /expected; case: eqP => [at_start _|_ []//].
-  by case: wrong; apply: (sighting_tells_pose em); rewrite ?fits.
-apply: always_weaken (IH i _ rest_size rest_sub rest_fits i_lt (or_intror still_unmarked)).
-move=> became r' l [bound came]; split.
+apply: always_weaken (IH i _ rest_size rest_sub i_lt) => became r' l [bound came]; split.
   move=> B longest; have le := longest path path_allowed; have := bound B longest.
   by move=> l_le; rewrite mulSn; apply: leq_add l_le; apply: leq_trans k_le _; rewrite leq_mul2l.
 case: became came {bound} => [g pose|j] [].
@@ -160,7 +153,7 @@ Qed.
 (** Lines 5 to 23: a round explores one more edge, and the map is still a part of the world. *)
 Lemma explore_spec S place pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore allowed S pose) (place pose)
+  always directional (explore test allowed S pose) (place pose)
     (fun after r k =>
        (exists place' : nat -> W,
           [/\ embeds after.1 place', after.2 < size after.1, r = place' after.2
@@ -168,7 +161,7 @@ Lemma explore_spec S place pose :
        forall B, longest S B -> k <= B + 1 + (size (unexplored S)).-1 * (2 * B)).
 Proof.
 move=> em pose_lt some; have wf := em_wf em; split; first exact: nearest_in.
-move=> e eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
+move=> e /= eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
 have root_lt := vertex_lt wf pose_lt; have root := vertex_idem wf pose_lt; split.
   by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
 move=> path /andP[path_ok path_allowed].
@@ -178,12 +171,11 @@ rewrite /= -/near; split; first by rewrite -(em_doors em lt) (door_to_lt em).
 have -> : traverse (place near) (door_to S near e) = opposite (place e).
   by rewrite /traverse (turn_door_to em).
 set t := opposite (place e); set H := [seq h <- _ | _].
-have inH h : (h \in H) = [&& h != e, expected S h == perceive directional t & h \in unexplored S].
+have inH h : (h \in H) = [&& h != e, raised test S h (perceive directional t) & h \in unexplored S].
   by rewrite mem_filter andbA.
 apply: always_bind.
 have sub : {subset H <= unexplored S} by move=> h; rewrite inH => /and3P[].
-have fits h : h \in H -> expected S h = perceive directional t by rewrite inH => /and3P[_ /eqP].
-have := try_all_spec em (erefl (size H)) sub fits (degree_gt0 t) (or_introl erefl).
+have := try_all_spec em (erefl (size H)) sub (degree_gt0 t).
 apply: always_weaken => became r k [cost came].
 have sizeH : size H <= (size (unexplored S)).-1.
   rewrite -(size_rem eU); apply: uniq_leq_size => [|h]; first by rewrite !filter_uniq ?iota_uniq.
@@ -202,7 +194,7 @@ case: became came {cost} => [h pose'|i] [].
 move=> -> i_lt none /=.
 have new d : d < size S -> place d <> t.
   move=> d_lt placed; have /andP[dU de] := unexplored_opposite em eU d_lt placed.
-  by case: (none d) => //; rewrite inH de dU (expected_is_perceived em) // placed eqxx.
+  by case: (none d) => //; rewrite inH de dU -placed -(expected_is_perceived em) // raises_expected.
 split=> //; eexists; split; first exact: embeds_with_vertex.
 - by rewrite /= size_with_place ?degree_gt0 // ltn_add2l.
 - by rewrite /= ltnNge leq_addr /= addKn.

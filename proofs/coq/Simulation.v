@@ -52,6 +52,45 @@ Definition plan_after (past : seq percept) : plan :=
 Definition simulating : strategy A := fun past => decide (plan_after past).
 
 Variable W : start.
+
+(** The plan fits the robot's pose: it knows how many doors there are. *)
+Definition fits (p : plan) (pose : W) : bool :=
+  match p with
+  | Ready _ _ degree_here => degree_here == degree pose
+  | LookBehind _ here i => (here.1 == degree pose) && (i < here.1)
+  | TurnBack _ here i _ => (here.1 == degree (opposite pose)) && (i < here.1)
+  end.
+
+Lemma fits_arrive past (pose : W) : fits (arrive past (perceive M pose)) pose.
+Proof. by rewrite /arrive; case: ifP => _ //=; rewrite eqxx degree_gt0. Qed.
+
+Lemma fits_continue p (pose : W) i : fits p pose -> decide p = Leave i ->
+  i < degree pose /\ fits (continue p (perceive M (traverse pose i))) (traverse pose i).
+Proof.
+case: p => [past turned k|past here j|past here j found] /=.
+- move/eqP->; case: (robot past) => // d [<-]; split; last exact: fits_arrive.
+  by rewrite ltn_pmod ?degree_gt0.
+- case/andP=> /eqP hereE j_lt [<-]; rewrite /traverse /= opposite_involutive degree_turn hereE eqxx.
+  by rewrite -hereE j_lt; case: j j_lt => [|j] /(leq_trans _) ->.
+case/andP=> /eqP hereE j_lt [<-]; rewrite degree_gt0 /traverse /=; split=> //.
+by case: found; [|case: ifP]; rewrite /= hereE ?eqxx // => ->.
+Qed.
+
+(** Whatever the marker identifies, the robot takes only doors that exist. *)
+Lemma simulating_doors n i :
+  simulating (history simulating M W n) = Leave i -> i < degree (situation simulating M W n).2.
+Proof.
+suff fits_n k : let: (past, pose) := situation simulating M W k in
+                past != [::] /\ fits (plan_after past) pose.
+  have := fits_n n; rewrite /history; case: (situation _ _ _ n) => past pose [_ /fits_continue fits_i].
+  by move=> /fits_i[].
+elim: k => [|k] /=; first by split; last exact: fits_arrive.
+case: (situation _ _ _ k) => past pose [some fits_p].
+case decided: (simulating past) => [j|//]; have [_ fits_j] := fits_continue fits_p decided.
+case: past some decided fits_j {fits_p} => // first later _ _ fits_j; split=> //.
+by rewrite /plan_after rcons_cons -cats1 foldl_cat.
+Qed.
+
 Hypothesis M_identifies : identifies M near beyond W.
 Variable bound : nat.
 Hypothesis small : forall d : W, degree d <= bound.

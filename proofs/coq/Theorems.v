@@ -1,13 +1,13 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v] and [Folding.v] define the terms; the proofs are in the other
-    files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the
+    proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding Markers Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours Lollipop.
+  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -120,6 +120,18 @@ Proof. exact: Obeying.obeying_always. Qed.
 
 (** * Algorithm 1 *)
 
+(** These theorems are about every valid test of hypotheses. A test is what the robot does at lines 7, 12 and
+    13: which hypotheses it raises, which percepts match, and whether it goes on after one that does not. It is
+    valid if it accepts what is expected, and at the end of a path nothing else. *)
+
+(** The test as printed is valid: a hypothesis for each unexplored edge, the degrees along the path, and the
+    marker with its direction at the end. So is that of toposlam: whole percepts, and back at the first mismatch.
+    Paper: 2.3; Algorithm 1, lines 7, 12 and 13. *)
+Theorem valid_tests : valid as_printed /\ valid step_by_step.
+Proof. (* paper: alg1.hypotheses, alg1.13 *)
+by split; [exact: Correct.as_printed_valid | exact: Correct.step_by_step_valid].
+Qed.
+
 Section Line4.
 
 Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
@@ -133,14 +145,14 @@ Qed.
 
 (** If, at line 4, the known map is a part of the world and the robot is where it believes to be, then so
     they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
-Theorem map_embeds_after_round :
-  embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore any_path S pose) (place pose)
+Theorem map_embeds_after_round (test : hypothesis_test) :
+  valid test -> embeds S place -> pose < size S -> unexplored S != [::] ->
+  always directional (explore test any_path S pose) (place pose)
     (fun after there _ => exists place' : nat -> W,
        [/\ embeds after.1 place', after.2 < size after.1 & there = place' after.2]).
 Proof. (* paper: alg1.4, alg1.located *)
-move=> known lt some; have short T path : size path < known_vertices T -> any_path T path by [].
-apply: Always.always_weaken (Rounds.explore_spec short known lt some).
+move=> ok known lt some; have short T path : size path < known_vertices T -> any_path T path by [].
+apply: Always.always_weaken (Rounds.explore_spec ok short known lt some).
 by move=> after r k [[place' [known' lt' -> _]] _]; exists place'.
 Qed.
 
@@ -149,22 +161,19 @@ End Line4.
 Section Validation.
 
 (** The known map [S] is a part of the world, given by [place]. The robot came to [t], and has turned by
-    [turned] since: not at all if it has rejected no hypothesis yet, which is so if [h] is at the marked
-    vertex, because then the percept at [t] decided. It follows a path from the hypothesis [h] to the
-    marked vertex. *)
-Variables (S : partial_map) (W : start) (place : nat -> W) (t : W).
+    [turned] since: not at all if it has rejected no hypothesis yet. It follows a path from the hypothesis [h]
+    to the marked vertex. *)
+Variables (test : hypothesis_test) (S : partial_map) (W : start) (place : nat -> W) (t : W).
 Variables (h : nat) (path : seq nat) (turned : door).
-Hypotheses (known : embeds S place) (h_known : h < size S) (path_leads : leads S (vertex S h) path 0).
-Hypotheses (turned_exists : turned < degree t) (at_marker : path = [::] -> turned = 0).
-Hypothesis not_contradicted : expected S h = perceive directional t.
+Hypotheses (test_valid : valid test) (known : embeds S place) (h_known : h < size S).
+Hypotheses (path_leads : leads S (vertex S h) path 0) (turned_exists : turned < degree t).
 
-Let once :=
-  Validation.follow_once known h_known path_leads turned_exists at_marker not_contradicted.
+Let once := Validation.validate_spec known test_valid h_known path_leads turned_exists.
 
 (** A confirmed hypothesis is true: the robot came in by the dart of the hypothesis, and it is then where
     it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
-  always directional (follow S (degree t) turned h path [::]) (turn t turned)
+  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
        place h = t /\ place believed = pose).
 Proof. (* paper: alg1.validation, alg1.17 *)
@@ -175,7 +184,7 @@ Qed.
 (** A true hypothesis is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
-  always directional (follow S (degree t) turned h path [::]) (turn t turned)
+  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended _ _ => exists believed, ended = Confirmed believed).
 Proof. (* paper: alg1.16 *)
 move=> true_h; apply: Always.always_weaken once.
@@ -185,7 +194,7 @@ Qed.
 (** After a rejected hypothesis the robot is where it was, turned by a door that it knows. Paper: 2.3;
     Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
-  always directional (follow S (degree t) turned h path [::]) (turn t turned)
+  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall turned', ended = Rejected turned' -> pose = turn t turned').
 Proof. (* paper: alg1.14, alg1.15 *)
 apply: Always.always_weaken once.
@@ -194,60 +203,58 @@ Qed.
 
 End Validation.
 
-(** Of the hypotheses that the percept on arrival does not contradict, tried in any order and by any
-    paths, the true one is confirmed. If there is none, all are rejected, and the robot is where it was.
-    Paper: 2.3; Algorithm 1, lines 8 to 17. *)
-Theorem hypotheses_decided (S : partial_map) (W : start) (place : nat -> W) (t : W) (H : seq nat) :
-  embeds S place -> {subset H <= unexplored S} ->
-  (forall h, h \in H -> expected S h = perceive directional t) ->
-  always directional (try_all any_path (size H) S (degree t) 0 H) t
+(** Of any hypotheses about a place, tried in any order and by any paths, the true one is confirmed. If there
+    is none, all are rejected, and the robot is where it was. Paper: 2.3; Algorithm 1, lines 8 to 17. *)
+Theorem hypotheses_decided (test : hypothesis_test) (S : partial_map) (W : start) (place : nat -> W) (t : W)
+    (H : seq nat) :
+  valid test -> embeds S place -> {subset H <= unexplored S} ->
+  always directional (try_all test any_path (size H) S (perceive directional t) 0 H) t
     (fun became pose _ =>
        match became with
        | Loop h believed => [/\ h \in H, place h = t & place believed = pose]
        | New turned => (forall h, h \in H -> place h <> t) /\ pose = turn t turned
        end).
 Proof. (* paper: alg1.8, alg1.9 *)
-move=> known sub fits; have short T path : size path < known_vertices T -> any_path T path by [].
-have := Rounds.try_all_spec short known (erefl (size H)) sub fits (Walks.degree_gt0 t) (or_introl erefl).
+move=> ok known sub; have short T path : size path < known_vertices T -> any_path T path by [].
+have := Rounds.try_all_spec ok short known (erefl (size H)) sub (Walks.degree_gt0 t).
 by apply: Always.always_weaken => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
 Qed.
 
 (** In every world, from every start, Algorithm 1 ends, with any choice of an edge at line 5, of a
-    hypothesis at line 9, and of paths through the known map at lines 6 and 10. Its map is isomorphic to
-    the world, facing to facing, and the robot is where it believes to be. As many rounds suffice as the
-    world has edges. Paper: 2.3; Algorithm 1. *)
-Theorem algorithm1_correct (W : start) (bound : nat) :
-  edges W <= bound ->
-  always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
+    hypothesis at line 9, and of paths through the known map at lines 6 and 10, and with any valid test of
+    hypotheses. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
+    As many rounds suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
+Theorem algorithm1_correct (test : hypothesis_test) (W : start) (bound : nat) :
+  valid test -> edges W <= bound ->
+  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => right_answer answer pose).
 Proof. (* paper: alg1.isomorphic, alg1.located, alg1.terminates, alg1.every-world *)
-move=> enough; have short S path : size path < known_vertices S -> any_path S path by [].
-by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
+move=> ok enough; have short S path : size path < known_vertices S -> any_path S path by [].
+by apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [].
 Qed.
 
 (** With paths that have fewer edges than there are known vertices, such as shortest paths, Algorithm 1
-    makes at most m n + 2 m^2 (n - 1) moves, with any other choices. Paper: 2.3; the cost of Algorithm 1.
-    *)
-Theorem algorithm1_cost (W : start) (bound : nat) :
+    makes at most m n + 2 m^2 (n - 1) moves, with any other choices and any valid test. Paper: 2.3; the cost of
+    Algorithm 1. *)
+Theorem algorithm1_cost (test : hypothesis_test) (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
-  m <= bound ->
-  always directional (algorithm1 short_paths bound (perceive directional (facing W))) (facing W)
+  valid test -> m <= bound ->
+  always directional (algorithm1 test short_paths bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= m * n + 2 * m ^ 2 * (n - 1)).
 Proof. (* paper: cost.bound *)
-move=> m n enough; have short S path : size path < known_vertices S -> short_paths S path by [].
-apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [_].
+move=> m n ok enough; have short S path : size path < known_vertices S -> short_paths S path by [].
+apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [_].
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
 (** With any limit on rounds, also with one that is too low, Algorithm 1 answers nothing or rightly. Paper:
     2.3; Algorithm 1. *)
-Theorem algorithm1_never_wrong (W : start) (bound : nat) :
-  always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
+Theorem algorithm1_never_wrong (test : hypothesis_test) (W : start) (bound : nat) :
+  valid test ->
+  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
-Proof.
-by apply: Correct.algorithm1_any => S path.
-Qed.
+Proof. by move=> ok; apply: (Correct.algorithm1_any ok) => S path. Qed.
 
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
@@ -357,16 +364,20 @@ Qed.
 
 (** A marker is as good as a directional one if it identifies the facing dart: only near its vertex, and then
     behind its edge, the robot perceives certain percepts. Any robot with a directional marker can be
-    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more.
-    Paper: beyond 2.3. *)
+    simulated. For each of its moves, and at the start, that costs at most twice the largest degree more. The
+    simulating robot takes only doors that exist, in every world. Paper: beyond 2.3. *)
 Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robot : strategy A) :
-  exists robot' : strategy A, forall (W : start) (bound : nat),
-    identifies M near beyond W -> (forall d : W, degree d <= bound) ->
-    forall n answer, robot (history robot directional W n) = Answer answer ->
-    exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer.
+  exists robot' : strategy A,
+    (forall (W : start) (bound : nat),
+       identifies M near beyond W -> (forall d : W, degree d <= bound) ->
+       forall n answer, robot (history robot directional W n) = Answer answer ->
+       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer) /\
+    (forall (W : start) j i,
+       robot' (history robot' M W j) = Leave i -> i < degree (situation robot' M W j).2).
 Proof.
-exists (Simulation.simulating near beyond robot) => W bound identifies_W small n answer.
-exact: Simulation.simulating_answers.
+exists (Simulation.simulating near beyond robot); split=> [W bound identifies_W small n answer|W j i].
+  exact: Simulation.simulating_answers.
+exact: Simulation.simulating_doors.
 Qed.
 
 (** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
@@ -550,6 +561,40 @@ exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipo
 split=> // robot maps_all n answer answered.
 by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
 Qed.
+
+(** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
+    darts it explores and hypotheses it tests, by any ways through the map and its trail, and whenever its tests
+    become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
+    As many actions suffice as 2 m (m + 1). Paper: beyond 2.3. *)
+Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
+  2 * edges W * (edges W + 1) <= bound ->
+  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => right_answer answer pose).
+Proof.
+move=> enough; have short k l : k <= l -> any_length k l by [].
+apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+by move=> answer pose k [[//|[_]]]; rewrite ltnNge enough.
+Qed.
+
+(** With any limit on actions, also with one that is too low, it answers nothing or rightly. Paper: beyond 2.3. *)
+Theorem folding_explorer_never_wrong (W : start) (patience : partial_map -> nat) (bound : nat) :
+  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => answer = None \/ right_answer answer pose).
+Proof.
+have short k l : k <= l -> any_length k l by [].
+apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+by move=> answer pose k [[right|[none _]] _]; [right | left].
+Qed.
+
+(** With ways and paths that are not longer than those through the map, and with strict tests after
+    4 n m + 200 moves, for a map with n vertices and m edges, it makes at most
+    6 n m^2 + 18 n m + 2 m + 2 n + 802 moves, with any other choices. Paper: beyond 2.3. *)
+Theorem folding_explorer_cost (W : start) (bound : nat) :
+  let m := edges W in
+  let n := vertices W in
+  always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
+    (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
+Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
 
 (** * Maps that can be checked *)
 

@@ -22,13 +22,43 @@ move=> le; rewrite /traverse -turn_add -(turn_mod q (turned + _)) modnDmr.
 by rewrite subnKC ?(leq_trans le) ?leq_addl // modnDr turn_mod.
 Qed.
 
-(** The robot set out from [t] and has walked by [before] to [q], where it should be at [pose]. *)
-Lemma follow_spec darts (t q : W) pose turned before :
+(** Turned in the map as in the world. *)
+Lemma turned_to_known d i : d < size S ->
+  turned_to S d i < size S /\ place (turned_to S d i) = turn (place d) i.
+Proof.
+move=> lt; have [bounds out] := wf_bounds wf lt; have gt0 := doors_gt0 em lt.
+have near : vertex S d <= turned_to S d i < vertex S d + doors S d by rewrite leq_addr ltn_add2l ltn_pmod.
+have e_lt : turned_to S d i < size S by case/andP: near => _ e_lt; apply: leq_trans e_lt out.
+have [same _] := wf_same wf lt near; split=> //.
+rewrite (em_turn em e_lt) same (em_turn em lt) -turn_add addKn.
+by rewrite -(degree_vertex em) // turn_mod.
+Qed.
+
+Variable test : hypothesis_test.
+Hypothesis test_valid : valid test.
+
+(** The robot set out from [t], has walked by [before] to [q], and goes back. *)
+Lemma reject_spec (t q : W) turned before :
+  q = walk t before -> turned < degree q -> (before != [::] -> turned = 0 /\ head 0 before < degree t) ->
+  always directional
+    (moves (way_back (taken t before)) ;; Return (Rejected (head (turned, 0) (taken t before)).1))
+    (turn q turned)
+    (fun ended r k => exists i, [/\ ended = Rejected i, r = turn t i, i < degree t & k = size before]).
+Proof.
+move=> qE turned_lt; case: before qE => [qE _|i before qE /(_ isT)[-> i_lt]].
+  by rewrite qE in turned_lt *; exists turned.
+apply: always_moves_bind; first by rewrite qE; apply: way_back_passable.
+rewrite -[turn q 0]/q qE retrace_walk; exists i; split=> //.
+by rewrite addn0 /= size_rev size_map size_taken.
+Qed.
+
+(** The robot should then be at [pose]. If it is there, all percepts have matched; and if they have at the end,
+    it is there. *)
+Lemma follow_spec darts (t q : W) pose (matched : bool) turned before :
   pose < size S -> leads S (vertex S pose) darts 0 ->
-  q = walk t before -> turned <= degree q -> (darts = [::] -> turned = 0) ->
-  (before != [::] -> head 0 before < degree t) ->
-  perceive directional q = expected S pose ->
-  always directional (follow S (degree q) turned pose darts (taken t before)) (turn q turned)
+  q = walk t before -> turned < degree q -> (before != [::] -> turned = 0 /\ head 0 before < degree t) ->
+  (place pose = q -> matched) -> (darts = [::] -> matched -> perceive directional q = expected S pose) ->
+  always directional (follow test S matched (degree q) turned pose darts (taken t before)) (turn q turned)
     (fun ended r k =>
        match ended with
        | Confirmed pose' => [/\ place pose = q, pose' < size S, r = place pose' & k <= size darts]
@@ -36,57 +66,57 @@ Lemma follow_spec darts (t q : W) pose turned before :
                          & k <= 2 * size darts + size before]
        end).
 Proof.
-elim: darts q pose turned before => [|d darts IH] q pose turned before lt /=.
-  move=> /eqP at_start _ _ /(_ erefl) -> _ /(sighting_tells_pose em lt at_start) same.
-  by split.
-case/andP=> /eqP same; case dd': (other S d) => [d'|//] /= path qE turned_le _ before_lt fits.
+elim: darts q pose matched turned before => [|d darts IH] q pose matched turned before lt /=.
+  move=> /eqP at_start qE turned_lt back if_true; case: matched if_true => [_|false_pose] at_end /=.
+    have placed := sighting_tells_pose em lt at_start (at_end erefl isT).
+    by have [ok ->] := turned_to_known turned lt; rewrite placed.
+  apply: always_weaken (reject_spec qE turned_lt back) => _ r k [i [-> -> i_lt ->]].
+  by split=> // /false_pose.
+case/andP=> /eqP same; case dd': (other S d) => [d'|//] /= path qE turned_lt back if_true _.
 have [d'_lt _ _] := wf_other wf dd'.
 set i := door_to S pose d.
-have i_lt : i < degree q.
-  have <- : doors S pose = degree q by case: fits => ->.
-  by rewrite (door_to_lt em).
-have goes_on : place pose = q -> place d' = traverse q i.
-  by move=> <-; rewrite (traverse_known em lt dd' same).
-rewrite traverse_turned // degree_turn ltn_pmod ?degree_gt0 //; split=> //; set q' := traverse q i.
+have goes_on_true : place pose = q -> matched && (i < degree q).
+  by move=> placed; rewrite (if_true placed) -placed -(em_doors em lt) (door_to_lt em).
+case: ifP => [/andP[_ i_lt]|stuck]; last first.
+  apply: always_weaken (reject_spec qE turned_lt back) => _ r k [j [-> -> j_lt ->]]; split=> //.
+    by move/goes_on_true/andP=> [ok i_lt]; rewrite ok i_lt in stuck.
+  exact: leq_addl.
+rewrite /= traverse_turned ?(ltnW turned_lt) // degree_turn ltn_pmod ?degree_gt0 //; split=> //; set q' := traverse q i.
 have q'E : q' = walk t (rcons before i) by rewrite walk_rcons -qE.
-have takenE : rcons (taken t before) (i, degree q) = taken t (rcons before i).
-  by rewrite taken_rcons -qE.
+have -> : rcons (taken t before) (i, degree q) = taken t (rcons before i) by rewrite taken_rcons -qE.
 have head_lt : head 0 (rcons before i) < degree t.
-  case: (before) before_lt qE => [_ qt|j before' before_lt _]; last exact: before_lt.
+  case: (before) back qE => [_ qt|j before' back _]; last by case: back.
   by rewrite /= -[t]/(walk t [::]) -qt.
-rewrite takenE; case: eqP => [seen|unlike] /=.
-  have := IH q' d' 0 (rcons before i) d'_lt path q'E (leq0n _) (fun _ => erefl) (fun _ => head_lt) seen.
-  apply: always_weaken => -[pose'|j] r k [] placed.
-    move=> pose'_lt -> k_le; split=> //.
-    apply: (@traverse_inj _ i); rewrite -/q' -placed.
-    exact: traverse_known.
-  move=> -> j_lt k_le; split=> //; first by move/goes_on/placed.
-  by move: k_le; rewrite size_rcons => k_le; arithmetic.
-apply: always_moves_bind => /=; first by rewrite q'E way_back_passable.
-rewrite q'E retrace_walk.
-have -> : (head (0, 0) (taken t (rcons before i))).1 = head 0 (rcons before i).
-  by case: (before).
-split=> //.
-  by move/goes_on => placed; apply: unlike; rewrite (expected_is_perceived em) // placed.
-have -> : size (way_back (taken t (rcons before i))) = (size before).+1.
-  by rewrite -[in RHS](size_taken t before) taken_rcons /way_back; case: (taken t before) => //= s l;
-     rewrite size_rev size_map size_rcons.
-by arithmetic.
+have was_there : place d' = q' -> place pose = q.
+  by rewrite -(traverse_known em lt dd' same) => /traverse_inj.
+set matched' := matched && _.
+have if_true' : place d' = q' -> matched'.
+  move=> placed; rewrite /matched' (if_true (was_there placed)) -placed -(expected_is_perceived em) //.
+  exact: matches_expected.
+have at_end : darts = [::] -> matched' -> perceive directional q' = expected S d'.
+  by rewrite /matched' => -> /andP[_]; apply: matches_at_end.
+have := IH q' d' matched' 0 (rcons before i) d'_lt path q'E (degree_gt0 _) (fun _ => conj erefl head_lt)
+  if_true' at_end.
+apply: always_weaken => -[pose'|j] r k [].
+  by move/was_there=> -> pose'_lt -> k_le; split.
+move=> placed -> j_lt k_le; split=> //; first by move=> there; apply: placed; rewrite -(traverse_known em lt dd' same) there.
+by move: k_le; rewrite size_rcons => k_le; arithmetic.
 Qed.
 
 (** The robot has just reached a place, and has turned since. *)
-Lemma follow_once (t : W) h path turned :
-  h < size S -> leads S (vertex S h) path 0 -> turned < degree t -> (path = [::] -> turned = 0) ->
-  expected S h = perceive directional t ->
-  always directional (follow S (degree t) turned h path [::]) (turn t turned)
+Lemma validate_spec (t : W) h path turned :
+  h < size S -> leads S (vertex S h) path 0 -> turned < degree t ->
+  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended r k =>
        match ended with
        | Confirmed pose => [/\ place h = t, pose < size S, r = place pose & k <= size path]
        | Rejected i => [/\ place h <> t, r = turn t i, i < degree t & k <= 2 * size path]
        end).
 Proof.
-move=> lt leads_there turned_lt at_marker fits; rewrite -[2 * _]addn0.
-exact: (@follow_spec path t t h turned [::]) lt leads_there erefl (ltnW turned_lt) at_marker _ (esym fits).
+move=> lt leads_there turned_lt; rewrite -[2 * _]addn0.
+apply: (@follow_spec path t t h _ turned [::]) => // [<-|->].
+  by rewrite -(expected_is_perceived em) // matches_expected.
+exact: matches_at_end.
 Qed.
 
 End Validation.

@@ -27,6 +27,7 @@ pub mod fuzz;
 pub mod hallways;
 pub mod lemma;
 pub mod lemmas;
+pub mod marker_theorems;
 pub mod odometer;
 pub mod replay;
 #[cfg(kani)]
@@ -36,6 +37,7 @@ pub mod theorems;
 pub use bytes::Bytes;
 pub use choose::{CaseResult, Choose, Exhibit, Stop};
 pub use lemma::Lemma;
+pub use marker_theorems::MarkerTheorem;
 pub use odometer::{ChoiceOdometer, Counterexample};
 pub use replay::CaseReplay;
 pub use theorems::Theorem;

@@ -78,9 +78,16 @@ fn the_way_back_needs_its_first_turn() {
 
 #[test]
 fn a_hypothesis_is_not_validated_by_degrees_alone() {
-    let compared = "if seen == expected S pose'";
-    let degrees = "if seen.1 == (expected S pose').1";
+    let compared = "if ends then seen == expected S pose else";
+    let degrees = "if ends then seen.1 == (expected S pose).1 else";
     assert_matters("validation", "Algorithm1.v", compared, degrees);
+}
+
+/// It may have turned: a hypothesis about the marked vertex can be the second that it tests, as printed.
+#[test]
+fn a_robot_that_confirms_a_hypothesis_counts_its_turns() {
+    let turned = "(Confirmed (turned_to S pose turned))";
+    assert_matters("turned", "Algorithm1.v", turned, "(Confirmed pose)");
 }
 
 #[test]
@@ -162,4 +169,33 @@ fn without_a_theorem_nothing_holds() {
     let none = |_: &str| "(* Theorem none : False. *)\n".to_owned();
     let (stdout, _) = Changed::new("none", "Theorems.v", none, whole).violated();
     assert_eq!(stdout, "violated: there is no theorem in Theorems.v");
+}
+
+/// A test of the folding explorer that is not strict proves its hypothesis and refutes it; each needs a check.
+#[test]
+fn a_free_test_has_to_prove_and_to_refute() {
+    let both = "predicts K far h x entry & confirms K far h x entry";
+    let explorer = "FoldingExplorer.v";
+    assert_matters(
+        "free/proves",
+        explorer,
+        both,
+        "predicts K far h x entry & predicts K far h x entry",
+    );
+    assert_matters(
+        "free/refutes",
+        explorer,
+        both,
+        "confirms K far h x entry & confirms K far h x entry",
+    );
+}
+
+#[test]
+fn a_place_of_the_folding_explorer_joins_the_map_only_without_hypotheses() {
+    assert_matters(
+        "place",
+        "FoldingExplorer.v",
+        "[|| h == e, is_refuted K e h |",
+        "[|| true, is_refuted K e h |",
+    );
 }

@@ -1,5 +1,7 @@
-//! The proved algorithms, extracted, against the running ones: in every small start both do the same in
-//! the same order, have the same map, dart for dart, and know the robot in the same pose. Section 2.3.
+//! The proved algorithms, extracted, against the running ones: in each start both do the same in the same
+//! order, have the same map, dart for dart, and know the robot in the same pose. With the default choices in
+//! every small start, with all choices in every one with up to 3 edges, and with random choices in random
+//! starts with 10 to 40 edges. Section 2.3.
 
 use std::{
     fs::{self, File},
@@ -9,17 +11,22 @@ use std::{
     process::Command,
 };
 
+use proptest::{
+    prelude::Rng,
+    test_runner::{RngAlgorithm, TestRng},
+};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     format::{named_world::NamedWorld, world_file},
     mapping::{
-        Exploration, Journey, MappingEvent, MarkerSearch, Nearest, Observer, PartialMap,
+        Choices, Exploration, Journey, MappingEvent, MarkerSearch, Nearest, Observer, PartialMap,
         map_with_movable_marker, map_world,
     },
     marker::Movable,
     world::GraphWorld,
 };
+use toposlam_proofs::{choose::Choose, draw, odometer::ChoiceOdometer};
 
 use super::{OCAMLOPT, compiled, printed, source};
 
@@ -35,7 +42,8 @@ fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {
     starts
 }
 
-fn listed(name: &str, numbers: impl Iterator<Item = u32>) -> String {
+/// A line of a run: the name of what is listed, and the numbers.
+fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
     iter::once(name.to_owned()).chain(numbers.map(|n| n.to_string())).collect::<Vec<_>>().join(" ")
 }
 
@@ -47,36 +55,28 @@ enum Mapping {
 }
 
 impl Mapping {
-    /// A start, as `compare/main.ml` reads it.
-    fn line(self, start: &EmbeddedGraph) -> String {
-        let marker = match self {
-            Self::Directional => "directional",
-            Self::Movable => "movable",
-        };
-        let opposite = listed("opposite", start.darts().map(|dart| start.opposite(dart).0));
-        let clockwise = listed("clockwise", start.darts().map(|dart| start.clockwise(dart).0));
-        [marker, &opposite, &clockwise].join("; ")
-    }
-
-    /// The run of the running algorithm from a start, in the format of `compare/main.ml`.
-    fn run_line(self, start: &EmbeddedGraph) -> String {
-        let mut did = Actions(vec!["did".to_owned()]);
+    /// The run of the running algorithm from a start, with these choices, in the format of
+    /// `compare/main.ml`.
+    fn run_line(self, start: &EmbeddedGraph, choices: &mut impl RecordedChoices) -> String {
+        let mut did = Actions(Vec::new());
         let bound = start.dart_count();
         let known = match self {
             Self::Directional => {
                 let mut world = GraphWorld::new(start, Dart(0));
                 let mut exploration = Exploration::new(bound);
-                map_world(&mut world, &mut Nearest, &mut exploration, &mut did).unwrap();
-                known(exploration.map(), exploration.robot())
+                map_world(&mut world, choices, &mut exploration, &mut did)
+                    .map(|()| known(exploration.map(), exploration.robot()))
             }
             Self::Movable => {
                 let mut world = GraphWorld::with_marker(start, Movable, Dart(0));
                 let mut search = MarkerSearch::new(bound);
-                map_with_movable_marker(&mut world, &mut Nearest, &mut search, &mut did).unwrap();
-                known(search.map(), search.robot())
+                map_with_movable_marker(&mut world, choices, &mut search, &mut did)
+                    .map(|()| known(search.map(), search.robot()))
             }
         };
-        [did.0.join(" "), known].join("; ")
+        let known = known.unwrap_or_else(|error| error.to_string());
+        let chose = choices.made().iter().map(|(choice, of)| format!("{choice}/{of}"));
+        [listed("did", did.0.into_iter()), listed("chose", chose), known].join("; ")
     }
 }
 
@@ -102,9 +102,159 @@ fn known(map: &PartialMap, robot: Dart) -> String {
     known.join("; ")
 }
 
-/// Extracts the program in a folder where the development is compiled, builds it, and runs an algorithm in
-/// these starts: a line for each.
-fn extracted(folder: &Path, mapping: Mapping, starts: &[EmbeddedGraph]) -> String {
+/// Choices, and those that were made: the number of an option, and how many there were.
+trait RecordedChoices: Choices {
+    fn made(&self) -> &[(u8, u8)];
+}
+
+/// The default choices are not recorded.
+impl RecordedChoices for Nearest {
+    fn made(&self) -> &[(u8, u8)] {
+        &[]
+    }
+}
+
+/// Any choices. The options are numbered as Coq lists them: in the order of the darts.
+struct Chosen<'c, C> {
+    choose: &'c mut C,
+    made: Vec<(u8, u8)>,
+}
+
+impl<'c, C: Choose> Chosen<'c, C> {
+    fn new(choose: &'c mut C) -> Self {
+        Self { choose, made: Vec::new() }
+    }
+
+    fn option(&mut self, of: usize) -> usize {
+        let of = u8::try_from(of).unwrap();
+        let choice = self.choose.below(of);
+        self.made.push((choice, of));
+        choice.into()
+    }
+}
+
+impl<C: Choose> Choices for Chosen<'_, C> {
+    fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
+        let unexplored: Vec<_> = map.unexplored().collect();
+        unexplored[self.option(unexplored.len())]
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+        let mut places: Vec<_> = (0..hypotheses.len()).collect();
+        places.sort_unstable_by_key(|&place| hypotheses[place]);
+        places[self.option(places.len())]
+    }
+}
+
+impl<C: Choose> RecordedChoices for Chosen<'_, C> {
+    fn made(&self) -> &[(u8, u8)] {
+        &self.made
+    }
+}
+
+/// Random choices. The same seed makes the same ones.
+struct Random(TestRng);
+
+impl Random {
+    fn new(seed: u8) -> Self {
+        Self(TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
+    }
+
+    /// A start with 10 to 40 edges, simple if the algorithm needs that.
+    fn start(&mut self, mapping: Mapping) -> EmbeddedGraph {
+        loop {
+            let start = draw::start_of::<10, 40>(self).unwrap();
+            let start = match mapping {
+                Mapping::Directional => start,
+                Mapping::Movable => subdivided(start),
+            };
+            if start.edge_count() <= 40 {
+                return start;
+            }
+        }
+    }
+}
+
+/// The start with a new vertex in the middle of a loop or of one of two parallel edges, until it is simple.
+fn subdivided(mut start: EmbeddedGraph) -> EmbeddedGraph {
+    let ends =
+        |start: &EmbeddedGraph, dart| (start.vertex(dart), start.vertex(start.opposite(dart)));
+    let doubled = |start: &EmbeddedGraph, dart: Dart| {
+        start.darts().any(|other| other != dart && ends(start, other) == ends(start, dart))
+    };
+    while let Some(dart) = start.darts().find(|&dart| doubled(&start, dart)) {
+        let mut opposite: Vec<_> = start.darts().map(|dart| start.opposite(dart).0).collect();
+        let mut clockwise: Vec<_> = start.darts().map(|dart| start.clockwise(dart).0).collect();
+        let [near, far] = [0, 1].map(|more| start.dart_count() as u32 + more);
+        opposite.extend([dart.0, start.opposite(dart).0]);
+        opposite[start.opposite(dart).at()] = far;
+        opposite[dart.at()] = near;
+        clockwise.extend([far, near]);
+        start = draw::world(&opposite, &clockwise).unwrap();
+    }
+    start
+}
+
+impl Choose for Random {
+    fn below(&mut self, n: u8) -> u8 {
+        (self.0.next_u32() % u32::from(n)) as u8
+    }
+
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
+}
+
+/// A start, the choices as `compare/main.ml` reads them, and the lines of the running algorithm.
+struct Case {
+    mapping: Mapping,
+    start: EmbeddedGraph,
+    choices: String,
+    lines: Vec<String>,
+}
+
+impl Case {
+    /// The run with the default choices.
+    fn by_default(mapping: Mapping, start: EmbeddedGraph) -> Self {
+        let lines = vec![mapping.run_line(&start, &mut Nearest)];
+        Self { mapping, start, choices: "default".to_owned(), lines }
+    }
+
+    /// Every run.
+    fn with_all_choices(mapping: Mapping, start: EmbeddedGraph) -> Self {
+        let mut lines = Vec::new();
+        let run = |choose: &mut ChoiceOdometer| {
+            lines.push(mapping.run_line(&start, &mut Chosen::new(choose)));
+            Ok(())
+        };
+        ChoiceOdometer::exhaust(run, &mut |_| {}).unwrap();
+        Self { mapping, start, choices: "all".to_owned(), lines }
+    }
+
+    /// A run with random choices.
+    fn at_random(mapping: Mapping, start: EmbeddedGraph, random: &mut Random) -> Self {
+        let mut chosen = Chosen::new(random);
+        let lines = vec![mapping.run_line(&start, &mut chosen)];
+        let choices = chosen.made.iter().map(|(choice, _)| choice.to_string());
+        Self { mapping, start, choices: choices.collect::<Vec<_>>().join(" "), lines }
+    }
+
+    /// The start and the choices, as `compare/main.ml` reads them.
+    fn line(&self) -> String {
+        let Self { start, choices, .. } = self;
+        let marker = match self.mapping {
+            Mapping::Directional => "directional",
+            Mapping::Movable => "movable",
+        };
+        let opposite = listed("opposite", start.darts().map(|dart| start.opposite(dart).0));
+        let clockwise = listed("clockwise", start.darts().map(|dart| start.clockwise(dart).0));
+        format!("{marker}; {opposite}; {clockwise}; choices {choices}\n")
+    }
+}
+
+/// Extracts the program in a folder where the development is compiled, builds it, and runs the algorithms
+/// in these cases: a line for each run.
+fn extracted(folder: &Path, cases: &[Case]) -> String {
     printed(Command::new("make").arg("Extraction.vo").current_dir(folder));
     let program = folder.join("compare");
     let mut ocamlopt = Command::new(OCAMLOPT);
@@ -112,32 +262,37 @@ fn extracted(folder: &Path, mapping: Mapping, starts: &[EmbeddedGraph]) -> Strin
     fs::copy(source("compare/main.ml"), folder.join("main.ml")).unwrap();
     printed(ocamlopt.arg("main.ml"));
     let lines = folder.join("starts");
-    fs::write(&lines, starts.iter().map(|start| mapping.line(start) + "\n").collect::<String>())
-        .unwrap();
+    fs::write(&lines, cases.iter().map(Case::line).collect::<String>()).unwrap();
     printed(Command::new(program).stdin(File::open(lines).unwrap()))
 }
 
-/// The first start with different runs, and the difference.
-fn difference(mapping: Mapping, starts: &[EmbeddedGraph], proved: &str) -> Option<String> {
-    let lines = proved.lines().map(Some).chain(iter::repeat(None));
-    let (start, proved) = starts
-        .iter()
-        .zip(lines)
-        .find(|(start, line)| *line != Some(mapping.run_line(start).as_str()))?;
-    let proved = proved.unwrap_or("nothing");
-    let running = mapping.run_line(start);
-    let world = NamedWorld::numbered("start", "", start.clone(), Some(Dart(0)));
+/// The first case with different runs, and the difference.
+fn difference(cases: &[Case], proved: &str) -> Option<String> {
+    let running = cases.iter().flat_map(|case| case.lines.iter().map(move |line| (case, line)));
+    let lines = proved.lines().chain(iter::repeat("nothing"));
+    let ((case, running), proved) =
+        running.zip(lines).find(|((_, line), proved)| line != proved)?;
+    let world = NamedWorld::numbered("start", "", case.start.clone(), Some(Dart(0)));
     let world = world_file::to_toml(&world);
-    Some(format!("the proved algorithm\n  {proved}\nthe running one\n  {running}\nin\n\n{world}"))
+    let choices = &case.choices;
+    Some(format!(
+        "the proved algorithm\n  {proved}\nthe running one\n  {running}\n\
+         with the choices {choices}, in\n\n{world}"
+    ))
 }
 
-/// In all these starts the proved algorithm and the running one do the same.
-fn assert_same(mapping: Mapping, folder: &Path, starts: &[EmbeddedGraph]) {
-    let proved = extracted(folder, mapping, starts);
-    assert_eq!(proved.lines().count(), starts.len());
-    if let Some(difference) = difference(mapping, starts, &proved) {
+/// In all these cases the proved algorithm and the running one do the same.
+fn assert_same(folder: &Path, cases: &[Case]) {
+    let proved = extracted(folder, cases);
+    if let Some(difference) = difference(cases, &proved) {
         panic!("{difference}");
     }
+    let runs: usize = cases.iter().map(|case| case.lines.len()).sum();
+    assert_eq!(proved.lines().count(), runs);
+}
+
+fn by_default(mapping: Mapping, starts: Vec<EmbeddedGraph>) -> Vec<Case> {
+    starts.into_iter().map(|start| Case::by_default(mapping, start)).collect()
 }
 
 /// The numbers of starts: A000698 with up to 5 edges; and those with up to 7 that are simple, of which
@@ -148,8 +303,8 @@ fn the_proved_algorithm_1_and_the_running_one_do_the_same_in_every_small_start()
     let multigraphs = starts(Class::Multigraph, 5);
     let simple = starts(Class::Simple, 7);
     assert_eq!((multigraphs.len(), simple.len()), (8954, 4526));
-    let starts = [multigraphs, simple].concat();
-    assert_same(Mapping::Directional, &compiled.copy("directional"), &starts);
+    let cases = by_default(Mapping::Directional, [multigraphs, simple].concat());
+    assert_same(&compiled.copy("directional"), &cases);
 }
 
 #[test]
@@ -157,34 +312,65 @@ fn with_a_movable_marker_both_do_the_same_in_every_small_simple_start() {
     let Some(compiled) = compiled() else { return };
     let simple = starts(Class::Simple, 7);
     assert_eq!(simple.len(), 4526);
-    assert_same(Mapping::Movable, &compiled.copy("movable"), &simple);
+    assert_same(&compiled.copy("movable"), &by_default(Mapping::Movable, simple));
+}
+
+/// With up to 3 edges there are 3, 45 and 1777 runs, as the second implementation in Python counts them.
+#[test]
+fn both_do_the_same_with_all_choices() {
+    let Some(compiled) = compiled() else { return };
+    for (name, mapping, class, most, runs) in [
+        ("directional", Mapping::Directional, Class::Multigraph, 3, 1825),
+        ("movable", Mapping::Movable, Class::Simple, 5, 7365),
+    ] {
+        let cases = starts(class, most).into_iter();
+        let cases: Vec<_> = cases.map(|start| Case::with_all_choices(mapping, start)).collect();
+        assert_same(&compiled.copy(&format!("all-choices/{name}")), &cases);
+        assert_eq!(cases.iter().map(|case| case.lines.len()).sum::<usize>(), runs);
+    }
+}
+
+/// The number of random starts, for each algorithm.
+const RANDOM_STARTS: usize = 1000;
+
+#[test]
+fn both_do_the_same_with_random_choices_in_random_starts() {
+    let Some(compiled) = compiled() else { return };
+    for (name, mapping) in [("directional", Mapping::Directional), ("movable", Mapping::Movable)] {
+        let mut random = Random::new(1);
+        let cases: Vec<_> = iter::repeat_with(|| {
+            let start = random.start(mapping);
+            Case::at_random(mapping, start, &mut random)
+        })
+        .take(RANDOM_STARTS)
+        .collect();
+        assert_same(&compiled.copy(&format!("random-choices/{name}")), &cases);
+    }
 }
 
 /// Algorithm 1 with another choice at lines 5 and 9, or another way back, is another algorithm; so is that
-/// of the movable marker where it looks for it in another order.
+/// of the movable marker where it looks for it in another order. If a rejected hypothesis is not the one that
+/// is removed, only other than the default choices show it.
 #[test]
 fn another_algorithm_is_told_apart() {
     let Some(compiled) = compiled() else { return };
     let multigraphs = starts(Class::Multigraph, 3);
-    let simple = starts(Class::Simple, 7);
-    for (change, mapping, starts, file, from, to) in [
-        (
-            "ties",
-            Mapping::Directional,
-            &multigraphs,
-            "Algorithm1.v",
-            "then d else best",
-            "then best else d",
-        ),
-        ("way back", Mapping::Directional, &multigraphs, "Spec.v", "then 0 :: rev [", "then rev ["),
-        ("search", Mapping::Movable, &simple, "MovableMarker.v", "(d < d') ||", "(d > d') ||"),
+    let directional = |start| Case::with_all_choices(Mapping::Directional, start);
+    let all_choices: Vec<_> = multigraphs.iter().cloned().map(directional).collect();
+    let multigraphs = by_default(Mapping::Directional, multigraphs);
+    let simple = by_default(Mapping::Movable, starts(Class::Simple, 7));
+    for (change, cases, file, from, to) in [
+        ("ties", &multigraphs, "Algorithm1.v", "then d else best", "then best else d"),
+        ("way back", &multigraphs, "Spec.v", "then 0 :: rev [", "then rev ["),
+        ("removed", &all_choices, "Algorithm1.v", "turned' (rem h H)", "turned' (behead H)"),
+        ("search", &simple, "MovableMarker.v", "(d < d') ||", "(d > d') ||"),
     ] {
         let folder = compiled.copy(&format!("another/{change}"));
         let text = fs::read_to_string(source(file)).unwrap();
         assert_eq!(text.matches(from).count(), 1, "{file}");
         fs::write(folder.join(file), text.replace(from, to)).unwrap();
-        let proved = extracted(&folder, mapping, starts);
-        let difference = difference(mapping, starts, &proved).unwrap();
+        let proved = extracted(&folder, cases);
+        let difference = difference(cases, &proved).unwrap();
         assert!(difference.contains("[start]\n"), "{difference}");
     }
 }

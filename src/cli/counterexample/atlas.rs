@@ -1,4 +1,5 @@
-//! The atlas: the smallest pair for each marker and class, as world files, pictures and a table.
+//! The atlas: the smallest pair for each marker and class, as world files, pictures and a table; or the
+//! theorem that there is none.
 
 use std::path::Path;
 
@@ -9,6 +10,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     marker::{MARKERS, Marker},
 };
+use toposlam_proofs::marker_theorems;
 
 use super::pairs::{self, WorldPairs};
 use crate::cli::{
@@ -70,26 +72,24 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, CliE
 
 /// The table, and the pictures of each pair.
 fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
-    let mut text = format!("{HEAD}{limit}\n\n");
+    let mut text = format!("{}{limit}\n\n", head(sizes));
     let mut line = |line: &str| {
         text.push_str(line);
         text.push('\n');
     };
-    let classes = Class::ALL.into_iter().zip(sizes);
-    let heads: Vec<_> =
-        classes.map(|(class, edges)| format!("{class}, up to {edges} edges")).collect();
-    line(&format!("| marker | {} |", heads.join(" | ")));
-    line(&format!("| --- |{}", " --- |".repeat(heads.len())));
+    line(&format!("| marker | {} |", Class::ALL.map(Class::name).join(" | ")));
+    line(&format!("| --- |{}", " --- |".repeat(Class::ALL.len())));
     for Row { marker, found } in rows {
+        let cells = Class::ALL.into_iter().zip(found).zip(sizes);
         let cells: Vec<_> =
-            found.iter().zip(sizes).map(|(found, edges)| cell(found, edges)).collect();
+            cells.map(|((class, found), edges)| cell(*marker, class, found, edges)).collect();
         line(&format!("| {} | {} |", marker.name(), cells.join(" | ")));
     }
     for Row { marker, found } in rows {
         line(&format!("\n## {}\n", marker.name()));
         line(&format!("{}\n", sentence(marker.about())));
         if found.iter().all(|found| found.pairs().is_empty()) {
-            line("No pair: a walk distinguishes any two of the searched worlds.");
+            line(&no_pair(*marker));
             continue;
         }
         let mut header = true;
@@ -105,31 +105,63 @@ fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
     text
 }
 
-const HEAD: &str = "\
+/// What the table shows, and the command that makes it.
+fn head(sizes: [usize; 4]) -> String {
+    let sizes = Class::ALL.into_iter().zip(sizes);
+    let sizes: Vec<_> = sizes.map(|(class, edges)| format!("{class} {edges}")).collect();
+    format!(
+        "\
 # Atlas of worlds that a marker cannot distinguish
 
-The table shows the smallest pair for each kind of marker in each class of worlds. The search covers all
-worlds of the class up to the given size, with the marker at every place. The smallest pair is the one
-whose larger world is smallest. A verified bisimulation confirms each pair; this command prints it, and
-with `--html` writes a page on which you can walk both worlds:
+The table shows the smallest pair for each kind of marker in each class of worlds; or, if one robot maps all
+worlds of the class, the theorem that proves this. A theorem after a pair proves that no robot maps all worlds of
+the class, by this pair or another one. `toposlam proofs` lists the theorems; their proofs are in `proofs/coq`.
+
+The smallest pair is the one whose larger world is smallest. The search covers all worlds of the class up to a number
+of edges ({}), with the marker at every place. A verified bisimulation confirms each
+pair; this command prints it, and with `--html` writes a page on which you can walk both worlds:
 
     toposlam compare worlds/atlas/undirected-simple-1.toml worlds/atlas/undirected-simple-2.toml --marker undirected
 
 This command makes the folder:
 
-    toposlam counterexample --atlas worlds/atlas";
+    toposlam counterexample --atlas worlds/atlas",
+        sizes.join(", ")
+    )
+}
 
-/// The sizes of the smallest pair, with links to its files.
-fn cell(found: &WorldPairs, edges: usize) -> String {
-    match found.pairs().first() {
-        None => format!("none up to {edges} edges"),
-        Some(pair) => {
-            let file = |world: &NamedWorld| {
-                format!("[{}]({}.toml)", counted(world.graph.edge_count(), "edge"), world.name)
-            };
-            format!("{} and {}", file(pair[0]), file(pair[1]))
-        }
+/// That there is no pair in any class, and why.
+fn no_pair(marker: &dyn Marker) -> String {
+    let theorem = |class| proved(marker, class, true);
+    let mut theorems: Vec<_> = Class::ALL.into_iter().filter_map(theorem).collect();
+    theorems.dedup();
+    match theorems.as_slice() {
+        [theorem] => format!("No pair: `{theorem}`."),
+        _ => "No pair: see the table.".to_owned(),
     }
+}
+
+/// The theorem that the marker suffices in this class of worlds, or that it does not.
+fn proved(marker: &dyn Marker, class: Class, suffices: bool) -> Option<&'static str> {
+    let theorem = marker_theorems::about(marker.name(), class)?;
+    (theorem.suffices == suffices).then_some(theorem.theorem)
+}
+
+/// The sizes of the smallest pair, with links to its files, and the theorem about the marker in this class.
+fn cell(marker: &dyn Marker, class: Class, found: &WorldPairs, edges: usize) -> String {
+    let pairs = found.pairs();
+    let Some(pair) = pairs.first() else {
+        return match proved(marker, class, true) {
+            Some(theorem) => format!("none: `{theorem}`"),
+            None => format!("none up to {edges} edges"),
+        };
+    };
+    let file = |world: &NamedWorld| {
+        format!("[{}]({}.toml)", counted(world.graph.edge_count(), "edge"), world.name)
+    };
+    let theorem =
+        proved(marker, class, false).map(|theorem| format!(": `{theorem}`")).unwrap_or_default();
+    format!("{} and {}{theorem}", file(pair[0]), file(pair[1]))
 }
 
 fn pictured(world: &NamedWorld) -> String {

@@ -1,0 +1,153 @@
+//! Which kinds of markers suffice in which classes of worlds: the theorems that are proved in Coq.
+
+use toposlam_model::enumerate::Class;
+
+/// A theorem about a kind of marker in some classes of worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MarkerTheorem {
+    /// The name of the kind of marker.
+    pub marker: &'static str,
+    /// The classes about which the theorem is.
+    pub classes: &'static [Class],
+    /// Whether one robot maps every world of these classes with such a marker. Otherwise the theorem
+    /// has a pair of worlds, in all of these classes, of which no robot maps both.
+    pub suffices: bool,
+    /// The theorem's name.
+    pub theorem: &'static str,
+}
+
+const EVERY: &[Class] = &Class::ALL;
+const SIMPLE: &[Class] = &[Class::Simple, Class::Corridor, Class::Planar];
+
+/// The theorems about kinds of markers, by kind.
+pub const MARKER_THEOREMS: [MarkerTheorem; 10] = [
+    no_robot("none", EVERY, "no_marker_impossible"),
+    // Both worlds have a vertex of degree 4, and one of them is not planar.
+    no_robot("undirected", &[Class::Multigraph, Class::Simple], "undirected_marker_impossible"),
+    one_robot("directional", EVERY, "directional_marker_suffices"),
+    no_robot("undirected-edge", EVERY, "undirected_edge_impossible"),
+    one_robot("directed-edge", EVERY, "directed_edge_suffices"),
+    no_robot("two-identical", EVERY, "two_identical_impossible"),
+    no_robot("two-distinct", &[Class::Multigraph], "two_distinct_impossible"),
+    one_robot("two-distinct", SIMPLE, "two_distinct_suffices_in_simple_worlds"),
+    no_robot("movable", &[Class::Multigraph], "movable_marker_impossible"),
+    one_robot("movable", SIMPLE, "movable_marker_maps_simple_worlds"),
+];
+
+const fn one_robot(
+    marker: &'static str,
+    classes: &'static [Class],
+    theorem: &'static str,
+) -> MarkerTheorem {
+    MarkerTheorem { marker, classes, suffices: true, theorem }
+}
+
+const fn no_robot(
+    marker: &'static str,
+    classes: &'static [Class],
+    theorem: &'static str,
+) -> MarkerTheorem {
+    MarkerTheorem { marker, classes, suffices: false, theorem }
+}
+
+/// The theorem about this kind of marker in this class of worlds, if there is one.
+#[must_use]
+pub fn about(marker: &str, class: Class) -> Option<&'static MarkerTheorem> {
+    MARKER_THEOREMS
+        .iter()
+        .find(|theorem| theorem.marker == marker && theorem.classes.contains(&class))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use toposlam_model::{
+        format::world_file,
+        marker::{self, MARKERS},
+    };
+
+    use super::*;
+    use crate::theorems;
+
+    /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent.
+    const OTHERS: [&str; 2] = ["undirected_marker_at_dead_end_suffices", "two_distant_impossible"];
+
+    #[test]
+    fn each_theorem_on_markers_is_in_the_table_once() {
+        let mut stated: Vec<_> = theorems::all().map(|theorem| theorem.name).collect();
+        stated.retain(|name| {
+            ["_suffices", "_impossible", "_maps_simple_worlds"]
+                .iter()
+                .any(|part| name.contains(part))
+        });
+        let mut listed: Vec<_> =
+            MARKER_THEOREMS.iter().map(|row| row.theorem).chain(OTHERS).collect();
+        stated.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(listed, stated);
+    }
+
+    #[test]
+    fn no_theorem_contradicts_another() {
+        for marker in MARKERS {
+            for class in Class::ALL {
+                let rows = MARKER_THEOREMS
+                    .iter()
+                    .filter(|row| row.marker == marker.name() && row.classes.contains(&class));
+                assert!(rows.count() <= 1, "{marker:?} {class}");
+            }
+        }
+        assert!(MARKER_THEOREMS.iter().all(|row| marker::named(row.marker).is_ok()));
+    }
+
+    /// The pairs of `Figures.v`, as world files. The other pairs are of multigraphs.
+    #[test]
+    fn the_pairs_are_in_the_classes() {
+        let edge = ["atlas/undirected-edge-corridor-1", "atlas/undirected-edge-corridor-2"];
+        for (theorem, pair) in [
+            ("no_marker_impossible", ["cycle-3", "cycle-4"]),
+            (
+                "undirected_marker_impossible",
+                ["atlas/undirected-simple-1", "atlas/undirected-simple-2"],
+            ),
+            ("undirected_edge_impossible", edge),
+            ("two_identical_impossible", edge),
+        ] {
+            let row = MARKER_THEOREMS.iter().find(|row| row.theorem == theorem).unwrap();
+            let graphs = pair.map(|name| {
+                let file = format!("../worlds/{name}.toml");
+                let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+                world_file::read(&std::fs::read(path).unwrap()).unwrap().graph
+            });
+            let holds = |class: Class| {
+                graphs.iter().all(|graph| {
+                    let degrees = graph.darts().map(|dart| graph.degree_around(dart));
+                    (!class.is_simple() || graph.is_simple())
+                        && degrees.max() <= Some(class.max_degree())
+                        && (class != Class::Planar || graph.genus() == 0)
+                })
+            };
+            let classes: Vec<_> = Class::ALL.into_iter().filter(|&class| holds(class)).collect();
+            assert_eq!(row.classes, classes, "{theorem}");
+        }
+    }
+
+    #[test]
+    fn the_table_of_the_readme_is_this_one() {
+        const README: &str = include_str!("../coq/README.md");
+        for marker in MARKERS {
+            let cells = [Class::Multigraph, Class::Simple].map(|class| {
+                about(marker.name(), class).map_or_else(
+                    || "not known".to_owned(),
+                    |row| format!("{}: `{}`", if row.suffices { "yes" } else { "no" }, row.theorem),
+                )
+            });
+            let (start, end) =
+                (format!("| `{}` | ", marker.name()), format!(" | {} |", cells.join(" | ")));
+            let rows =
+                README.lines().filter(|line| line.starts_with(&start) && line.ends_with(&end));
+            assert_eq!(rows.count(), 1, "{start} ... {end}");
+        }
+    }
+}
