@@ -13,11 +13,13 @@ use toposlam_model::{
     world::{GraphWorld, State},
 };
 use toposlam_robot::{
+    budget::RunBudget,
     conform::{
         CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement,
         KnownWorld, Quirks, RunDriver, assume_marker, extract, judge, marker_at_start,
     },
     log::{topic_map::TopicMap, world_hash},
+    run_settings::RecordedSettings,
 };
 use toposlam_vision::{
     camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
@@ -37,6 +39,7 @@ struct Question {
     start: Option<Dart>,
     marker: &'static dyn Marker,
     driver: RunDriver,
+    budget: RunBudget,
     class: Class,
     corners: bool,
     assume_marker: bool,
@@ -76,25 +79,23 @@ pub(crate) fn conform<'py>(
         (None, Some(name)) => named_marker(py, name)?,
         (None, None) => &Directional,
     };
-    let algorithm = match driver {
-        "anyone" => None,
-        "algorithm" => {
-            let name = recorded(|run| &run.algorithm).map_or("algorithm1", String::as_str);
-            Some(name.parse::<DirectionalAlgorithm>())
-        }
-        name => Some(name.parse::<DirectionalAlgorithm>()),
+    let settings = match (driver, recorded(|run| &run.algorithm)) {
+        ("anyone", _) | ("algorithm", None) => Ok(RecordedSettings::default()),
+        ("algorithm", Some(head)) => RecordedSettings::from_head(head),
+        (name, _) => name.parse::<DirectionalAlgorithm>().map(|algorithm| RecordedSettings {
+            method: algorithm.into(),
+            ..RecordedSettings::default()
+        }),
     };
-    let driver = match algorithm {
-        None => RunDriver::Anyone,
-        Some(Ok(algorithm)) => RunDriver::Algorithm(algorithm),
-        Some(Err(unknown)) => return Err(error(py, "UnknownAlgorithmError", unknown)),
-    };
+    let settings = settings.map_err(|unknown| error(py, "UnknownAlgorithmError", unknown))?;
+    let driver = if driver == "anyone" { RunDriver::Anyone } else { settings.driver() };
     let class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let question = Question {
         world: world.map(|world| world.0.clone()),
         start: None,
         marker,
         driver,
+        budget: settings.budget,
         class,
         corners,
         assume_marker: assumed,
@@ -160,13 +161,14 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
         world: known,
         marker: question.marker,
         driver: question.driver,
+        budget: question.budget,
         search,
         dart_bound: question.max_darts,
     };
     // Whoever drives may turn back between junctions. The algorithms do not.
     let events = match question.driver {
         RunDriver::Anyone => gathered.events.without_excursions(),
-        RunDriver::Algorithm(_) | RunDriver::Audited { .. } => gathered.events.clone(),
+        _ => gathered.events.clone(),
     };
     let judgement =
         judge(events, &config, &Quirks::default(), watcher).map_err(|cause| text(&cause))?;

@@ -63,6 +63,8 @@ fn class_of(refused: &Refused) -> &'static str {
         Refused::NoSuchDoor { .. } => "NoSuchDoorError",
         Refused::NothingToPickUp | Refused::NothingToDrop => "NoMarkerError",
         Refused::OutOfMoves { .. } => "OutOfMovesError",
+        // Of a world that is decided while a robot explores, which this one is not.
+        Refused::NoWorldLeft => "ExplorerError",
     }
 }
 

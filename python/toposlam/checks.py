@@ -14,6 +14,7 @@ from typing import Union
 from . import _core
 from .errors import (
     ExplorerError,
+    LimitError,
     NotPicklableError,
     ShardError,
     SizeError,
@@ -33,7 +34,7 @@ Edges = Union[int, Iterable[int]]
 
 @dataclass(frozen=True)
 class Failure:
-    """A start on which an explorer failed."""
+    """A start on which an explorer failed, or reached a limit."""
 
     world: World
     """The world, with the start."""
@@ -71,6 +72,8 @@ class SizeReport:
     starts: int = 0
     mapped: int = 0
     """The starts that were mapped right."""
+    unknown: int = 0
+    """The starts on which the explorer reached a limit."""
     moves: int = 0
     """All moves on those starts."""
     max_moves: int = 0
@@ -84,6 +87,7 @@ class SizeReport:
             self.edges,
             self.starts + other.starts,
             self.mapped + other.mapped,
+            self.unknown + other.unknown,
             self.moves + other.moves,
             max(self.max_moves, other.max_moves),
             self.certificate + other.certificate,
@@ -101,6 +105,8 @@ class CheckReport:
     sizes: tuple[SizeReport, ...]
     failures: tuple[Failure, ...]
     """The first failures, those in the smallest worlds first."""
+    limits: tuple[Failure, ...]
+    """The first starts on which the explorer reached a limit, in the same order."""
     max_failures: int
     shards: tuple[int, ...]
     """The shards that were checked, counted from 1."""
@@ -118,9 +124,14 @@ class CheckReport:
         return sum(size.mapped for size in self.sizes)
 
     @property
+    def unknown(self) -> int:
+        """The number of starts on which the explorer reached a limit of moves or of time."""
+        return sum(size.unknown for size in self.sizes)
+
+    @property
     def failed(self) -> int:
         """The number of starts on which the explorer failed."""
-        return self.starts - self.mapped
+        return self.starts - self.mapped - self.unknown
 
     @property
     def is_complete(self) -> bool:
@@ -129,10 +140,12 @@ class CheckReport:
 
     @property
     def verdict(self) -> str:
-        """`"holds"`, `"violated"`, or `"not known"` if shards are missing and none failed so far."""
+        """`"holds"` or `"violated"`; `"not known"` if no start failed, and shards are missing or a limit was
+        reached."""
         if self.failed:
             return "violated"
-        return "holds" if self.is_complete and self.starts else "not known"
+        is_known = self.is_complete and self.starts and not self.unknown
+        return "holds" if is_known else "not known"
 
     @property
     def moves(self) -> int:
@@ -176,14 +189,20 @@ class CheckReport:
                 raise ShardError("the reports are not of one check")
             for size in report.sizes:
                 sizes[size.edges] += size
-        failures = [failure for report in reports for failure in report.failures]
-        failures.sort(key=lambda failure: (failure.world.edge_count, failure.number))
-        kept = tuple(failures[: self.max_failures])
-        return replace(self, sizes=tuple(sizes.values()), failures=kept, shards=shards)
+
+        def first(failures: Iterable[Failure]) -> tuple[Failure, ...]:
+            order = sorted(failures, key=lambda failure: (failure.world.edge_count, failure.number))
+            return tuple(order[: self.max_failures])
+
+        failures = first(failure for report in reports for failure in report.failures)
+        limits = first(limit for report in reports for limit in report.limits)
+        return replace(self, sizes=tuple(sizes.values()), failures=failures, limits=limits, shards=shards)
 
     def __repr__(self) -> str:
         edges = ", ".join(str(size.edges) for size in self.sizes)
         text = f"{self.mapped:,} of {self.starts:,} starts mapped right"
+        if self.unknown:
+            text += f", {self.unknown:,} not known"
         mean = self.mean_moves
         if mean is not None:
             text += f", {mean:.2f} moves on average, at most {self.max_moves}"
@@ -252,15 +271,18 @@ def _checked(question: _Question, index: int, of: int, advance: Advance | None) 
     """The report of one shard, counted from 0."""
     sizes = []
     failures: list[Failure] = []
+    limits: list[Failure] = []
     with Clock(question.seconds) as clock:
         for edges in question.edges:
-            sizes.append(_size(question, edges, (index, of), failures, (clock, advance)))
+            found = (failures, limits)
+            sizes.append(_size(question, edges, (index, of), found, (clock, advance)))
     return CheckReport(
         explorer=question.name,
         cls=question.cls,
         marker=question.marker,
         sizes=tuple(sizes),
         failures=tuple(failures),
+        limits=tuple(limits),
         max_failures=question.max_failures,
         shards=(index + 1,),
         of=of,
@@ -271,16 +293,17 @@ def _size(
     question: _Question,
     edges: int,
     shard: tuple[int, int],
-    failures: list[Failure],
+    found: tuple[list[Failure], list[Failure]],
     tools: tuple[Clock, Advance | None],
 ) -> SizeReport:
     clock, advance = tools
     explorer, marker, bound = question.explorer, question.marker, question.max_moves
     with_certificates = marker == "directional"
-    starts = mapped = total = most = certificates = below = shown = 0
+    failures, limits = found
+    starts = mapped = unknown = total = most = certificates = below = shown = 0
 
     def visit(start: _core.Start) -> None:
-        nonlocal starts, mapped, total, most, certificates, below, shown
+        nonlocal starts, mapped, unknown, total, most, certificates, below, shown
         robot = start.robot(marker, bound)
         error = judged(explorer, start, robot, clock)
         starts += 1
@@ -293,8 +316,12 @@ def _size(
                 certificate = start.certificate
                 certificates += certificate
                 below += moves < certificate
-        elif len(failures) < question.max_failures:
-            failures.append(_failure(question.cls, start, robot, error))
+        else:
+            is_limit = isinstance(error, LimitError)
+            unknown += is_limit
+            kept = limits if is_limit else failures
+            if len(kept) < question.max_failures:
+                kept.append(_failure(question.cls, start, robot, error))
         if advance is not None and starts - shown == 256:
             advance(starts - shown)
             shown = starts
@@ -302,7 +329,7 @@ def _size(
     _core.visit_starts(question.cls, edges, *shard, visit)
     if advance is not None:
         advance(starts - shown)
-    return SizeReport(edges, starts, mapped, total, most, certificates, below)
+    return SizeReport(edges, starts, mapped, unknown, total, most, certificates, below)
 
 
 def _failure(cls: str, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
@@ -328,8 +355,8 @@ def check(
     """Checks an explorer on every start of every world with `edges` edges: a number, or several.
 
     A map is right if it is isomorphic to the world, start to start, and the robot is where the explorer
-    says. After `max_moves` moves, or `seconds` seconds for a start, the explorer has failed there. With
-    several `processes` the report is the same.
+    says. After `max_moves` moves, or `seconds` seconds for a start, its result is not known. With several
+    `processes` the report is the same.
 
     >>> import toposlam as ts
     >>> def there_and_back(robot):

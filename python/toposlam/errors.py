@@ -165,11 +165,15 @@ class NoMarkerError(ExplorerError):
     """An explorer picked up a marker that is not there, or dropped one that it does not carry."""
 
 
-class OutOfMovesError(ExplorerError):
+class LimitError(ExplorerError):
+    """An explorer reached a limit. Whether it would have ended well is not known."""
+
+
+class OutOfMovesError(LimitError):
     """An explorer made more moves than are allowed."""
 
 
-class OutOfTimeError(ExplorerError):
+class OutOfTimeError(LimitError):
     """An explorer took more time than is allowed."""
 
 

@@ -4,7 +4,10 @@ use std::fmt;
 
 use toposlam_model::mapping::{EarlierWalk, MappingMethod};
 
-use crate::{budget::RunBudget, conform::log_noise};
+use crate::{
+    budget::RunBudget,
+    conform::{RunDriver, log_noise},
+};
 
 /// What a robot does in a run.
 #[derive(Clone, Debug)]
@@ -67,6 +70,13 @@ impl fmt::Display for RecordedSettings {
 }
 
 impl RecordedSettings {
+    /// With what the doors of the log are compared. Those of a robot that went on from earlier runs depend on logs that
+    /// are not known here.
+    #[must_use]
+    pub fn driver(&self) -> RunDriver {
+        if self.is_resumed { RunDriver::Anyone } else { RunDriver::from(self.method) }
+    }
+
     /// Reads what the head of a log says. A robot that recovers compares lengths with the usual uncertainty.
     ///
     /// # Errors

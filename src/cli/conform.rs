@@ -364,18 +364,17 @@ impl ConformArguments {
             Who::Anyone => RecordedSettings::default(),
         };
         let algorithm = settings.method.algorithm();
-        let driver = match (self.driver, settings) {
-            (Who::Algorithm, RecordedSettings { is_resumed: true, .. }) => {
-                let path = path.display();
-                remark!(
-                    "{path}: its robot went on from an earlier run, which is not in this log; its doors are \
-                     compared with no algorithm"
-                );
-                RunDriver::Anyone
-            }
-            (Who::Algorithm, settings) => RunDriver::from(settings.method),
-            (Who::Anyone, _) => RunDriver::Anyone,
+        let driver = match self.driver {
+            Who::Algorithm => settings.driver(),
+            Who::Anyone => RunDriver::Anyone,
         };
+        if settings.is_resumed {
+            let path = path.display();
+            remark!(
+                "{path}: its robot went on from an earlier run, which is not in this log; its doors are \
+                 compared with no algorithm"
+            );
+        }
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
         let laser = self.laser.params()?;
