@@ -39,20 +39,24 @@ fn check(explorer: &str, options: &[&str]) -> (i32, Vec<Value>) {
     (output.status.code().unwrap(), objects(&stdout(&output)))
 }
 
-/// The example in C, compiled once.
+/// The explorer in C that maps every world, compiled once.
 fn compiled() -> Option<&'static str> {
-    static PROGRAM: LazyLock<Option<String>> = LazyLock::new(|| {
-        if !has("cc") {
-            return None;
-        }
-        let program = folder("explorer_in_c").join("explorer");
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/protocol/explorer.c");
-        let options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-o"];
-        let output = Command::new("cc").args(options).arg(&program).arg(source).output().unwrap();
-        assert!(output.status.success(), "{}", stderr(&output));
-        Some(program.to_str().unwrap().to_owned())
-    });
+    static PROGRAM: LazyLock<Option<String>> = LazyLock::new(|| compile("explorer"));
     PROGRAM.as_deref()
+}
+
+/// An example in C, compiled.
+fn compile(name: &str) -> Option<String> {
+    if !has("cc") {
+        return None;
+    }
+    let program = folder(&format!("{name}_in_c")).join(name);
+    let source = format!("docs/protocol/{name}.c");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(source);
+    let options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-o"];
+    let output = Command::new("cc").args(options).arg(&program).arg(source).output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    Some(program.to_str().unwrap().to_owned())
 }
 
 /// The commands of the examples whose language is installed.
@@ -96,6 +100,19 @@ fn the_examples_map_the_worlds_of_the_repository_and_write_the_worst_start() {
     }
 }
 
+/// Of the simple worlds with up to 3 edges, each chain has one start at an end; both ends are alike.
+#[test]
+fn the_shortest_example_maps_chains_from_their_ends() {
+    let Some(hallway) = compile("hallway") else { return };
+    let options = ["--class", "simple", "--edges", "1..=3", "--keep-going"];
+    let (code, lines) = check(&hallway, &options);
+    assert_eq!(code, 1, "{lines:?}");
+    let numbers = |key: &str| -> Vec<_> { lines.iter().map(|line| line[key].as_u64()).collect() };
+    assert_eq!(numbers("starts"), [1, 2, 6].map(Some));
+    assert_eq!(numbers("mapped"), [Some(1); 3]);
+    assert!(lines.iter().skip(1).all(|line| line["failure"]["cause"] == "gave-up"), "{lines:?}");
+}
+
 /// The page shows the examples as they are.
 #[test]
 fn the_page_of_the_protocol_shows_its_examples() {
@@ -103,7 +120,8 @@ fn the_page_of_the_protocol_shows_its_examples() {
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(path)).unwrap()
     };
     let page = read("protocol.md");
-    for (language, file) in [("python", "protocol/explorer.py"), ("c", "protocol/explorer.c")] {
+    let files = ["protocol/explorer.py", "protocol/explorer.c", "protocol/hallway.c"];
+    for (language, file) in ["python", "c", "c"].into_iter().zip(files) {
         let block = format!("```{language}\n{}```\n", read(file));
         assert!(page.contains(&block), "{file} is not in docs/protocol.md");
     }

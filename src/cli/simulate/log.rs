@@ -119,9 +119,9 @@ mod tests {
             command_of(&["a.toml", "--scanner", "my scanner.toml", "--sensor", "laser"]),
             "toposlam simulate a.toml --seed 0 --sensor laser --scanner 'my scanner.toml'"
         );
-        let line = "it's.toml --start a:b --algorithm folding --seed 7 --calibration c.toml --size 1280x960 \
-                    --colours d.toml --look tiles --effects none --effect noise=0.25 \
-                    --picture-time 0.5 --fault carried@40 --fault dropped@3:9 --max-darts 20";
+        let line = "it's.toml --start a:b --algorithm folding --max-darts 20 --seed 7 --calibration c.toml \
+                    --size 1280x960 --colours d.toml --look tiles --effects none --effect noise=0.25 \
+                    --picture-time 0.5 --fault carried@40 --fault dropped@3:9";
         let words: Vec<_> = line.split_whitespace().collect();
         let command = command_of(&words);
         let expected = format!("toposlam simulate {}", words.join(" "));
