@@ -11,6 +11,7 @@ mod calibrate;
 mod check;
 mod children;
 mod ci_report;
+mod cluster;
 mod compare;
 mod completions;
 mod conform;
