@@ -195,10 +195,12 @@ fn receive<T>(
 }
 
 impl Drop for Cluster {
-    /// Without [`close`](Self::close), nobody waits for the others: the process ends.
+    /// Without [`close`](Self::close), the work is not done. The process ends, and nobody waits for the others.
+    /// The connections must break: if the worker ended by itself, the others would wait for this process.
     fn drop(&mut self) {
         if let Some(guards) = self.guards.take() {
             mem::forget(guards);
+            mem::forget(self.commands.clone());
         }
     }
 }
