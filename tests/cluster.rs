@@ -192,6 +192,31 @@ fn three_processes_check_what_one_checks() {
 }
 
 #[test]
+fn three_processes_find_the_pairs_that_one_finds() {
+    let stage = Stage::new("search", 3);
+    for command in [
+        "counterexample --class multigraph --max-edges 4 --all",
+        "counterexample --class corridor --max-edges 8 --marker undirected --marker movable",
+        "counterexample --max-edges 5 --expect none",
+        "counterexample --max-edges 6 --marker directional --expect none",
+    ] {
+        is_that_of_one_process(&stage, command);
+    }
+    // Only process 0 writes files.
+    let folders = ["worlds-0", "worlds-1"].map(|name| stage.path(name));
+    let search = |process: usize| {
+        let find = format!("counterexample --marker undirected --out-dir {}", folders[process]);
+        Process::start(&stage.arguments(&find, process))
+    };
+    let third = Process::start(&stage.arguments("counterexample --marker undirected", 2));
+    for process in [search(0), search(1), third] {
+        assert_eq!(process.ends().code, Some(0));
+    }
+    assert_eq!(fs::read_dir(&folders[0]).unwrap().count(), 2);
+    assert!(!Path::new(&folders[1]).exists());
+}
+
+#[test]
 fn each_thread_reports_its_tasks_and_its_time() {
     let stage = Stage::new("threads", 2);
     let ended = stage.run("check --edges 5..=6 --json");
@@ -246,7 +271,7 @@ fn a_check_goes_on_with_two_processes_after_one_of_three_was_killed() {
     fs::write(&journal, right).unwrap();
     let foreign = stage.run(&command.replace("--algorithm folding", "--algorithm algorithm1"));
     assert!(foreign[0].error.contains("this is the journal of another check"));
-    assert_eq!(foreign[0].code, Some(2));
+    assert_eq!([foreign[0].code, foreign[1].code], [Some(2), Some(3)]);
 
     stage.use_processes(2);
     let ended = stage.run(&command);

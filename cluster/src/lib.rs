@@ -25,8 +25,10 @@ mod dataflow;
 mod hosts;
 mod job;
 mod loss;
+mod search;
 
 pub use check::ClusterCheck;
 pub use cluster::{Cluster, ClusterError, ThreadUse};
 pub use connect::{ConnectError, Setting};
+pub use search::ClusterSearch;
 pub use hosts::{Hosts, HostsError};

@@ -8,7 +8,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::{AmbiguitySearch, Unfinished},
+    ambiguity::{AmbiguitySearch, KeptPairs, Unfinished},
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
@@ -16,6 +16,7 @@ use toposlam_model::{
 use super::{
     CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    cluster::{ClusterOptions, ClusterSession, LostEnd, SharedOutput},
     exit_codes::help_end,
     marker_kinds, output,
     progress::Progress,
@@ -46,7 +47,7 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
         (0, "the search is done; with --expect none, there is no pair"),
         (1, "--expect none, and a pair was found"),
         (2, "bad usage or input"),
-        (3, "interrupted"),
+        (3, "interrupted, or the connection to another process is lost"),
     ],
 ))]
 pub(super) struct CounterexampleArguments {
@@ -80,7 +81,7 @@ pub(super) struct CounterexampleArguments {
     #[arg(
         long,
         value_name = "DIR",
-        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json"],
+        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json", "hosts"],
     )]
     atlas: Option<PathBuf>,
 
@@ -99,6 +100,9 @@ pub(super) struct CounterexampleArguments {
     /// Print one JSON object for each number of edges, and one for the smallest pair
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    cluster: ClusterOptions,
 
     #[command(flatten)]
     ci: CiOptions,
@@ -141,30 +145,41 @@ impl CounterexampleArguments {
                 ));
             }
         }
-        if let Some(folder) = &self.out_dir {
+        let mut cluster = self.join_cluster(&markers, edges)?;
+        let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
+        if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
             output::make_folder(folder)?;
         }
+        let out = &mut SharedOutput::new(out, cluster.as_ref());
         let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
         let mut cases = Vec::new();
         for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
-            let findings = search.run(&progress);
+            let findings = match &mut cluster {
+                None => search.run(&progress),
+                Some(cluster) => cluster.search(search, self.kept(), &progress)?,
+            };
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
                 Err(unfinished) => {
                     cases.push(self.ci_case(marker, edges, Err(&unfinished)));
-                    self.ci.write("counterexample", &cases)?;
+                    if is_first {
+                        self.ci.write("counterexample", &cases)?;
+                    }
                     return pairs::report_unfinished(&unfinished);
                 }
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
-            if let Some(folder) = &self.out_dir {
+            if let Some(cluster) = &mut cluster {
+                report.threads(cluster, marker)?;
+            }
+            if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
                 found.write(folder)?;
             }
-            if let Some(path) = &self.html {
+            if let Some(path) = self.html.as_ref().filter(|_| is_first) {
                 found.write_page(path, marker)?;
             }
             cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
@@ -185,8 +200,37 @@ impl CounterexampleArguments {
         }
         cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, None)));
         report.end()?;
-        self.ci.write("counterexample", &cases)?;
+        if let Some(cluster) = cluster {
+            cluster.close();
+        }
+        if is_first {
+            self.ci.write("counterexample", &cases)?;
+        }
         Ok(outcome)
+    }
+
+    /// Which pairs the search keeps.
+    fn kept(&self) -> KeptPairs {
+        if self.all { KeptPairs::All } else { KeptPairs::Smallest }
+    }
+
+    /// Connects to the other processes, if there are others.
+    fn join_cluster(
+        &self,
+        markers: &[&dyn Marker],
+        edges: usize,
+    ) -> Result<Option<ClusterSession>, CliError> {
+        let markers: Vec<_> = markers.iter().map(|marker| marker.name()).collect();
+        let settings = [
+            ("the command", "counterexample".to_owned()),
+            ("the class", self.class.name().to_owned()),
+            ("--max-edges", edges.to_string()),
+            ("the markers", markers.join(" ")),
+            ("--all", self.all.to_string()),
+            ("--expect", format!("{:?}", self.expect)),
+            ("--keep-going", self.keep_going.to_string()),
+        ];
+        self.cluster.connect(&settings, LostEnd::Nothing)
     }
 
     /// The result for a marker, for CI systems.

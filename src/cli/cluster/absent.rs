@@ -3,6 +3,7 @@
 use std::{io::Write, path::Path};
 
 use toposlam_model::{
+    ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
     check::{FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm},
     enumerate::Watch,
 };
@@ -37,6 +38,15 @@ impl ClusterSession {
         _: &dyn FinishedUnits,
         _: &dyn Watch,
     ) -> Result<Option<LazyCheck>, CliError> {
+        match *self {}
+    }
+
+    pub(in crate::cli) fn search(
+        &mut self,
+        _: &AmbiguitySearch<'static>,
+        _: KeptPairs,
+        _: &dyn Watch,
+    ) -> Result<Result<Findings, Unfinished>, CliError> {
         match *self {}
     }
 

@@ -5,6 +5,7 @@ use std::{io::Write, path::Path};
 use serde::Serialize;
 use toposlam_cluster::{Cluster, ClusterError, ConnectError, Hosts, ThreadUse};
 use toposlam_model::{
+    ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
     check::{FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm},
     enumerate::Watch,
 };
@@ -101,6 +102,23 @@ impl ClusterSession {
             self.threads = found.threads;
             found.check
         }))
+    }
+
+    /// Searches with a marker. The other processes get the smallest pair only.
+    pub(in crate::cli) fn search(
+        &mut self,
+        search: &AmbiguitySearch<'static>,
+        kept: KeptPairs,
+        watch: &dyn Watch,
+    ) -> Result<Result<Findings, Unfinished>, CliError> {
+        match self.cluster.search(search, kept, watch) {
+            Ok(found) => {
+                self.threads = found.threads;
+                Ok(found.findings)
+            }
+            Err(ClusterError::Interrupted) => Ok(Err(Unfinished::Interrupted)),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Reports how busy the threads were: a remark for each process, and with `--json` a line for all.
