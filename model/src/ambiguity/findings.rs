@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::SorterError;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::StartCode,
@@ -19,11 +20,6 @@ pub struct PlacedWorld {
 impl PlacedWorld {
     /// The facing dart by which the marker was placed.
     pub const FACING: Dart = Dart(0);
-
-    /// The order of worlds in a report: fewer edges first, then the lesser code.
-    pub(super) fn rank(&self) -> (usize, &StartCode) {
-        (self.graph.edge_count(), &self.code)
-    }
 }
 
 /// Placed worlds that are indistinguishable from each other, in the order of their sizes and codes. There are
@@ -60,8 +56,18 @@ pub struct SizeFindings {
 pub struct Findings {
     /// For each number of edges from 1.
     pub sizes: Vec<SizeFindings>,
-    /// All ambiguous worlds, the group with the smallest pair first.
+    /// All ambiguous worlds, the group with the smallest pair first; or that pair, if only it is
+    /// [kept](KeptPairs).
     pub groups: Vec<AmbiguousGroup>,
+}
+
+/// Which pairs a search keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPairs {
+    /// All.
+    All,
+    /// Only the smallest one, whose memory does not grow with the number of pairs.
+    Smallest,
 }
 
 /// Why a search has no findings.
@@ -78,6 +84,20 @@ pub enum Unfinished {
         .0[0].graph.edge_count(), .0[1].graph.edge_count()
     )]
     Unconfirmed(Box<[PlacedWorld; 2]>),
+    /// A candidate that was stored and read again is not that of a placed world.
+    #[error("what was stored of a world cannot be read: the storage is at fault")]
+    Unreadable,
+}
+
+/// Why a search with a [sorter](super::CandidateSorter) has no findings.
+#[derive(Debug, Error)]
+pub enum SearchError {
+    /// The search did not finish.
+    #[error(transparent)]
+    Unfinished(#[from] Unfinished),
+    /// The sorter failed.
+    #[error("{0}")]
+    Sorter(SorterError),
 }
 
 impl Findings {
