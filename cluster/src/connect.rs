@@ -176,8 +176,7 @@ fn exchange(mut stream: TcpStream, ours: &Greeting) -> io::Result<(TcpStream, Gr
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(ANSWER))?;
     let (idle, between, tries) = KEEPALIVE;
-    let keepalive =
-        TcpKeepalive::new().with_time(idle).with_interval(between).with_retries(tries);
+    let keepalive = TcpKeepalive::new().with_time(idle).with_interval(between).with_retries(tries);
     SockRef::from(&stream).set_tcp_keepalive(&keepalive)?;
     let text = serde_json::to_vec(ours)?;
     let mut message = MAGIC.to_vec();

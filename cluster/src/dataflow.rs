@@ -138,14 +138,12 @@ pub(crate) fn run<J: Job>(
 pub(crate) fn share<T: Message>(worker: &mut TimelyWorker, value: Option<T>, values: Sender<T>) {
     let probe = worker.dataflow::<Round, _, _>(|scope| {
         let all = 0..scope.peers() as u64;
-        let copies = value.into_iter().flat_map(move |value| {
-            all.clone().map(move |process| (process, value.clone()))
-        });
+        let copies = value
+            .into_iter()
+            .flat_map(move |value| all.clone().map(move |process| (process, value.clone())));
         let copies: StreamVec<'_, Round, (u64, T)> = copies.to_stream(scope);
-        let shared: StreamVec<'_, Round, ()> = copies.unary(
-            Exchange::new(|(process, _): &(u64, T)| *process),
-            "share",
-            |_, _| {
+        let shared: StreamVec<'_, Round, ()> =
+            copies.unary(Exchange::new(|(process, _): &(u64, T)| *process), "share", |_, _| {
                 move |input, _: &mut Nothing<'_>| {
                     input.for_each(|_, shared| {
                         for (_, value) in shared.drain(..) {
@@ -154,8 +152,7 @@ pub(crate) fn share<T: Message>(worker: &mut TimelyWorker, value: Option<T>, val
                         }
                     });
                 }
-            },
-        );
+            });
         shared.probe().0
     });
     finish(worker, &probe);

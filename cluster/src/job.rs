@@ -3,7 +3,10 @@
 use serde::{Serialize, de::DeserializeOwned};
 
 /// What processes send to each other.
-pub(crate) trait Message: Clone + Serialize + DeserializeOwned + Send + Sync + 'static {}
+pub(crate) trait Message:
+    Clone + Serialize + DeserializeOwned + Send + Sync + 'static
+{
+}
 impl<T: Clone + Serialize + DeserializeOwned + Send + Sync + 'static> Message for T {}
 
 /// Work that is divided into tasks, which are numbered from 0. The jobs of all processes are equal.

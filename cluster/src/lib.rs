@@ -30,5 +30,5 @@ mod search;
 pub use check::ClusterCheck;
 pub use cluster::{Cluster, ClusterError, ThreadUse};
 pub use connect::{ConnectError, Setting};
-pub use search::ClusterSearch;
 pub use hosts::{Hosts, HostsError};
+pub use search::ClusterSearch;

@@ -1,6 +1,7 @@
 //! `toposlam counterexample`: the smallest worlds that a marker cannot distinguish.
 
 mod atlas;
+mod memory;
 mod pairs;
 mod report;
 
@@ -8,7 +9,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::{AmbiguitySearch, KeptPairs, Unfinished},
+    ambiguity::{AmbiguitySearch, KeptPairs, SearchError, Unfinished},
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
@@ -23,6 +24,7 @@ use super::{
     text::counted,
     use_threads, walk_page,
 };
+use memory::MemoryLimit;
 use pairs::WorldPairs;
 use report::SearchReport;
 
@@ -41,6 +43,8 @@ Examples:
   toposlam counterexample --class corridor --max-edges 9 --json
   toposlam counterexample --marker directional --expect none
                                                 for CI: exit code 1 on a pair
+  toposlam counterexample --marker undirected --class multigraph --max-edges 8
+           --memory 400MB                       sort on disk, in this memory
 
 The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.",
     &[
@@ -67,6 +71,10 @@ pub(super) struct CounterexampleArguments {
     /// Report all pairs, not only the smallest
     #[arg(long)]
     all: bool,
+
+    /// Take at most this memory, as in 2GB; what does not fit is sorted in temporary files, in $TMPDIR
+    #[arg(long, value_name = "SIZE", conflicts_with_all = ["all", "hosts"])]
+    memory: Option<MemoryLimit>,
 
     /// Write the worlds of the reported pairs into a folder, as world files
     #[arg(short, long, value_name = "DIR")]
@@ -123,7 +131,7 @@ impl CounterexampleArguments {
         }
         self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
-            return atlas::write(folder, self.max_edges);
+            return atlas::write(folder, self.max_edges, self.memory);
         }
         let edges = self.max_edges.unwrap_or_else(|| usual_size(self.class));
         // Each marker once, in the order of the list.
@@ -156,14 +164,18 @@ impl CounterexampleArguments {
         let mut cases = Vec::new();
         for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
+            let kept = if self.all { KeptPairs::All } else { KeptPairs::Smallest };
             let findings = match &mut cluster {
-                None => search.run(&progress),
-                Some(cluster) => cluster.search(search, self.kept(), &progress)?,
+                None => search.run_sorted(memory::sorter(self.memory, search)?, kept, &progress),
+                Some(cluster) => {
+                    cluster.search(search, kept, &progress)?.map_err(SearchError::from)
+                }
             };
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => {
+                Err(SearchError::Sorter(cause)) => return Err(CliError::at("--memory", cause)),
+                Err(SearchError::Unfinished(unfinished)) => {
                     cases.push(self.ci_case(marker, edges, Err(&unfinished)));
                     if is_first {
                         self.ci.write("counterexample", &cases)?;
@@ -207,11 +219,6 @@ impl CounterexampleArguments {
             self.ci.write("counterexample", &cases)?;
         }
         Ok(outcome)
-    }
-
-    /// Which pairs the search keeps.
-    fn kept(&self) -> KeptPairs {
-        if self.all { KeptPairs::All } else { KeptPairs::Smallest }
     }
 
     /// Connects to the other processes, if there are others.

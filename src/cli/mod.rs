@@ -51,6 +51,7 @@ mod scene;
 mod sense;
 mod simulate;
 mod story_lines;
+mod temporary_folder;
 mod terminal;
 mod text;
 mod train;

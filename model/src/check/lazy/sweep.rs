@@ -180,7 +180,11 @@ impl LazySweep {
     }
 
     /// The units of the shard. They do not depend on the number of threads.
-    pub(super) fn units<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
+    pub(super) fn units<E: StepExplorer>(
+        &self,
+        new: impl Fn() -> E,
+        watch: &dyn Watch,
+    ) -> Vec<Unit> {
         let edges = self.draft.edges_left();
         let cut_at = edges.saturating_sub(beginning(edges));
         let all = beginnings(new(), self.draft.clone(), cut_at, watch);
@@ -258,14 +262,7 @@ impl LazySweep {
         let parts = self.world_parts();
         let count = |part: &EnumerationPart| WorldCount::of(part, watch);
         // The progress is that of the runs.
-        in_parts(
-            &parts,
-            &(),
-            WorldCount::default,
-            count,
-            |found| found.worlds,
-            WorldCount::merged,
-        )
+        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, WorldCount::merged)
     }
 
     /// The parts of the embedded graphs of the shard.

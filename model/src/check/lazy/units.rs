@@ -40,11 +40,7 @@ impl PieceCounts {
 
 impl CheckPieces {
     /// The pieces of a sweep with an explorer.
-    pub fn new<E: StepExplorer>(
-        sweep: &LazySweep,
-        new: impl Fn() -> E,
-        watch: &dyn Watch,
-    ) -> Self {
+    pub fn new<E: StepExplorer>(sweep: &LazySweep, new: impl Fn() -> E, watch: &dyn Watch) -> Self {
         Self {
             units: sweep.units(new, watch),
             world_parts: sweep.world_parts(),
