@@ -4,6 +4,9 @@
 #![cfg(all(feature = "cluster", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "schema/validator.rs"]
+mod validator;
+
 use std::{
     fs,
     io::Write,
@@ -219,11 +222,14 @@ fn three_processes_find_the_pairs_that_one_finds() {
 #[test]
 fn each_thread_reports_its_tasks_and_its_time() {
     let stage = Stage::new("threads", 2);
+    let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/schema/cluster.json");
+    let schema: Value = serde_json::from_slice(&fs::read(schema).unwrap()).unwrap();
     let ended = stage.run("check --edges 5..=6 --json");
     let lines = lines_of(&ended[0].out, "threads");
     assert_eq!(lines.len(), 2, "{}", ended[0].out);
     for line in lines {
         let line: Value = serde_json::from_str(line).unwrap();
+        assert_eq!(validator::problem(&schema, &line), None, "{line}");
         let threads = line["threads"].as_array().unwrap();
         let place = |thread: &Value| (thread["process"].clone(), thread["thread"].clone());
         let places: Vec<_> = threads.iter().map(place).collect();
