@@ -52,6 +52,8 @@ pub(super) struct Growth {
     /// The darts, as bits, with a code so far that could still become less than that of dart 0. Dart 0
     /// is not among them.
     pub(super) rivals: u64,
+    /// The same as an embedded graph with free darts. It lacks an edge while that is only tried.
+    pub(super) graph: EmbeddedGraph,
 }
 
 /// The word of an edge to a new vertex of some degree; and the degree, from the word.
@@ -91,6 +93,7 @@ impl Growth {
             words: [0; MAX_EDGES],
             edges: 0,
             rivals: 0,
+            graph: EmbeddedGraph::unfinished(),
         }
     }
 
@@ -104,15 +107,19 @@ impl Growth {
     /// Repeats the first steps of a history.
     pub(super) fn resume(&mut self, beginning: Beginning) {
         self.add_vertex(beginning.degree as usize);
+        self.graph.add_vertex(beginning.degree.into());
         for &word in &beginning.words[..beginning.edges as usize] {
             let dart = self.free.trailing_zeros() as usize;
-            if (word as usize) < self.darts {
-                self.join(dart, word as usize, word);
+            let other = if (word as usize) < self.darts {
+                word as usize
             } else {
                 let entry = self.darts;
                 self.add_vertex(new_vertex(word) as usize);
-                self.join(dart, entry, word);
-            }
+                self.graph.add_vertex(new_vertex(word).into());
+                entry
+            };
+            self.join(dart, other, word);
+            self.graph.join(Dart(dart as u32), Dart(other as u32));
             self.may_be_least();
         }
     }
@@ -128,7 +135,9 @@ impl Growth {
         }
         for degree in self.start_degrees() {
             self.add_vertex(degree);
+            self.graph.add_vertex(degree as u32);
             self.grow_edge(edges, visit)?;
+            self.graph.remove_vertex();
             self.remove_vertex();
         }
         ControlFlow::Continue(())
@@ -158,7 +167,10 @@ impl Growth {
             for other in bits(self.partners(dart)) {
                 self.join(dart, other, other as u8);
                 if self.can_still_end(left) && self.may_be_least() {
+                    let ends = [dart, other].map(|dart| Dart(dart as u32));
+                    self.graph.join(ends[0], ends[1]);
                     self.grow_edge(edges, visit)?;
+                    self.graph.unjoin(ends[0], ends[1]);
                 }
                 self.rivals = rivals;
                 self.unjoin(dart, other);
@@ -169,7 +181,12 @@ impl Growth {
             self.add_vertex(degree);
             self.join(dart, entry, new_vertex(degree as u8));
             if self.can_still_end(left) && self.may_be_least() {
+                self.graph.add_vertex(degree as u32);
+                let ends = [dart, entry].map(|dart| Dart(dart as u32));
+                self.graph.join(ends[0], ends[1]);
                 self.grow_edge(edges, visit)?;
+                self.graph.unjoin(ends[0], ends[1]);
+                self.graph.remove_vertex();
             }
             self.rivals = rivals;
             self.unjoin(dart, entry);
@@ -332,20 +349,13 @@ impl Growth {
         self.edges -= 1;
     }
 
-    /// Visits a finished growth as an embedded graph, in the memory of the one before.
+    /// Visits a finished growth as an embedded graph.
     pub(super) fn show(
         &self,
-        graph: &mut EmbeddedGraph,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        graph.clear();
-        for &degree in &self.degree[..self.vertices] {
-            graph.add_vertex(u32::from(degree));
-        }
-        for (dart, &other) in self.opposite[..self.darts].iter().enumerate() {
-            graph.join(Dart(dart as u32), Dart(u32::from(other)));
-        }
-        visit(EnumeratedGraph { graph, automorphisms: self.rivals.count_ones() + 1 })
+        let automorphisms = self.rivals.count_ones() + 1;
+        visit(EnumeratedGraph { graph: &self.graph, automorphisms })
     }
 }
 
