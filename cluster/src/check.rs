@@ -54,6 +54,8 @@ impl Cluster {
         watch: &dyn Watch,
     ) -> Result<Option<ClusterCheck>, ClusterError> {
         let Some(pieces) = algorithm.pieces(sweep, watch) else { return Ok(None) };
+        // The pieces of a watch that stops are not all.
+        watch.go_on().map_err(|_| ClusterError::Interrupted)?;
         let job = Arc::new(CheckJob { algorithm, pieces });
         let pieces = &job.pieces;
         let mut counts = PieceCounts::default();
@@ -85,7 +87,7 @@ impl Cluster {
             }
             shared => shared?,
         };
-        let check = algorithm.finished_pieces(pieces, counts);
+        let check = algorithm.finished_pieces(counts);
         Ok(check.map(|check| ClusterCheck { check, threads }))
     }
 }

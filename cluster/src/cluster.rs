@@ -2,7 +2,6 @@
 
 use std::{
     mem,
-    panic::{self, AssertUnwindSafe},
     sync::{
         Arc, Mutex, PoisonError,
         mpsc::{self, RecvTimeoutError},
@@ -67,6 +66,7 @@ pub(crate) struct JobEnd<G> {
 /// One of some processes that share work. All of them do the same calls in the same order.
 pub struct Cluster {
     process: usize,
+    processes: usize,
     commands: mpsc::Sender<Command>,
     guards: Option<WorkerGuards<()>>,
 }
@@ -100,7 +100,8 @@ impl Cluster {
                 command(worker);
             }
         });
-        Ok(Self { process, commands, guards: Some(guards.map_err(ClusterError::Ended)?) })
+        let guards = Some(guards.map_err(ClusterError::Ended)?);
+        Ok(Self { process, processes: hosts.count(), commands, guards })
     }
 
     /// Whether this is process 0, which has the result.
@@ -111,11 +112,10 @@ impl Cluster {
 
     /// Ends the connections, when the work of all processes is done.
     pub fn close(mut self) {
-        loss::work_is_done();
-        // Another process may end at once.
         if let Some(guards) = self.guards.take() {
             drop(mem::replace(&mut self.commands, mpsc::channel().0));
-            let _ = panic::catch_unwind(AssertUnwindSafe(|| drop(guards.join())));
+            // Another process may be killed now, which changes nothing.
+            loss::without_loss(|| drop(guards.join()));
         }
     }
 
@@ -130,16 +130,24 @@ impl Cluster {
     ) -> Result<JobEnd<J::Group>, ClusterError> {
         let (events, received) = mpsc::channel();
         let begun = Instant::now();
-        self.command(move |worker| dataflow::run(worker, job, tasks, events))?;
+        let mut left = if self.is_first() { tasks.len() } else { 0 };
+        self.command(move |worker| dataflow::run(worker, job, tasks, &events))?;
         let mut ends = Vec::new();
+        let mut is_complete = false;
         let mut seconds = 0.0;
         receive(&received, watch, &mut |event| match event {
             Event::Done(task, output) => {
                 seconds = begun.elapsed().as_secs_f64();
+                left -= 1;
                 done(task, output);
             }
             Event::End(end) => ends.push(end),
+            Event::Complete => is_complete = true,
         })?;
+        let expected_ends = if self.is_first() { self.processes } else { 0 };
+        if !is_complete || left > 0 || ends.len() != expected_ends {
+            return Err(ClusterError::Ended("some results are missing".to_owned()));
+        }
         ends.sort_by_key(|end| end.process);
         let mut threads = Vec::new();
         let mut groups = Vec::new();

@@ -108,11 +108,12 @@ impl Connector<'_> {
                     streams[process].get_or_insert(stream);
                 }
             }
-            for lower in 0..self.process {
-                if streams[lower].is_none() {
+            for (lower, place) in streams.iter_mut().enumerate().take(self.process) {
+                if place.is_none() {
                     let stream = dial(self.hosts.address(lower)).ok();
                     let greeted = stream.map(|stream| self.greeted(stream)).transpose()?.flatten();
-                    streams[lower] = greeted.filter(|(found, _)| *found == lower).map(|(_, s)| s);
+                    let found = greeted.filter(|(found, _)| *found == lower);
+                    *place = found.map(|(_, stream)| stream);
                 }
             }
             let others = (0..streams.len()).filter(|&process| process != self.process);

@@ -63,6 +63,8 @@ pub(crate) enum Event<J: Job> {
     Done(usize, J::Output),
     /// In process 0: what a process has at the end.
     End(ProcessEnd<J::Group>),
+    /// The job has ended in all processes.
+    Complete,
 }
 
 /// What a process has at the end.
@@ -99,6 +101,10 @@ struct Finished<J: Job> {
     time: Duration,
 }
 
+/// The reports of tasks, and what they found.
+type Done<'s, J> =
+    (StreamVec<'s, Round, Report<<J as Job>::Output>>, StreamVec<'s, Round, <J as Job>::Record>);
+
 /// The tasks of each thread, and the seconds that they took.
 type ThreadTimes = Rc<RefCell<Vec<(u64, f64)>>>;
 
@@ -121,7 +127,7 @@ pub(crate) fn run<J: Job>(
     worker: &mut TimelyWorker,
     job: Arc<J>,
     tasks: Vec<usize>,
-    events: Sender<Event<J>>,
+    events: &Sender<Event<J>>,
 ) {
     let probe = worker.dataflow::<Round, _, _>(|scope| {
         let times = ThreadTimes::default();
@@ -129,9 +135,11 @@ pub(crate) fn run<J: Job>(
         let (handle, assignments) = scope.feedback(1);
         let (reports, records) = work(scope, assignments, Arc::clone(&job), Rc::clone(&times));
         dispatch(reports, tasks, events.clone()).connect_loop(handle);
-        end(group(scope.index(), records, job, times), events)
+        end(group(scope.index(), records, job, times), events.clone())
     });
     finish(worker, &probe);
+    // Without a receiver, nobody needs it any more.
+    let _ = events.send(Event::Complete);
 }
 
 /// Sends a value of worker 0 to all.
@@ -147,7 +155,6 @@ pub(crate) fn share<T: Message>(worker: &mut TimelyWorker, value: Option<T>, val
                 move |input, _: &mut Nothing<'_>| {
                     input.for_each(|_, shared| {
                         for (_, value) in shared.drain(..) {
-                            // Without a receiver, nobody needs it any more.
                             let _ = values.send(value);
                         }
                     });
@@ -171,7 +178,7 @@ fn work<'s, J: Job>(
     assignments: StreamVec<'s, Round, Assignment>,
     job: Arc<J>,
     times: ThreadTimes,
-) -> (StreamVec<'s, Round, Report<J::Output>>, StreamVec<'s, Round, J::Record>) {
+) -> Done<'s, J> {
     let mut builder = OperatorBuilder::new("work".to_owned(), scope);
     let route = Exchange::new(|assignment: &Assignment| assignment.process as u64);
     let mut input = builder.new_input(assignments, route);
@@ -245,11 +252,11 @@ impl<J: Job> Pool<J> {
 }
 
 /// Process 0 gives tasks to those that want some.
-fn dispatch<'s, J: Job>(
-    reports: StreamVec<'s, Round, Report<J::Output>>,
+fn dispatch<J: Job>(
+    reports: StreamVec<'_, Round, Report<J::Output>>,
     tasks: Vec<usize>,
     events: Sender<Event<J>>,
-) -> StreamVec<'s, Round, Assignment> {
+) -> StreamVec<'_, Round, Assignment> {
     let mut tasks = tasks.into_iter();
     reports.unary(Exchange::new(|_: &Report<J::Output>| 0), "dispatch", |_, _| {
         move |input, output| {
@@ -270,12 +277,12 @@ fn dispatch<'s, J: Job>(
 }
 
 /// When no task is left, each process groups the records of its keys.
-fn group<'s, J: Job>(
+fn group<J: Job>(
     process: usize,
-    records: StreamVec<'s, Round, J::Record>,
+    records: StreamVec<'_, Round, J::Record>,
     job: Arc<J>,
     times: ThreadTimes,
-) -> StreamVec<'s, Round, ProcessEnd<J::Group>> {
+) -> StreamVec<'_, Round, ProcessEnd<J::Group>> {
     records.unary_frontier(Exchange::new(J::key), "group", |capability, _| {
         let mut held = Some(capability);
         let mut all = Vec::new();

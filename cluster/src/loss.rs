@@ -4,12 +4,12 @@
 //! number of the other process.
 
 use std::{
-    panic,
+    panic::{self, AssertUnwindSafe},
     sync::atomic::{AtomicBool, Ordering},
     thread,
 };
 
-/// Set when the work is done: a connection that ends now is not lost.
+/// Set when the work is done: a connection that breaks now is not lost.
 static DONE: AtomicBool = AtomicBool::new(false);
 
 /// Calls `lost` with the number of the process to which the connection is lost, once. It should not return.
@@ -19,16 +19,19 @@ pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
     panic::set_hook(Box::new(move |panic| {
         let thread = thread::current();
         match thread.name().and_then(other_process) {
+            _ if DONE.load(Ordering::Relaxed) => {}
             None => usual(panic),
-            Some(_) if DONE.load(Ordering::Relaxed) || LOST.swap(true, Ordering::Relaxed) => {}
+            Some(_) if LOST.swap(true, Ordering::Relaxed) => {}
             Some(process) => lost(process),
         }
     }));
 }
 
-/// From now on, no connection is lost.
-pub(crate) fn work_is_done() {
+/// Ends the connections: meanwhile none is lost, whatever the threads say that use them.
+pub(crate) fn without_loss(end: impl FnOnce()) {
     DONE.store(true, Ordering::Relaxed);
+    let _ = panic::catch_unwind(AssertUnwindSafe(end));
+    DONE.store(false, Ordering::Relaxed);
 }
 
 /// The number of the process to which a thread of timely dataflow sends, or from which it receives.

@@ -137,18 +137,18 @@ impl MappingAlgorithm {
 
     /// The result of a lazy sweep, as [`CheckPieces::finished`]; `None` with all choices.
     #[must_use]
-    pub fn finished_pieces(&self, of: &CheckPieces, counts: PieceCounts) -> Option<LazyCheck> {
+    pub fn finished_pieces(&self, counts: PieceCounts) -> Option<LazyCheck> {
         match self {
             Self::Algorithm1 => {
-                let check = of.finished(counts, Algorithm1Explorer::default);
+                let check = CheckPieces::finished(counts, Algorithm1Explorer::default);
                 Some(with_false_step(&Algorithm1, check))
             }
             Self::MovableMarker => {
-                let check = of.finished(counts, MovableMarkerExplorer::default);
+                let check = CheckPieces::finished(counts, MovableMarkerExplorer::default);
                 Some(with_false_step(&MovableMarker, check))
             }
             Self::Folding => {
-                let check = of.finished(counts, FoldingStepExplorer::default);
+                let check = CheckPieces::finished(counts, FoldingStepExplorer::default);
                 Some(with_false_step(&Folding, check))
             }
             Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,

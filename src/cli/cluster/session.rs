@@ -135,11 +135,11 @@ impl ClusterSession {
             let tasks: u64 = of_process.iter().map(|thread| thread.tasks).sum();
             let first = of_process[0];
             remark!(
-                "{work}, process {}: {} tasks, {}, each idle for {least:.2} to {most:.2} s of {:.2} s",
+                "{work}, process {}: {} tasks; idle {least:.2} to {most:.2} s of {:.2} s ({})",
                 first.process,
                 grouped(tasks.into()),
-                counted(of_process.len(), "thread"),
                 first.busy_seconds + first.idle_seconds,
+                counted(of_process.len(), "thread"),
             );
         }
         if json && !threads.is_empty() {

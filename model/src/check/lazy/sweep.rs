@@ -155,7 +155,7 @@ impl LazySweep {
             sum
         };
         let found = in_parts(&all, watch, LazyTally::default, check, |tally| tally.starts, merge);
-        self.finished(found, self.count_worlds(watch), new)
+        Self::finished(found, self.count_worlds(watch), new)
     }
 
     /// The number of units of the shard.
@@ -225,7 +225,6 @@ impl LazySweep {
 
     /// The result, from the counts of all units and all worlds.
     pub(super) fn finished<E: StepExplorer>(
-        &self,
         found: LazyTally,
         WorldCount { worlds, interrupted }: WorldCount,
         new: impl Fn() -> E,

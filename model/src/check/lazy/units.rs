@@ -79,10 +79,9 @@ impl CheckPieces {
 
     /// The result, from the counts of all pieces. It is that of [`LazySweep::run`].
     pub fn finished<E: StepExplorer>(
-        &self,
         PieceCounts { tally, worlds }: PieceCounts,
         new: impl Fn() -> E,
     ) -> LazyCheck {
-        self.sweep.finished(tally, worlds, new)
+        LazySweep::finished(tally, worlds, new)
     }
 }
