@@ -155,11 +155,11 @@ impl<'m> AmbiguitySearch<'m> {
         candidates.sort_unstable();
         let size = |edges| SizeFindings { edges, placed_worlds: 0, ambiguous: 0 };
         let sizes = (1..=self.sizes.len()).map(size).collect();
-        let mut groups = Groups::new(self.marker, sizes, kept, watch);
+        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
         for candidate in candidates {
-            groups.add(candidate)?;
+            grouping.add(candidate)?;
         }
-        groups.findings()
+        grouping.findings()
     }
 
     /// Looks at the worlds of one size, and returns the number of placed worlds.
