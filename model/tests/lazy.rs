@@ -239,7 +239,7 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
         assert!(rounds < 100);
     }
     assert!(rounds > 1);
-    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default, &()));
+    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default));
 }
 
 /// All probes together, each branch once, are the whole tree.

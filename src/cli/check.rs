@@ -29,7 +29,7 @@ use super::{
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
     output,
-    progress::{Progress, StopSignal},
+    progress::Progress,
     text::counted,
     use_threads,
     version::VERSION,
@@ -125,7 +125,8 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     json: bool,
 
-    /// Record finished parts of the work in a folder. A check that was killed goes on from there
+    /// Record finished parts of the work in a folder. If a check is killed, the same command continues
+    /// from there
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     journal: Option<PathBuf>,
 
@@ -261,7 +262,7 @@ impl CheckArguments {
         }
         let checked = match work {
             Work::Lazy(sweep) => match &journal {
-                Some(journal) => algorithm.lazy_sweep(sweep, journal, &progress),
+                Some(journal) => algorithm.lazy_sweep(sweep, journal, &journal.watch(&progress)),
                 None => algorithm.lazy_sweep(sweep, &(), &progress),
             },
             Work::Sweep(_) | Work::Worlds(_) => None,
@@ -293,7 +294,7 @@ impl CheckArguments {
             marker: algorithm.marker().name().to_owned(),
             algorithm: algorithm.name().to_owned(),
             shard: self.shard.to_string(),
-            units: algorithm.unit_count(sweep, &StopSignal).unwrap_or_default(),
+            units: algorithm.unit_count(sweep).unwrap_or_default(),
         }
     }
 

@@ -1,6 +1,13 @@
 //! `toposlam merge`, and the journal of a check.
 
-use std::{fs, path::Path, process::Stdio, thread, time::Duration};
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+    time::Duration,
+};
 
 use super::{folder, objects, run, stderr, stdout, stdout_of, toposlam};
 
@@ -143,6 +150,69 @@ fn a_check_that_was_killed_goes_on_and_prints_the_same_bytes() {
     assert_eq!(fs::read(&file).unwrap(), finished);
 }
 
+/// The line of a unit with one start more, and with a right checksum.
+fn other_counts(line: &str) -> String {
+    let (_, json) = line.split_once(' ').unwrap();
+    let json = json.replacen("\"starts\":", "\"starts\":1", 1);
+    format!("{:08x} {json}\n", crc32fast::hash(json.as_bytes()))
+}
+
+#[test]
+fn a_journal_is_for_one_process_at_a_time() {
+    let folder = folder("journal_locked");
+    let (journal, file) = journal_of(&folder);
+    let check = ["check", "--edges", "7", "--journal", &journal];
+    let whole = stdout_of(check);
+    let locked = fs::File::open(&file).unwrap();
+    locked.lock().unwrap();
+    let name = file.to_str().unwrap();
+    assert_eq!(refused(&check), format!("error: {name}: another process is writing this file\n"));
+    drop(locked);
+    assert_eq!(stdout_of(check), whole);
+}
+
+/// A limit on the size of a file takes the place of a full disk.
+#[cfg(unix)]
+#[test]
+fn a_check_stops_when_its_journal_cannot_be_written_and_continues_later() {
+    let folder = folder("journal_full");
+    let (journal, file) = journal_of(&folder);
+    let check = ["check", "--json", "--edges", "7", "--journal", &journal];
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
+    let mut shell = Command::new("sh");
+    let shell = shell.current_dir(env!("CARGO_MANIFEST_DIR")).stdin(Stdio::null());
+    let output =
+        shell.args(["-c", limited, env!("CARGO_BIN_EXE_toposlam")]).args(check).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert_eq!(stdout(&output), "");
+    let message = stderr(&output);
+    let cause = format!("error: {}: the journal cannot be written: ", file.display());
+    assert!(message.starts_with(&cause) && message.contains("continues"), "{message}");
+    let resumed = run(check);
+    assert!(stderr(&resumed).contains("of the work finished before"), "{resumed:?}");
+    assert_eq!(stdout(&resumed), stdout_of(&check[..4]));
+}
+
+/// Ctrl-C can come when a size begins: its journal has the number of all units, and can be continued.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_journals_that_can_be_continued() {
+    let folder = folder("journal_interrupted");
+    let (journal, _) = journal_of(&folder);
+    let check =
+        ["check", "--json", "--edges", "4..=8", "--class", "corridor", "--journal", &journal];
+    let mut child = toposlam();
+    let mut child = child.args(check).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    // The journal of the next size is opened after the first line.
+    let mut out = BufReader::new(child.stdout.take().unwrap());
+    out.read_line(&mut String::new()).unwrap();
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    out.read_to_string(&mut String::new()).unwrap();
+    child.wait().unwrap();
+    assert_eq!(stdout_of(check), stdout_of(&check[..6]));
+}
+
 #[test]
 fn a_corrupt_or_foreign_journal_is_refused() {
     let folder = folder("journal_refused");
@@ -166,13 +236,22 @@ fn a_corrupt_or_foreign_journal_is_refused() {
         ),
         (good.replacen("\"edges\":4", "\"edges\":5", 1), "line 1: this is not the first line"),
         ("nothing\n".to_owned(), "line 1: this is not the first line"),
-        (format!("{good}{}\n", lines[1]), "a unit is there twice"),
+        ("nothing, and no end of a line".to_owned(), "line 1: this is not the first line"),
+        ("nothing\nan unfinished line".to_owned(), "line 1: this is not the first line"),
+        (format!("{good}{}", other_counts(lines[1])), "a unit occurs twice, with different counts"),
         (format!("{good}\n"), "the checksum is wrong"),
     ] {
-        fs::write(&file, text).unwrap();
+        fs::write(&file, &text).unwrap();
         let message = refused(&check);
         assert!(message.starts_with(&format!("error: {name}: ")), "{message}");
         assert!(message.contains(problem), "{message}");
+        // A file that may belong to someone else is not changed.
+        assert_eq!(fs::read_to_string(&file).unwrap(), text);
+    }
+    // A unit that two processes finished, and the first line of a check that was killed.
+    for text in [format!("{good}{}\n", lines[1]), lines[0][..40].to_owned(), String::new()] {
+        fs::write(&file, text).unwrap();
+        assert_eq!(stdout_of(check), whole);
     }
     for without_effect in
         [&["--choices", "all"][..], &["--from", "worlds/petersen.toml"], &["--estimate"]]
