@@ -67,7 +67,7 @@ Examples:
 
 Ctrl-C stops the check and prints the results so far.",
     &[
-        (0, "every map is right"),
+        (0, "every map is right, or the estimate is printed"),
         (1, "a map is wrong"),
         (2, "bad usage or input"),
         (3, "not everything was checked: a limit was reached, there is nothing to check, or Ctrl-C"),
@@ -133,7 +133,7 @@ pub(super) struct CheckArguments {
     #[command(flatten)]
     estimate: EstimateOptions,
 
-    /// Check larger worlds also after a map was wrong
+    /// Check larger worlds also after a map was wrong, or after an explorer reached a limit
     #[arg(long)]
     keep_going: bool,
 
@@ -202,7 +202,7 @@ impl CheckArguments {
                 let result = self.result(edges, &tally, None);
                 SizeLine::new(&result, subject, RunChoices::Default).name()
             };
-            cases.extend(self.not_checked(sizes.map(name)));
+            self.add_not_checked(&mut cases, sizes.map(name));
         }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
@@ -221,15 +221,15 @@ impl CheckArguments {
         }
     }
 
-    /// The sizes after one in which a map was wrong, by their names, for CI systems.
-    fn not_checked(&self, names: impl Iterator<Item = String>) -> Vec<CiCase> {
+    /// Adds the sizes after the last one, by their names, for CI systems.
+    fn add_not_checked(&self, cases: &mut Vec<CiCase>, names: impl Iterator<Item = String>) {
+        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
         let file = self.from.as_deref().map(Path::to_owned);
-        let cases = names.map(|name| CiCase::not_checked(name, file.clone()));
-        let cases: Vec<_> = cases.collect();
-        if !cases.is_empty() {
+        let checked = cases.len();
+        cases.extend(names.map(|name| CiCase::not_checked(name, &after, file.clone())));
+        if cases.len() > checked {
             remark!("worlds with more edges are not checked; --keep-going checks them");
         }
-        cases
     }
 
     fn result<'t>(
@@ -367,7 +367,7 @@ impl Work {
 }
 
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
-    let moves = |start: &Option<WorstStart>| start.as_ref().map_or(0, |start| start.moves);
+    let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
     if moves(&other) > moves(worst) {
         *worst = other;
     }
