@@ -120,6 +120,19 @@ fn a_wrong_map_in_one_shard_is_the_first_of_the_whole() {
     assert!(text.contains("Wrong: the map is wrong") && text.contains("violated"), "{text}");
 }
 
+#[test]
+fn a_wrong_map_is_followed_by_the_command_that_explores_its_world() {
+    let folder = folder("merge_folding");
+    let folding = ["--algorithm", "folding", "--edges", "3", "--shard"];
+    let shard = |n: &str| shard(&folder, &n.replace('/', "-"), &[&folding[..], &[n]].concat());
+    let [one, two] = ["1/2", "2/2"].map(shard);
+    with_wrong_map(&two, "the map is wrong");
+    let text = stdout(&run(["merge", &one, &two]));
+    let words: Vec<_> = text.split_whitespace().collect();
+    let command = "`toposlam explore --marker directional --algorithm folding`";
+    assert!(words.join(" ").contains(command), "{text}");
+}
+
 /// A shard stops after a size with a wrong map, as the whole check does. The other shards go on.
 #[test]
 fn a_wrong_map_is_reported_although_its_shard_has_no_larger_sizes() {

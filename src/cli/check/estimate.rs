@@ -24,7 +24,7 @@ use crate::cli::{
 /// The edges that are left where a probe no longer draws.
 const COMPLETE: usize = 4;
 
-/// 95 % of a normal distribution are within so many standard deviations of its mean.
+/// 95 % of a normal distribution are within this many standard deviations of its mean.
 const STANDARD_DEVIATIONS: f64 = 1.96;
 
 /// The options of an estimate.
@@ -100,7 +100,7 @@ struct EstimateLine<'a> {
     moves_total: Interval,
     /// Those that the check makes.
     moves_made: Interval,
-    /// On so many threads.
+    /// On `threads` threads.
     seconds: Interval,
     threads: usize,
 }
