@@ -213,10 +213,11 @@ impl CheckArguments {
 
     /// With all choices, runs do not share their beginnings.
     fn check_shared_options(&self) -> Result<(), CliError> {
-        let cause = "this needs --choices default";
         match self.choices {
-            ChoicesOption::All if self.estimate.estimate => Err(CliError::at("--estimate", cause)),
-            ChoicesOption::All if self.journal.is_some() => Err(CliError::at("--journal", cause)),
+            ChoicesOption::All if self.estimate.estimate => {
+                Err(needs_default_choices("--estimate"))
+            }
+            ChoicesOption::All if self.journal.is_some() => Err(needs_default_choices("--journal")),
             ChoicesOption::All | ChoicesOption::Default => Ok(()),
         }
     }
@@ -271,7 +272,7 @@ impl CheckArguments {
             (Some(LazyCheck { tally, moves_made }), _) => (tally, Some(moves_made)),
             (None, Work::Worlds(graphs)) => (algorithm.check_worlds(graphs, &progress), None),
             (None, Work::Sweep(sweep)) => (algorithm.sweep(sweep, &progress), None),
-            (None, Work::Lazy(_)) => (Tally::default(), None),
+            (None, Work::Lazy(_)) => return Err(needs_default_choices("--choices")),
         };
         progress.finish();
         if let Some(journal) = journal {
@@ -306,11 +307,12 @@ impl CheckArguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         for (&edges, work) in work {
-            if let Work::Lazy(sweep) = work {
-                let progress = Progress::new(&format!("{edges} edges"), "starts")?;
-                self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
-                progress.finish();
-            }
+            let Work::Lazy(sweep) = work else {
+                return Err(needs_default_choices("--estimate"));
+            };
+            let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+            self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
+            progress.finish();
         }
         Ok(Outcome::Holds)
     }
@@ -364,6 +366,11 @@ impl Work {
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }
+}
+
+/// The error for work whose runs cannot share their beginnings.
+fn needs_default_choices(option: &str) -> CliError {
+    CliError::at(option, "this needs --choices default")
 }
 
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {

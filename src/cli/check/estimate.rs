@@ -127,7 +127,9 @@ impl EstimateOptions {
             let draws = 1 + edges.saturating_sub(COMPLETE);
             let numbers = (0..draws).map(|_| random.random()).collect();
             let begun = Instant::now();
-            let Some(probe) = algorithm.probe(sweep, numbers, watch) else { break };
+            let Some(probe) = algorithm.probe(sweep, numbers, watch) else {
+                return Err(super::needs_default_choices("--estimate"));
+            };
             let elapsed = begun.elapsed().as_secs_f64();
             if watch.stop() {
                 return Err(CliError::Interrupted);
