@@ -168,9 +168,7 @@ fn runs_share_their_beginnings() {
         let LazyCheck { tally, moves_made } = lazy::<Algorithm1Explorer>(class, edges);
         (tally.moves_total, moves_made)
     };
-    let (total, made) = moves(Class::Multigraph, 6);
-    assert_eq!(total, 1_257_094);
-    assert!(made < total * 6 / 10, "{made}");
+    assert_eq!(moves(Class::Multigraph, 7), (25_375_585, 13_166_198));
 }
 
 fn shard(text: &str) -> LazySweep {
@@ -239,7 +237,7 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
         assert!(rounds < 100);
     }
     assert!(rounds > 1);
-    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default, &()));
+    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default));
 }
 
 /// All probes together, each branch once, are the whole tree.

@@ -210,7 +210,8 @@ impl CounterexampleArguments {
                 counted(others.len(), "marker")
             );
         }
-        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, None)));
+        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
+        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, &after, None)));
         report.end()?;
         if let Some(cluster) = cluster {
             cluster.close();
