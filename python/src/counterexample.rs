@@ -1,4 +1,4 @@
-//! The smallest worlds that a marker cannot tell apart.
+//! The smallest worlds that a marker cannot distinguish.
 
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;

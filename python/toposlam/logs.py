@@ -187,7 +187,7 @@ def conform(
     corners: bool = False,
     max_edges: int | None = None,
     max_steps: int = 500_000,
-    max_darts: int = 1000,
+    max_darts: int | None = None,
     progress: bool | None = None,
 ) -> ConformReport:
     """Checks a log against the specification, in a known world or with the smallest that explains it.
@@ -195,10 +195,13 @@ def conform(
     `driver` is what chose the doors: `"algorithm"` as the log records it, or else `"algorithm1"` or
     `"folding"`, or `"anyone"`. `marker` is the robot's marker, by default that of the log; `assume_marker`
     adds one at the first junction of a laser log.
-    `cls`, `max_edges` and `max_steps` bound the search for a world.
+    `cls`, `max_edges` and `max_steps` bound the search for a world, `max_darts` the map of the algorithm; by
+    default it is that of the log, or 1,000.
     """
     reader = _open(path)
     for name, value in {"max_steps": max_steps, "max_darts": max_darts}.items():
+        if name == "max_darts" and value is None:
+            continue
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise SizeError(f"{name} is a number from 1, not {value!r}")
     core = None if world is None else world._core

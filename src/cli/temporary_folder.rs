@@ -1,8 +1,10 @@
 //! Folders for temporary files. None is left behind, also after Ctrl-C.
 
 use std::{
-    env, fs, io,
-    path::{Path, PathBuf},
+    env,
+    fmt::Display,
+    fs,
+    path::PathBuf,
     sync::{Mutex, PoisonError},
 };
 
@@ -19,21 +21,22 @@ impl TemporaryFolder {
     pub(crate) fn new() -> Result<Self, String> {
         let mut folders = FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::Builder::new().prefix("toposlam-").tempdir().map_err(|error| {
-            format!("no folder for temporary files can be created in {}: {error}", shown())
+            let place = env::temp_dir();
+            format!("no folder for temporary files can be created in {}: {error}", place.display())
         })?;
         folders.push(folder.path().to_owned());
         Ok(Self(folder))
     }
 
-    /// Its path.
-    pub(crate) fn path(&self) -> &Path {
-        self.0.path()
+    /// The folder.
+    pub(crate) fn directory(&self) -> &TempDir {
+        &self.0
     }
 
     /// The message of a failure in this folder.
-    pub(crate) fn failure(&self, error: &io::Error) -> String {
+    pub(crate) fn failure(&self, error: &impl Display) -> String {
         let advice = "TMPDIR=DIR chooses another folder for temporary files";
-        format!("{}: {error}; {advice}", self.path().display())
+        format!("{}: {error}; {advice}", self.0.path().display())
     }
 }
 
@@ -44,19 +47,11 @@ impl Drop for TemporaryFolder {
     }
 }
 
-fn shown() -> String {
-    env::temp_dir().display().to_string()
-}
-
 /// Removes all folders, at the end of the program.
 pub(super) fn remove_all() {
     let folders = FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
     for folder in folders.iter() {
-        // Another thread may write a file meanwhile.
-        for _ in 0..3 {
-            if fs::remove_dir_all(folder).is_ok() {
-                break;
-            }
-        }
+        // There is nobody to report a failure to.
+        let _ = fs::remove_dir_all(folder);
     }
 }

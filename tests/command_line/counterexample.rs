@@ -223,16 +223,11 @@ fn an_interrupted_search_leaves_no_temporary_files() {
     search.args(["counterexample", "--memory", "64MB"]).args(&LARGE[..5]).arg("9");
     search.env("TMPDIR", &temporary).stdout(Stdio::null()).stderr(Stdio::piped());
     let search = search.spawn().unwrap();
-    // The search is running once its folder is there and has a file.
-    let has_file = || {
-        let folders = names_in(&temporary);
-        folders
-            .iter()
-            .any(|name| fs::read_dir(temporary.join(name)).is_ok_and(|mut f| f.next().is_some()))
-    };
-    while !has_file() {
+    // The search is running once its folder is there. The files in it have no names.
+    while names_in(&temporary).is_empty() {
         thread::sleep(Duration::from_millis(20));
     }
+    thread::sleep(Duration::from_millis(500));
     let killed = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();
     assert!(killed.success());
     let output = search.wait_with_output().unwrap();

@@ -8,7 +8,7 @@
 mod candidate;
 mod comparison;
 mod findings;
-mod groups;
+mod grouping;
 mod partition;
 mod quotient;
 mod search;

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use super::{
     AmbiguityCandidate, CandidateSorter, CandidatesInMemory, Findings, KeptPairs, SearchError,
     SizeFindings, Unfinished,
-    groups::Groups,
+    grouping::Grouping,
     quotient::Quotient,
     space::{Space, States},
 };
@@ -114,11 +114,11 @@ impl<'m> AmbiguitySearch<'m> {
             let placed_worlds = self.look_at(worlds, sorter.as_ref(), watch)?;
             sizes.push(SizeFindings { edges, placed_worlds, ambiguous: 0 });
         }
-        let mut groups = Groups::new(self.marker, sizes, kept, watch);
+        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
         for candidate in sorter.sorted().map_err(SearchError::Sorter)? {
-            groups.add(candidate.map_err(SearchError::Sorter)?)?;
+            grouping.add(candidate.map_err(SearchError::Sorter)?)?;
         }
-        Ok(groups.findings()?)
+        Ok(grouping.findings()?)
     }
 
     /// The parts of the search, those of small worlds first. Equal searches have equal parts on every machine.
@@ -155,11 +155,11 @@ impl<'m> AmbiguitySearch<'m> {
         candidates.sort_unstable();
         let size = |edges| SizeFindings { edges, placed_worlds: 0, ambiguous: 0 };
         let sizes = (1..=self.sizes.len()).map(size).collect();
-        let mut groups = Groups::new(self.marker, sizes, kept, watch);
+        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
         for candidate in candidates {
-            groups.add(candidate)?;
+            grouping.add(candidate)?;
         }
-        groups.findings()
+        grouping.findings()
     }
 
     /// Looks at the worlds of one size, and returns the number of placed worlds.

@@ -2,13 +2,14 @@
 
 use std::{
     cmp::Ordering,
-    io::{self, Read, Write},
-    iter,
+    fs,
+    io::{self, BufReader, BufWriter, Read, Take, Write},
+    mem,
     str::FromStr,
     sync::{Mutex, PoisonError},
 };
 
-use extsort::{ExternalSorter, PushExternalSorter, Sortable};
+use ext_sort::{BinaryHeapMerger, ExternalChunk};
 use toposlam_model::ambiguity::{
     AmbiguityCandidate, AmbiguitySearch, CandidateSorter, CandidatesInMemory, SortedCandidates,
     SorterError,
@@ -59,80 +60,118 @@ pub(super) fn sorter(
     Ok(Box::new(on_disk.map_err(|cause| CliError::at("--memory", cause))?))
 }
 
-/// A candidate that can be written to disk.
-struct Stored(AmbiguityCandidate);
+/// A file of sorted candidates, each after its length.
+struct CandidateFile(Take<BufReader<fs::File>>);
 
-impl Sortable for Stored {
-    fn encode<W: Write>(&self, writer: &mut W) -> io::Result<()> {
-        let bytes = self.0.as_bytes();
-        writer.write_all(&(bytes.len() as u32).to_le_bytes())?;
-        writer.write_all(bytes)
+impl ExternalChunk<AmbiguityCandidate> for CandidateFile {
+    type SerializationError = io::Error;
+    type DeserializationError = io::Error;
+
+    fn new(reader: Take<BufReader<fs::File>>) -> Self {
+        Self(reader)
     }
 
-    fn decode<R: Read>(reader: &mut R) -> io::Result<Self> {
-        let mut length = [0; 4];
-        reader.read_exact(&mut length)?;
-        let mut bytes = vec![0; u32::from_le_bytes(length) as usize];
-        reader.read_exact(&mut bytes)?;
-        let candidate = AmbiguityCandidate::from_bytes(bytes.into_boxed_slice());
-        candidate.map(Self).ok_or_else(|| io::ErrorKind::InvalidData.into())
+    fn dump(
+        writer: &mut BufWriter<fs::File>,
+        candidates: impl IntoIterator<Item = AmbiguityCandidate>,
+    ) -> io::Result<()> {
+        for candidate in candidates {
+            let bytes = candidate.as_bytes();
+            writer.write_all(&(bytes.len() as u32).to_le_bytes())?;
+            writer.write_all(bytes)?;
+        }
+        Ok(())
     }
 }
 
-type Order = fn(&Stored, &Stored) -> Ordering;
+impl CandidateFile {
+    fn read(&mut self) -> io::Result<AmbiguityCandidate> {
+        let mut length = [0; 4];
+        self.0.read_exact(&mut length)?;
+        let length = u32::from_le_bytes(length);
+        if u64::from(length) > self.0.limit() {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        let mut bytes = vec![0; length as usize];
+        self.0.read_exact(&mut bytes)?;
+        let candidate = AmbiguityCandidate::from_bytes(bytes.into_boxed_slice());
+        candidate.ok_or_else(|| io::ErrorKind::InvalidData.into())
+    }
+}
+
+impl Iterator for CandidateFile {
+    type Item = io::Result<AmbiguityCandidate>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        (self.0.limit() > 0).then(|| self.read())
+    }
+}
 
 /// Sorts candidates in memory until there are too many, and then in files that are merged at the end.
 struct CandidatesOnDisk {
-    sorter: Mutex<PushExternalSorter<Stored, Order>>,
+    /// The most candidates in memory.
+    at_once: usize,
+    added: Mutex<Added>,
     folder: TemporaryFolder,
 }
 
+#[derive(Default)]
+struct Added {
+    in_memory: Vec<AmbiguityCandidate>,
+    /// They have no names: the system removes them when the program ends in any way.
+    files: Vec<CandidateFile>,
+}
+
 impl CandidatesOnDisk {
-    /// Keeps so many candidates in memory.
     fn new(at_once: usize) -> Result<Self, String> {
         let folder = TemporaryFolder::new()?;
-        let sorter = ExternalSorter::new()
-            .with_segment_size(at_once)
-            .with_sort_dir(folder.path().to_owned())
-            .with_parallel_sort()
-            .pushed_by((|one, other| one.0.cmp(&other.0)) as Order);
-        Ok(Self { sorter: Mutex::new(sorter), folder })
+        Ok(Self { at_once, added: Mutex::default(), folder })
     }
+}
+
+/// Moves the candidates in memory to a file. One thread sorts: with several, another part of the search would
+/// begin while this one waits, and wait for the same lock.
+fn spill(added: &mut Added, folder: &TemporaryFolder) -> Result<(), SorterError> {
+    let mut candidates = mem::take(&mut added.in_memory);
+    candidates.sort_unstable();
+    let file = CandidateFile::build(folder.directory(), candidates, None);
+    added.files.push(file.map_err(|error| folder.failure(&error))?);
+    Ok(())
 }
 
 impl CandidateSorter for CandidatesOnDisk {
     fn add(&self, candidates: Vec<AmbiguityCandidate>) -> Result<(), SorterError> {
-        let mut sorter = self.sorter.lock().unwrap_or_else(PoisonError::into_inner);
-        let added = sorter.push_iter(candidates.into_iter().map(Stored));
-        added.map_err(|error| self.folder.failure(&error).into())
+        let mut added = self.added.lock().unwrap_or_else(PoisonError::into_inner);
+        for candidate in candidates {
+            if added.in_memory.len() >= self.at_once {
+                spill(&mut added, &self.folder)?;
+            }
+            added.in_memory.push(candidate);
+        }
+        Ok(())
     }
 
     fn sorted(self: Box<Self>) -> Result<SortedCandidates, SorterError> {
-        let Self { sorter, folder } = *self;
-        let sorter = sorter.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mut sorted = sorter.done().map_err(|error| folder.failure(&error))?;
-        let mut left = sorted.sorted_count();
-        Ok(Box::new(iter::from_fn(move || match sorted.next() {
-            Some(Ok(Stored(candidate))) => {
-                left -= 1;
-                Some(Ok(candidate))
-            }
-            Some(Err(error)) => Some(Err(folder.failure(&error).into())),
-            // A file that ends too early looks like one that is finished.
-            None if left > 0 => {
-                left = 0;
-                Some(Err(folder.failure(&io::ErrorKind::UnexpectedEof.into()).into()))
-            }
-            None => None,
+        let Self { added, folder, .. } = *self;
+        let mut added = added.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if added.files.is_empty() {
+            added.in_memory.sort_unstable();
+            return Ok(Box::new(added.in_memory.into_iter().map(Ok)));
+        }
+        spill(&mut added, &folder)?;
+        let order: fn(&AmbiguityCandidate, &AmbiguityCandidate) -> Ordering = Ord::cmp;
+        let merged = BinaryHeapMerger::new(added.files, order);
+        Ok(Box::new(merged.map(move |candidate: io::Result<_>| {
+            candidate.map_err(|error| folder.failure(&error).into())
         })))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
+    use std::{io::Seek, iter};
 
-    use toposlam_model::{enumerate::Class, marker::named};
+    use toposlam_model::{ambiguity::KeptPairs, enumerate::Class, marker::named};
 
     use super::*;
 
@@ -154,8 +193,8 @@ mod tests {
     fn candidates() -> Vec<AmbiguityCandidate> {
         let search = AmbiguitySearch::new(Class::Multigraph, 5, named("undirected").unwrap());
         let collected = Collected::default();
-        let kept = toposlam_model::ambiguity::KeptPairs::Smallest;
-        search.unwrap().run_sorted(Box::new(&collected), kept, &()).unwrap();
+        let sorter = Box::new(&collected);
+        search.unwrap().run_sorted(sorter, KeptPairs::Smallest, &()).unwrap();
         collected.0.into_inner().unwrap()
     }
 
@@ -165,10 +204,10 @@ mod tests {
         assert!(all.len() > 1000);
         for at_once in [usize::MAX, 100, 7] {
             let on_disk = CandidatesOnDisk::new(at_once).unwrap();
-            let folder = on_disk.folder.path().to_owned();
+            let folder = on_disk.folder.directory().path().to_owned();
             on_disk.add(all.clone()).unwrap();
-            let files = fs::read_dir(&folder).unwrap().count();
-            assert_eq!(files > 0, at_once < all.len());
+            let files = on_disk.added.lock().unwrap().files.len();
+            assert_eq!(files, (all.len() - 1) / at_once);
             let sorted: Result<Vec<_>, _> = Box::new(on_disk).sorted().unwrap().collect();
             all.sort();
             assert_eq!(sorted.unwrap(), all);
@@ -177,19 +216,34 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_was_cut_or_cannot_be_written_is_an_error() {
-        let all = candidates();
+    fn a_file_that_cannot_be_written_is_an_error() {
         let on_disk = CandidatesOnDisk::new(100).unwrap();
-        on_disk.add(all.clone()).unwrap();
-        let file = fs::OpenOptions::new().write(true).open(on_disk.folder.path().join("3"));
-        file.unwrap().set_len(50).unwrap();
-        let sorted: Result<Vec<_>, _> = Box::new(on_disk).sorted().unwrap().collect();
-        let error = sorted.unwrap_err().to_string();
-        assert!(error.contains("toposlam-") && error.contains("TMPDIR=DIR"), "{error}");
-        let on_disk = CandidatesOnDisk::new(100).unwrap();
-        fs::remove_dir_all(on_disk.folder.path()).unwrap();
-        let error = on_disk.add(all).unwrap_err().to_string();
+        fs::remove_dir_all(on_disk.folder.directory().path()).unwrap();
+        let error = on_disk.add(candidates()).unwrap_err().to_string();
         assert!(error.contains("No such file or directory"), "{error}");
+        assert!(error.contains("toposlam-") && error.contains("TMPDIR=DIR"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_ends_early_or_is_not_of_candidates_is_an_error() {
+        let mut bytes = Vec::new();
+        for candidate in &candidates()[..2] {
+            bytes.extend((candidate.as_bytes().len() as u32).to_le_bytes());
+            bytes.extend(candidate.as_bytes());
+        }
+        let read = |bytes: &[u8]| {
+            let mut file = tempfile::tempfile().unwrap();
+            file.write_all(bytes).unwrap();
+            file.rewind().unwrap();
+            let mut file = CandidateFile::new(BufReader::new(file).take(bytes.len() as u64));
+            (file.next().unwrap().is_ok(), file.next().unwrap().map_err(|error| error.kind()))
+        };
+        assert!(matches!(read(&bytes), (true, Ok(_))));
+        let cut = read(&bytes[..bytes.len() - 1]);
+        assert_eq!(cut, (true, Err(io::ErrorKind::UnexpectedEof)));
+        let second = 4 + candidates()[0].as_bytes().len();
+        bytes[second + 4] = 0xff;
+        assert_eq!(read(&bytes), (true, Err(io::ErrorKind::InvalidData)));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::{
 const PAIRS: usize = 1024;
 
 /// The groups of candidates with the same quotient. A relation confirms each world with the first of its group.
-pub(super) struct Groups<'a> {
+pub(super) struct Grouping<'a> {
     marker: &'a dyn Marker,
     watch: &'a dyn Watch,
     kept: KeptPairs,
@@ -27,7 +27,7 @@ pub(super) struct Groups<'a> {
     pairs: Vec<[PlacedWorld; 2]>,
 }
 
-impl<'a> Groups<'a> {
+impl<'a> Grouping<'a> {
     /// No groups yet. The ambiguous worlds of these sizes are counted.
     pub(super) fn new(
         marker: &'a dyn Marker,
@@ -156,12 +156,12 @@ mod tests {
         let findings =
             AmbiguitySearch::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();
         assert!(findings.groups.len() > 1);
-        let mut groups = Groups::new(marker, Vec::new(), KeptPairs::All, &());
+        let mut grouping = Grouping::new(marker, Vec::new(), KeptPairs::All, &());
         // As if all of these had the same quotient.
         for world in findings.groups.iter().flat_map(|group| &group.worlds) {
-            groups.add(AmbiguityCandidate::new(&QuotientCode::new(), &world.code)).unwrap();
+            grouping.add(AmbiguityCandidate::new(&QuotientCode::new(), &world.code)).unwrap();
         }
-        assert!(matches!(groups.findings(), Err(Unfinished::Unconfirmed(_))));
+        assert!(matches!(grouping.findings(), Err(Unfinished::Unconfirmed(_))));
     }
 
     #[test]
