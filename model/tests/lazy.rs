@@ -15,7 +15,8 @@ use toposlam_model::{
     check::{
         Algorithm1, Algorithm1Explorer, EnumeratedStart, ExploredMap, FinishedUnits, Flaw, Folding,
         FoldingStepExplorer, LazyCheck, LazySweep, LazyTally, MappingAlgorithm, MovableMarker,
-        MovableMarkerExplorer, Shard, StepExplorer, StepProgress, Stepwise, Sweep, Tally,
+        MovableMarkerExplorer, PieceCounts, Shard, StepExplorer, StepProgress, Stepwise, Sweep,
+        Tally,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
@@ -214,6 +215,32 @@ impl FinishedUnits for SomeUnits {
 impl Watch for SomeUnits {
     fn stop(&self) -> bool {
         self.left.load(Ordering::Relaxed) == 0
+    }
+}
+
+/// As processes on several machines do them: in any order, and each with pieces of its own.
+#[test]
+fn the_pieces_in_any_order_are_the_whole() {
+    let cases = [
+        (MappingAlgorithm::Algorithm1, Class::Multigraph, 5),
+        (MappingAlgorithm::Folding, Class::Planar, 6),
+        (MappingAlgorithm::MovableMarker, Class::Corridor, 7),
+    ];
+    for (algorithm, class, edges) in cases {
+        let sweep = LazySweep::new(class, edges, Shard::WHOLE).unwrap();
+        let machines = [(); 3].map(|()| algorithm.pieces(&sweep, &()).unwrap());
+        let mut counts = [(); 3].map(|()| PieceCounts::default());
+        let count = machines[0].count();
+        assert!(count > machines[0].unit_count() && machines[0].unit_count() > 3);
+        for piece in (0..count).rev() {
+            let machine = piece * piece % 3;
+            counts[machine].merge(algorithm.check_piece(&machines[machine], piece, &()));
+        }
+        let [mut all, one, other] = counts;
+        all.merge(one);
+        all.merge(other);
+        let whole = algorithm.lazy_sweep(&sweep, &(), &());
+        assert_eq!(algorithm.finished_pieces(all), whole, "{class}");
     }
 }
 

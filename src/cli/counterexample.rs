@@ -228,12 +228,12 @@ impl CounterexampleArguments {
         markers: &[&dyn Marker],
         edges: usize,
     ) -> Result<Option<ClusterSession>, CliError> {
-        let markers: Vec<_> = markers.iter().map(|marker| marker.name()).collect();
+        let markers = markers.iter().fold(String::new(), |all, marker| all + marker.name() + " ");
         let settings = [
             ("the command", "counterexample".to_owned()),
             ("the class", self.class.name().to_owned()),
             ("--max-edges", edges.to_string()),
-            ("the markers", markers.join(" ")),
+            ("the markers", markers.trim_end().to_owned()),
             ("--all", self.all.to_string()),
             ("--expect", format!("{:?}", self.expect)),
             ("--keep-going", self.keep_going.to_string()),
