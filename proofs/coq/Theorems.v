@@ -3,7 +3,7 @@
     proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer Markers Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer GivenActions Markers Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
@@ -595,6 +595,15 @@ Theorem folding_explorer_cost (W : start) (bound : nat) :
   always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
 Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
+
+(** The explorer that is compared with the running one, whose actions are given from outside, is the folding
+    explorer: what always holds for the folding explorer holds for it, as long as the actions are allowed. Paper:
+    beyond 2.3. *)
+Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
+    (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
+  always M (folding_explorer allowed patience bound seen) pose Q ->
+  always_guided M (guided_explorer allowed patience bound seen) pose Q.
+Proof. exact: GivenActions.always_guided_actions. Qed.
 
 (** * Maps that can be checked *)
 
