@@ -1,8 +1,8 @@
 (** The mapping algorithms as an OCaml program, which [compare/main.ml] runs and a test compares with those of
     toposlam: on every small start with the default choices and with all choices, on larger ones with random
-    choices; the folding explorer with the actions of the running one. This trusts Coq's extraction, and its mapping of booleans,
-    options, pairs and lists to OCaml's own. Numbers are not mapped: they are Coq's [nat], with Coq's
-    arithmetic. *)
+    choices; the folding explorer with the actions of the running one. This trusts Coq's extraction, and its
+    mapping of booleans, options, pairs and lists to OCaml's own. Numbers are not mapped: they are Coq's [nat],
+    with Coq's arithmetic. *)
 
 From mathcomp Require Import all_ssreflect.
 From Coq Require Extraction ExtrOcamlBasic.

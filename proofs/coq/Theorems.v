@@ -1,13 +1,14 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the
-    proofs are in the other files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer GivenActions Markers Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions Markers
+  Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect.
+  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect CertificateNeeded CertificateAttained.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -560,6 +561,27 @@ Proof.
 exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
 split=> // robot maps_all n answer answered.
 by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+Qed.
+
+(** In every world there is a walk with a complete folded trail that has as many moves as the formula of the
+    certificate says. Paper: beyond 2.3. *)
+Theorem certificate_attained (W : start) :
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+Proof. exact: CertificateAttained.certificate_attained. Qed.
+
+(** No walk with a complete folded trail has fewer moves. Paper: beyond 2.3. *)
+Theorem certificate_shortest (W : start) (doors : seq door) :
+  complete doors (sees W doors) -> certificate_length W <= size doors.
+Proof. exact: CertificateAttained.certificate_shortest. Qed.
+
+(** So a robot that maps every world makes at least as many moves in each. Paper: beyond 2.3. *)
+Theorem certificate_needed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  certificate_length W <= size (doors_taken robot directional W n).
+Proof.
+move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed.
+exact: Returns.robot_determined answered.
 Qed.
 
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
