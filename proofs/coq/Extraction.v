@@ -19,8 +19,8 @@ Unset Printing Implicit Defensive.
 Inductive deeds (A : Type) :=
   | Answers of A
   | Leaves of door & (percept -> deeds A)
-  | PicksUp of deeds A
-  | Drops of deeds A
+  | PicksUp of (percept -> deeds A)
+  | Drops of (percept -> deeds A)
   | Chooses of nat & (option nat -> deeds A).
 
 Arguments Answers {A}.
@@ -34,25 +34,25 @@ Definition chooses A T (o : Program.options T) (default : T) (go : T -> deeds A)
   else Chooses (size (Program.listed o))
          (fun i => go (if i is Some i then nth default (Program.listed o) i else default)).
 
-Fixpoint deeds_of A (p : Program.program A) : deeds A :=
-  match p with
-  | Program.Return a => Answers a
-  | Program.Move i go => Leaves i (fun seen => deeds_of (go seen))
-  | Program.Choose T o default go => chooses o default (fun x => deeds_of (go x))
+(** How a robot does an action and goes on. *)
+Definition leaves A (i : door) (go : percept -> deeds A) := Leaves i go.
+Definition handles A (e : MovableMarker.handling_action) (go : percept -> deeds A) :=
+  match e with
+  | MovableMarker.LeaveBy i => Leaves i go
+  | MovableMarker.PickUp => PicksUp go
+  | MovableMarker.Drop => Drops go
   end.
 
-Fixpoint handling_deeds_of A (p : MovableMarker.handling_program A) : deeds A :=
+Fixpoint deeds_of E A (does : E -> (percept -> deeds A) -> deeds A) (p : Program.program_of E A) : deeds A :=
   match p with
-  | MovableMarker.Return a => Answers a
-  | MovableMarker.Move i go => Leaves i (fun seen => handling_deeds_of (go seen))
-  | MovableMarker.PickUp go => PicksUp (handling_deeds_of go)
-  | MovableMarker.Drop go => Drops (handling_deeds_of go)
-  | MovableMarker.Choose T o default go => chooses o default (fun x => handling_deeds_of (go x))
+  | Program.Return a => Answers a
+  | Program.Do e go => does e (fun seen => deeds_of does (go seen))
+  | Program.Choose T o default go => chooses o default (fun x => deeds_of does (go x))
   end.
 
 (** With a limit on rounds, and the percept at the start. *)
-Definition directional_mapping bound seen := deeds_of (algorithm1 step_by_step any_path bound seen).
-Definition movable_mapping bound seen := handling_deeds_of (MovableMarker.movable any_path bound seen).
+Definition directional_mapping bound seen := deeds_of (@leaves _) (algorithm1 step_by_step any_path bound seen).
+Definition movable_mapping bound seen := deeds_of (@handles _) (MovableMarker.movable any_path bound seen).
 
 (** The folding explorer with given actions, with a limit on their number. Its ways are not longer than necessary, and
     its tests become strict when those of the running explorer do. *)

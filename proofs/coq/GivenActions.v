@@ -21,7 +21,7 @@ Inductive guided :=
 Fixpoint guided_by (p : program knowledge) (next : knowledge -> guided) : guided :=
   match p with
   | Return K => next K
-  | Move i go => Leaving i (fun seen => guided_by (go seen) next)
+  | Do i go => Leaving i (fun seen => guided_by (go seen) next)
   | Choose T _ default go => guided_by (go default) next
   end.
 

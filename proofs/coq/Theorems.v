@@ -353,7 +353,7 @@ Theorem movable_marker_locates :
     let: (pose, lying) := (handling_situation robot W decisions).2 in
     [/\ robot (handling_history robot W decisions) = Report map, lying = None,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (handling_history robot W j) = LeaveBy i ->
+        forall j i, robot (handling_history robot W j) = Act (MovableMarker.LeaveBy i) ->
           i < degree (handling_situation robot W j).2.1
       & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
 Proof.

@@ -82,11 +82,14 @@ let rec run start sighting choices state ended deeds =
   | PicksUp go -> (
       match state.spot with
       | Some dart when List.mem dart (doors start state.pose) ->
-          go_on choices { state with spot = None; did = "pick-up" :: state.did } ended go
+          let seen = percept start (sighting None) state.pose in
+          go_on choices { state with spot = None; did = "pick-up" :: state.did } ended (go seen)
       | _ -> failwith "a marker was picked up where none lies")
   | Drops go ->
       if state.spot <> None then failwith "a marker was dropped that is not carried";
-      go_on choices { state with spot = Some state.pose; did = "drop" :: state.did } ended go
+      let spot = Some state.pose in
+      let seen = percept start (sighting spot) state.pose in
+      go_on choices { state with spot; did = "drop" :: state.did } ended (go seen)
   | Chooses (options, go) -> (
       let options = int options in
       let choose choice choices =
