@@ -238,10 +238,10 @@ struct MissingShards {
 /// What is missing, duplicated or interrupted in one size.
 fn check_shards(edges: usize, found: &[FoundShard]) -> MissingShards {
     let (mut places, mut missing) = (Vec::new(), Vec::new());
-    let of = found[0].shard.of();
+    let (of, size) = (found[0].shard.of(), counted(edges, "edge"));
     for FoundShard { place, shard, line } in found {
         if shard.of() != of {
-            places.push(format!("{place}: {edges} edges: {shard} is not one of {of} shards"));
+            places.push(format!("{place}: {size}: {shard} is not one of {of} shards"));
         }
         if line.interrupted {
             missing.push(format!("{place}: shard {shard} was interrupted"));
@@ -253,10 +253,10 @@ fn check_shards(edges: usize, found: &[FoundShard]) -> MissingShards {
     }
     for (index, twice) in by_index.iter().filter(|(_, places)| places.len() > 1) {
         let twice = twice.join(", ");
-        places.push(format!("{edges} edges: shard {index}/{of} occurs twice: {twice}"));
+        places.push(format!("{size}: shard {index}/{of} occurs twice: {twice}"));
     }
     let absent = (1..=of).filter(|index| !by_index.contains_key(index));
-    let absent = absent.map(|index| format!("{edges} edges: shard {index}/{of} is missing"));
+    let absent = absent.map(|index| format!("{size}: shard {index}/{of} is missing"));
     missing.extend(absent.take(MOST_PROBLEMS + 1));
     MissingShards { places, missing }
 }

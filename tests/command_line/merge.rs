@@ -97,7 +97,7 @@ fn with_wrong_map(file: &str, cause: &str) {
     );
     let text = fs::read_to_string(file).unwrap();
     let (before, last) = text.trim_end().rsplit_once('\n').unwrap_or(("", text.trim_end()));
-    let mapped = objects(last)[0]["mapped"].as_u64().unwrap();
+    let mapped = objects(&format!("{last}\n"))[0]["mapped"].as_u64().unwrap();
     let last = last
         .replace(&format!("\"mapped\":{mapped},"), &format!("\"mapped\":{},", mapped - 1))
         .replace("\"failed\":0", "\"failed\":1")
@@ -158,7 +158,7 @@ fn a_wrong_map_is_reported_although_its_shard_has_no_larger_sizes() {
     let text = fs::read_to_string(&two).unwrap();
     fs::write(&two, text.split_inclusive('\n').skip(1).collect::<String>()).unwrap();
     let message = refused(&["merge", &one, &two]);
-    assert_eq!(message, "error: 1 edges: shard 2/2 is missing\n");
+    assert_eq!(message, "error: 1 edge: shard 2/2 is missing\n");
 }
 
 #[test]
