@@ -319,7 +319,7 @@ fn a_time_out_and_too_many_moves_are_not_known() {
 #[cfg(unix)]
 #[test]
 fn two_lines_for_one_percept_are_a_failure() {
-    let folder = folder("explorer_lines");
+    let folder = folder("explorer_extra_lines");
     let twice = |name: &str, one: &str, other: &str| {
         let text = format!("while read line; do printf '%s\\n%s\\n' '{one}' '{other}'; done\n");
         script(&folder, name, &text)
@@ -400,7 +400,7 @@ fn a_start_that_was_mapped_without_a_move_can_be_the_worst() {
     let folder = folder("explorer_no_move");
     let explorer = always(&folder, "at_once", "{\"map\":[[[1,0]],[[0,0]]],\"pose\":[0,0]}");
     let worst = folder.join("worst.toml");
-    let options = ["--marker", "none", "--class", "simple", "--edges", "1", "--worst"];
+    let options = ["--marker", "undirected", "--class", "simple", "--edges", "1", "--worst"];
     let options = [&options[..], &[worst.to_str().unwrap()]].concat();
     let (code, lines) = check(&explorer, &options);
     assert_eq!((code, &lines[0]["mapped"], &lines[0]["moves_max"]), (0, &json!(1), &json!(0)));
