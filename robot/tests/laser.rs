@@ -401,7 +401,9 @@ fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<PlacedScan> {
 
 fn measured_drift<'a>(scans: impl Iterator<Item = (&'a Scan, Odometry)>) -> f64 {
     let mut meter = DriftMeter::new(LaserParams::default());
-    scans.for_each(|(scan, odometry)| meter.see(scan, &odometry));
+    for (scan, odometry) in scans {
+        meter.see(scan, &odometry);
+    }
     meter.finish().unwrap().to_degrees()
 }
 

@@ -19,6 +19,7 @@ use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
+    measured_hallways::log_noise,
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -29,7 +30,6 @@ use crate::{
         reader::Log,
         topic_map::{BoundTopicMap, Role, TopicMap, TopicMapError},
     },
-    measured_hallway::log_noise,
     record::{EventKind, Frame, FrameSensor, SensingError},
 };
 
@@ -207,7 +207,7 @@ pub fn extract(
     let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
     let bound = mapping.only(asked).bind(log)?;
     let is_matched = evidence != Evidence::Laser || laser.matching.rounds > 0;
-    let drift = if is_matched { None } else { measured_drift(log, &bound, laser) };
+    let drift = if is_matched { None } else { measured_drift(log, &bound, &laser) };
     let drift = drift.filter(|&drift| drift > laser.matching.max_drift);
     if drift.is_some() {
         laser.matching.rounds = ROUNDS;
@@ -300,8 +300,8 @@ pub fn extract(
 
 /// The drift of the heading of the odometry of a log with laser scans, in radians in 10 m. `None` if it is too
 /// short, up to its end or to what cannot be read.
-fn measured_drift(log: &Log, bound: &BoundTopicMap, params: LaserParams) -> Option<f64> {
-    let mut meter = DriftMeter::new(params);
+fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Option<f64> {
+    let mut meter = DriftMeter::new(*params);
     let mut placing = ScanOdometry::default();
     for entry in log.entries(bound) {
         let Ok(Entry { stamp, content, .. }) = entry else { break };
@@ -315,7 +315,9 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: LaserParams) -> Opti
             }
             _ => continue,
         };
-        placed.iter().for_each(|placed| meter.see(&placed.scan, &placed.odometry));
+        for placed in &placed {
+            meter.see(&placed.scan, &placed.odometry);
+        }
     }
     meter.finish()
 }

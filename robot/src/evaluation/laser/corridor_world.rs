@@ -162,7 +162,7 @@ impl Lattice {
     /// The same, and one diagonal of each square may be a corridor, too.
     fn with_diagonals() -> Self {
         let square = Self::square();
-        let is_even = |[x, y]: [f64; 2]| (x + y) as u32 % 2 == 0;
+        let is_even = |[x, y]: [f64; 2]| ((x + y) as u32).is_multiple_of(2);
         let diagonals =
             (0..square.points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
         let diagonals = diagonals.filter(|pair| {
