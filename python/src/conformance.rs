@@ -50,7 +50,7 @@ struct Question {
 
 /// A log that was checked.
 struct Checked {
-    gathered: ExtractedRun,
+    extracted: ExtractedRun,
     judgement: Judgement,
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn conform<'py>(
     world: Option<&CoreWorld>,
     marker: Option<&str>,
     driver: &str,
-    class: &str,
+    class_: &str,
     corners: bool,
     assumed: bool,
     max_edges: Option<usize>,
@@ -89,7 +89,7 @@ pub(crate) fn conform<'py>(
     };
     let settings = settings.map_err(|unknown| error(py, "UnknownAlgorithmError", unknown))?;
     let driver = if driver == "anyone" { RunDriver::Anyone } else { settings.driver() };
-    let class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let class = class_.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let question = Question {
         world: world.map(|world| world.0.clone()),
         start: None,
@@ -103,7 +103,7 @@ pub(crate) fn conform<'py>(
         max_steps,
         max_darts,
     };
-    let checked = watched(py, progress, |watcher| {
+    let checked = watched(py, progress, None, |watcher| {
         let checked = check(log, question, watcher);
         (checked, toposlam_model::enumerate::Watch::stop(watcher))
     })?;
@@ -131,12 +131,12 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
     let sensor = sensor(log)?;
     let marked = question.marker.name() == Directional.name();
     let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
-    let mut gathered =
+    let mut extracted =
         extract(&log.log, &log.mapping, &config, watcher).map_err(|cause| text(&cause))?;
     if question.assume_marker {
-        let place = marker_at_start(&gathered.junctions).ok_or("no junction is visited")?;
-        let events = &mut gathered.events.events;
-        assume_marker(events, &gathered.junctions, question.marker, place)
+        let place = marker_at_start(&extracted.junctions).ok_or("no junction is visited")?;
+        let events = &mut extracted.events.events;
+        assume_marker(events, &extracted.junctions, question.marker, place)
             .map_err(|cause| text(&cause))?;
     }
     if evidence == Evidence::Laser && !question.corners {
@@ -167,12 +167,12 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
     };
     // Whoever drives may turn back between junctions. The algorithms do not.
     let events = match question.driver {
-        RunDriver::Anyone => gathered.events.without_excursions(),
-        _ => gathered.events.clone(),
+        RunDriver::Anyone => extracted.events.without_excursions(),
+        _ => extracted.events.clone(),
     };
     let judgement =
         judge(events, &config, &Quirks::default(), watcher).map_err(|cause| text(&cause))?;
-    Ok(Checked { gathered, judgement })
+    Ok(Checked { extracted, judgement })
 }
 
 /// The possible states of the robot and its marker at the start.
@@ -199,10 +199,10 @@ fn sensor(log: &LogReader) -> Result<Option<Sensor>, String> {
 
 /// The fields of the report.
 fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
-    let Checked { gathered, judgement } = checked;
+    let Checked { extracted, judgement } = checked;
     let fields = PyDict::new(py);
     fields.set_item("verdict", judgement.verdict().name())?;
-    let evidence = match gathered.evidence {
+    let evidence = match extracted.evidence {
         Evidence::Recorded => "recorded",
         Evidence::Scenes => "scenes",
         Evidence::Pictures => "pictures",
@@ -235,14 +235,6 @@ fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict
         fields.set_item("smallest", Py::new(py, CoreWorld(world))?)?;
         fields.set_item("is_least", limit.is_none())?;
     }
-    fields.set_item(
-        "junctions",
-        gathered
-            .junctions
-            .iter()
-            .map(|junction| (junction.event, junction.centre, junction.doors.clone()))
-            .collect::<Vec<_>>(),
-    )?;
     Ok(fields)
 }
 

@@ -128,9 +128,13 @@ def test_a_real_building():
 @pytest.mark.parametrize("data", [b"", b"hello\n", b"\x89MCAP0\r\n", b"#ROSBAG V2.0\n\xff\xff"])
 def test_a_file_that_is_not_a_log(tmp_path, data):
     (tmp_path / "log").write_bytes(data)
-    with pytest.raises(errors.LogError, match="log: "):
-        ts.read_log(tmp_path / "log")
-        ts.conform(tmp_path / "log")
+    for read in [ts.read_log, ts.conform]:
+        with pytest.raises(errors.LogError, match="log: "):
+            read(tmp_path / "log")
+
+
+EDGE = ts.World({"a": ["b"], "b": ["a"]})
+"""Any world."""
 
 
 @pytest.mark.parametrize(
@@ -141,7 +145,12 @@ def test_a_file_that_is_not_a_log(tmp_path, data):
         ({"cls": "tree"}, errors.UnknownClassError),
         ({"max_steps": 0}, errors.SizeError),
         ({"max_darts": -3}, errors.SizeError),
+        ({"max_edges": -1}, errors.SizeError),
         ({"marker": "undirected"}, errors.LogError),
+        ({"corners": True}, errors.UnusedOptionError),
+        ({"world": EDGE, "cls": "simple"}, errors.UnusedOptionError),
+        ({"world": EDGE, "max_edges": 9}, errors.UnusedOptionError),
+        ({"world": EDGE, "max_steps": 9}, errors.UnusedOptionError),
     ],
 )
 def test_wrong_options(tmp_path, options, kind):
