@@ -12,15 +12,22 @@ use std::{
 };
 
 /// The crates of the workspace, lowest first: name, folder of the source, and the crates that it may use.
-const CRATES: [(&str, &str, &[&str]); 5] = [
+const CRATES: [(&str, &str, &[&str]); 6] = [
     ("toposlam_model", "model/src", &[]),
     ("toposlam_vision", "vision/src", &["toposlam_model"]),
     ("toposlam_robot", "robot/src", &["toposlam_model", "toposlam_vision"]),
     ("toposlam_proofs", "proofs/src", &["toposlam_model"]),
+    ("toposlam_cluster", "cluster/src", &["toposlam_model"]),
     (
         "toposlam",
         "src",
-        &["toposlam_model", "toposlam_vision", "toposlam_robot", "toposlam_proofs"],
+        &[
+            "toposlam_model",
+            "toposlam_vision",
+            "toposlam_robot",
+            "toposlam_proofs",
+            "toposlam_cluster",
+        ],
     ),
 ];
 

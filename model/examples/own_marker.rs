@@ -1,5 +1,5 @@
 //! A kind of marker of your own: a beacon that is received at its vertex and at the neighbouring vertices.
-//! It tells no more worlds apart than an undirected marker, because a robot can go and look. Run it
+//! It distinguishes no more worlds than an undirected marker, because a robot can go and look. Run it
 //! with `cargo run --release -p toposlam-model --example own_marker`.
 
 use std::error::Error;

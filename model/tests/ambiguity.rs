@@ -231,7 +231,7 @@ fn tells_apart(one: &PlacedRobot, other: &PlacedRobot, length: usize) -> Option<
     None
 }
 
-/// The reported walk is the first that tells the worlds apart, among all walks in order of length and
+/// The reported walk is the first that distinguishes the worlds, among all walks in order of length and
 /// then of their actions.
 #[test]
 fn the_walk_is_the_shortest_and_the_least() {

@@ -193,7 +193,7 @@ fn the_world_counts_the_moves() {
 }
 
 /// The search accepts a marker that another crate defines. Receiving the beacon at a neighbouring vertex
-/// tells no more worlds apart: a robot can go and look.
+/// distinguishes no more worlds: a robot can go and look.
 #[test]
 fn a_beacon_is_worth_as_much_as_an_undirected_marker() {
     let ambiguous = |marker: &'static dyn Marker| {

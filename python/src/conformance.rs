@@ -68,7 +68,7 @@ pub(crate) fn conform<'py>(
     assumed: bool,
     max_edges: Option<usize>,
     max_steps: u64,
-    max_darts: usize,
+    max_darts: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let recorded = |text: fn(&toposlam_robot::log::messages::Run) -> &String| {
@@ -79,16 +79,18 @@ pub(crate) fn conform<'py>(
         (None, Some(name)) => named_marker(py, name)?,
         (None, None) => &Directional,
     };
-    let settings = match (driver, recorded(|run| &run.algorithm)) {
-        ("anyone", _) | ("algorithm", None) => Ok(RecordedSettings::default()),
-        ("algorithm", Some(head)) => RecordedSettings::from_head(head),
-        (name, _) => name.parse::<DirectionalAlgorithm>().map(|algorithm| RecordedSettings {
-            method: algorithm.into(),
-            ..RecordedSettings::default()
-        }),
+    let head = recorded(|run| &run.algorithm);
+    let settings =
+        head.map_or(Ok(RecordedSettings::default()), |head| RecordedSettings::from_head(head));
+    let settings = match driver {
+        "anyone" => Ok(RecordedSettings::default()),
+        "algorithm" => settings,
+        name => name
+            .parse::<DirectionalAlgorithm>()
+            .map(|algorithm| settings.unwrap_or_default().with_algorithm(algorithm)),
     };
     let settings = settings.map_err(|unknown| error(py, "UnknownAlgorithmError", unknown))?;
-    let driver = if driver == "anyone" { RunDriver::Anyone } else { settings.driver() };
+    let driver = if driver == "anyone" { RunDriver::Anyone } else { RunDriver::from(settings) };
     let class = class_.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let question = Question {
         world: world.map(|world| world.0.clone()),
@@ -101,7 +103,7 @@ pub(crate) fn conform<'py>(
         assume_marker: assumed,
         max_edges,
         max_steps,
-        max_darts,
+        max_darts: max_darts.unwrap_or(settings.dart_bound),
     };
     let checked = watched(py, progress, None, |watcher| {
         let checked = check(log, question, watcher);

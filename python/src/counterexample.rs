@@ -1,4 +1,4 @@
-//! The smallest worlds that a marker cannot tell apart.
+//! The smallest worlds that a marker cannot distinguish.
 
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -70,8 +70,8 @@ pub(crate) fn counterexample(
     match findings {
         Ok(findings) => Ok(found(&findings)),
         Err(Unfinished::Interrupted) => Err(interrupted()),
-        Err(unconfirmed @ Unfinished::Unconfirmed(_)) => {
-            Err(error(py, "InternalError", unconfirmed))
+        Err(fault @ (Unfinished::Unconfirmed(_) | Unfinished::Unreadable)) => {
+            Err(error(py, "InternalError", fault))
         }
     }
 }

@@ -35,7 +35,7 @@ impl CoreWorld {
         let failed = |class, cause: &dyn std::fmt::Display| {
             error(py, class, format!("{}: {cause}", path.display()))
         };
-        let worlds = guarded(py, || match plantri_code(&path, bytes) {
+        let worlds = guarded(py, || match plantri::PlantriCode::of_file(&path, bytes) {
             None => {
                 let read = world_file::read(bytes);
                 Ok(vec![read.map_err(|error| failed(file_error(&error.kind), &error))?])
@@ -303,20 +303,5 @@ fn file_error(kind: &WorldFileErrorKind) -> &'static str {
         ) => "MissingEdgeError",
         WorldFileErrorKind::Lists(ListError::NotConnected { .. }) => "NotConnectedError",
         _ => "WorldFileError",
-    }
-}
-
-/// The code of a plantri file.
-fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
-    if bytes.starts_with(b">>edge_code") {
-        return Some(plantri::PlantriCode::Edge);
-    }
-    if bytes.starts_with(b">>planar_code") {
-        return Some(plantri::PlantriCode::Planar);
-    }
-    match path.extension()?.to_str()? {
-        "ec" | "edge_code" => Some(plantri::PlantriCode::Edge),
-        "pc" | "plc" | "planar_code" => Some(plantri::PlantriCode::Planar),
-        _ => None,
     }
 }

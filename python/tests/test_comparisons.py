@@ -1,4 +1,4 @@
-"""Worlds that a marker cannot tell apart; numbers from docs/commands.md and the paper."""
+"""Worlds that a marker cannot distinguish; numbers from docs/commands.md and the paper."""
 
 import os
 import signal

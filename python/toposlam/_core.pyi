@@ -175,6 +175,6 @@ def conform(
     assumed: bool,
     max_edges: int | None,
     max_steps: int,
-    max_darts: int,
+    max_darts: int | None,
     progress: Callable[[int], object] | None,
 ) -> dict[str, Any]: ...

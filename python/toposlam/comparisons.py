@@ -1,4 +1,4 @@
-"""Worlds that a marker cannot tell apart."""
+"""Worlds that a marker cannot distinguish."""
 
 from __future__ import annotations
 
@@ -52,17 +52,17 @@ class Comparison:
 
     @property
     def is_distinguishable(self) -> bool:
-        """Whether a robot can tell the worlds apart."""
+        """Whether a robot can distinguish the worlds."""
         return self.walk is not None
 
     def __repr__(self) -> str:
         same = "isomorphic" if self.is_isomorphic else f"not isomorphic: {self.difference}"
         if self.relation is not None:
-            result = f"indistinguishable, by a relation of {len(self.relation)} pairs"
+            relation = f"indistinguishable, by a relation of {len(self.relation)} pairs"
         else:
             doors = () if self.walk is None else self.walk.actions
-            result = f"distinguished by {list(doors)}"
-        return f"<Comparison of {self.one.name} and {self.other.name}: {same}; {result}>"
+            relation = f"distinguished by {list(doors)}"
+        return f"<Comparison of {self.one.name} and {self.other.name}: {same}; {relation}>"
 
 
 def compare(one: World, other: World, marker: Marker = "directional") -> Comparison:
@@ -108,7 +108,7 @@ def compare(one: World, other: World, marker: Marker = "directional") -> Compari
 
 @dataclass(frozen=True)
 class WorldPair:
-    """Two worlds that a marker cannot tell apart."""
+    """Two worlds that a marker cannot distinguish."""
 
     one: World
     other: World
@@ -141,7 +141,7 @@ class SearchedSize:
 
 @dataclass(frozen=True)
 class Counterexamples:
-    """All worlds up to a size that a marker cannot tell apart."""
+    """All worlds up to a size that a marker cannot distinguish."""
 
     marker: Marker
     cls: str
@@ -176,7 +176,7 @@ def counterexample(
     *,
     progress: bool | None = None,
 ) -> Counterexamples:
-    """Searches all worlds of a class with up to `edges` edges for those that a marker cannot tell apart.
+    """Searches all worlds of a class with up to `edges` edges for those that a marker cannot distinguish.
 
     `marker` is a name, or a function of your own: see `MarkerFunction`. `progress` shows a bar or not;
     without it, on a terminal and in a notebook. Each pair that is found was confirmed by a verified

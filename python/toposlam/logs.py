@@ -194,7 +194,7 @@ def conform(
     corners: bool = False,
     max_edges: int | None = None,
     max_steps: int | None = None,
-    max_darts: int = 1000,
+    max_darts: int | None = None,
     progress: bool | None = None,
 ) -> ConformReport:
     """Checks a log against the specification, in a known world or with the smallest that explains it.
@@ -206,8 +206,8 @@ def conform(
 
     Without a world, the search for one is bounded: `cls` is its class (`"multigraph"`), `max_edges` the
     most edges, and `max_steps` (500,000) the most steps. `max_darts` is the most darts of the map that the
-    algorithm is allowed. If a bound is reached, the verdict is `incomplete`. `progress` shows a bar or not;
-    without it, on a terminal and in a notebook.
+    algorithm is allowed; by default it is that of the log, or 1,000. If a bound is reached, the verdict is
+    `incomplete`. `progress` shows a bar or not; without it, on a terminal and in a notebook.
 
     Returns the report: the verdict, the events, and the first divergence or the world.
 
@@ -221,10 +221,10 @@ def conform(
         check_unused("with a world", cls=cls, max_edges=max_edges, max_steps=max_steps)
     cls = "multigraph" if cls is None else cls
     max_steps = 500_000 if max_steps is None else max_steps
-    for name, value in {"max_steps": max_steps, "max_darts": max_darts}.items():
-        check_limit(name, value)
-    if max_edges is not None:
-        check_limit("max_edges", max_edges)
+    limits = {"max_edges": max_edges, "max_steps": max_steps, "max_darts": max_darts}
+    for name, value in limits.items():
+        if value is not None:
+            check_limit(name, value)
     reader = _open(path)
     options = (core, marker, driver, cls, corners, assume_marker, max_edges, max_steps, max_darts)
     with bar("checking", "images and scans", progress) as advance:

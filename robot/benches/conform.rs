@@ -65,7 +65,7 @@ fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
     ConformConfig {
         world: Some(KnownWorld { graph: plan.graph(), states }),
         marker: &Directional,
-        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search,
         dart_bound: 1000,

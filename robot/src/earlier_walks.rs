@@ -26,15 +26,11 @@ pub fn earlier_walks(log: &Log, topics: &TopicMap) -> Result<Vec<EarlierWalk>, E
     };
     let extracted = extract(log, topics, &config, &())?;
     let mut walks = Walks::default();
-    let has_numbers = |kind: &CheckedKind| {
-        matches!(kind, CheckedKind::Arrival { arrival: Arrival { number: Some(_), .. }, .. })
-    };
-    let is_numbered = extracted.events.events.iter().any(|event| has_numbers(&event.kind));
-    for event in &extracted.events.events {
+    let relocations: Vec<usize> = extracted.events.relocations().collect();
+    for (index, event) in extracted.events.events.iter().enumerate() {
         match &event.kind {
             CheckedKind::Arrival { arrival, .. } => {
-                let is_lost = is_numbered && arrival.number.is_none();
-                walks.arrive(arrival, is_lost);
+                walks.arrive(arrival, relocations.binary_search(&index).is_ok());
             }
             CheckedKind::Door { door, .. } => walks.leave(*door),
             CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {

@@ -62,7 +62,10 @@ pub struct RobotExplorer<R, S, O = ()> {
     sensor: S,
     observer: O,
     place: Option<Place>,
+    /// The number of doors taken: the number of the last move.
     moves: u64,
+    /// The number of moves that ended at a junction or before an obstacle.
+    ended_moves: u64,
     door: Option<Door>,
     obstacles: Obstacles,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
@@ -115,6 +118,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             hallway: None,
             measured: Measured::default(),
             moves: 0,
+            ended_moves: 0,
             door: None,
             last: None,
             events: 0,
@@ -135,10 +139,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         &self.robot
     }
 
-    /// The moves so far.
+    /// The moves that ended at a junction or before an obstacle, with those of recoveries and audits. A move on which the
+    /// robot got lost is not counted.
     #[must_use]
     pub fn moves(&self) -> u64 {
-        self.moves
+        self.ended_moves
     }
 
     /// Whether the robot stands before an obstacle.
@@ -174,17 +179,15 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if let Err(MappingError::World(ExplorerError::Budget { limit, .. })) = mapped {
             mapped = Err(MappingError::World(self.return_to_marker(limit)));
         }
-        let (moves, ending) = match &mapped {
-            Ok(mapped) => (mapped.moves, RunEnding::Mapped),
-            Err(MappingError::World(ExplorerError::Stopped { .. })) => {
-                (run.moves(), RunEnding::Stopped)
+        let ending = match &mapped {
+            Ok(_) => RunEnding::Mapped,
+            Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
+            Err(error @ MappingError::World(ExplorerError::Budget { .. })) => {
+                RunEnding::OutOfBudget(error.to_string())
             }
-            Err(error @ MappingError::World(ExplorerError::Budget { moves, .. })) => {
-                (*moves, RunEnding::OutOfBudget(error.to_string()))
-            }
-            Err(error) => (run.moves(), RunEnding::GaveUp(error.to_string())),
+            Err(error) => RunEnding::GaveUp(error.to_string()),
         };
-        self.emit(EventKind::End(RunEnd { moves, ending }));
+        self.emit(EventKind::End(RunEnd { moves: self.ended_moves, ending }));
         (run, mapped)
     }
 
@@ -394,10 +397,14 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             Place::Obstacle { back } => self.drive(PathExecution::onwards_to_junction(*back)),
         };
         match driven {
-            Ok(standing) => self.arrive(standing),
+            Ok(standing) => {
+                self.ended_moves += 1;
+                self.arrive(standing);
+            }
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
                 let back = wrapped(self.robot.odometry().odometry.heading + PI);
                 self.place = Some(Place::Obstacle { back });
+                self.ended_moves += 1;
                 self.allow_for(DEAD_END);
                 (self.hallway, self.measured) = (None, Measured::default());
                 let number = Some(u32::try_from(self.moves).unwrap_or(u32::MAX));

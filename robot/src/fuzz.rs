@@ -180,7 +180,7 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
         dart_bound: 50,
     };
     let algorithm =
-        |algorithm| ConformConfig { driver: RunDriver::Algorithm(algorithm), ..config.clone() };
+        |algorithm| ConformConfig { driver: RunDriver::from(algorithm), ..config.clone() };
     for config in [
         algorithm(DirectionalAlgorithm::Algorithm1),
         algorithm(DirectionalAlgorithm::Folding),

@@ -8,9 +8,18 @@ use toposlam_model::{
         scene::wrapped,
         visit::JunctionShape,
     },
-    measurement::HallwayMeasurement,
+    measurement::{HallwayMeasurement, MeasurementNoise},
     percept::Door,
 };
+
+use crate::superscout::MEASUREMENT_NOISE;
+
+/// The uncertainty of the hallways in a log of this project. It does not record the calibration of its base, which
+/// may be several times worse than that of a SuperScout on tiles.
+#[must_use]
+pub fn log_noise() -> MeasurementNoise {
+    MEASUREMENT_NOISE.times(3.0, 5.0)
+}
 
 /// A hallway since the robot arrived at a junction.
 #[derive(Clone, Copy, Debug, Default)]

@@ -16,7 +16,7 @@ use toposlam_model::{
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
-    judge_cut::{TruePlace, judge_cut},
+    judge_cut::{TruePlace, is_cut_off, judge_cut},
     record::{FrameSensor, RunObserver},
     recording::Recording,
     robot::Robot as _,
@@ -37,8 +37,12 @@ pub struct Run<'p> {
     pub error: Option<MappingError<ExplorerError>>,
     /// What is wrong with the map or the pose of a complete run.
     pub flaw: Option<Flaw>,
+    /// The moves, with those of recoveries and audits.
+    pub moves: u64,
     /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
+    /// Whether at the end an obstacle is on every way from the robot to its marker.
+    pub is_cut_off: bool,
     /// The number of moves that the algorithm makes in the plan's embedded graph.
     pub explore_moves: u64,
     /// The simulated time, in seconds.
@@ -63,16 +67,6 @@ pub enum RunOutcome {
 }
 
 impl Run<'_> {
-    /// The moves, with those of recoveries and audits.
-    #[must_use]
-    pub fn moves(&self) -> u64 {
-        match (&self.mapped, &self.error) {
-            (Some(mapped), _) => mapped.moves,
-            (None, Some(MappingError::World(ExplorerError::Budget { moves, .. }))) => *moves,
-            (None, _) => self.mapping.moves(),
-        }
-    }
-
     /// The darts of the map whose hallways are blocked.
     #[must_use]
     pub fn blocked(&self) -> &[Dart] {
@@ -104,7 +98,7 @@ impl Run<'_> {
         // A robot that recovers may have made mistakes on its way.
         let divergence = self.divergence().filter(|_| !self.method.recovers());
         let audit_moves = self.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
-        let (moves, expected) = (self.moves(), self.explore_moves + audit_moves);
+        let (moves, expected) = (self.moves, self.explore_moves + audit_moves);
         match (&self.error, &self.flaw, divergence) {
             (Some(error), ..) => RunOutcome::GaveUp(error.clone()),
             (None, Some(flaw), Some(divergence)) => {
@@ -134,18 +128,19 @@ pub fn run<'p>(
     let monitor = GroundTruthMonitor::new(plan, facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
     let (mapping, mapped) = explorer.map(settings);
-    let is_at_obstacle = explorer.is_at_obstacle();
+    let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());
     let (robot, (monitor, _)) = explorer.into_parts();
     let (mapped, error) = match mapped {
         Ok(mapped) => (Some(mapped), None),
         Err(error) => (None, Some(error)),
     };
+    let place = match robot.truth() {
+        Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
+        _ => TruePlace::Junction(monitor.truly_reached()),
+    };
+    let is_cut_off = is_cut_off(plan, facing, place, robot.obstacle());
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
-            let place = match robot.truth() {
-                Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
-                _ => TruePlace::Junction(monitor.truly_reached()),
-            };
             let map = mapping.map().complete();
             let judge = |map| judge_cut(plan, facing, (map, mapped.pose), place, robot.obstacle());
             map.map_or(Err(Flaw::WrongMap), judge).err()
@@ -155,7 +150,19 @@ pub fn run<'p>(
     });
     let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
     let (seconds, pictures) = (robot.time(), robot.pictures());
-    Run { method, mapping, mapped, error, flaw, monitor, explore_moves, seconds, pictures }
+    Run {
+        method,
+        mapping,
+        mapped,
+        error,
+        flaw,
+        moves,
+        monitor,
+        is_cut_off,
+        explore_moves,
+        seconds,
+        pictures,
+    }
 }
 
 /// What is wrong with the map, the pose or the number of moves.

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use toposlam_model::mapping::{EarlierWalk, MappingMethod};
+use toposlam_model::mapping::{DirectionalAlgorithm, EarlierWalk, MappingMethod};
 
-use crate::{
-    budget::RunBudget,
-    conform::{RunDriver, log_noise},
-};
+use crate::{budget::RunBudget, measured_hallway::log_noise};
+
+/// The most darts of a robot's map, if it has no other limit.
+pub const DEFAULT_MAX_DARTS: usize = 1000;
 
 /// What a robot does in a run.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl RunSettings {
 }
 
 /// What the head of a log says of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedSettings {
     /// How the robot maps.
     pub method: MappingMethod,
@@ -40,21 +40,34 @@ pub struct RecordedSettings {
     pub budget: RunBudget,
     /// Whether it goes on from earlier runs.
     pub is_resumed: bool,
+    /// The most darts of its map.
+    pub dart_bound: usize,
+}
+
+impl Default for RecordedSettings {
+    fn default() -> Self {
+        Self {
+            method: MappingMethod::default(),
+            budget: RunBudget::default(),
+            is_resumed: false,
+            dart_bound: DEFAULT_MAX_DARTS,
+        }
+    }
 }
 
 impl RunSettings {
     /// What the head of its log says.
     #[must_use]
     pub fn recorded(&self) -> RecordedSettings {
-        let Self { method, budget, .. } = *self;
-        RecordedSettings { method, budget, is_resumed: !self.earlier.is_empty() }
+        let Self { method, budget, dart_bound, .. } = *self;
+        RecordedSettings { method, budget, is_resumed: !self.earlier.is_empty(), dart_bound }
     }
 }
 
 /// The form that `from_head` parses, as in `folding recovering audits=1 max-moves=25`.
 impl fmt::Display for RecordedSettings {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let Self { method, budget: RunBudget { moves, seconds, metres }, is_resumed } = self;
+        let Self { method, budget: RunBudget { moves, seconds, metres }, .. } = self;
         write!(out, "{method}")?;
         if let Some(moves) = moves {
             write!(out, " max-moves={moves}")?;
@@ -65,16 +78,22 @@ impl fmt::Display for RecordedSettings {
         if let Some(metres) = metres {
             write!(out, " max-metres={metres}")?;
         }
-        if *is_resumed { write!(out, " resumed") } else { Ok(()) }
+        if self.dart_bound != DEFAULT_MAX_DARTS {
+            write!(out, " max-darts={}", self.dart_bound)?;
+        }
+        if self.is_resumed { write!(out, " resumed") } else { Ok(()) }
     }
 }
 
 impl RecordedSettings {
-    /// With what the doors of the log are compared. Those of a robot that went on from earlier runs depend on logs that
-    /// are not known here.
+    /// The same for another algorithm: with its audits, without recovery if it cannot recover.
     #[must_use]
-    pub fn driver(&self) -> RunDriver {
-        if self.is_resumed { RunDriver::Anyone } else { RunDriver::from(self.method) }
+    pub fn with_algorithm(self, algorithm: DirectionalAlgorithm) -> Self {
+        if self.method.algorithm() == algorithm {
+            return self;
+        }
+        let method = MappingMethod::By { algorithm, audits: self.method.audits() };
+        Self { method, ..self }
     }
 
     /// Reads what the head of a log says. A robot that recovers compares lengths with the usual uncertainty.
@@ -93,6 +112,7 @@ impl RecordedSettings {
                 }
                 "max-seconds" => real().map(|most| settings.budget.seconds = Some(most)).is_some(),
                 "max-metres" => real().map(|most| settings.budget.metres = Some(most)).is_some(),
+                "max-darts" => number.parse().map(|most| settings.dart_bound = most).is_ok(),
                 "resumed" => {
                     settings.is_resumed = true;
                     true
@@ -123,6 +143,7 @@ mod tests {
         for text in [
             "algorithm1",
             "folding audits=2 max-moves=25",
+            "folding recovering audits=1 max-darts=12",
             "folding recovering audits=1 max-seconds=1200 max-metres=500.5 resumed",
         ] {
             assert_eq!(RecordedSettings::from_head(text).unwrap().to_string(), text);
@@ -130,10 +151,20 @@ mod tests {
         for (text, cause) in [
             ("folding max-moves=-1", "`max-moves=-1` has no number"),
             ("folding max-metres=0", "`max-metres=0` has no number"),
+            ("folding max-darts=few", "`max-darts=few` has no number"),
             ("max-moves=3", "`` is not algorithm1 or folding"),
             ("folding slowly", "`slowly` does not follow the name of an algorithm"),
         ] {
             assert_eq!(RecordedSettings::from_head(text), Err(cause.to_owned()));
         }
+    }
+
+    #[test]
+    fn another_algorithm_has_the_same_audits_and_limits() {
+        let recorded = "folding recovering audits=2 max-moves=25 max-darts=12 resumed";
+        let recorded = RecordedSettings::from_head(recorded).unwrap();
+        assert_eq!(recorded.with_algorithm(DirectionalAlgorithm::Folding), recorded);
+        let other = recorded.with_algorithm(DirectionalAlgorithm::Algorithm1);
+        assert_eq!(other.to_string(), "algorithm1 audits=2 max-moves=25 max-darts=12 resumed");
     }
 }

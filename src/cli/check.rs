@@ -14,7 +14,9 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{LazyCheck, LazySweep, MappingAlgorithm, Shard, Sweep, Tally, WorstStart},
+    check::{
+        FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm, Shard, Sweep, Tally, WorstStart,
+    },
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -24,6 +26,7 @@ use toposlam_model::{
 use super::{
     ChoicesOption, CliError, Outcome, RunChoices,
     ci_report::{CiCase, CiOptions},
+    cluster::{ClusterOptions, ClusterSession, LostEnd, SharedOutput},
     edge_range::EdgeRange,
     exit_codes::help_end,
     input,
@@ -64,13 +67,16 @@ Examples:
   toposlam check --explorer ./mine --edges 5  your own program
   toposlam check --edges 10 --estimate        what a check will take
   toposlam check --edges 9 --journal nine     a check that can be killed
+  toposlam check --edges 10 --hosts hosts.txt --process 0
+                                              the first of some machines
 
 Ctrl-C stops the check and prints the results so far.",
     &[
         (0, "every map is right"),
         (1, "a map is wrong"),
         (2, "bad usage or input"),
-        (3, "not everything was checked: a limit was reached, there is nothing to check, or Ctrl-C"),
+        (3, "not everything was checked: a limit was reached, there is nothing to check, Ctrl-C, or \
+             the connection to another process is lost"),
     ],
 ))]
 pub(super) struct CheckArguments {
@@ -125,7 +131,8 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     json: bool,
 
-    /// Record finished parts of the work in a folder. A check that was killed goes on from there
+    /// Record finished parts of the work in a folder. A check that was killed goes on from there. With
+    /// --hosts, process 0 records the parts of all
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     journal: Option<PathBuf>,
 
@@ -138,6 +145,9 @@ pub(super) struct CheckArguments {
 
     #[command(flatten)]
     explorer: ExplorerOptions,
+
+    #[command(flatten)]
+    cluster: ClusterOptions,
 
     #[command(flatten)]
     ci: CiOptions,
@@ -163,6 +173,7 @@ impl CheckArguments {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.check_shared_options()?;
+        self.check_cluster_options()?;
         self.ci.check_places()?;
         if self.explorer.is_given() {
             return self.check_explorer(out);
@@ -178,23 +189,37 @@ impl CheckArguments {
         if self.estimate.estimate {
             return self.print_estimates(&work, &algorithm, out);
         }
+        let mut cluster = self.join_cluster(&algorithm)?;
+        let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
+        let out = &mut SharedOutput::new(out, cluster.as_ref());
         let start = Instant::now();
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
+        let mut is_done = true;
         for (edges, work) in sizes.by_ref() {
-            let (tally, moves_made) = self.check(edges, &work, &algorithm)?;
+            let (tally, moves_made) = self.check(edges, &work, &algorithm, cluster.as_mut())?;
             let line = report.line(&self.result(edges, &tally, moves_made));
             cases.push(line.ci_case());
             report.size(line)?;
+            if let Some(cluster) = &mut cluster {
+                report.threads(cluster, &format!("{edges} edges"))?;
+            }
             let (failed, interrupted) = (tally.failed() > 0, tally.interrupted);
             keep_worse(&mut worst, tally.worst);
+            is_done = !interrupted;
             if interrupted || (failed && !self.keep_going) {
                 break;
             }
         }
         let outcome = report.verdict(Some(start.elapsed()))?;
+        if let Some(cluster) = cluster.filter(|_| is_done) {
+            cluster.close();
+        }
+        if !is_first {
+            return Ok(outcome);
+        }
         if outcome == Outcome::Violated {
             let (tally, subject) = (Tally::default(), AlgorithmInfo::of(&algorithm));
             let name = |(edges, _)| {
@@ -218,6 +243,41 @@ impl CheckArguments {
             ChoicesOption::All if self.journal.is_some() => Err(CliError::at("--journal", cause)),
             ChoicesOption::All | ChoicesOption::Default => Ok(()),
         }
+    }
+
+    /// The options of several machines.
+    fn check_cluster_options(&self) -> Result<(), CliError> {
+        let other = [
+            ("--shard", self.shard != Shard::WHOLE),
+            ("--from", self.from.is_some()),
+            ("--explorer", self.explorer.is_given()),
+            ("--estimate", self.estimate.estimate),
+            ("--choices", self.choices == ChoicesOption::All),
+        ];
+        match other.into_iter().find(|(_, is_given)| self.cluster.is_given() && *is_given) {
+            Some((option, _)) => {
+                Err(CliError::at(option, "this cannot be shared by machines; leave out --hosts"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Connects to the other processes, if there are others.
+    fn join_cluster(
+        &self,
+        algorithm: &MappingAlgorithm,
+    ) -> Result<Option<ClusterSession>, CliError> {
+        let sizes = self.edges.iter();
+        let settings = [
+            ("the command", "check".to_owned()),
+            ("the class", self.class().name().to_owned()),
+            ("the number of edges", format!("{sizes:?}")),
+            ("the marker", algorithm.marker().name().to_owned()),
+            ("the algorithm", algorithm.name().to_owned()),
+            ("--keep-going", self.keep_going.to_string()),
+        ];
+        let end = if self.journal.is_some() { LostEnd::Journal } else { LostEnd::Nothing };
+        self.cluster.connect(&settings, end)
     }
 
     /// The sizes after one in which a map was wrong, by their names, for CI systems.
@@ -247,10 +307,12 @@ impl CheckArguments {
         edges: usize,
         work: &Work,
         algorithm: &MappingAlgorithm,
+        cluster: Option<&mut ClusterSession>,
     ) -> Result<(Tally, Option<u64>), CliError> {
         let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+        let is_first = cluster.as_deref().is_none_or(ClusterSession::is_first);
         let journal = match (&self.journal, work) {
-            (Some(folder), Work::Lazy(sweep)) => {
+            (Some(folder), Work::Lazy(sweep)) if is_first => {
                 let header = self.journal_header(edges, sweep, algorithm);
                 Some(CheckJournal::open(folder, &header)?)
             }
@@ -259,12 +321,16 @@ impl CheckArguments {
         if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
             remark!("{edges} edges: {} of the work finished before", counted(before, "unit"));
         }
-        let checked = match work {
-            Work::Lazy(sweep) => match &journal {
-                Some(journal) => algorithm.lazy_sweep(sweep, journal, &progress),
-                None => algorithm.lazy_sweep(sweep, &(), &progress),
-            },
-            Work::Sweep(_) | Work::Worlds(_) => None,
+        let units: &dyn FinishedUnits = match &journal {
+            Some(journal) => journal,
+            None => &(),
+        };
+        let checked = match (work, cluster) {
+            (Work::Lazy(sweep), None) => algorithm.lazy_sweep(sweep, units, &progress),
+            (Work::Lazy(sweep), Some(cluster)) => {
+                cluster.check(algorithm, sweep, units, &progress)?
+            }
+            (Work::Sweep(_) | Work::Worlds(_), _) => None,
         };
         let checked = match (checked, work) {
             (Some(LazyCheck { tally, moves_made }), _) => (tally, Some(moves_made)),

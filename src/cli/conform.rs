@@ -1,8 +1,10 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
+mod ci_cases;
 mod expected;
 mod fact_fields;
 mod folded;
+mod judged;
 mod known_world;
 mod laser_picture;
 mod minimise;
@@ -19,44 +21,23 @@ use std::{
 };
 
 use clap::ValueEnum;
-use toposlam::{
-    page,
-    report::{DivergenceReport, LogReport},
-};
+use toposlam::{page, report::LogReport};
 use toposlam_model::{
     embedded_graph::Dart,
-    enumerate::{Class, Watch},
+    enumerate::Class,
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
-    marker::{Directional, Marker},
-    percept::Sighting,
 };
-use toposlam_robot::{
-    budget::RunBudget,
-    conform::{
-        CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractConfig, ExtractError,
-        ExtractedRun, JudgeError, Judgement, Quirks, RunCoverage, RunDriver, RunEvents,
-        SensingProgress, extract, judge,
-    },
-    run_settings::RecordedSettings,
-};
+use toposlam_robot::conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCoverage};
 
 use super::{
-    CliError, Outcome,
-    ci_report::{CiCase, CiOptions},
-    exit_codes::help_end,
-    input,
-    laser_options::LaserOptions,
-    mapping_marker::AlgorithmOption,
-    open_log::{LogOptions, OpenLog},
-    outcome::SeveralInputs,
-    output,
-    progress::Progress,
+    CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input,
+    laser_options::LaserOptions, mapping_marker::AlgorithmOption, open_log::LogOptions,
+    outcome::SeveralInputs, output,
 };
-use known_world::Known;
-use other_world::OtherWorld;
-use robot_marker::{AddedMarker, RobotMarker};
+use ci_cases::{ci_case, required_case, unread_case};
+use judged::Judged;
+use robot_marker::RobotMarker;
 
 /// Check logs of runs against the specification
 ///
@@ -66,9 +47,10 @@ use robot_marker::{AddedMarker, RobotMarker};
 ///
 /// A log is a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events as JSON lines
 /// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes,
-/// images or laser scans, and its odometry. They must fit the known world. Without one, a log diverges at the first event that no world of any size explains, and the command searches
-/// for the smallest world that explains the log. The doors must be doors that the algorithm takes, or may
-/// take: the one that the log names, or else Algorithm 1.
+/// images or laser scans, and its odometry. They must fit the known world. Without one, a log diverges at the
+/// first event that no world of any size explains, and the command searches for the smallest world that
+/// explains the log. The doors must be doors that the algorithm takes, or may take: the one that the log
+/// names, or else Algorithm 1.
 ///
 /// The command also reports whether the log determines its world. If it does not, some doors were never
 /// followed, and different worlds explain the log.
@@ -131,9 +113,9 @@ pub(super) struct ConformArguments {
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Follow the algorithm until more edge ends are known
-    #[arg(long, value_name = "N", default_value_t = 1000)]
-    max_darts: usize,
+    /// Follow the algorithm until more edge ends are known [default: the limit in the log, or 1000]
+    #[arg(long, value_name = "N")]
+    max_darts: Option<usize>,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = required::cases(),
         hide_possible_values = true)]
@@ -192,42 +174,6 @@ fn at_least_one_edge(text: &str) -> Result<usize, String> {
         Ok(0) => Err("a world has at least one edge".to_owned()),
         Ok(edges) => Ok(edges),
         Err(error) => Err(error.to_string()),
-    }
-}
-
-/// A log and its judgement.
-struct Judged<'w> {
-    opened: OpenLog,
-    gathered: ExtractedRun,
-    judgement: Judgement,
-    known: Option<Known<'w>>,
-    marker: &'static dyn Marker,
-    /// Sightings that are not recorded as percepts.
-    added: Option<AddedMarker>,
-    /// Another world that explains the log, and that the marker does not distinguish from the known one or the
-    /// smallest.
-    twin: Option<OtherWorld>,
-    /// The algorithm with which the doors are compared, unless anyone may have chosen them.
-    driver: RunDriver,
-    /// What the robot might spend.
-    budget: RunBudget,
-    algorithm: DirectionalAlgorithm,
-    /// The limits of the check.
-    search: WorldSearch,
-    dart_bound: usize,
-}
-
-impl Judged<'_> {
-    /// Whether the doors were compared with the folding explorer.
-    fn is_folding(&self) -> bool {
-        let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
-        compared == Some(DirectionalAlgorithm::Folding)
-    }
-}
-
-impl SensingProgress for Progress {
-    fn sensed(&self, pictures: u64) {
-        self.part_done(pictures);
     }
 }
 
@@ -338,129 +284,6 @@ impl ConformArguments {
         Ok(())
     }
 
-    /// Reads and judges a log, in the known world or in that without its corners.
-    fn judge<'w>(
-        &self,
-        path: &Path,
-        worlds: Option<(&'w NamedWorld, &'w NamedWorld)>,
-        quirks: &Quirks,
-    ) -> Result<Judged<'w>, CliError> {
-        let opened = OpenLog::new(path, &self.sources)?;
-        let evidence = match self.events {
-            Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
-            Some(_) => {
-                let cause = "the log does not have what this needs";
-                return Err(CliError::at("--events", format!("{cause} ({})", path.display())));
-            }
-            None => opened.evidence(path)?,
-        };
-        self.laser.check_used(evidence)?;
-        let marker = match self.marker {
-            Some(marker) => marker.marker(),
-            None => opened.marker()?,
-        };
-        let settings = match self.driver {
-            Who::Algorithm => opened.settings(path, self.algorithm)?,
-            Who::Anyone => RecordedSettings::default(),
-        };
-        let algorithm = settings.method.algorithm();
-        let driver = match self.driver {
-            Who::Algorithm => settings.driver(),
-            Who::Anyone => RunDriver::Anyone,
-        };
-        if settings.is_resumed {
-            let path = path.display();
-            remark!(
-                "{path}: its robot went on from an earlier run, which is not in this log; its doors are \
-                 compared with no algorithm"
-            );
-        }
-        let run = opened.run.as_ref();
-        let start = self.start.as_deref();
-        let laser = self.laser.params()?;
-        // In a laser log bends of corridors are vertices only if that is asked for.
-        let smooths = evidence == Evidence::Laser && !laser.corner.corners;
-        let world = worlds.map(|(world, smooth)| if smooths { smooth } else { world });
-        let marker_start = self.marker_start(&opened, evidence)?;
-        let known =
-            world.map(|world| Known::new(world, start, (marker, marker_start), run, algorithm));
-        let known = known.transpose()?;
-        let progress = Progress::endless("reading", "images and scans")?;
-        let sensor = opened.sensor();
-        let marked = marker.name() == Directional.name();
-        let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
-        let gathered = extract(&opened.log, &opened.mapping, &config, &progress);
-        let mut gathered = gathered.map_err(|error| match error {
-            ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
-            error => CliError::in_file(path, error),
-        })?;
-        let added = self.add_marker(path, &opened, &mut gathered, marker)?;
-        let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
-        if assumed && driver != RunDriver::Anyone && !shows_marker(&gathered.events) {
-            let needs = algorithm.in_words();
-            let cause = format!("no percept in it shows a marker, which {needs} needs");
-            return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
-        }
-        let question = self.question(known.as_ref(), marker, (driver, settings.budget));
-        // Whoever drives may turn back between junctions. The algorithms do not.
-        let events = match driver {
-            RunDriver::Anyone => gathered.events.without_excursions(),
-            _ => gathered.events.clone(),
-        };
-        let judgement = judge(events, &question, quirks, &progress);
-        let ConformConfig { search, dart_bound, .. } = question;
-        progress.finish();
-        let judgement = judgement.map_err(|error| match error {
-            JudgeError::Empty if gathered.pictures > 0 => CliError::in_file(
-                path,
-                format!("no junction is visited in its {} images", gathered.pictures),
-            ),
-            JudgeError::Empty if gathered.scans > 0 => CliError::in_file(
-                path,
-                format!("no junction is visited in its {} laser scans", gathered.scans),
-            ),
-            error @ (JudgeError::Marker(_) | JudgeError::Algorithm { .. }) => {
-                CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
-            }
-            error => CliError::in_file(path, error),
-        })?;
-        let twin = OtherWorld::of(&judgement, known.as_ref(), marker);
-        Ok(Judged {
-            opened,
-            gathered,
-            judgement,
-            known,
-            marker,
-            added,
-            twin,
-            driver,
-            budget: settings.budget,
-            algorithm,
-            search,
-            dart_bound,
-        })
-    }
-
-    fn question<'k>(
-        &self,
-        known: Option<&'k Known>,
-        marker: &'static dyn Marker,
-        (driver, budget): (RunDriver, RunBudget),
-    ) -> ConformConfig<'k> {
-        ConformConfig {
-            world: known.map(Known::question),
-            marker,
-            driver,
-            budget,
-            search: WorldSearch {
-                class: self.class,
-                max_edges: self.max_edges,
-                steps: self.max_steps,
-            },
-            dart_bound: self.max_darts,
-        }
-    }
-
     /// Writes the smallest world that explains a log to the file of `--map`.
     fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), CliError> {
         let Some(path) = &self.map else { return Ok(()) };
@@ -474,56 +297,12 @@ impl ConformArguments {
     }
 }
 
-/// The way out for a run without a marker.
-const WITHOUT_MARKER: &str = "; for a run without a marker add --driver anyone --marker none";
-
-/// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
-fn shows_marker(events: &RunEvents) -> bool {
-    events.events.iter().any(|event| match &event.kind {
-        CheckedKind::Arrival { arrival, .. } => {
-            arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
-        }
-        _ => false,
-    })
-}
-
 fn outcome(verdict: ConformVerdict) -> Outcome {
     match verdict {
         ConformVerdict::Conforms => Outcome::Holds,
         ConformVerdict::Diverged => Outcome::Violated,
         ConformVerdict::Incomplete => Outcome::Incomplete,
     }
-}
-
-/// The result of a log, for CI systems.
-fn ci_case(path: &Path, report: &LogReport) -> CiCase {
-    let result = outcome(report.verdict);
-    let message = match (&report.divergence, report.remarks.first()) {
-        (Some(DivergenceReport { event, fault, what, why, .. }), _) => {
-            format!("diverges at event {event} ({fault}): {what}; {why}")
-        }
-        (None, Some(remark)) => remark.clone(),
-        (None, None) => report_lines::in_words(report.verdict).to_owned(),
-    };
-    let name = path.display().to_string();
-    CiCase { name, outcome: result, message, file: Some(path.to_owned()) }
-}
-
-/// The result of the required coverage, for CI systems.
-fn required_case(outcome: Outcome) -> CiCase {
-    let message = match outcome {
-        Outcome::Holds => "all required cases are covered",
-        _ => "a required case is not covered",
-    };
-    let name = "required coverage".to_owned();
-    CiCase { name, outcome, message: message.to_owned(), file: None }
-}
-
-/// The result of a log that cannot be read, for CI systems.
-fn unread_case(path: &Path) -> CiCase {
-    let message = "the log cannot be read".to_owned();
-    let name = path.display().to_string();
-    CiCase { name, outcome: Outcome::Incomplete, message, file: Some(path.to_owned()) }
 }
 
 impl From<Made> for Evidence {

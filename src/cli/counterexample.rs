@@ -1,6 +1,7 @@
 //! `toposlam counterexample`: the smallest worlds that a marker cannot distinguish.
 
 mod atlas;
+mod memory;
 mod pairs;
 mod report;
 
@@ -8,7 +9,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::{AmbiguitySearch, Unfinished},
+    ambiguity::{AmbiguitySearch, KeptPairs, SearchError, Unfinished},
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
@@ -16,12 +17,14 @@ use toposlam_model::{
 use super::{
     CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    cluster::{ClusterOptions, ClusterSession, LostEnd, SharedOutput},
     exit_codes::help_end,
     marker_kinds, output,
     progress::Progress,
     text::counted,
     use_threads, walk_page,
 };
+use memory::MemoryLimit;
 use pairs::WorldPairs;
 use report::SearchReport;
 
@@ -40,13 +43,15 @@ Examples:
   toposlam counterexample --class corridor --max-edges 9 --json
   toposlam counterexample --marker directional --expect none
                                                 for CI: exit code 1 on a pair
+  toposlam counterexample --marker undirected --class multigraph --max-edges 8
+           --memory 400MB                       sort on disk, in this memory
 
 The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.",
     &[
         (0, "the search is done; with --expect none, there is no pair"),
         (1, "--expect none, and a pair was found"),
         (2, "bad usage or input"),
-        (3, "interrupted"),
+        (3, "interrupted, or the connection to another process is lost"),
     ],
 ))]
 pub(super) struct CounterexampleArguments {
@@ -67,6 +72,10 @@ pub(super) struct CounterexampleArguments {
     #[arg(long)]
     all: bool,
 
+    /// Take at most this memory, as in 2GB; what does not fit is sorted in temporary files, in $TMPDIR
+    #[arg(long, value_name = "SIZE", conflicts_with_all = ["all", "hosts"])]
+    memory: Option<MemoryLimit>,
+
     /// Write the worlds of the reported pairs into a folder, as world files
     #[arg(short, long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
@@ -80,7 +89,7 @@ pub(super) struct CounterexampleArguments {
     #[arg(
         long,
         value_name = "DIR",
-        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json"],
+        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json", "hosts"],
     )]
     atlas: Option<PathBuf>,
 
@@ -101,6 +110,9 @@ pub(super) struct CounterexampleArguments {
     json: bool,
 
     #[command(flatten)]
+    cluster: ClusterOptions,
+
+    #[command(flatten)]
     ci: CiOptions,
 }
 
@@ -119,7 +131,7 @@ impl CounterexampleArguments {
         }
         self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
-            return atlas::write(folder, self.max_edges);
+            return atlas::write(folder, self.max_edges, self.memory);
         }
         let edges = self.max_edges.unwrap_or_else(|| usual_size(self.class));
         // Each marker once, in the order of the list.
@@ -141,30 +153,45 @@ impl CounterexampleArguments {
                 ));
             }
         }
-        if let Some(folder) = &self.out_dir {
+        let mut cluster = self.join_cluster(&markers, edges)?;
+        let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
+        if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
             output::make_folder(folder)?;
         }
+        let out = &mut SharedOutput::new(out, cluster.as_ref());
         let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
         let mut cases = Vec::new();
         for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
-            let findings = search.run(&progress);
+            let kept = if self.all { KeptPairs::All } else { KeptPairs::Smallest };
+            let findings = match &mut cluster {
+                None => search.run_sorted(memory::sorter(self.memory, search)?, kept, &progress),
+                Some(cluster) => {
+                    cluster.search(search, kept, &progress)?.map_err(SearchError::from)
+                }
+            };
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => {
+                Err(SearchError::Sorter(cause)) => return Err(CliError::at("--memory", cause)),
+                Err(SearchError::Unfinished(unfinished)) => {
                     cases.push(self.ci_case(marker, edges, Err(&unfinished)));
-                    self.ci.write("counterexample", &cases)?;
+                    if is_first {
+                        self.ci.write("counterexample", &cases)?;
+                    }
                     return pairs::report_unfinished(&unfinished);
                 }
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
-            if let Some(folder) = &self.out_dir {
+            if let Some(cluster) = &mut cluster {
+                report.threads(cluster, marker)?;
+            }
+            if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
                 found.write(folder)?;
             }
-            if let Some(path) = &self.html {
+            if let Some(path) = self.html.as_ref().filter(|_| is_first) {
                 found.write_page(path, marker)?;
             }
             cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
@@ -185,8 +212,32 @@ impl CounterexampleArguments {
         }
         cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, None)));
         report.end()?;
-        self.ci.write("counterexample", &cases)?;
+        if let Some(cluster) = cluster {
+            cluster.close();
+        }
+        if is_first {
+            self.ci.write("counterexample", &cases)?;
+        }
         Ok(outcome)
+    }
+
+    /// Connects to the other processes, if there are others.
+    fn join_cluster(
+        &self,
+        markers: &[&dyn Marker],
+        edges: usize,
+    ) -> Result<Option<ClusterSession>, CliError> {
+        let markers: Vec<_> = markers.iter().map(|marker| marker.name()).collect();
+        let settings = [
+            ("the command", "counterexample".to_owned()),
+            ("the class", self.class.name().to_owned()),
+            ("--max-edges", edges.to_string()),
+            ("the markers", markers.join(" ")),
+            ("--all", self.all.to_string()),
+            ("--expect", format!("{:?}", self.expect)),
+            ("--keep-going", self.keep_going.to_string()),
+        ];
+        self.cluster.connect(&settings, LostEnd::Nothing)
     }
 
     /// The result for a marker, for CI systems.

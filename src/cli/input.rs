@@ -29,7 +29,7 @@ use super::{CliError, files::files};
 /// no name, the world gets the name of the file.
 pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     let bytes = read(path)?;
-    let mut world = match plantri_code(path, &bytes) {
+    let mut world = match plantri::PlantriCode::of_file(path, &bytes) {
         None => world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?,
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
             Ok([graph]) => NamedWorld::numbered("", "", graph, None),
@@ -94,7 +94,7 @@ pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, 
 /// Reads the embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
 pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
     let bytes = read(path)?;
-    if let Some(code) = plantri_code(path, &bytes) {
+    if let Some(code) = plantri::PlantriCode::of_file(path, &bytes) {
         return read_plantri(path, &bytes, code);
     }
     let world = world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?;
@@ -113,21 +113,6 @@ fn read_plantri(
         }
         Ok(graphs) => Ok(graphs),
         Err(error) => Err(CliError::in_file(path, error)),
-    }
-}
-
-/// The plantri code of a file, by its header or its extension. `None` for a world file.
-fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
-    if bytes.starts_with(b">>edge_code") {
-        return Some(plantri::PlantriCode::Edge);
-    }
-    if bytes.starts_with(b">>planar_code") {
-        return Some(plantri::PlantriCode::Planar);
-    }
-    match path.extension()?.to_str()? {
-        "ec" | "edge_code" => Some(plantri::PlantriCode::Edge),
-        "pc" | "plc" | "planar_code" => Some(plantri::PlantriCode::Planar),
-        _ => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig};
 
-use toposlam_robot::conform::log_noise;
+use toposlam_robot::measured_hallway::log_noise;
 
 use super::{CliError, mapping_marker::AlgorithmOption, text::counted};
 

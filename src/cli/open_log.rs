@@ -157,23 +157,27 @@ impl OpenLog {
         marker::named(name).map_err(|error| CliError::at("the log", error))
     }
 
-    /// How the robot of the log maps, or by the algorithm that was asked for; without either by Algorithm 1.
+    /// How the robot of the log mapped, and within which limits, by the algorithm that is asked for if one is; without
+    /// either by Algorithm 1.
     pub(super) fn settings(
         &self,
         path: &Path,
         option: Option<AlgorithmOption>,
     ) -> Result<RecordedSettings, CliError> {
-        let recorded = self.run.as_ref().map_or("", |run| &run.algorithm);
-        match (option, recorded) {
-            (Some(option), _) => {
-                let method = option.directional().into();
-                Ok(RecordedSettings { method, ..RecordedSettings::default() })
+        let head = self.run.as_ref().map_or("", |run| &run.algorithm);
+        let recorded = match head {
+            "" => Ok(RecordedSettings::default()),
+            head => RecordedSettings::from_head(head),
+        };
+        match (option.map(AlgorithmOption::directional), recorded) {
+            (Some(algorithm), recorded) => {
+                Ok(recorded.unwrap_or_default().with_algorithm(algorithm))
             }
-            (None, "") => Ok(RecordedSettings::default()),
-            (None, name) => RecordedSettings::from_head(name).map_err(|_| {
-                let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
-                CliError::in_file(path, cause)
-            }),
+            (None, Ok(recorded)) => Ok(recorded),
+            (None, Err(_)) => {
+                let cause = format!("its algorithm `{head}` is unknown; use --algorithm");
+                Err(CliError::in_file(path, cause))
+            }
         }
     }
 

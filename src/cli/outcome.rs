@@ -36,6 +36,9 @@ pub(crate) enum CliError {
     Reported,
     /// The work was stopped before it had a result, exit code 3.
     Interrupted,
+    /// The work ended before it had a result, exit code 3. The message has the cause.
+    #[cfg(feature = "cluster")]
+    Unfinished(String),
 }
 
 impl CliError {
@@ -63,6 +66,11 @@ impl CliError {
                 }
                 Outcome::Incomplete.into()
             }
+            #[cfg(feature = "cluster")]
+            Self::Unfinished(cause) => {
+                terminal::print_message(&format!("not finished: {cause}\n"));
+                Outcome::Incomplete.into()
+            }
         }
     }
 }
@@ -77,6 +85,8 @@ pub(crate) fn worse(
         Err(CliError::Input(_) | CliError::Reported) => 3,
         Ok(Outcome::Violated) => 2,
         Ok(Outcome::Incomplete) | Err(CliError::Interrupted) => 1,
+        #[cfg(feature = "cluster")]
+        Err(CliError::Unfinished(_)) => 1,
         Ok(Outcome::Holds) => 0,
     };
     if rank(&other) > rank(&one) { other } else { one }

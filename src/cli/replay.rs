@@ -48,9 +48,9 @@ pub(super) struct ReplayArguments {
     /// The algorithm that makes the map: algorithm1 or folding [default: the one in the log]
     #[arg(long, hide_possible_values = true)]
     algorithm: Option<AlgorithmOption>,
-    /// Stop if the map has more darts
-    #[arg(long, value_name = "N", default_value_t = 1000)]
-    max_darts: usize,
+    /// Stop if the map has more darts [default: the limit in the log, or 1000]
+    #[arg(long, value_name = "N")]
+    max_darts: Option<usize>,
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
@@ -96,13 +96,14 @@ impl ReplayArguments {
         }
         let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
-        let RecordedSettings { method, budget, is_resumed } =
+        let RecordedSettings { method, budget, is_resumed, dart_bound } =
             opened.settings(&self.log, self.algorithm)?;
         if is_resumed {
             let cause = "its robot went on from an earlier run, which is not in this log";
             return Err(CliError::in_file(&self.log, cause));
         }
-        let settings = RunSettings { budget, ..RunSettings::new(method, self.max_darts) };
+        let dart_bound = self.max_darts.unwrap_or(dart_bound);
+        let settings = RunSettings { budget, ..RunSettings::new(method, dart_bound) };
         let (log, topics) = (&opened.log, &opened.mapping);
         let replay = replay(log, topics, opened.sensor(), &settings);
         let seconds = begun.elapsed().as_secs_f64();

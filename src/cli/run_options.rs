@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use toposlam_model::mapping::{MappingMethod, RecoveryConfig};
-use toposlam_robot::run_settings::RunSettings;
+use toposlam_robot::run_settings::{DEFAULT_MAX_DARTS, RunSettings};
 
 use super::{
     CliError,
@@ -29,12 +29,9 @@ pub(super) struct RunOptions {
     #[arg(long, value_name = "LOG", requires = "recover")]
     resume: Vec<PathBuf>,
     /// Stop if the map has more darts
-    #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_DARTS)]
     max_darts: usize,
 }
-
-/// The default bound on known darts.
-const MAX_DARTS: usize = 1000;
 
 impl RunOptions {
     /// How the robot maps.
@@ -79,7 +76,7 @@ impl RunOptions {
         for log in &self.resume {
             words.extend(["--resume".to_owned(), log.display().to_string()]);
         }
-        if self.max_darts != MAX_DARTS {
+        if self.max_darts != DEFAULT_MAX_DARTS {
             words.extend(["--max-darts".to_owned(), self.max_darts.to_string()]);
         }
         Ok(words)

@@ -67,7 +67,7 @@ function assertShows(now, states, step, action) {
 async function walkAlike(page) {
   const data = await readData(page);
   assert.ok(data.relation, "the page has no relation");
-  assert.equal(await page.locator("#tell-apart").isVisible(), false);
+  assert.equal(await page.locator("#distinguish").isVisible(), false);
   const random = seeded(1);
   let states = starts(data);
   for (let step = 1; step <= DOORS; step += 1) {

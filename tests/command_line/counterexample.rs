@@ -1,11 +1,17 @@
 //! `toposlam counterexample`.
 
-use std::{collections::BTreeSet, fs, process::Output};
+use std::{
+    collections::BTreeSet,
+    fs,
+    process::{Command, Output},
+    thread,
+    time::Duration,
+};
 
 use serde_json::{Value, json};
 use toposlam_model::format::world_file;
 
-use super::{folder, names_in, objects, read_world, run, stderr, stdout, stdout_of};
+use super::{folder, names_in, objects, read_world, run, stderr, stdout, stdout_of, toposlam};
 
 /// The lines of a search, those of sizes and then the rest.
 fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {
@@ -164,4 +170,67 @@ fn a_page_is_written_if_there_is_a_pair() {
     stdout_of([&["counterexample", "--marker", "none"], &written[..]].concat());
     let page = fs::read_to_string(&page).unwrap();
     assert!(page.starts_with("<!doctype html>") && page.contains("none-simple-2"));
+}
+
+const LARGE: [&str; 6] = ["--marker", "undirected", "--class", "multigraph", "--max-edges", "7"];
+
+/// What does not fit in the memory is sorted in temporary files, which are removed.
+#[test]
+fn with_little_memory_the_result_is_the_same() {
+    let temporary = folder("counterexample_memory");
+    let search = |memory: &[&str]| {
+        let mut search = toposlam();
+        search.args(["counterexample", "--json"]).args(LARGE).args(memory);
+        search.env("TMPDIR", &temporary).output().unwrap()
+    };
+    let (free, bounded) = (search(&[]), search(&["--memory", "64MB"]));
+    assert_eq!(bounded.status.code(), Some(0), "{}", stderr(&bounded));
+    assert_eq!(stdout(&bounded), stdout(&free));
+    assert_eq!(names_in(&temporary).len(), 0);
+}
+
+#[test]
+fn a_memory_or_a_temporary_folder_that_cannot_be_used_is_bad_input() {
+    for (memory, cause) in [
+        ("2", "write a number with MB, GB, MiB or GiB, as in 2GB"),
+        ("-1GB", "write a number"),
+        ("1kB", "write a number"),
+        ("10MB", "a search needs at least 64MB"),
+    ] {
+        let output = run(["counterexample", &format!("--memory={memory}")]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(cause), "{}", stderr(&output));
+    }
+    let output = run(["counterexample", "--memory", "1GB", "--all"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let missing = folder("counterexample_temporary").join("missing");
+    let mut search = toposlam();
+    search.args(["counterexample", "--max-edges", "2", "--memory", "1.5GiB"]);
+    let output = search.env("TMPDIR", &missing).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("no folder for temporary files can be created in"), "{message}");
+    assert!(message.contains("counterexample_temporary/missing: No such file"), "{message}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_search_leaves_no_temporary_files() {
+    use std::process::Stdio;
+
+    let temporary = folder("counterexample_interrupted");
+    let mut search = toposlam();
+    search.args(["counterexample", "--memory", "64MB"]).args(&LARGE[..5]).arg("9");
+    search.env("TMPDIR", &temporary).stdout(Stdio::null()).stderr(Stdio::piped());
+    let search = search.spawn().unwrap();
+    // The search is running once its folder is there. The files in it have no names.
+    while names_in(&temporary).is_empty() {
+        thread::sleep(Duration::from_millis(20));
+    }
+    thread::sleep(Duration::from_millis(500));
+    let killed = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = search.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert_eq!(names_in(&temporary).len(), 0);
 }

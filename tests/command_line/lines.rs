@@ -54,6 +54,13 @@ fn events_as_json_lines_or_csv_are_checked() {
         assert_eq!(code, Some(0), "{error}");
         assert_eq!(line.unwrap()["verdict"], "conforms");
     }
+    // A number that is missing says nothing of the robot.
+    let mut gap = AROUND;
+    for (degree, code) in [(2, 0), (3, 1)] {
+        gap[4].0 = degree;
+        let (found, line, error) = check(&json(&gap).replace("\"index\":4,", ""));
+        assert_eq!(found, Some(code), "{line:?} {error}");
+    }
     // What conform prints after the events is skipped.
     let (code, ..) = check(&(json(&AROUND) + "{\"kind\":\"conform\",\"verdict\":\"conforms\"}\n"));
     assert_eq!(code, Some(0));

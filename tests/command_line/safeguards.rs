@@ -60,16 +60,37 @@ fn a_map_whose_audit_did_not_end_is_not_written() {
 fn the_log_of_an_audited_run_conforms_to_its_algorithm_and_audits() {
     let folder = folder("audited-log");
     let log = folder.join("audited.mcap").display().to_string();
-    for algorithm in ["algorithm1", "folding"] {
-        let audited = [SHAPE_8, "--algorithm", algorithm, "--audit=2", "--log", &log];
+    for [algorithm, other] in [["algorithm1", "folding"], ["folding", "algorithm1"]] {
+        let audited = [BUILDING, "--algorithm", algorithm, "--audit=2", "--log", &log];
         assert_eq!(simulated(&audited).0, 0);
-        let lines = objects(&stdout_of(["conform", &log, "--world", SHAPE_8, "--json"]));
-        assert!(lines.iter().any(|line| line["verdict"] == "conforms"), "{lines:?}");
-        // Another algorithm would not have audited.
-        let output = run(["conform", &log, "--algorithm", algorithm]);
+        for options in [&["--world", BUILDING][..], &["--algorithm", algorithm]] {
+            let conform = [&["conform", &log, "--json"], options].concat();
+            let lines = objects(&stdout_of(conform));
+            assert!(lines.iter().any(|line| line["verdict"] == "conforms"), "{lines:?}");
+        }
+        let output = run(["conform", &log, "--algorithm", other]);
         assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
-        assert!(stdout(&output).contains("the map is complete"), "{}", stdout(&output));
     }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_log_is_compared_within_the_limits_of_its_robot() {
+    let folder = folder("recorded-limits");
+    let log = folder.join("limited.mcap").display().to_string();
+    let of_budget = ["--max-moves", "12", "--algorithm", "folding"];
+    let of_darts = ["--recover", "--max-darts", "12"];
+    for limits in [&of_budget[..], &of_darts] {
+        let simulate = ["simulate", BUILDING, "--by-scene", "--log", &log];
+        assert_ne!(run([&simulate, limits].concat()).status.code(), Some(0));
+        for options in [&[][..], &["--algorithm", "folding"]] {
+            let output = run([&["conform", &log, "--world", BUILDING], options].concat());
+            assert_eq!(output.status.code(), Some(3), "{limits:?}: {}", stdout(&output));
+        }
+    }
+    // A limit that was asked for counts.
+    let output = run(["conform", &log, "--world", BUILDING, "--max-darts", "100"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -173,10 +194,9 @@ fn the_log_of_a_robot_that_recovers_or_turns_back_conforms_as_far_as_it_goes() {
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(3), "{text}");
     assert!(text.contains("the robot got lost before event"), "{text}");
-    // The folding explorer alone would have given up.
-    let (code, text) = conform(&["--algorithm", "folding"]);
+    // Algorithm 1, with as many audits, would have given up.
+    let (code, text) = conform(&["--algorithm", "algorithm1"]);
     assert_eq!(code, 1, "{text}");
-    assert!(text.contains("the robot got lost, and gives up"), "{text}");
     // It was carried, which is a divergence, and did what it should.
     assert_eq!(simulated(&["--recover", "--fault", "carried@80"]), 0);
     let (code, text) = conform(&[]);

@@ -334,7 +334,7 @@ mod tests {
         EmbeddedGraph::from_edge_lists(&lists).unwrap()
     }
 
-    /// Without a marker no walk tells cycles apart. If their lengths `n` and `m` are coprime, two robots
+    /// Without a marker no walk distinguishes cycles. If their lengths `n` and `m` are coprime, two robots
     /// reach all `2 n m` pairs of poses that agree on the sense.
     #[test]
     fn the_partition_is_made_only_where_there_are_many_pairs() {

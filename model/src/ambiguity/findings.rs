@@ -1,14 +1,17 @@
 //! What a search finds: the worlds that a marker does not distinguish.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::SorterError;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::StartCode,
 };
 
 /// An embedded graph with a marker, up to isomorphism that keeps the marker.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Vec<u32>", try_from = "Vec<u32>")]
 pub struct PlacedWorld {
     /// The graph; the marker was placed by its dart 0. Of all starts that place it so, this is the
     /// one with the least code, and darts are numbered as met from it.
@@ -19,16 +22,27 @@ pub struct PlacedWorld {
 impl PlacedWorld {
     /// The facing dart by which the marker was placed.
     pub const FACING: Dart = Dart(0);
+}
 
-    /// The order of worlds in a report: fewer edges first, then the lesser code.
-    pub(super) fn rank(&self) -> (usize, &StartCode) {
-        (self.graph.edge_count(), &self.code)
+/// A placed world is sent as the words of its code.
+impl From<PlacedWorld> for Vec<u32> {
+    fn from(world: PlacedWorld) -> Self {
+        world.code.words().to_vec()
+    }
+}
+
+impl TryFrom<Vec<u32>> for PlacedWorld {
+    type Error = Unfinished;
+
+    fn try_from(words: Vec<u32>) -> Result<Self, Unfinished> {
+        let graph = StartCode::start_of(&words).ok_or(Unfinished::Unreadable)?;
+        Ok(Self { graph, code: StartCode::of_words(words) })
     }
 }
 
 /// Placed worlds that are indistinguishable from each other, in the order of their sizes and codes. There are
 /// at least two.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AmbiguousGroup {
     /// The worlds.
     pub worlds: Vec<PlacedWorld>,
@@ -45,7 +59,7 @@ impl AmbiguousGroup {
 }
 
 /// The findings among the worlds with one number of edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SizeFindings {
     /// The number of edges.
     pub edges: usize,
@@ -56,16 +70,26 @@ pub struct SizeFindings {
 }
 
 /// The findings of a search.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Findings {
     /// For each number of edges from 1.
     pub sizes: Vec<SizeFindings>,
-    /// All ambiguous worlds, the group with the smallest pair first.
+    /// All ambiguous worlds, the group with the smallest pair first; or that pair, if only it is
+    /// [kept](KeptPairs).
     pub groups: Vec<AmbiguousGroup>,
 }
 
+/// Which pairs a search keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPairs {
+    /// All.
+    All,
+    /// Only the smallest one, whose memory does not grow with the number of pairs.
+    Smallest,
+}
+
 /// Why a search has no findings.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 pub enum Unfinished {
     /// It was interrupted: it is not complete.
     #[error("the search was interrupted")]
@@ -78,9 +102,55 @@ pub enum Unfinished {
         .0[0].graph.edge_count(), .0[1].graph.edge_count()
     )]
     Unconfirmed(Box<[PlacedWorld; 2]>),
+    /// A candidate that was stored and read again is not that of a placed world.
+    #[error("what was stored of a world cannot be read: the storage is at fault")]
+    Unreadable,
+}
+
+/// Why a search with a [sorter](super::CandidateSorter) has no findings.
+#[derive(Debug, Error)]
+pub enum SearchError {
+    /// The search did not finish.
+    #[error(transparent)]
+    Unfinished(#[from] Unfinished),
+    /// The sorter failed.
+    #[error("{0}")]
+    Sorter(SorterError),
 }
 
 impl Findings {
+    /// Counts placed worlds with this number of edges.
+    pub fn count_placed(&mut self, edges: usize, placed_worlds: u64) {
+        if let Some(size) = self.sizes.iter_mut().find(|size| size.edges == edges) {
+            size.placed_worlds += placed_worlds;
+        }
+    }
+
+    /// These findings and those of the same search among other quotients.
+    #[must_use]
+    pub fn merged(mut self, other: Self, kept: KeptPairs) -> Self {
+        for (size, more) in self.sizes.iter_mut().zip(other.sizes) {
+            size.placed_worlds += more.placed_worlds;
+            size.ambiguous += more.ambiguous;
+        }
+        self.groups.extend(other.groups);
+        self.groups.sort_by(|one, other| one.smallest().map(rank).cmp(&other.smallest().map(rank)));
+        match kept {
+            KeptPairs::All => self,
+            KeptPairs::Smallest => self.into_smallest(),
+        }
+    }
+
+    /// The same with the smallest pair only.
+    #[must_use]
+    pub fn into_smallest(mut self) -> Self {
+        self.groups.truncate(1);
+        for group in &mut self.groups {
+            group.worlds.truncate(2);
+        }
+        self
+    }
+
     /// The smallest pair: the one with the fewest edges in its larger world; then in its smaller
     /// world; then with the least codes.
     #[must_use]

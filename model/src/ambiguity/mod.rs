@@ -5,19 +5,26 @@
 //! of both worlds; what a [`Comparison`] hands over is a [witness](Relation), which is verified
 //! without it. The [`AmbiguitySearch`] finds all such worlds of a class by the quotient of each.
 
+mod candidate;
 mod comparison;
 mod findings;
+mod grouping;
 mod partition;
 mod quotient;
 mod search;
+mod sorter;
 mod space;
 mod state_classes;
 mod twins;
 mod witness;
 
+pub use candidate::AmbiguityCandidate;
 pub use comparison::{Bisimulation, Comparison};
-pub use findings::{AmbiguousGroup, Findings, PlacedWorld, SizeFindings, Unfinished};
-pub use search::AmbiguitySearch;
+pub use findings::{
+    AmbiguousGroup, Findings, KeptPairs, PlacedWorld, SearchError, SizeFindings, Unfinished,
+};
+pub use search::{AmbiguitySearch, SearchPart};
+pub use sorter::{CandidateSorter, CandidatesInMemory, SortedCandidates, SorterError};
 pub use space::{PlacedRobot, state_count};
 pub use state_classes::StateClasses;
 pub use twins::{Twin, Twins, twins};

@@ -1,14 +1,15 @@
 //! All worlds of a class that a marker does not distinguish, up to a number of edges.
 //!
 //! Placed worlds are indistinguishable exactly when their quotients are equal. So one pass over all
-//! worlds and a grouping find them, without comparing each pair.
+//! worlds and a sort by quotient find them, without comparing each pair.
 
 use std::ops::ControlFlow;
 
 use super::{
-    AmbiguousGroup, Comparison, Findings, PlacedWorld, SizeFindings, Unfinished,
-    findings::rank,
-    quotient::{Quotient, QuotientCode},
+    AmbiguityCandidate, CandidateSorter, CandidatesInMemory, Findings, KeptPairs, SearchError,
+    SizeFindings, Unfinished,
+    grouping::Grouping,
+    quotient::Quotient,
     space::{Space, States},
 };
 use crate::{
@@ -16,7 +17,7 @@ use crate::{
     enumerate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
-    isomorphism::{as_discovered, canonical, code},
+    isomorphism::{StartCode, canonical, code},
     marker::Marker,
     union_find::UnionFind,
     world::State,
@@ -30,13 +31,37 @@ pub struct AmbiguitySearch<'m> {
     marker: &'m dyn Marker,
 }
 
+/// A part of a search: some worlds of one size.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchPart {
+    edges: usize,
+    part: EnumerationPart,
+}
+
+impl SearchPart {
+    /// The number of edges of its worlds.
+    #[must_use]
+    pub fn edges(&self) -> usize {
+        self.edges
+    }
+}
+
+/// The number of candidates that a part of the search collects before it gives them to the sorter.
+const BATCH: usize = 1024;
+
 /// The result of one part of the search.
-#[derive(Default)]
 struct Seen {
     placed_worlds: u64,
-    /// The worlds that may be ambiguous, with the codes of their quotients.
-    candidates: Vec<(QuotientCode, PlacedWorld)>,
-    interrupted: bool,
+    /// Those that the sorter did not get yet.
+    candidates: Vec<AmbiguityCandidate>,
+    /// Why the part was not completed.
+    end: Result<(), SearchError>,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self { placed_worlds: 0, candidates: Vec::new(), end: Ok(()) }
+    }
 }
 
 impl<'m> AmbiguitySearch<'m> {
@@ -51,45 +76,129 @@ impl<'m> AmbiguitySearch<'m> {
         Ok(Self { sizes: sizes.collect::<Result<_, _>>()?, marker })
     }
 
+    /// The most bytes that a candidate of this search has.
+    #[must_use]
+    pub fn candidate_bytes(&self) -> usize {
+        let edges = self.sizes.len();
+        let darts = 2 * edges;
+        // The marker lies at one of the darts, or is carried.
+        let states = if self.marker.is_movable() { darts * (darts + 1) } else { darts };
+        AmbiguityCandidate::most_bytes(states, edges)
+    }
+
     /// Makes the search. The result does not depend on the number of threads.
     ///
     /// # Errors
     /// Returns an error if the watch interrupts the search, or a pair is not confirmed.
     pub fn run(&self, watch: &dyn Watch) -> Result<Findings, Unfinished> {
-        let mut sizes = Vec::new();
-        let mut candidates = Vec::new();
-        for (worlds, edges) in self.sizes.iter().zip(1..) {
-            let seen = self.look_at(worlds, watch);
-            if seen.interrupted {
-                return Err(Unfinished::Interrupted);
-            }
-            sizes.push(SizeFindings { edges, placed_worlds: seen.placed_worlds, ambiguous: 0 });
-            candidates.extend(seen.candidates);
-        }
-        let groups = self.grouped(candidates, watch)?;
-        for world in groups.iter().flat_map(|group| &group.worlds) {
-            sizes[world.graph.edge_count() - 1].ambiguous += 1;
-        }
-        Ok(Findings { sizes, groups })
+        let sorter = Box::new(CandidatesInMemory::default());
+        self.run_sorted(sorter, KeptPairs::All, watch).map_err(|error| match error {
+            SearchError::Unfinished(unfinished) => unfinished,
+            SearchError::Sorter(_) => Unfinished::Unreadable,
+        })
     }
 
-    fn look_at(&self, worlds: &Enumeration, watch: &dyn Watch) -> Seen {
+    /// Makes the search with a sorter for its candidates. The result is that of [`run`](Self::run), as far as it is
+    /// kept.
+    ///
+    /// # Errors
+    /// Returns an error if the watch interrupts the search, the sorter fails, or a pair is not confirmed.
+    pub fn run_sorted(
+        &self,
+        sorter: Box<dyn CandidateSorter + '_>,
+        kept: KeptPairs,
+        watch: &dyn Watch,
+    ) -> Result<Findings, SearchError> {
+        let mut sizes = Vec::new();
+        for (worlds, edges) in self.sizes.iter().zip(1..) {
+            let placed_worlds = self.look_at(worlds, sorter.as_ref(), watch)?;
+            sizes.push(SizeFindings { edges, placed_worlds, ambiguous: 0 });
+        }
+        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
+        for candidate in sorter.sorted().map_err(SearchError::Sorter)? {
+            grouping.add(candidate.map_err(SearchError::Sorter)?)?;
+        }
+        Ok(grouping.findings()?)
+    }
+
+    /// The parts of the search, those of small worlds first. Equal searches have equal parts on every machine.
+    #[must_use]
+    pub fn parts(&self) -> Vec<SearchPart> {
+        let parts = |(worlds, edges): (&Enumeration, usize)| {
+            worlds.parts().into_iter().map(move |part| SearchPart { edges, part })
+        };
+        self.sizes.iter().zip(1..).flat_map(parts).collect()
+    }
+
+    /// The number of placed worlds in a part, and those that may be ambiguous.
+    #[must_use]
+    pub fn look_at_part(&self, part: &SearchPart) -> (u64, Vec<AmbiguityCandidate>) {
+        let mut seen = Seen::default();
+        let _ = part.part.for_each(&mut |found| {
+            self.search_graph(found, &mut seen);
+            ControlFlow::Continue(())
+        });
+        (seen.placed_worlds, seen.candidates)
+    }
+
+    /// The findings among all candidates of some quotients, which may be in any order. No placed worlds are
+    /// counted.
+    ///
+    /// # Errors
+    /// Returns an error if the watch interrupts the search, or a pair is not confirmed.
+    pub fn grouped(
+        &self,
+        mut candidates: Vec<AmbiguityCandidate>,
+        kept: KeptPairs,
+        watch: &dyn Watch,
+    ) -> Result<Findings, Unfinished> {
+        candidates.sort_unstable();
+        let size = |edges| SizeFindings { edges, placed_worlds: 0, ambiguous: 0 };
+        let sizes = (1..=self.sizes.len()).map(size).collect();
+        let mut grouping = Grouping::new(self.marker, sizes, kept, watch);
+        for candidate in candidates {
+            grouping.add(candidate)?;
+        }
+        grouping.findings()
+    }
+
+    /// Looks at the worlds of one size, and returns the number of placed worlds.
+    fn look_at(
+        &self,
+        worlds: &Enumeration,
+        sorter: &dyn CandidateSorter,
+        watch: &dyn Watch,
+    ) -> Result<u64, SearchError> {
         let look = |part: &EnumerationPart| {
             let mut seen = Seen::default();
-            let end = part.for_each(&mut |found| {
+            let give = |seen: &mut Seen| {
+                let added = sorter.add(std::mem::take(&mut seen.candidates));
+                added.map_err(|error| seen.end = Err(SearchError::Sorter(error)))
+            };
+            let ended = part.for_each(&mut |found| {
                 self.search_graph(found, &mut seen);
-                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                if seen.candidates.len() >= BATCH && give(&mut seen).is_err() {
+                    return ControlFlow::Break(());
+                }
+                if watch.stop() {
+                    seen.end = Err(Unfinished::Interrupted.into());
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
             });
-            seen.interrupted = end.is_break();
+            if ended.is_continue() {
+                let _ = give(&mut seen);
+            }
             seen
         };
-        let merge = |mut seen: Seen, later: Seen| {
-            seen.placed_worlds += later.placed_worlds;
-            seen.candidates.extend(later.candidates);
-            seen.interrupted |= later.interrupted;
-            seen
+        let merge = |one: Seen, later: Seen| Seen {
+            placed_worlds: one.placed_worlds + later.placed_worlds,
+            end: one.end.and(later.end),
+            ..Seen::default()
         };
-        in_parts(&worlds.parts(), watch, Seen::default, look, |seen| seen.placed_worlds, merge)
+        let seen =
+            in_parts(&worlds.parts(), watch, Seen::default, look, |seen| seen.placed_worlds, merge);
+        seen.end.map(|()| seen.placed_worlds)
     }
 
     /// Searches all ways to place the marker in a graph.
@@ -114,7 +223,8 @@ impl<'m> AmbiguitySearch<'m> {
                 let starts = self.marker.starts(graph, facing);
                 let codes = starts.iter().map(begun).map(|state| quotient.code(state));
                 if let Some(least) = codes.min() {
-                    seen.candidates.push((least, placed(graph, &places)));
+                    let placed = least_code(graph, &places);
+                    seen.candidates.push(AmbiguityCandidate::new(&least, &placed));
                 }
             }
             refined = Some((states, quotient));
@@ -145,98 +255,28 @@ impl<'m> AmbiguitySearch<'m> {
         }
         places
     }
-
-    /// The groups of candidates with the same code. Each world is confirmed by a relation with the
-    /// first of its group.
-    fn grouped(
-        &self,
-        mut candidates: Vec<(QuotientCode, PlacedWorld)>,
-        watch: &dyn Watch,
-    ) -> Result<Vec<AmbiguousGroup>, Unfinished> {
-        candidates.sort_by(|(code, world), (other_code, other)| {
-            code.cmp(other_code).then_with(|| world.rank().cmp(&other.rank()))
-        });
-        let alike = candidates.chunk_by(|(code, _), (other, _)| code == other);
-        let alike: Vec<_> = alike.filter(|alike| alike.len() > 1).collect();
-        let pairs: Vec<[&PlacedWorld; 2]> = alike
-            .iter()
-            .flat_map(|alike| alike.iter().map(|(_, world)| [&alike[0].1, world]))
-            .collect();
-        let confirm = |&pair: &[&PlacedWorld; 2]| {
-            if watch.stop() {
-                Err(Unfinished::Interrupted)
-            } else if is_confirmed(self.marker, pair) {
-                Ok(())
-            } else {
-                Err(Unfinished::Unconfirmed(Box::new(pair.map(PlacedWorld::clone))))
-            }
-        };
-        in_parts(&pairs, &(), || Ok(()), confirm, |_| 1, Result::and)?;
-        let group = |alike: &[(QuotientCode, PlacedWorld)]| AmbiguousGroup {
-            worlds: alike.iter().map(|(_, world)| world.clone()).collect(),
-        };
-        let mut groups: Vec<_> = alike.into_iter().map(group).collect();
-        groups.sort_by(|one, other| one.smallest().map(rank).cmp(&other.smallest().map(rank)));
-        Ok(groups)
-    }
 }
 
-/// Whether a verified relation shows that two placed worlds are indistinguishable.
-fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
-    let start = PlacedWorld::FACING;
-    let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
-    comparison.start_like(start).is_some_and(|pose| {
-        let [here, there] = comparison.starts([start, pose]);
-        let relation = comparison.relation([start, pose]);
-        relation.is_some_and(|relation| relation.verify(&here, &there))
-    })
-}
-
-/// The placed world of these facing darts, which all place the marker alike.
-fn placed(graph: &EmbeddedGraph, places: &[Dart]) -> PlacedWorld {
-    let least = places.iter().map(|&facing| (code(graph, facing), facing)).min();
-    let (code, facing) = least.unwrap_or_else(|| (code(graph, Dart(0)), Dart(0)));
-    PlacedWorld { graph: as_discovered(graph, facing), code }
+/// The code of the placed world of these facing darts, which all place the marker alike: that of its least start.
+fn least_code(graph: &EmbeddedGraph, places: &[Dart]) -> StartCode {
+    let codes = places.iter().map(|&facing| code(graph, facing));
+    codes.min().unwrap_or_else(|| code(graph, Dart(0)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::marker::named;
-
-    #[test]
-    fn worlds_that_a_walk_tells_apart_are_not_confirmed() {
-        for marker in ["none", "undirected", "movable"].map(|name| named(name).unwrap()) {
-            let findings =
-                AmbiguitySearch::new(Class::Multigraph, 3, marker).unwrap().run(&()).unwrap();
-            let groups: Vec<_> = findings.groups.iter().map(|group| &group.worlds).collect();
-            for (one, other) in groups.iter().zip(groups.iter().skip(1)) {
-                assert!(is_confirmed(marker, [&one[0], &one[1]]));
-                assert!(!is_confirmed(marker, [&one[0], &other[0]]));
-            }
-            assert!(groups.len() > 1);
-        }
-    }
-
-    #[test]
-    fn a_group_that_is_not_confirmed_is_an_error() {
-        let search = AmbiguitySearch::new(Class::Simple, 4, named("undirected").unwrap()).unwrap();
-        let seen = search.look_at(&search.sizes[3], &());
-        let chains = AmbiguitySearch::new(Class::Simple, 4, named("none").unwrap()).unwrap();
-        let seen = [seen, chains.look_at(&chains.sizes[3], &())];
-        let worlds: Vec<_> = seen.into_iter().flat_map(|seen| seen.candidates).collect();
-        // As if all of these had the same quotient.
-        let same = worlds.into_iter().map(|(_, world)| (QuotientCode::new(), world)).collect();
-        assert!(matches!(search.grouped(same, &()), Err(Unfinished::Unconfirmed(_))));
-    }
+    use crate::{ambiguity::PlacedWorld, marker::named};
 
     /// A cover has at least twice as many edges.
     #[test]
     fn a_world_whose_states_can_be_told_apart_is_a_candidate_only_where_it_has_covers() {
         let search = AmbiguitySearch::new(Class::Simple, 5, named("undirected").unwrap()).unwrap();
         let counts = |edges: usize| {
-            let seen = search.look_at(&search.sizes[edges - 1], &());
-            (seen.placed_worlds, seen.candidates.len())
+            let sorter = Box::new(CandidatesInMemory::default());
+            let worlds = &search.sizes[edges - 1];
+            let placed_worlds = search.look_at(worlds, sorter.as_ref(), &()).unwrap();
+            (placed_worlds, sorter.sorted().unwrap().count())
         };
         // A chain of two, marked at an end or in the middle, might have a cover with 4 edges.
         assert_eq!(counts(2), (2, 2));

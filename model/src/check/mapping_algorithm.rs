@@ -1,9 +1,10 @@
 //! The algorithms of this crate, to choose from at run time. Section 2.3.
 
 use super::{
-    Algorithm, Algorithm1, Algorithm1Explorer, AllChoices, CostOrder, EveryWay, FailedStart,
-    FinishedUnits, Flaw, Folding, FoldingStepExplorer, LazyCheck, LazySweep, MovableMarker,
-    MovableMarkerExplorer, Probe, RunState, Sweep, Tally, check_worlds, first_false_step,
+    Algorithm, Algorithm1, Algorithm1Explorer, AllChoices, CheckPieces, CostOrder, EveryWay,
+    FailedStart, FinishedUnits, Flaw, Folding, FoldingStepExplorer, LazyCheck, LazySweep,
+    MovableMarker, MovableMarkerExplorer, PieceCounts, Probe, RunState, Sweep, Tally, check_worlds,
+    first_false_step,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -106,6 +107,50 @@ impl MappingAlgorithm {
             Self::Algorithm1 => Some(sweep.unit_count(Algorithm1Explorer::default, watch)),
             Self::MovableMarker => Some(sweep.unit_count(MovableMarkerExplorer::default, watch)),
             Self::Folding => Some(sweep.unit_count(FoldingStepExplorer::default, watch)),
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
+        }
+    }
+
+    /// The pieces of a lazy sweep, as [`CheckPieces::new`]; `None` with all choices.
+    #[must_use]
+    pub fn pieces(&self, sweep: &LazySweep, watch: &dyn Watch) -> Option<CheckPieces> {
+        match self {
+            Self::Algorithm1 => Some(CheckPieces::new(sweep, Algorithm1Explorer::default, watch)),
+            Self::MovableMarker => {
+                Some(CheckPieces::new(sweep, MovableMarkerExplorer::default, watch))
+            }
+            Self::Folding => Some(CheckPieces::new(sweep, FoldingStepExplorer::default, watch)),
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
+        }
+    }
+
+    /// The counts of a piece, as [`CheckPieces::check`]; none with all choices.
+    #[must_use]
+    pub fn check_piece(&self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PieceCounts {
+        match self {
+            Self::Algorithm1 => of.check(piece, Algorithm1Explorer::default(), watch),
+            Self::MovableMarker => of.check(piece, MovableMarkerExplorer::default(), watch),
+            Self::Folding => of.check(piece, FoldingStepExplorer::default(), watch),
+            Self::AllChoices(_) | Self::FoldingAllChoices(_) => PieceCounts::default(),
+        }
+    }
+
+    /// The result of a lazy sweep, as [`CheckPieces::finished`]; `None` with all choices.
+    #[must_use]
+    pub fn finished_pieces(&self, counts: PieceCounts) -> Option<LazyCheck> {
+        match self {
+            Self::Algorithm1 => {
+                let check = CheckPieces::finished(counts, Algorithm1Explorer::default);
+                Some(with_false_step(&Algorithm1, check))
+            }
+            Self::MovableMarker => {
+                let check = CheckPieces::finished(counts, MovableMarkerExplorer::default);
+                Some(with_false_step(&MovableMarker, check))
+            }
+            Self::Folding => {
+                let check = CheckPieces::finished(counts, FoldingStepExplorer::default);
+                Some(with_false_step(&Folding, check))
+            }
             Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
         }
     }

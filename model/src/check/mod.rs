@@ -29,8 +29,9 @@ pub use folding_explorer::FoldingExplorer;
 pub use guess::determines_world;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
 pub use lazy::{
-    Algorithm1Explorer, EnumeratedStart, FinishedUnits, FoldingStepExplorer, LazyCheck, LazySweep,
-    LazyTally, LazyWorld, MovableMarkerExplorer, Probe, StepExplorer, StepProgress, Stepwise,
+    Algorithm1Explorer, CheckPieces, EnumeratedStart, FinishedUnits, FoldingStepExplorer,
+    LazyCheck, LazySweep, LazyTally, LazyWorld, MovableMarkerExplorer, PieceCounts, Probe,
+    StepExplorer, StepProgress, Stepwise, WorldCount,
 };
 pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{

@@ -173,7 +173,9 @@ impl EmbeddedGraph {
         for &degree in degrees {
             graph.add_vertex(degree);
         }
-        graph.opposite = opposite;
+        for (place, opposite) in graph.darts.iter_mut().zip(opposite) {
+            place.opposite = opposite;
+        }
         graph
     }
 

@@ -2,7 +2,7 @@
 //!
 //! For the modules of this crate that build graphs step by step. They never expose an unfinished one.
 
-use super::{Dart, Darts, EmbeddedGraph, Vertex};
+use super::{Dart, DartPlace, Darts, EmbeddedGraph, Vertex};
 
 /// The opposite of a free dart.
 const FREE: Dart = Dart(u32::MAX);
@@ -10,64 +10,54 @@ const FREE: Dart = Dart(u32::MAX);
 impl EmbeddedGraph {
     /// A graph without vertices, to be built.
     pub(crate) fn unfinished() -> Self {
-        Self { darts_of: Vec::new(), vertex: Vec::new(), opposite: Vec::new(), around: Vec::new() }
+        Self { darts_of: Vec::new(), darts: Vec::new() }
     }
 
     /// Removes all vertices and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.darts_of.clear();
-        self.vertex.clear();
-        self.opposite.clear();
-        self.around.clear();
+        self.darts.clear();
     }
 
     /// Reserves memory for this number of vertices and darts.
     pub(crate) fn reserve(&mut self, vertices: usize, darts: usize) {
         self.darts_of.reserve_exact(vertices);
-        self.vertex.reserve_exact(darts);
-        self.opposite.reserve_exact(darts);
-        self.around.reserve_exact(darts);
+        self.darts.reserve_exact(darts);
     }
 
     /// Adds a vertex with the given number of free darts.
     pub(crate) fn add_vertex(&mut self, degree: u32) -> Vertex {
         let vertex = Vertex(self.darts_of.len() as u32);
-        let first = self.opposite.len() as u32;
-        let darts = Darts { first, end: first + degree };
-        let count = darts.end as usize;
-        self.darts_of.push(darts);
-        self.vertex.resize(count, vertex);
-        self.opposite.resize(count, FREE);
-        self.around.resize(count, darts);
+        let first = self.darts.len() as u32;
+        let around = Darts { first, end: first + degree };
+        self.darts_of.push(around);
+        self.darts.resize(around.end as usize, DartPlace { opposite: FREE, vertex, around });
         vertex
     }
 
     /// Makes two free darts the ends of one edge.
     pub(crate) fn join(&mut self, one: Dart, other: Dart) {
-        self.opposite[one.at()] = other;
-        self.opposite[other.at()] = one;
+        self.darts[one.at()].opposite = other;
+        self.darts[other.at()].opposite = one;
     }
 
     /// Undoes [`join`](Self::join).
     pub(crate) fn unjoin(&mut self, one: Dart, other: Dart) {
-        self.opposite[one.at()] = FREE;
-        self.opposite[other.at()] = FREE;
+        self.darts[one.at()].opposite = FREE;
+        self.darts[other.at()].opposite = FREE;
     }
 
     /// Undoes the latest [`add_vertex`](Self::add_vertex). Its darts are free.
     pub(crate) fn remove_vertex(&mut self) {
         if let Some(Darts { first, .. }) = self.darts_of.pop() {
-            let count = first as usize;
-            self.vertex.truncate(count);
-            self.opposite.truncate(count);
-            self.around.truncate(count);
+            self.darts.truncate(first as usize);
         }
     }
 
     /// The dart's opposite; `None` while it is free.
     #[inline]
     pub(crate) fn joined(&self, dart: Dart) -> Option<Dart> {
-        let other = self.opposite[dart.at()];
+        let other = self.darts[dart.at()].opposite;
         (other != FREE).then_some(other)
     }
 

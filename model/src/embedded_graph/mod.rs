@@ -16,6 +16,8 @@ pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
 pub use list_error::ListError;
 pub use smooth::Smoothed;
 
+use std::hash::{Hash, Hasher};
+
 use crate::clone_in_place::clone_in_place;
 
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
@@ -51,19 +53,44 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 /// other: `clockwise` is "the next number at the same vertex", and a door is an addition. Every
 /// constructor numbers the darts in this way.
 // paper: world.graph, world.embedding
-#[derive(Debug, PartialEq, Eq, Hash)]
+#[derive(Debug)]
 pub struct EmbeddedGraph {
     /// The darts of each vertex.
     darts_of: Vec<Darts>,
-    /// The vertex of each dart.
-    vertex: Vec<Vertex>,
-    /// The other end of each dart's edge.
-    opposite: Vec<Dart>,
-    /// The darts of each dart's vertex, once more, so that a motion needs one look-up.
-    around: Vec<Darts>,
+    darts: Vec<DartPlace>,
 }
 
-clone_in_place!(EmbeddedGraph { darts_of, vertex, opposite, around });
+clone_in_place!(EmbeddedGraph { darts_of, darts });
+
+/// Two graphs are equal if they are isomorphic and have the same numbers.
+impl PartialEq for EmbeddedGraph {
+    fn eq(&self, other: &Self) -> bool {
+        // The degrees determine the vertices of the darts.
+        self.darts_of == other.darts_of
+            && self.darts().all(|dart| self.opposite(dart) == other.opposite(dart))
+    }
+}
+
+impl Eq for EmbeddedGraph {}
+
+impl Hash for EmbeddedGraph {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.darts_of.hash(state);
+        for place in &self.darts {
+            place.opposite.hash(state);
+        }
+    }
+}
+
+/// All that is known of a dart, side by side, so that a motion needs one look-up.
+#[derive(Clone, Copy, Debug)]
+struct DartPlace {
+    /// The other end of its edge.
+    opposite: Dart,
+    vertex: Vertex,
+    /// The darts of its vertex, once more.
+    around: Darts,
+}
 
 /// The darts of a vertex: consecutive numbers in clockwise order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -90,13 +117,13 @@ impl EmbeddedGraph {
     /// The number of edges, `m`.
     #[must_use]
     pub fn edge_count(&self) -> usize {
-        self.opposite.len() / 2
+        self.darts.len() / 2
     }
 
     /// The number of darts, `2m`.
     #[must_use]
     pub fn dart_count(&self) -> usize {
-        self.opposite.len()
+        self.darts.len()
     }
 
     /// All vertices, in the order of their numbers.
@@ -108,7 +135,7 @@ impl EmbeddedGraph {
 
     /// All darts, in the order of their numbers.
     pub fn darts(&self) -> impl ExactSizeIterator<Item = Dart> + Clone + use<> {
-        (0..self.opposite.len() as u32).map(Dart)
+        (0..self.darts.len() as u32).map(Dart)
     }
 
     /// All edges, each as its two darts, the lower number first, in the order of the first.
@@ -120,14 +147,14 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn opposite(&self, dart: Dart) -> Dart {
-        self.opposite[dart.at()]
+        self.darts[dart.at()].opposite
     }
 
     /// The vertex at which the dart is.
     #[inline]
     #[must_use]
     pub fn vertex(&self, dart: Dart) -> Vertex {
-        self.vertex[dart.at()]
+        self.darts[dart.at()].vertex
     }
 
     /// The number of darts at the vertex.
@@ -141,7 +168,7 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn index(&self, dart: Dart) -> u32 {
-        dart.0 - self.around[dart.at()].first
+        dart.0 - self.darts[dart.at()].around.first
     }
 
     /// The dart that stands `index` places clockwise from the vertex's first; the inverse of
@@ -165,7 +192,7 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn clockwise(&self, dart: Dart) -> Dart {
-        let darts = self.around[dart.at()];
+        let darts = self.darts[dart.at()].around;
         if dart.0 + 1 == darts.end { Dart(darts.first) } else { Dart(dart.0 + 1) }
     }
 
@@ -173,7 +200,7 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn counterclockwise(&self, dart: Dart) -> Dart {
-        let darts = self.around[dart.at()];
+        let darts = self.darts[dart.at()].around;
         if dart.0 == darts.first { Dart(darts.end - 1) } else { Dart(dart.0 - 1) }
     }
 
@@ -181,7 +208,7 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn degree_around(&self, dart: Dart) -> u32 {
-        self.around[dart.at()].count()
+        self.darts[dart.at()].around.count()
     }
 
     /// The number of faces: the orbits of "cross the edge, then turn clockwise".
@@ -226,11 +253,14 @@ impl EmbeddedGraph {
     #[must_use]
     pub fn mirror_image(&self) -> Self {
         let image = |dart: Dart| {
-            let darts = self.around[dart.at()];
+            let darts = self.darts[dart.at()].around;
             if dart.0 == darts.first { dart } else { Dart(darts.end - self.index(dart)) }
         };
-        let opposite = self.darts().map(|dart| image(self.opposite(image(dart)))).collect();
-        Self { opposite, ..self.clone() }
+        let mut mirrored = self.clone();
+        for (place, dart) in mirrored.darts.iter_mut().zip(self.darts()) {
+            place.opposite = image(self.opposite(image(dart)));
+        }
+        mirrored
     }
 }
 

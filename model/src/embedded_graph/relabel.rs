@@ -11,7 +11,7 @@ impl EmbeddedGraph {
         let mut order = Vec::with_capacity(self.dart_count());
         let mut taken = vec![false; self.vertex_count()];
         for &first in firsts {
-            let vertex = *self.vertex.get(first.at())?;
+            let vertex = self.darts.get(first.at())?.vertex;
             if std::mem::replace(&mut taken[vertex.at()], true) {
                 return None;
             }

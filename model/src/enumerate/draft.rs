@@ -16,8 +16,6 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 #[derive(Clone, Debug)]
 pub(crate) struct Draft {
     growth: Growth,
-    /// The same as an embedded graph with free darts.
-    graph: EmbeddedGraph,
 }
 
 /// What is behind a free dart.
@@ -72,7 +70,7 @@ impl Draft {
             _ if edges > MAX_EDGES => Err(SizeError::TooManyEdges(edges)),
             _ => {
                 let growth = Growth::new(class, edges, Each::Start);
-                Ok(Self { growth, graph: EmbeddedGraph::unfinished() })
+                Ok(Self { growth })
             }
         }
     }
@@ -80,7 +78,7 @@ impl Draft {
     /// What is decided. The other ends of the other darts are free.
     #[inline]
     pub(crate) fn graph(&self) -> &EmbeddedGraph {
-        &self.graph
+        &self.growth.graph
     }
 
     /// The number of edges that are not decided.
@@ -134,13 +132,13 @@ impl Draft {
             Answer::NewVertex(degree) => {
                 let entry = self.growth.darts;
                 self.growth.add_vertex(degree.into());
-                self.graph.add_vertex(degree.into());
+                self.growth.graph.add_vertex(degree.into());
                 (entry, new_vertex(degree))
             }
         };
         if let Some(dart) = dart {
             self.growth.join(dart.at(), entry, word);
-            self.graph.join(dart, Dart(entry as u32));
+            self.growth.graph.join(dart, Dart(entry as u32));
         }
     }
 
@@ -150,11 +148,11 @@ impl Draft {
         if let Some(dart) = dart {
             let other = self.growth.opposite[dart.at()];
             self.growth.unjoin(dart.at(), other.into());
-            self.graph.unjoin(dart, Dart(other.into()));
+            self.growth.graph.unjoin(dart, Dart(other.into()));
         }
         if let Answer::NewVertex(_) = answer {
             self.growth.remove_vertex();
-            self.graph.remove_vertex();
+            self.growth.graph.remove_vertex();
         }
     }
 
@@ -165,12 +163,11 @@ impl Draft {
         visit: &mut impl FnMut(&EmbeddedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if self.edges_left() == 0 {
-            return visit(&self.graph);
+            return visit(self.graph());
         }
-        let mut graph = EmbeddedGraph::unfinished();
         let mut growth = self.growth.clone();
         let edges = growth.edges_left() + growth.edges;
-        growth.grow_to(edges, &mut |grown| grown.show(&mut graph, &mut |found| visit(found.graph)))
+        growth.grow_to(edges, &mut |grown| grown.show(&mut |found| visit(found.graph)))
     }
 }
 

@@ -52,6 +52,12 @@ pub(super) struct Growth {
     /// The darts, as bits, with a code so far that could still become less than that of dart 0. Dart 0
     /// is not among them.
     pub(super) rivals: u64,
+    /// For each free dart, the next one along the face into which it sticks, clockwise, and the one before. Kept in
+    /// the class `planar` only. A dart that is not free keeps its own, to be free again.
+    next_in_face: [u8; DARTS],
+    last_in_face: [u8; DARTS],
+    /// The same as an embedded graph with free darts. It lacks an edge while that is only tried.
+    pub(super) graph: EmbeddedGraph,
 }
 
 /// The word of an edge to a new vertex of some degree; and the degree, from the word.
@@ -91,6 +97,9 @@ impl Growth {
             words: [0; MAX_EDGES],
             edges: 0,
             rivals: 0,
+            next_in_face: [0; DARTS],
+            last_in_face: [0; DARTS],
+            graph: EmbeddedGraph::unfinished(),
         }
     }
 
@@ -104,15 +113,19 @@ impl Growth {
     /// Repeats the first steps of a history.
     pub(super) fn resume(&mut self, beginning: Beginning) {
         self.add_vertex(beginning.degree as usize);
+        self.graph.add_vertex(beginning.degree.into());
         for &word in &beginning.words[..beginning.edges as usize] {
             let dart = self.free.trailing_zeros() as usize;
-            if (word as usize) < self.darts {
-                self.join(dart, word as usize, word);
+            let other = if (word as usize) < self.darts {
+                word as usize
             } else {
                 let entry = self.darts;
                 self.add_vertex(new_vertex(word) as usize);
-                self.join(dart, entry, word);
-            }
+                self.graph.add_vertex(new_vertex(word).into());
+                entry
+            };
+            self.join(dart, other, word);
+            self.graph.join(Dart(dart as u32), Dart(other as u32));
             self.may_be_least();
         }
     }
@@ -128,7 +141,9 @@ impl Growth {
         }
         for degree in self.start_degrees() {
             self.add_vertex(degree);
+            self.graph.add_vertex(degree as u32);
             self.grow_edge(edges, visit)?;
+            self.graph.remove_vertex();
             self.remove_vertex();
         }
         ControlFlow::Continue(())
@@ -158,7 +173,10 @@ impl Growth {
             for other in bits(self.partners(dart)) {
                 self.join(dart, other, other as u8);
                 if self.can_still_end(left) && self.may_be_least() {
+                    let ends = [dart, other].map(|dart| Dart(dart as u32));
+                    self.graph.join(ends[0], ends[1]);
                     self.grow_edge(edges, visit)?;
+                    self.graph.unjoin(ends[0], ends[1]);
                 }
                 self.rivals = rivals;
                 self.unjoin(dart, other);
@@ -169,7 +187,12 @@ impl Growth {
             self.add_vertex(degree);
             self.join(dart, entry, new_vertex(degree as u8));
             if self.can_still_end(left) && self.may_be_least() {
+                self.graph.add_vertex(degree as u32);
+                let ends = [dart, entry].map(|dart| Dart(dart as u32));
+                self.graph.join(ends[0], ends[1]);
                 self.grow_edge(edges, visit)?;
+                self.graph.unjoin(ends[0], ends[1]);
+                self.graph.remove_vertex();
             }
             self.rivals = rivals;
             self.unjoin(dart, entry);
@@ -228,20 +251,51 @@ impl Growth {
         (u64::MAX >> (DARTS - self.degree[vertex] as usize)) << self.first[vertex]
     }
 
-    /// The free darts, as bits, that stick out into the same face as a free dart, and it too.
+    /// The free darts, as bits, that stick out into the same face as a free dart, and it too. In the class
+    /// `planar`.
     fn free_in_face(&self, dart: usize) -> u64 {
-        let mut found = 0;
-        let mut at = dart;
-        loop {
-            if self.opposite[at] == FREE {
-                found |= 1 << at;
-            } else {
-                at = self.opposite[at] as usize;
+        let mut found = 1 << dart;
+        let mut at = self.next_in_face[dart] as usize;
+        while at != dart {
+            found |= 1 << at;
+            at = self.next_in_face[at] as usize;
+        }
+        found
+    }
+
+    fn follow(&mut self, dart: u8, next: u8) {
+        self.next_in_face[dart as usize] = next;
+        self.last_in_face[next as usize] = dart;
+    }
+
+    /// An edge between two free darts divides their face, or unites their faces: each is followed by what
+    /// followed the other.
+    fn join_in_face(&mut self, one: usize, other: usize) {
+        let [(last, next), (last_other, next_other)] =
+            [one, other].map(|dart| (self.last_in_face[dart], self.next_in_face[dart]));
+        let [one, other] = [one, other].map(|dart| dart as u8);
+        match (next == one, next_other == other) {
+            // The only one in its face.
+            (true, true) => {}
+            (true, false) => self.follow(last_other, next_other),
+            (false, true) => self.follow(last, next),
+            (false, false) => {
+                if next_other != one {
+                    self.follow(last, next_other);
+                }
+                if next != other {
+                    self.follow(last_other, next);
+                }
             }
-            at = self.clockwise(at);
-            if at == dart {
-                return found;
-            }
+        }
+    }
+
+    /// Undoes [`join_in_face`](Self::join_in_face).
+    fn unjoin_in_face(&mut self, one: usize, other: usize) {
+        for dart in [one, other] {
+            let (last, next) = (self.last_in_face[dart], self.next_in_face[dart]);
+            self.next_in_face[last as usize] = dart as u8;
+            self.last_in_face[next as usize] = dart as u8;
         }
     }
 
@@ -274,8 +328,13 @@ impl Growth {
     /// The least number of edges that can use up these free darts, if none may be joined to one at
     /// its own vertex.
     fn edges_needed(&self, free: u64) -> usize {
-        let most_at_one = (0..self.vertices).map(|v| (free & self.darts_of(v)).count_ones()).max();
-        free.count_ones().div_ceil(2).max(most_at_one.unwrap_or(0)) as usize
+        let (mut rest, mut most_at_one) = (free, 0);
+        while rest != 0 {
+            let here = self.darts_of(self.vertex[rest.trailing_zeros() as usize] as usize);
+            most_at_one = most_at_one.max((rest & here).count_ones());
+            rest &= !here;
+        }
+        free.count_ones().div_ceil(2).max(most_at_one) as usize
     }
 
     pub(super) fn clockwise(&self, dart: usize) -> usize {
@@ -290,6 +349,13 @@ impl Growth {
         self.degree[new] = degree as u8;
         self.adjacent[new] = 1 << new;
         self.vertex[self.darts..self.darts + degree].fill(new as u8);
+        if self.class == Class::Planar {
+            let first = self.darts as u8;
+            let end = first + degree as u8;
+            for dart in first..end {
+                self.follow(dart, if dart + 1 == end { first } else { dart + 1 });
+            }
+        }
         self.vertices += 1;
         self.darts += degree;
         self.free |= self.darts_of(new);
@@ -317,9 +383,15 @@ impl Growth {
         self.adjacent[to] |= 1 << from;
         self.words[self.edges] = word;
         self.edges += 1;
+        if self.class == Class::Planar {
+            self.join_in_face(one, other);
+        }
     }
 
     pub(super) fn unjoin(&mut self, one: usize, other: usize) {
+        if self.class == Class::Planar {
+            self.unjoin_in_face(one, other);
+        }
         self.opposite[one] = FREE;
         self.opposite[other] = FREE;
         self.free |= 1 << one;
@@ -332,20 +404,13 @@ impl Growth {
         self.edges -= 1;
     }
 
-    /// Visits a finished growth as an embedded graph, in the memory of the one before.
+    /// Visits a finished growth as an embedded graph.
     pub(super) fn show(
         &self,
-        graph: &mut EmbeddedGraph,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        graph.clear();
-        for &degree in &self.degree[..self.vertices] {
-            graph.add_vertex(u32::from(degree));
-        }
-        for (dart, &other) in self.opposite[..self.darts].iter().enumerate() {
-            graph.join(Dart(dart as u32), Dart(u32::from(other)));
-        }
-        visit(EnumeratedGraph { graph, automorphisms: self.rivals.count_ones() + 1 })
+        let automorphisms = self.rivals.count_ones() + 1;
+        visit(EnumeratedGraph { graph: &self.graph, automorphisms })
     }
 }
 
@@ -387,6 +452,43 @@ mod tests {
         let can_still_end = |class, left| grown(class, &[3, 1, 1], &[]).can_still_end(left);
         assert!(can_still_end(Class::Simple, 3) && !can_still_end(Class::Simple, 2));
         assert!(can_still_end(Class::Multigraph, 2));
+    }
+
+    /// The darts of a face that are free, along its border.
+    fn free_along_the_border(growth: &Growth, dart: usize) -> u64 {
+        let mut found = 0;
+        let mut at = dart;
+        loop {
+            if growth.opposite[at] == FREE {
+                found |= 1 << at;
+            } else {
+                at = growth.opposite[at] as usize;
+            }
+            at = growth.clockwise(at);
+            if at == dart {
+                return found;
+            }
+        }
+    }
+
+    /// In every planar growth on the way to 6 edges.
+    #[test]
+    fn the_free_darts_of_a_face_are_those_along_its_border() {
+        for left in 0..=3 {
+            let mut seen = 0;
+            let mut compare = |growth: &Growth| {
+                for dart in bits(growth.free) {
+                    let along = free_along_the_border(growth, dart);
+                    assert_eq!(growth.free_in_face(dart), along);
+                    let last = growth.last_in_face[dart] as usize;
+                    assert_eq!(growth.next_in_face[last] as usize, dart);
+                    seen += 1;
+                }
+                ControlFlow::Continue(())
+            };
+            let _ = Growth::new(Class::Planar, 6, Each::Start).grow_to(6 - left, &mut compare);
+            assert_eq!(seen > 100, left > 0);
+        }
     }
 
     /// A triangle with two free darts: in the plane, one inside and one outside are not joined.

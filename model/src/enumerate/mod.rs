@@ -104,9 +104,8 @@ impl Enumeration {
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut graph = EmbeddedGraph::unfinished();
         let mut whole = Growth::new(self.class, self.edges, self.each);
-        whole.grow_to(self.edges, &mut |growth| growth.show(&mut graph, visit))
+        whole.grow_to(self.edges, &mut |growth| growth.show(visit))
     }
 }
 
@@ -116,10 +115,9 @@ impl EnumerationPart {
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut graph = EmbeddedGraph::unfinished();
         let Enumeration { class, edges, each } = self.whole;
         let mut growth = Growth::new(class, edges, each);
         growth.resume(self.beginning);
-        growth.grow_to(edges, &mut |growth| growth.show(&mut graph, visit))
+        growth.grow_to(edges, &mut |growth| growth.show(visit))
     }
 }

@@ -56,7 +56,7 @@ impl<'g> CertificateWalk<'g> {
             let mut at = self.graph.vertex(other);
             while at != self.tree.root() {
                 self.take(self.tree.up(at));
-                at = self.tree.parent(self.graph, at);
+                at = self.tree.parent(at);
             }
         }
         for dart in last_way {
@@ -73,7 +73,7 @@ impl<'g> CertificateWalk<'g> {
         let mut way = Vec::new();
         while vertex != self.tree.root() {
             way.push(self.graph.opposite(self.tree.up(vertex)));
-            vertex = self.tree.parent(self.graph, vertex);
+            vertex = self.tree.parent(vertex);
         }
         way.reverse();
         way

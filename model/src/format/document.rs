@@ -9,11 +9,14 @@
 )]
 
 mod json;
+mod toml_text;
+mod value;
 
-use std::{borrow::Cow, fmt, ops::RangeInclusive};
+use std::{borrow::Cow, fmt};
 
 use thiserror::Error;
-use toml::de::{DeTable, DeValue};
+
+pub use value::{DocumentEntry, DocumentTable, DocumentValue};
 
 /// A place in a document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -144,14 +147,7 @@ impl<'t> Document<'t> {
     /// Parses TOML.
     pub fn parse_toml(bytes: &'t [u8]) -> Result<Self, DocumentError> {
         let text = text_of(bytes)?;
-        let wrong =
-            |at, message| DocumentErrorKind::Syntax(message).at(TextPosition::at_byte(bytes, at));
-        let table = DeTable::parse(text).map_err(|error| {
-            wrong(error.span().map_or(0, |span| span.start), error.message().replace('\n', ", "))
-        })?;
-        let content = table_content(table.into_inner())
-            .map_err(|(at, message)| wrong(at, message.to_owned()))?;
-        Ok(Self { text, root: Node { at: None, content } })
+        Ok(Self { text, root: toml_text::parse(text)? })
     }
 
     /// Parses JSON if the first character other than space is a brace, else TOML.
@@ -166,7 +162,7 @@ impl<'t> Document<'t> {
     /// The whole document, which is a table.
     #[must_use]
     pub fn root(&self) -> DocumentValue<'_> {
-        DocumentValue { document: self, node: &self.root }
+        DocumentValue::root(self)
     }
 
     fn position(&self, node: &Node<'_>, at: Option<usize>) -> TextPosition {
@@ -188,48 +184,6 @@ fn text_of(bytes: &[u8]) -> Result<&str, DocumentError> {
             Err(DocumentErrorKind::NotText.at(position))
         }
     }
-}
-
-/// The keys of a table in the order of the document.
-fn table_content(table: DeTable<'_>) -> Result<Content<'_>, (usize, &'static str)> {
-    let mut entries = Vec::with_capacity(table.len());
-    for (key, value) in table {
-        let at = key.span().start;
-        let mut node = node(value)?;
-        if matches!(node.content, Content::Table(_)) {
-            node.at = Some(at);
-        }
-        entries.push((Key { at: Some(at), name: key.into_inner() }, node));
-    }
-    entries.sort_by_key(|(key, _)| key.at);
-    Ok(Content::Table(entries))
-}
-
-#[expect(clippy::cast_precision_loss, reason = "no key takes a whole number as large")]
-fn node(value: toml::Spanned<DeValue<'_>>) -> Result<Node<'_>, (usize, &'static str)> {
-    let at = value.span().start;
-    let content = match value.into_inner() {
-        DeValue::Table(table) => table_content(table)?,
-        DeValue::Array(items) => {
-            Content::List(items.into_iter().map(node).collect::<Result<_, _>>()?)
-        }
-        DeValue::String(text) => Content::Text(text),
-        DeValue::Integer(digits) => {
-            let (text, radix) = (digits.as_str(), digits.radix());
-            let whole = i64::from_str_radix(text, radix).map(Content::Whole);
-            let large = |_| u64::from_str_radix(text, radix).map(|it| Content::Number(it as f64));
-            whole.or_else(large).map_err(|_| (at, "this number is too large"))?
-        }
-        DeValue::Float(digits) => match digits.as_str().parse::<f64>() {
-            Ok(number) if number.is_finite() || digits.as_str().contains(['n', 'f']) => {
-                Content::Number(number)
-            }
-            _ => return Err((at, "this number is too large")),
-        },
-        DeValue::Boolean(_) => Content::Truth,
-        DeValue::Datetime(_) => Content::Date,
-    };
-    Ok(Node { at: Some(at), content })
 }
 
 /// Appends the path from a node to a node in it; whether it is there.
@@ -256,216 +210,6 @@ fn find(from: &Node<'_>, target: &Node<'_>, path: &mut String) -> bool {
             .enumerate()
             .any(|(index, child)| try_child(&format_args!("[{index}]"), child)),
         _ => false,
-    }
-}
-
-/// A value of a document.
-#[derive(Clone, Copy, Debug)]
-pub struct DocumentValue<'d> {
-    document: &'d Document<'d>,
-    node: &'d Node<'d>,
-}
-
-impl<'d> DocumentValue<'d> {
-    /// Where it is.
-    #[must_use]
-    pub fn position(self) -> TextPosition {
-        self.document.position(self.node, self.node.at)
-    }
-
-    fn error(self, kind: DocumentErrorKind) -> DocumentError {
-        kind.at(self.position())
-    }
-
-    /// The error that something else is expected here.
-    #[must_use]
-    pub fn expected(self, expected: impl Into<Cow<'static, str>>) -> DocumentError {
-        let found = match &self.node.content {
-            Content::Table(_) => "a table",
-            Content::List(_) => "a list",
-            Content::Text(text) if text.is_empty() => "an empty text",
-            Content::Text(_) => "a text",
-            Content::Whole(_) => "a whole number",
-            Content::Number(_) => "a decimal number",
-            Content::Truth => "true or false",
-            Content::Date => "a date",
-            Content::Null => "null",
-        };
-        self.error(DocumentErrorKind::WrongKind { expected: expected.into(), found })
-    }
-
-    /// A table with these keys and no others.
-    pub fn table(self, known: &[&str]) -> Result<DocumentTable<'d>, DocumentError> {
-        let table = self.any_table()?;
-        match table.entries().find(|entry| !known.contains(&entry.key)) {
-            Some(entry) => {
-                let known = known.join(", ");
-                Err(DocumentErrorKind::UnknownKey { known }.at(entry.position()))
-            }
-            None => Ok(table),
-        }
-    }
-
-    /// A table with any keys.
-    pub fn any_table(self) -> Result<DocumentTable<'d>, DocumentError> {
-        match &self.node.content {
-            Content::Table(entries) => Ok(DocumentTable { value: self, entries }),
-            _ => Err(self.expected("a table")),
-        }
-    }
-
-    /// The items of a list; `expected` describes the list in errors.
-    pub fn list(
-        self,
-        expected: &'static str,
-    ) -> Result<impl ExactSizeIterator<Item = Self> + use<'d>, DocumentError> {
-        let document = self.document;
-        match &self.node.content {
-            Content::List(items) => Ok(items.iter().map(move |node| Self { document, node })),
-            _ => Err(self.expected(expected)),
-        }
-    }
-
-    /// The items of a list of a fixed length; `expected` describes the list in errors.
-    pub fn array<const LENGTH: usize>(
-        self,
-        expected: &'static str,
-    ) -> Result<[Self; LENGTH], DocumentError> {
-        let mut items = self.list(expected)?;
-        if items.len() != LENGTH {
-            let found = "a list of another length";
-            let expected = expected.into();
-            return Err(self.error(DocumentErrorKind::WrongKind { expected, found }));
-        }
-        Ok(std::array::from_fn(|_| items.next().unwrap_or(self)))
-    }
-
-    /// A text.
-    pub fn text(self) -> Result<&'d str, DocumentError> {
-        match &self.node.content {
-            Content::Text(text) => Ok(text),
-            _ => Err(self.expected("a text")),
-        }
-    }
-
-    /// What one of several words stands for.
-    pub fn word<T: Copy>(self, words: &[(&str, T)]) -> Result<T, DocumentError> {
-        let word = match &self.node.content {
-            Content::Text(text) => words.iter().find(|(word, _)| word == text),
-            _ => None,
-        };
-        word.map(|(_, meaning)| *meaning).ok_or_else(|| {
-            let quoted: Vec<_> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
-            let expected = quoted.join(" or ");
-            match self.node.content {
-                Content::Text(_) => self.error(DocumentErrorKind::WrongKind {
-                    expected: expected.into(),
-                    found: "another text",
-                }),
-                _ => self.expected(expected),
-            }
-        })
-    }
-
-    /// A number.
-    #[expect(clippy::cast_precision_loss, reason = "what is counted or measured is smaller")]
-    pub fn number(self) -> Result<f64, DocumentError> {
-        match self.node.content {
-            Content::Whole(number) => Ok(number as f64),
-            Content::Number(number) => Ok(number),
-            _ => Err(self.expected("a number")),
-        }
-    }
-
-    /// A number in a range; `what` is its meaning, with its unit.
-    pub fn number_in(
-        self,
-        what: &'static str,
-        range: RangeInclusive<f64>,
-    ) -> Result<f64, DocumentError> {
-        let found = self.number()?;
-        if range.contains(&found) {
-            return Ok(found);
-        }
-        let (&low, &high) = (range.start(), range.end());
-        Err(self.error(DocumentErrorKind::OutOfRange { what, found, low, high }))
-    }
-
-    /// A whole number.
-    pub fn whole(self) -> Result<i64, DocumentError> {
-        match self.node.content {
-            Content::Whole(number) => Ok(number),
-            _ => Err(self.expected("a whole number")),
-        }
-    }
-
-    /// A whole number in a range; `what` is its meaning.
-    #[expect(clippy::cast_precision_loss, reason = "only for the message")]
-    pub fn whole_in(
-        self,
-        what: &'static str,
-        range: RangeInclusive<i64>,
-    ) -> Result<i64, DocumentError> {
-        let found = self.whole()?;
-        if range.contains(&found) {
-            return Ok(found);
-        }
-        let [found, low, high] = [found, *range.start(), *range.end()].map(|number| number as f64);
-        Err(self.error(DocumentErrorKind::OutOfRange { what, found, low, high }))
-    }
-}
-
-/// A table of a document.
-#[derive(Clone, Copy, Debug)]
-pub struct DocumentTable<'d> {
-    value: DocumentValue<'d>,
-    entries: &'d [(Key<'d>, Node<'d>)],
-}
-
-/// A key of a table, and its value.
-#[derive(Clone, Copy, Debug)]
-pub struct DocumentEntry<'d> {
-    /// The key.
-    pub key: &'d str,
-    /// Its value.
-    pub value: DocumentValue<'d>,
-    at: Option<usize>,
-}
-
-impl<'d> DocumentTable<'d> {
-    /// Where it is.
-    #[must_use]
-    pub fn position(&self) -> TextPosition {
-        self.value.position()
-    }
-
-    /// Its entries in the order of the document.
-    pub fn entries(&self) -> impl Iterator<Item = DocumentEntry<'d>> + use<'d> {
-        let document = self.value.document;
-        self.entries.iter().map(move |(key, node)| DocumentEntry {
-            key: &key.name,
-            value: DocumentValue { document, node },
-            at: key.at,
-        })
-    }
-
-    /// The value of a key, if it has one.
-    #[must_use]
-    pub fn get(&self, key: &str) -> Option<DocumentValue<'d>> {
-        self.entries().find(|entry| entry.key == key).map(|entry| entry.value)
-    }
-
-    /// The value of a key.
-    pub fn need(&self, key: &'static str) -> Result<DocumentValue<'d>, DocumentError> {
-        self.get(key).ok_or_else(|| self.value.error(DocumentErrorKind::MissingKey { key }))
-    }
-}
-
-impl DocumentEntry<'_> {
-    /// Where its key is.
-    #[must_use]
-    pub fn position(&self) -> TextPosition {
-        self.value.document.position(self.value.node, self.at)
     }
 }
 

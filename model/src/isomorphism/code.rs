@@ -22,6 +22,41 @@ impl StartCode {
     pub fn words(&self) -> &[u32] {
         &self.0
     }
+
+    /// The code with these words, which may be of no start.
+    pub(crate) fn of_words(words: Vec<u32>) -> Self {
+        Self(words)
+    }
+
+    /// The start with these words, as [`as_discovered`] numbers its darts: the facing dart is dart 0. `None`
+    /// if they are not the code of a start.
+    #[must_use]
+    pub fn start_of(words: &[u32]) -> Option<EmbeddedGraph> {
+        let (&first, words) = words.split_first()?;
+        let edges = words.len();
+        let degree_of =
+            |word: u32| Some(u32::MAX - word).filter(|&d| (1..=2 * edges as u32).contains(&d));
+        let mut graph = EmbeddedGraph::unfinished();
+        graph.add_vertex(degree_of(first)?);
+        let mut next = 0;
+        for &word in words {
+            let free = (next..graph.dart_count() as u32).map(Dart);
+            let dart = free.into_iter().find(|&dart| graph.joined(dart).is_none())?;
+            next = dart.0 + 1;
+            let known = graph.dart_count() as u32;
+            let far = if word < known {
+                Dart(word)
+            } else {
+                graph.add_vertex(degree_of(word)?);
+                Dart(known)
+            };
+            if far <= dart || graph.joined(far).is_some() || graph.dart_count() > 2 * edges {
+                return None;
+            }
+            graph.join(dart, far);
+        }
+        (graph.dart_count() == 2 * edges).then_some(graph)
+    }
 }
 
 /// The word for a vertex met for the first time.

@@ -27,14 +27,13 @@ pub struct Exploration {
     here: Here,
     /// H, from the farthest to the nearest.
     hypotheses: Vec<Dart>,
-    /// The percept at each vertex since the path began, and the door taken there.
+    /// Within a step: the percept at each vertex since the path began, and the door taken there.
     trail: Vec<(Percept, Door)>,
+    /// The tree of the map from the marker; none after a change of the map that it does not survive.
     to_marker: BreadthFirstTree,
-    /// Whether `to_marker` fits the present map.
-    to_marker_is_current: bool,
 }
 
-clone_in_place!(Exploration { journey, here, hypotheses, trail, to_marker, to_marker_is_current });
+clone_in_place!(Exploration { journey, here, hypotheses, to_marker; scratch trail });
 
 /// The robot at its vertex.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +55,6 @@ impl Exploration {
             hypotheses: Vec::new(),
             trail: Vec::new(),
             to_marker: BreadthFirstTree::default(),
-            to_marker_is_current: false,
         }
     }
 
@@ -107,6 +105,7 @@ impl Exploration {
         self.stand(NOWHERE);
         self.hypotheses.clear();
         self.trail.clear();
+        self.to_marker.clear();
     }
 
     /// Lines 1 to 3: the directional marker lies at v0, S is v0, and U is its edges.
@@ -127,7 +126,6 @@ impl Exploration {
         let start = self.journey.begin(percept, world, observer)?;
         self.stand(percept);
         self.to_marker.plant(self.journey.map(), start);
-        self.to_marker_is_current = true;
         Ok(())
     }
 
@@ -206,9 +204,18 @@ impl Exploration {
         let Self { journey: Journey { map, arrival, .. }, hypotheses, .. } = self;
         hypotheses.clear();
         let marked = arrival.sighting != Sighting::Nothing;
+        // The unexplored darts that were not looked at yet, besides the edge itself.
+        let mut left = map.unexplored_count() - 1;
         for vertex in map.vertices().rev() {
-            let fits = map.degree(vertex) == arrival.degree && (vertex == START) == marked;
-            if fits && map.is_frontier(vertex) {
+            if left == 0 {
+                break;
+            }
+            let here = map.unexplored_count_at(vertex);
+            if here == 0 {
+                continue;
+            }
+            left -= here - u32::from(map.vertex(edge) == vertex);
+            if map.degree(vertex) == arrival.degree && (vertex == START) == marked {
                 for dart in map.unexplored_at(vertex).rev() {
                     // Without a marker, all darts of a vertex look alike.
                     if dart != edge && (!marked || map.expected(dart) == *arrival) {
@@ -225,12 +232,14 @@ impl Exploration {
                 _ => Err(Contradiction::Marker { vertex, index, perceived }),
             };
         }
-        if !mem::replace(&mut self.to_marker_is_current, true) {
+        if !self.to_marker.is_planted() {
             self.to_marker.plant(map, START);
             self.to_marker.grow_whole(map);
         }
-        let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));
-        hypotheses.sort_unstable_by_key(|&dart| Reverse((hops(dart), dart)));
+        if hypotheses.len() > 1 {
+            let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));
+            hypotheses.sort_unstable_by_key(|&dart| Reverse((hops(dart), dart)));
+        }
         Ok(())
     }
 
@@ -335,8 +344,10 @@ impl Exploration {
         observer: &mut impl Observer<W>,
     ) -> Result<(), InvalidStep> {
         let edge = self.journey.close_loop(hypothesis, world, observer)?;
-        self.to_marker_is_current &=
-            self.to_marker.stays_with(self.journey.map(), edge, hypothesis);
+        let is_planted = self.to_marker.is_planted();
+        if is_planted && !self.to_marker.stays_with(self.journey.map(), edge, hypothesis) {
+            self.to_marker.clear();
+        }
         self.hypotheses.clear();
         Ok(())
     }
@@ -355,7 +366,7 @@ impl Exploration {
         // The robot may have come back by another dart than it first came in by.
         let entry = self.here.entry;
         let vertex = self.journey.add_place(entry, world, observer)?;
-        if self.to_marker_is_current {
+        if self.to_marker.is_planted() {
             self.to_marker.add_leaf(self.journey.map(), vertex);
         }
         self.stand(self.map().expected(self.robot()));

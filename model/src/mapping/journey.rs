@@ -132,8 +132,14 @@ impl Journey {
         if self.map.unexplored_is_empty() {
             return None;
         }
-        self.from_robot.plant(&self.map, self.map.vertex(self.robot));
-        let nearest = self.from_robot.nearest_unexplored(&self.map)?;
+        let here = self.map.vertex(self.robot);
+        // Often it is at the robot's own vertex, and no tree is needed.
+        let nearest = if self.map.is_frontier(here) {
+            self.map.unexplored_at(here).next()?
+        } else {
+            self.from_robot.plant(&self.map, here);
+            self.from_robot.nearest_unexplored(&self.map)?
+        };
         Some(choices.next_edge(&self.map, self.robot, nearest))
     }
 
@@ -197,6 +203,10 @@ impl Journey {
             return Err(InvalidStep::UnknownVertex(target));
         }
         let mut way = mem::take(&mut self.way);
+        if self.map.vertex(self.robot) == target {
+            way.clear();
+            return Ok(way);
+        }
         self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
         self.from_robot.path_from_root(&self.map, target, &mut way);
         Ok(way)
@@ -233,7 +243,9 @@ impl Journey {
     }
 
     /// Makes one move, and returns the percept after it.
-    #[inline]
+    // A check makes billions of moves: a call, with its result in memory, would be most of one.
+    #[expect(clippy::inline_always, reason = "see above")]
+    #[inline(always)]
     pub(super) fn go<W: World>(
         &mut self,
         door: Door,

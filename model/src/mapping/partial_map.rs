@@ -100,6 +100,12 @@ impl PartialMap {
         darts.filter(|&dart| self.known.joined(dart).is_none())
     }
 
+    /// The number of unexplored darts of a vertex.
+    #[inline]
+    pub(super) fn unexplored_count_at(&self, vertex: Vertex) -> u32 {
+        self.unexplored_at[vertex.at()]
+    }
+
     /// Whether the vertex has an unexplored dart.
     #[inline]
     #[must_use]

@@ -11,17 +11,24 @@ use crate::{
 /// A breadth-first tree of the known map, grown on demand.
 #[derive(Debug, Default)]
 pub(super) struct BreadthFirstTree {
-    /// For each vertex the number of edges to the root.
-    hops: Vec<u32>,
-    /// For each vertex in the tree, but for the root, its dart that leads towards the root.
-    up: Vec<Dart>,
+    /// The vertices of the map; empty if there is no tree.
+    vertices: Vec<TreeVertex>,
     /// The vertices in the tree in the order in which they were reached.
     reached: Vec<Vertex>,
     /// The number of `reached` vertices with all their neighbours in the tree.
     grown: usize,
 }
 
-clone_in_place!(BreadthFirstTree { hops, up, reached, grown });
+clone_in_place!(BreadthFirstTree { vertices, reached, grown });
+
+/// The place of a vertex in the tree.
+#[derive(Clone, Copy, Debug)]
+struct TreeVertex {
+    /// The number of edges to the root.
+    hops: u32,
+    /// Its dart that leads towards the root; of no use at the root and outside of the tree.
+    up: Dart,
+}
 
 /// The hops of a vertex that is not in the tree.
 const UNREACHED: u32 = u32::MAX;
@@ -29,23 +36,30 @@ const UNREACHED: u32 = u32::MAX;
 impl BreadthFirstTree {
     /// Begins a new tree at its root.
     pub(super) fn plant(&mut self, map: &PartialMap, root: Vertex) {
-        self.hops.clear();
-        self.hops.resize(map.vertex_count(), UNREACHED);
-        self.up.resize(map.vertex_count(), Dart(0));
+        self.vertices.clear();
+        self.vertices.resize(map.vertex_count(), TreeVertex { hops: UNREACHED, up: Dart(0) });
         self.reached.clear();
         self.grown = 0;
-        self.hops[root.at()] = 0;
+        self.vertices[root.at()].hops = 0;
         self.reached.push(root);
     }
 
     /// Discards the tree: it no longer fits the map.
+    #[inline]
     pub(super) fn clear(&mut self) {
+        self.vertices.clear();
         self.reached.clear();
+    }
+
+    /// Whether there is a tree.
+    #[inline]
+    pub(super) fn is_planted(&self) -> bool {
+        !self.reached.is_empty()
     }
 
     /// Begins a new tree, unless this is one of the map, from that root.
     pub(super) fn plant_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
-        if self.reached.first() != Some(&root) || self.hops.len() != map.vertex_count() {
+        if self.reached.first() != Some(&root) || self.vertices.len() != map.vertex_count() {
             self.plant(map, root);
         }
     }
@@ -56,12 +70,13 @@ impl BreadthFirstTree {
             return false;
         };
         self.grown += 1;
+        let hops = self.hops(vertex) + 1;
         for dart in map.darts_of(vertex) {
             if let Some(far) = map.opposite(dart) {
                 let neighbour = map.vertex(far);
-                if self.hops[neighbour.at()] == UNREACHED {
-                    self.hops[neighbour.at()] = self.hops[vertex.at()] + 1;
-                    self.up[neighbour.at()] = far;
+                let place = &mut self.vertices[neighbour.at()];
+                if place.hops == UNREACHED {
+                    *place = TreeVertex { hops, up: far };
                     self.reached.push(neighbour);
                 }
             }
@@ -78,8 +93,8 @@ impl BreadthFirstTree {
     pub(super) fn add_leaf(&mut self, map: &PartialMap, leaf: Vertex) {
         let entry = map.first_dart(leaf);
         if let Some(parent) = map.opposite(entry) {
-            self.hops.push(self.hops[map.vertex(parent).at()] + 1);
-            self.up.push(entry);
+            let hops = self.hops(map.vertex(parent)) + 1;
+            self.vertices.push(TreeVertex { hops, up: entry });
         }
     }
 
@@ -113,7 +128,7 @@ impl BreadthFirstTree {
     /// The number of edges from a vertex to the root; the vertex is in the tree.
     #[inline]
     pub(super) fn hops(&self, vertex: Vertex) -> u32 {
-        self.hops[vertex.at()]
+        self.vertices[vertex.at()].hops
     }
 
     /// Writes the darts of the path from the root to `target`.
@@ -123,11 +138,11 @@ impl BreadthFirstTree {
         target: Vertex,
         path: &mut Vec<Dart>,
     ) {
-        while self.hops[target.at()] == UNREACHED && self.grow(map) {}
+        while self.hops(target) == UNREACHED && self.grow(map) {}
         path.clear();
         let mut vertex = target;
-        while self.hops[vertex.at()] != 0 {
-            let Some(down) = map.opposite(self.up[vertex.at()]) else {
+        while self.hops(vertex) != 0 {
+            let Some(down) = map.opposite(self.vertices[vertex.at()].up) else {
                 break;
             };
             path.push(down);
@@ -144,22 +159,21 @@ impl BreadthFirstTree {
             order.push(vertex);
             for far in map.darts_of(vertex).rev().filter_map(|dart| map.opposite(dart)) {
                 let neighbour = map.vertex(far);
-                let hops = self.hops[neighbour.at()];
-                if hops != UNREACHED && hops != 0 && self.up[neighbour.at()] == far {
+                let TreeVertex { hops, up } = self.vertices[neighbour.at()];
+                if hops != UNREACHED && hops != 0 && up == far {
                     ahead.push(neighbour);
                 }
             }
         }
     }
 
-    /// The next door towards the root, and the pose behind it; `None` at the root.
+    /// The next door towards the root, and the pose behind it; `None` at the root, or without a tree.
     #[inline]
     pub(super) fn toward_root(&self, map: &PartialMap, pose: Dart) -> Option<(Door, Dart)> {
-        let vertex = map.vertex(pose);
-        if self.hops[vertex.at()] == 0 {
+        let &TreeVertex { hops, up } = self.vertices.get(map.vertex(pose).at())?;
+        if hops == 0 {
             return None;
         }
-        let up = self.up[vertex.at()];
         Some((map.door(pose, up), map.opposite(up)?))
     }
 }

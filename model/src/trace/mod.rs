@@ -126,16 +126,23 @@ impl Trace {
         Self { relocations, ..self }
     }
 
-    /// The percepts, by their numbers from 0, at vertices to which the robot came after it got lost.
+    /// The percepts, by their numbers from 0, at vertices to which the robot came after it got lost. The first
+    /// one is among them if the run began at an unknown place.
     #[must_use]
     pub fn relocations(&self) -> &[usize] {
         &self.relocations
     }
 
+    /// Those of [`Self::relocations`] at which the robot got lost in this run: without the first percept.
+    #[must_use]
+    pub fn lost(&self) -> &[usize] {
+        self.relocations.strip_prefix(&[0]).unwrap_or(&self.relocations)
+    }
+
     /// The trace before the robot got lost for the first time, with the door that it took then.
     #[must_use]
     pub fn before_relocation(&self) -> Self {
-        match self.relocations.iter().find(|&&percept| percept > 0) {
+        match self.lost().first() {
             Some(percept) => self.up_to(2 * percept - 1),
             None => self.clone(),
         }

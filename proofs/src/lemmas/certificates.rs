@@ -1,4 +1,4 @@
-//! Certificates that no robot can tell two placed worlds apart: the verifier accepts exactly
+//! Certificates that no robot can distinguish two placed worlds: the verifier accepts exactly
 //! bisimulations, and related robots perceive the same for ever. Section 2.2.
 
 use toposlam_model::{
@@ -21,7 +21,7 @@ declare! {
         "If the verifier accepts a relation, then robots in related states perceive the same, \
          whatever both do.",
         paper "2.2",
-        exhaustive "any two starts with up to 2 edges that a marker of any kind cannot tell apart, \
+        exhaustive "any two starts with up to 2 edges that a marker of any kind cannot distinguish, \
                     any related states, up to 3 actions", 70_256 cases:
             for_ever::<_, 1, 2, 3>;
         sampled "starts with up to 5 edges, up to 20 actions": for_ever::<_, 1, 5, 20>;
@@ -40,7 +40,7 @@ declare! {
         paper "2.2",
         // 922 pairs, each taken away, or altered or joined by an altered one in 30 + 30 + 25 + 36 ways;
         // and 128 certificates with the marker in 36 places.
-        exhaustive "any two starts with up to 2 edges that a marker of any kind cannot tell apart; \
+        exhaustive "any two starts with up to 2 edges that a marker of any kind cannot distinguish; \
                     one state, both poses, or both places of the marker altered, or those of all \
                     pairs", 228_654 cases:
             altered::<_, 1, 2>;
@@ -61,7 +61,7 @@ fn marker(choose: &mut impl Choose, of: impl Fn(&dyn Marker) -> bool) -> &'stati
     marker
 }
 
-/// Two starts that the marker cannot tell apart, their comparison, and its certificate.
+/// Two starts that the marker cannot distinguish, their comparison, and its certificate.
 fn certified<'g, C: Choose>(
     choose: &mut C,
     marker: &'static dyn Marker,
@@ -184,7 +184,7 @@ fn spared<C: Choose>(choose: &mut C) -> CaseResult {
     let [one, other] = figure_1::worlds(choose)?;
     let comparison = Comparison::new(&Undirected, (&one, Dart(0)), (&other, Dart(0)));
     let Some(mut relation) = comparison.relation([Dart(0), Dart(0)]) else {
-        return claim("no walk tells the worlds apart", false);
+        return claim("no walk distinguishes the worlds", false);
     };
     let [one, other] = comparison.starts([Dart(0), Dart(0)]);
     claim("the certificate has 32 pairs", relation.0.len() == 32)?;

@@ -1,4 +1,4 @@
-//! Figure 1: two worlds that no robot with one undirected marker can tell apart. Section 2.2.
+//! Figure 1: two worlds that no robot with one undirected marker can distinguish. Section 2.2.
 //!
 //! Two poses are related if robots there perceive the same, and perceive the same behind each of
 //! their doors. The printed proof is an induction: its base is that the starts are related, its step

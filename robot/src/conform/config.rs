@@ -2,13 +2,13 @@
 
 use toposlam_model::{
     folding::WorldSearch,
-    mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig},
+    mapping::{DirectionalAlgorithm, MappingMethod},
     marker::Marker,
     trace::{AlgorithmMatch, Trace, match_algorithm, match_audited, match_recovering},
 };
 
 use super::{budget_check::within_budget, events::RunEvents, known_world::KnownWorld};
-use crate::budget::RunBudget;
+use crate::{budget::RunBudget, run_settings::RecordedSettings};
 
 /// What a run is checked against.
 #[derive(Clone, Debug)]
@@ -30,17 +30,8 @@ pub struct ConformConfig<'w> {
 /// What chooses the doors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RunDriver {
-    /// An algorithm; Algorithm 1 with any choices.
-    Algorithm(DirectionalAlgorithm),
-    /// An algorithm with the default choices, and then audits of its map.
-    Audited {
-        /// The algorithm.
-        algorithm: DirectionalAlgorithm,
-        /// The number of audits.
-        audits: u32,
-    },
-    /// The folding explorer with audits and recovery.
-    Recovering(RecoveryConfig),
+    /// A robot that maps; Algorithm 1 with any choices if no audit follows, and otherwise with the default ones.
+    Method(MappingMethod),
     /// Anything, in any way.
     Anyone,
 }
@@ -53,13 +44,17 @@ impl ConformConfig<'_> {
     }
 }
 
-impl From<MappingMethod> for RunDriver {
-    fn from(method: MappingMethod) -> Self {
-        match method {
-            MappingMethod::By { algorithm, audits: 0 } => Self::Algorithm(algorithm),
-            MappingMethod::By { algorithm, audits } => Self::Audited { algorithm, audits },
-            MappingMethod::Recovering(config) => Self::Recovering(config),
-        }
+impl From<DirectionalAlgorithm> for RunDriver {
+    fn from(algorithm: DirectionalAlgorithm) -> Self {
+        Self::Method(algorithm.into())
+    }
+}
+
+/// With what the doors of a log are compared. Those of a robot that went on from earlier runs depend on logs that are not
+/// known here.
+impl From<RecordedSettings> for RunDriver {
+    fn from(recorded: RecordedSettings) -> Self {
+        if recorded.is_resumed { Self::Anyone } else { Self::Method(recorded.method) }
     }
 }
 
@@ -68,8 +63,7 @@ impl RunDriver {
     #[must_use]
     pub fn algorithm(self) -> Option<DirectionalAlgorithm> {
         match self {
-            Self::Algorithm(algorithm) | Self::Audited { algorithm, .. } => Some(algorithm),
-            Self::Recovering(_) => Some(DirectionalAlgorithm::Folding),
+            Self::Method(method) => Some(method.algorithm()),
             Self::Anyone => None,
         }
     }
@@ -77,16 +71,17 @@ impl RunDriver {
     /// How far it follows the trace of these events, if it is an algorithm.
     fn follow(self, trace: &Trace, events: &RunEvents, bound: usize) -> Option<AlgorithmMatch> {
         let claim = events.claim();
-        match self {
-            Self::Algorithm(algorithm) => Some(match_algorithm(algorithm, trace, claim, bound)),
-            Self::Audited { algorithm, audits } => {
-                Some(match_audited(algorithm, audits, trace, claim, bound))
+        let Self::Method(method) = self else { return None };
+        Some(match method {
+            MappingMethod::By { algorithm, audits: 0 } => {
+                match_algorithm(algorithm, trace, claim, bound)
             }
-            Self::Recovering(config) => {
-                let visits = events.recorded_visits(trace);
-                Some(match_recovering(config, trace, &visits, bound))
+            MappingMethod::By { algorithm, audits } => {
+                match_audited(algorithm, audits, trace, claim, bound)
             }
-            Self::Anyone => None,
-        }
+            MappingMethod::Recovering(config) => {
+                match_recovering(config, trace, &events.recorded_visits(trace), bound)
+            }
+        })
     }
 }

@@ -117,8 +117,7 @@ impl RunEvents {
 
     /// The recorded number of moves, if it is wrong. The door by which a robot left before it got lost is no move.
     pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
-        let lost = trace.relocations().iter().filter(|&&percept| percept > 0).count();
-        let made = trace.percepts().len() - 1 - lost;
+        let made = trace.percepts().len() - 1 - trace.lost().len();
         let recorded = self.end.as_ref()?.moves;
         (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
     }

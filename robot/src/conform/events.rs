@@ -153,13 +153,15 @@ impl RunEvents {
         Ok(trace.with_relocations(self.relocations()))
     }
 
-    /// The arrivals of a robot that got lost before, by their indices: the only ones whose moves are not counted.
-    fn relocations(&self) -> impl Iterator<Item = usize> + '_ {
+    /// The arrivals of a robot that got lost before, by their indices. A log of this project counts the moves to all
+    /// others. In logs of other programs numbers may be missing.
+    pub(crate) fn relocations(&self) -> impl Iterator<Item = usize> + '_ {
         let number = |event: &CheckedEvent| match &event.kind {
             CheckedKind::Arrival { arrival, .. } => Some(arrival.number),
             _ => None,
         };
-        let is_counted = self.events.iter().any(|event| matches!(number(event), Some(Some(_))));
+        let is_counted =
+            self.has_head && self.events.iter().any(|event| matches!(number(event), Some(Some(_))));
         let is_lost = move |event: &CheckedEvent| is_counted && number(event) == Some(None);
         self.events.iter().enumerate().filter(move |(_, event)| is_lost(event)).map(|(at, _)| at)
     }

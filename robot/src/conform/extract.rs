@@ -13,7 +13,6 @@ use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
-    measured_hallways::log_noise,
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -24,6 +23,7 @@ use crate::{
         reader::Log,
         topic_map::{Role, TopicMap, TopicMapError},
     },
+    measured_hallway::log_noise,
     record::{EventKind, Frame, FrameSensor, SensingError},
 };
 

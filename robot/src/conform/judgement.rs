@@ -224,11 +224,10 @@ impl Judgement {
         for (place, cause) in events.own_faults() {
             found.note(place, cause);
         }
-        let len = events.events.len();
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
-            lost: trace.relocations().first().map(|percept| trace.event(2 * percept).id),
+            lost: trace.lost().first().map(|percept| trace.event(2 * percept).id),
             unrecognised: None,
             trail: None,
             poses: None,
@@ -241,71 +240,102 @@ impl Judgement {
             tolerated: Vec::new(),
             trace,
         };
-        let trace = &judgement.trace;
-        if let Some(known) = &question.world {
-            let poses = poses(known.graph, &question.marker, &known.states, trace);
-            if let Some(misfit) = &poses.misfit {
-                let fault = known.fault(trace, misfit, question.marker);
-                found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), fault);
-            }
-            judgement.poses = Some(poses);
-        }
+        judgement.compare_world(question, &mut found);
         judgement.follow_algorithm(question, in_turn, &mut found);
-        let trace = &judgement.trace;
-        if in_turn && let Some(cause) = events.false_moves(trace) {
-            found.note(len, cause);
+        if in_turn && let Some(cause) = events.false_moves(&judgement.trace) {
+            found.note(events.events.len(), cause);
         }
+        let impossible = judgement.fold(question, watch);
+        judgement.compare_lengths(question, &mut found);
+        if question.world.is_none() {
+            judgement.explain(impossible, question, watch, &mut found);
+        }
+        if let Some(first) = &found.first {
+            let before = judgement.trace.index_of(first.event);
+            judgement.trail = judgement.trail.and_then(|_| folded_before(&judgement.trace, before));
+        }
+        judgement.divergence = found.first;
+        Ok(judgement)
+    }
+
+    /// Compares the events with the known world.
+    fn compare_world(&mut self, question: &ConformConfig, found: &mut Found) {
+        let Some(known) = &question.world else { return };
+        let poses = poses(known.graph, &question.marker, &known.states, &self.trace);
+        if let Some(misfit) = &poses.misfit {
+            let fault = known.fault(&self.trace, misfit, question.marker);
+            found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), fault);
+        }
+        self.poses = Some(poses);
+    }
+
+    /// Folds the walk. Returns where no world explains it.
+    fn fold(
+        &mut self,
+        question: &ConformConfig,
+        watch: &dyn Watch,
+    ) -> Option<(usize, Impossibility)> {
         let FoldedTrace { mut trail, mut impossible } =
-            FoldedTrace::new(trace, question.marker, question.search.class);
+            FoldedTrace::new(&self.trace, question.marker, question.search.class);
         if question.marker.name() == Undirected.name()
             && let Some(before) = &trail
         {
-            let marked = MarkedTrail::new(before, trace, watch);
-            judgement.ways = marked.ways;
-            judgement.determined = marked.determined;
+            let marked = MarkedTrail::new(before, &self.trace, watch);
+            self.ways = marked.ways;
+            self.determined = marked.determined;
             impossible = impossible.or(marked.impossible);
             trail = marked.trail.or(trail);
         } else {
-            judgement.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
+            self.determined = trail.as_ref().map(|trail| trail.open_count() == 0);
         }
-        if judgement.lost.is_some() {
+        if self.lost.is_some() {
             // What follows may determine the world, too.
-            judgement.determined = judgement.determined.filter(|&is_determined| is_determined);
+            self.determined = self.determined.filter(|&is_determined| is_determined);
         }
+        self.trail = trail;
+        impossible
+    }
+
+    /// Compares the lengths of hallways, their turns, and the shapes of junctions.
+    fn compare_lengths(&mut self, question: &ConformConfig, found: &mut Found) {
         let graph = question.world.as_ref().map(|known| known.graph);
         let (measured, moved) = MeasuredHallways::compare(
-            events,
-            trace,
-            trail.as_ref(),
-            graph.zip(judgement.poses.as_ref()),
+            &self.events,
+            &self.trace,
+            self.trail.as_ref(),
+            graph.zip(self.poses.as_ref()),
         );
-        judgement.measured = measured;
+        self.measured = measured;
         if let Some((event, cause)) = moved {
             found.note(event, cause);
         }
-        if question.world.is_none() && impossible.is_none() {
+    }
+
+    /// Searches for the smallest world that explains the walk, unless none does.
+    fn explain(
+        &mut self,
+        mut impossible: Option<(usize, Impossibility)>,
+        question: &ConformConfig,
+        watch: &dyn Watch,
+        found: &mut Found,
+    ) {
+        if impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);
             let too_large = SmallestWorld::NotFound { limit: SearchLimit::Decisions };
-            let smallest = trail.as_ref().map_or(too_large, search);
+            let smallest = self.trail.as_ref().map_or(too_large, search);
             if smallest == SmallestWorld::NoWorld {
-                let moves = trail.as_ref().map_or(0, FoldedTrail::moves);
+                let moves = self.trail.as_ref().map_or(0, FoldedTrail::moves);
                 let is_impossible = |trail: &FoldedTrail| search(trail) == SmallestWorld::NoWorld;
-                let event = first_percept(trace, moves, is_impossible);
+                let event = first_percept(&self.trace, moves, is_impossible);
                 impossible = Some((event, Impossibility::Class { class: question.search.class }));
             } else {
-                judgement.smallest = Some(smallest);
+                self.smallest = Some(smallest);
             }
         }
-        if let Some((event, why)) = impossible.filter(|_| question.world.is_none()) {
-            let event = trace.event(event);
+        if let Some((event, why)) = impossible {
+            let event = self.trace.event(event);
             found.note(event.id, DivergenceCause::NoWorld { event, why });
         }
-        if let Some(first) = &found.first {
-            trail = trail.and_then(|_| folded_before(trace, trace.index_of(first.event)));
-        }
-        judgement.trail = trail;
-        judgement.divergence = found.first;
-        Ok(judgement)
     }
 
     /// Compares the doors with the algorithm, and what it knows with the recorded end.

@@ -6,7 +6,6 @@ use toposlam_model::{
     folding::{FoldedTrail, fold},
     measurement::{
         ContradictoryMeasurement, MeasuredVisit, MeasurementCheck, MeasurementContradiction,
-        MeasurementNoise,
     },
     percept::{Door, Percept},
     trace::{Poses, Trace},
@@ -17,15 +16,6 @@ use super::{
     events::{CheckedEvent, CheckedKind, RunEvents},
     impossible::{first_percept, folded_before},
 };
-
-use crate::superscout::MEASUREMENT_NOISE;
-
-/// The uncertainty of the hallways in a log of this project. It does not record the calibration of its base, which
-/// may be several times worse than that of a SuperScout on tiles.
-#[must_use]
-pub fn log_noise() -> MeasurementNoise {
-    MEASUREMENT_NOISE.times(3.0, 5.0)
-}
 
 /// How many hallways of a run were measured by odometry, and compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -56,13 +56,13 @@ pub fn shorten_run(
         | DivergenceCause::NoWorld { .. } => {
             let last = trace_index(&judgement.trace, divergence.event)?;
             let shows = |trace: &Trace| {
-                let events = of_trace(trace);
+                let events = of_trace(trace, &judgement.events);
                 let at = events.events.len() - 1;
                 judged(&events, question).is_some_and(|found| found.event == at)
             };
             let cut = judgement.trace.up_to(last);
             let short = shortened(&cut, shows);
-            let events = RunEvents { has_head: judgement.events.has_head, ..of_trace(&short) };
+            let events = of_trace(&short, &judgement.events);
             let event = events.events.len() - 1;
             let found = judged(&events, question)?;
             (found.event == event).then_some(ShortenedRun { events, event, by_itself: false })
@@ -139,8 +139,8 @@ impl ConformConfig<'_> {
     }
 }
 
-/// Events of percepts and doors alone, a second apart.
-fn of_trace(trace: &Trace) -> RunEvents {
+/// Events of percepts and doors alone, a second apart, in a log like that of a whole run.
+fn of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
     let event = |(index, event): (usize, TraceEvent)| {
         let moves = index as u32 / 2;
         let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
@@ -158,7 +158,8 @@ fn of_trace(trace: &Trace) -> RunEvents {
         };
         CheckedEvent { source, kind }
     };
-    RunEvents { events: trace.events().enumerate().map(event).collect(), ..RunEvents::default() }
+    let events = trace.events().enumerate().map(event).collect();
+    RunEvents { events, has_head: whole.has_head, ..RunEvents::default() }
 }
 
 /// The index in a trace of the event with this id.

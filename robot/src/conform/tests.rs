@@ -22,6 +22,7 @@ use super::*;
 use crate::{
     budget::RunBudget,
     evaluation::{plans, random_plan::random_plan_with, run_sampler::starts_of},
+    measured_hallway::log_noise,
     record::{
         Arrival, Event, EventId, EventKind, Frame, MapRecord, NoSensor, RunEnd, RunEnding,
         RunObserver,
@@ -130,7 +131,7 @@ fn without_world() -> ConformConfig<'static> {
     ConformConfig {
         world: None,
         marker: &Directional,
-        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search,
         dart_bound: DARTS,

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use toposlam_model::{
-    mapping::Contradiction,
+    mapping::{Contradiction, MappingMethod},
     percept::Percept,
     trace::{Departure, Misfit, MisfitReason, StepPurpose, match_amended, poses_amended},
 };
@@ -149,7 +149,10 @@ impl<'q> Tolerance<'q> {
 
     /// Tolerates the percepts before an event that contradict the algorithm's map.
     fn contradictions(&mut self, limit: usize) {
-        let RunDriver::Algorithm(algorithm) = self.question.driver else { return };
+        let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) = self.question.driver
+        else {
+            return;
+        };
         let Ok(trace) = self.amended.trace() else { return };
         let mut tolerated = Vec::new();
         let mut amend = |departure: &Departure| {

@@ -15,7 +15,8 @@ use super::{
     run_sampler::{RunCase, RunSampler, dart_bound},
 };
 use crate::{
-    conform::{EventSource, RecordedEvents, RunEvents, log_noise},
+    conform::{EventSource, RecordedEvents, RunEvents},
+    measured_hallway::log_noise,
     record::{Event, EventKind, RunObserver, StoppedBy},
     run::{RunOutcome, explored, run},
     run_settings::RunSettings,

@@ -59,6 +59,8 @@ pub struct JudgedRun {
     pub case: RunCase,
     /// Its outcome.
     pub ending: RunOutcome,
+    /// Whether at the end an obstacle is on every way from the robot to its marker: it cannot finish.
+    pub is_cut_off: bool,
     /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
     /// What the map took, if the robot has one.
@@ -181,7 +183,8 @@ fn judged(
     (!stopped).then(|| JudgedRun {
         case,
         ending,
-        moves: [run.moves(), run.explore_moves],
+        is_cut_off: run.is_cut_off,
+        moves: [run.moves, run.explore_moves],
         mapped: run.mapped,
         seconds: run.seconds,
         pictures: run.pictures,

@@ -8,6 +8,7 @@ use super::line::{AlgorithmInfo, SizeLine, SizeResult};
 use crate::cli::{
     CliError, Outcome, RunChoices,
     ci_report::CiCase,
+    cluster::ClusterSession,
     json::print_line,
     text::{grouped, print_hanging, print_paragraph},
 };
@@ -86,6 +87,15 @@ impl<'o> CheckReport<'o> {
         self.out.flush()?;
         self.total.add(line);
         Ok(())
+    }
+
+    /// Reports how busy the threads of a cluster were.
+    pub(super) fn threads(
+        &mut self,
+        cluster: &mut ClusterSession,
+        work: &str,
+    ) -> Result<(), CliError> {
+        cluster.report(self.out, self.json, work)
     }
 
     fn header(&mut self, line: &SizeLine) -> Result<(), CliError> {

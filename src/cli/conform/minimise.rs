@@ -43,7 +43,7 @@ impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, CliError> {
         let question =
-            self.question(judged.known.as_ref(), judged.marker, (judged.driver, judged.budget));
+            self.question(judged.known.as_ref(), judged.marker, judged.driver, judged.limits());
         let shorter = shorten_run(&judged.judgement, &question, &());
         let Some(path) = &self.minimise else {
             return Ok(

@@ -207,7 +207,8 @@ impl Judged<'_> {
         if let Some(followed) = &judgement.algorithm {
             let choices = match (followed.choices, followed.algorithm) {
                 (_, DirectionalAlgorithm::Folding) => {
-                    let recovers = matches!(self.driver, RunDriver::Recovering(_));
+                    let recovers =
+                        matches!(self.driver, RunDriver::Method(method) if method.recovers());
                     let recovery = if recovers { " with recovery" } else { "" };
                     format!("those of the folding explorer{recovery}")
                 }

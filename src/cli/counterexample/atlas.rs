@@ -5,14 +5,17 @@ use std::path::Path;
 
 use toposlam::picture::{WorldPicture, svg};
 use toposlam_model::{
-    ambiguity::AmbiguitySearch,
+    ambiguity::{AmbiguitySearch, KeptPairs, SearchError},
     enumerate::Class,
     format::named_world::NamedWorld,
     marker::{MARKERS, Marker},
 };
 use toposlam_proofs::marker_theorems;
 
-use super::pairs::{self, WorldPairs};
+use super::{
+    memory::{self, MemoryLimit},
+    pairs::{self, WorldPairs},
+};
 use crate::cli::{
     CliError, Outcome, output,
     progress::Progress,
@@ -35,7 +38,11 @@ struct Row {
 }
 
 /// Writes the atlas. `edges` limits the sizes of the worlds.
-pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, CliError> {
+pub(super) fn write(
+    folder: &Path,
+    edges: Option<usize>,
+    limit: Option<MemoryLimit>,
+) -> Result<Outcome, CliError> {
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows = Vec::new();
     output::make_folder(folder)?;
@@ -46,11 +53,15 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, CliE
                 .map_err(|error| CliError::at("--max-edges", error))?;
             let work = format!("{}, {class}", marker.name());
             let progress = Progress::new(&work, "placed worlds")?;
-            let findings = search.run(&progress);
+            let sorter = memory::sorter(limit, &search)?;
+            let findings = search.run_sorted(sorter, KeptPairs::Smallest, &progress);
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return pairs::report_unfinished(&unfinished),
+                Err(SearchError::Sorter(cause)) => return Err(CliError::at("--memory", cause)),
+                Err(SearchError::Unfinished(unfinished)) => {
+                    return pairs::report_unfinished(&unfinished);
+                }
             };
             found.push(WorldPairs::new(marker, class, &findings, false));
         }

@@ -98,7 +98,7 @@ impl WorldPairs {
 pub(super) fn report_unfinished(unfinished: &Unfinished) -> Result<Outcome, CliError> {
     match unfinished {
         Unfinished::Interrupted => Err(CliError::Interrupted),
-        Unfinished::Unconfirmed(_) => {
+        Unfinished::Unconfirmed(_) | Unfinished::Unreadable => {
             terminal::print_message(&format!("{unfinished}\n"));
             Ok(Outcome::Violated)
         }

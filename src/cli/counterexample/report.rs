@@ -13,6 +13,7 @@ use toposlam_model::{
 use super::pairs::WorldPairs;
 use crate::cli::{
     CliError,
+    cluster::ClusterSession,
     json::print_line,
     text::{grouped, print_command, print_hanging, print_indented, print_paragraph},
 };
@@ -57,6 +58,15 @@ impl<'o> SearchReport<'o> {
         }
         self.out.flush()?;
         Ok(())
+    }
+
+    /// Reports how busy the threads of a cluster were.
+    pub(super) fn threads(
+        &mut self,
+        cluster: &mut ClusterSession,
+        marker: &dyn Marker,
+    ) -> Result<(), CliError> {
+        cluster.report(self.out, self.json, marker.name())
     }
 
     fn objects(

@@ -139,6 +139,7 @@ impl DriveArguments {
         let mut narrator = Narrator { story, progress };
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
         let (mapping, mapped) = explorer.map(settings);
+        let moves = explorer.moves();
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
@@ -154,6 +155,7 @@ impl DriveArguments {
             method: settings.method,
             mapping: &mapping,
             mapped: mapped.as_ref(),
+            moves,
             allows_blocked: self.options.allows_blocked(),
             percepts: match self.sensor {
                 SensorChoice::Laser => FalsePercepts::BY_LASER,

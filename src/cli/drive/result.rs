@@ -23,6 +23,8 @@ pub(super) struct DriveResult<'a> {
     pub(super) method: MappingMethod,
     pub(super) mapping: &'a MappingRun,
     pub(super) mapped: Result<&'a MappedWorld, &'a MappingError<ExplorerError>>,
+    /// The moves, with those of recoveries and audits.
+    pub(super) moves: u64,
     /// Whether the map may lack what is behind blocked doors.
     pub(super) allows_blocked: bool,
     /// How often a percept is false.
@@ -62,19 +64,11 @@ impl DriveResult<'_> {
         }
     }
 
-    fn moves(&self) -> u64 {
-        match self.mapped {
-            Ok(mapped) => mapped.moves,
-            Err(MappingError::World(ExplorerError::Budget { moves, .. })) => *moves,
-            Err(_) => self.mapping.moves(),
-        }
-    }
-
     /// The map as a world, if it is complete and the run did not end before its last check.
     pub(super) fn map(&self) -> Option<NamedWorld> {
         self.mapped.ok()?;
         let graph = self.mapping.map().complete()?;
-        let moves = self.moves();
+        let moves = self.moves;
         let (name, of) = match self.world {
             "" => ("map".to_owned(), "an unknown world"),
             world => (format!("{world}-map"), world),
@@ -90,7 +84,7 @@ impl DriveResult<'_> {
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let (moves, vertices) = (self.moves(), self.mapping.map().vertex_count());
+        let (moves, vertices) = (self.moves, self.mapping.map().vertex_count());
         let ended = match self.mapped {
             Ok(mapped) if !mapped.blocked.is_empty() => {
                 let doors = blocked_in_words(mapped.blocked.len());
@@ -123,7 +117,7 @@ impl DriveResult<'_> {
             world: self.world,
             ending,
             error: self.mapped.err().map(ToString::to_string),
-            moves: self.moves(),
+            moves: self.moves,
             safeguards: SafeguardFields::new(self.mapped.ok(), self.mapping.map(), self.percepts),
             vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),

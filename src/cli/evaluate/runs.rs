@@ -193,6 +193,7 @@ impl EvaluateRunsArguments {
                 "moves": run.moves[0], "explore_moves": run.moves[1],
                 "right": run.ending == RunOutcome::Right,
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
+                "cut_off": run.is_cut_off,
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
                 "recoveries": run.mapped.as_ref().map(|mapped| mapped.recoveries),
@@ -260,6 +261,13 @@ fn print_safeguards(
         print_hanging(out, "  cost     ", &text)?;
     }
     writeln!(out, "  blocked  {blocked} of the right runs are right but for a hallway")?;
+    let gave_up = judged.iter().filter(|run| matches!(run.ending, RunOutcome::GaveUp(_)));
+    let cut_off = gave_up.filter(|run| run.is_cut_off).count();
+    let text = format!(
+        "{} given up because an obstacle is on every way to the marker",
+        counted(cut_off, "run")
+    );
+    print_hanging(out, "  cut off  ", &text)?;
     Ok(())
 }
 

@@ -101,7 +101,7 @@ impl SimulationResult<'_> {
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
         self.run.mapped.as_ref()?;
-        let (name, moves) = (&self.world.name, self.run.moves());
+        let (name, moves) = (&self.world.name, self.run.moves);
         let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
         let graph = self.run.mapping.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
@@ -109,7 +109,7 @@ impl SimulationResult<'_> {
 
     /// The result in words.
     pub(super) fn in_words(&self) -> String {
-        let moves = self.run.moves();
+        let moves = self.run.moves;
         match self.run.outcome() {
             RunOutcome::Right if !self.run.blocked().is_empty() => {
                 let doors = blocked_in_words(self.run.blocked().len());
@@ -146,7 +146,7 @@ impl SimulationResult<'_> {
         }
         let map = run.mapping.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
-        let (moves, expected) = (run.moves(), run.explore_moves);
+        let (moves, expected) = (run.moves, run.explore_moves);
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
         if let Some(mapped) = &run.mapped {
             print_safeguards(out, run.method, mapped, map, self.percepts)?;
@@ -176,7 +176,7 @@ impl SimulationResult<'_> {
             start: self.world.start_text(self.facing),
             seed: self.seed,
             algorithm: run.method.algorithm().name(),
-            moves: run.moves(),
+            moves: run.moves,
             edges: self.world.graph.edge_count(),
             explore_moves: run.explore_moves,
             safeguards: SafeguardFields::new(run.mapped.as_ref(), run.mapping.map(), self.percepts),

@@ -1,4 +1,4 @@
-// The walk: both robots take the same actions, by hand, at random, or on the walk that tells them apart.
+// The walk: both robots take the same actions, by hand, at random, or on the walk that distinguishes them.
 
 const data = JSON.parse(find("#data").textContent);
 for (const { states } of data.sides) {
@@ -121,7 +121,7 @@ function randomWalk() {
   }, AT_RANDOM);
 }
 
-function tellApart() {
+function distinguish() {
   restart();
   const left = [...data.walk];
   timer = setTimeout(play, TELLING.rest, () => left.shift(), TELLING);
@@ -155,7 +155,7 @@ const keys = [
   [["Backspace", "u"], "Backspace", "undo", undo],
   [["r"], "R", "restart", restart],
 ];
-if (data.walk?.length) keys.unshift([["w"], "W", "the walk that tells them apart", tellApart]);
+if (data.walk?.length) keys.unshift([["w"], "W", "the walk that distinguishes them", distinguish]);
 for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
   if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
 }
@@ -169,8 +169,8 @@ onKey((event) => {
 find("#random").addEventListener("click", randomWalk);
 find("#undo").addEventListener("click", undo);
 find("#restart").addEventListener("click", restart);
-find("#tell-apart").hidden = !data.walk?.length;
-find("#tell-apart").addEventListener("click", tellApart);
+find("#distinguish").hidden = !data.walk?.length;
+find("#distinguish").addEventListener("click", distinguish);
 
 // The legend of the keys and the signs.
 

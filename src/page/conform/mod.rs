@@ -12,7 +12,7 @@ mod wording;
 #[cfg(test)]
 mod tests;
 
-use super::{PAGE_STYLE, filled};
+use super::{PAGE_STYLE, template::filled};
 use crate::{
     picture::escaped,
     report::{LogReport, ReportOrigin},

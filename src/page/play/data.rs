@@ -13,7 +13,7 @@ use crate::{
         percept::Door,
         world::GraphWorld,
     },
-    page::in_script,
+    page::template::in_script,
 };
 
 /// The world, the start, and the walks to compare with, the shortest possible first.

@@ -9,7 +9,7 @@ use super::{folding, rounded, words};
 use crate::{
     journal::{FrameEntry, Journal, JunctionCall},
     moment::clock,
-    page::in_script,
+    page::template::in_script,
     picture::Drawn,
 };
 

@@ -9,7 +9,7 @@ use crate::{
         marker::{Marker, MarkerPart},
         world::Action,
     },
-    page::in_script,
+    page::template::in_script,
 };
 
 /// The data as JSON that can stand inside a `script` element.

@@ -6,7 +6,7 @@ mod side;
 
 use crate::{
     model::{ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld},
-    page::{PAGE_SCRIPT, PAGE_STYLE, filled},
+    page::{PAGE_SCRIPT, PAGE_STYLE, template::filled},
     picture::escaped,
 };
 use side::WalkSide;
@@ -65,9 +65,12 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::model::{
-        embedded_graph::EmbeddedGraph,
-        marker::{self, Marker},
+    use crate::{
+        model::{
+            embedded_graph::EmbeddedGraph,
+            marker::{self, Marker},
+        },
+        page::template::checks::{NASTY, assert_escaped, data_of, places_of},
     };
 
     /// A chain with this number of edges; the start is one end.
@@ -88,38 +91,21 @@ mod tests {
         page(&WalkPage { title, about: title, worlds, comparison: &comparison, poses })
     }
 
-    fn data_of(document: &str) -> Value {
-        let (_, from) =
-            document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
-        serde_json::from_str(from.split_once("</script>").unwrap().0).unwrap()
-    }
-
     #[test]
     fn names_are_escaped_everywhere() {
-        let nasty = "</script><!--<i>&\"{{data}}";
-        let worlds = [chain(nasty, 1), chain("plain", 1)];
-        let document = document(&marker::NoMarker, worlds.each_ref(), nasty);
-        assert!(!document.contains("<i>"));
-        assert!(!document.contains("</script><"));
-        assert_eq!(document.matches("</script>").count(), 2);
-        assert_eq!(document.matches("<!--").count(), 1, "the template's own");
-        // The inserted text is not searched for places.
-        assert!(document.contains("{{data}}"));
-        assert_eq!(data_of(&document)["sides"][0]["name"], nasty);
+        let worlds = [chain(NASTY, 1), chain("plain", 1)];
+        let document = document(&marker::NoMarker, worlds.each_ref(), NASTY);
+        assert_escaped(&document);
+        assert_eq!(data_of(&document)["sides"][0]["name"], NASTY);
     }
 
     #[test]
     fn every_place_of_the_template_is_filled() {
-        let places = std::cell::RefCell::new(std::collections::BTreeSet::new());
-        filled(PAGE, |place| {
-            places.borrow_mut().insert(place.to_owned());
-            String::new()
-        });
-        let of_sides = ["marker of", "name of", "picture of"];
-        let of_sides = of_sides.into_iter().flat_map(|it| [format!("{it} A"), format!("{it} B")]);
-        let others = ["about", "data", "script", "style", "title"].map(str::to_owned);
-        let known = of_sides.chain(others);
-        assert_eq!(places.into_inner(), known.collect());
+        let known = [
+            ["about", "data", "marker of A", "marker of B", "name of A", "name of B"].as_slice(),
+            &["picture of A", "picture of B", "script", "style", "title"],
+        ];
+        assert_eq!(places_of(PAGE), known.concat());
     }
 
     #[test]

@@ -46,12 +46,14 @@ mod leaf;
 mod search;
 mod sweep;
 mod tally;
+mod units;
 mod world;
 
 pub use explorers::{
     Algorithm1Explorer, FoldingStepExplorer, MovableMarkerExplorer, StepExplorer, StepProgress,
     Stepwise,
 };
-pub use sweep::{FinishedUnits, LazyCheck, LazySweep, Probe};
+pub use sweep::{FinishedUnits, LazyCheck, LazySweep, Probe, WorldCount};
 pub use tally::{EnumeratedStart, LazyTally};
+pub use units::{CheckPieces, PieceCounts};
 pub use world::LazyWorld;

@@ -2,6 +2,8 @@
 
 use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     LazyTally, StepExplorer, Stepwise,
     leaf::LeafJudge,
@@ -74,11 +76,33 @@ impl FinishedUnits for () {
 #[derive(Clone, Debug)]
 pub(super) struct Unit(Vec<Answer>);
 
-/// Embedded graphs up to isomorphism.
-#[derive(Clone, Copy, Debug, Default)]
-struct WorldCount {
+/// The number of embedded graphs up to isomorphism.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct WorldCount {
     worlds: u64,
     interrupted: bool,
+}
+
+impl WorldCount {
+    /// The number in a part.
+    pub(super) fn of(part: &EnumerationPart, watch: &dyn Watch) -> Self {
+        let mut found = Self::default();
+        let ended = part.for_each(&mut |_| {
+            found.worlds += 1;
+            go_on(watch)
+        });
+        found.interrupted = ended.is_break();
+        found
+    }
+
+    /// The number in this part and another one.
+    #[must_use]
+    pub fn merged(self, other: Self) -> Self {
+        Self {
+            worlds: self.worlds + other.worlds,
+            interrupted: self.interrupted || other.interrupted,
+        }
+    }
 }
 
 impl LazySweep {
@@ -131,7 +155,7 @@ impl LazySweep {
             sum
         };
         let found = in_parts(&all, watch, LazyTally::default, check, |tally| tally.starts, merge);
-        self.finished(found, new, watch)
+        Self::finished(found, self.count_worlds(watch), new)
     }
 
     /// The number of units of the shard.
@@ -156,7 +180,11 @@ impl LazySweep {
     }
 
     /// The units of the shard. They do not depend on the number of threads.
-    fn units<E: StepExplorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
+    pub(super) fn units<E: StepExplorer>(
+        &self,
+        new: impl Fn() -> E,
+        watch: &dyn Watch,
+    ) -> Vec<Unit> {
         let edges = self.draft.edges_left();
         let cut_at = edges.saturating_sub(beginning(edges));
         let all = beginnings(new(), self.draft.clone(), cut_at, watch);
@@ -164,7 +192,7 @@ impl LazySweep {
     }
 
     /// Checks the starts of a unit.
-    fn check_unit<E: StepExplorer>(
+    pub(super) fn check_unit<E: StepExplorer>(
         &self,
         unit: &Unit,
         explorer: E,
@@ -195,14 +223,12 @@ impl LazySweep {
         (LazyTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
     }
 
-    /// The result, from the counts of all units.
-    fn finished<E: StepExplorer>(
-        &self,
+    /// The result, from the counts of all units and all worlds.
+    pub(super) fn finished<E: StepExplorer>(
         found: LazyTally,
+        WorldCount { worlds, interrupted }: WorldCount,
         new: impl Fn() -> E,
-        watch: &dyn Watch,
     ) -> LazyCheck {
-        let WorldCount { worlds, interrupted } = self.count_worlds(watch);
         let failure = found.failure.and_then(|start| start.start()).and_then(|(graph, facing)| {
             let mut explorer = Stepwise(new());
             let judged = judge_start(&mut explorer, &graph, facing, &mut Candidate::default());
@@ -232,21 +258,14 @@ impl LazySweep {
 
     /// The embedded graphs of the shard.
     fn count_worlds(&self, watch: &dyn Watch) -> WorldCount {
-        let parts = self.shard.select(self.worlds.parts());
-        let count = |part: &EnumerationPart| {
-            let mut found = WorldCount::default();
-            let ended = part.for_each(&mut |_| {
-                found.worlds += 1;
-                go_on(watch)
-            });
-            found.interrupted = ended.is_break();
-            found
-        };
-        let merge = |one: WorldCount, other: WorldCount| WorldCount {
-            worlds: one.worlds + other.worlds,
-            interrupted: one.interrupted || other.interrupted,
-        };
+        let parts = self.world_parts();
+        let count = |part: &EnumerationPart| WorldCount::of(part, watch);
         // The progress is that of the runs.
-        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, merge)
+        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, WorldCount::merged)
+    }
+
+    /// The parts of the embedded graphs of the shard.
+    pub(super) fn world_parts(&self) -> Vec<EnumerationPart> {
+        self.shard.select(self.worlds.parts())
     }
 }

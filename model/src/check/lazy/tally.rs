@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    isomorphism::canonical,
+    isomorphism::{StartCode, canonical},
 };
 
 /// A start by its place in the [enumeration](crate::enumerate::Enumeration): its world as discovered from its
@@ -36,32 +36,9 @@ impl EnumeratedStart {
     /// The start; `None` if the code is not that of a start.
     #[must_use]
     pub fn start(&self) -> Option<(EmbeddedGraph, Dart)> {
-        let (&first, words) = self.code.split_first()?;
-        let edges = words.len();
-        let degree_of =
-            |word: u32| Some(u32::MAX - word).filter(|&d| (1..=2 * edges as u32).contains(&d));
-        let mut graph = EmbeddedGraph::unfinished();
-        graph.add_vertex(degree_of(first)?);
-        let mut next = 0;
-        for &word in words {
-            let free = (next..graph.dart_count() as u32).map(Dart);
-            let dart = free.into_iter().find(|&dart| graph.joined(dart).is_none())?;
-            next = dart.0 + 1;
-            let known = graph.dart_count() as u32;
-            let far = if word < known {
-                Dart(word)
-            } else {
-                graph.add_vertex(degree_of(word)?);
-                Dart(known)
-            };
-            if far <= dart || graph.joined(far).is_some() || graph.dart_count() > 2 * edges {
-                return None;
-            }
-            graph.join(dart, far);
-        }
+        let graph = StartCode::start_of(&self.code)?;
         let facing = Dart(self.facing);
-        (graph.dart_count() == 2 * edges && facing.at() < graph.dart_count())
-            .then_some((graph, facing))
+        (facing.at() < graph.dart_count()).then_some((graph, facing))
     }
 }
 

@@ -132,6 +132,7 @@ impl<M: Marker> LazyWorld<M> {
     }
 
     /// Decides what is behind a free dart, or the degree of the start vertex.
+    #[inline(never)]
     fn decide(&mut self, dart: Option<Dart>) -> Result<(), Refused> {
         let mut left = self.draft.answers(dart);
         let count = left.count();

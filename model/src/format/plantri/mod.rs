@@ -21,6 +21,8 @@ mod error;
 mod read;
 mod write;
 
+use std::path::Path;
+
 pub use error::{PlantriError, PlantriErrorKind, PlantriWriteError};
 pub use read::{Worlds, read, read_headerless};
 pub use write::write;
@@ -32,6 +34,25 @@ pub enum PlantriCode {
     Planar,
     /// Lists of edges; all graphs.
     Edge,
+}
+
+impl PlantriCode {
+    /// The code of a file, by its header or else by the ending of its name. `None` for a file of another
+    /// kind.
+    #[must_use]
+    pub fn of_file(path: &Path, bytes: &[u8]) -> Option<Self> {
+        if bytes.starts_with(b">>edge_code") {
+            return Some(Self::Edge);
+        }
+        if bytes.starts_with(b">>planar_code") {
+            return Some(Self::Planar);
+        }
+        match path.extension()?.to_str()? {
+            "ec" | "edge_code" => Some(Self::Edge),
+            "pc" | "plc" | "planar_code" => Some(Self::Planar),
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]

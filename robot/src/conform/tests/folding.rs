@@ -7,7 +7,7 @@ use super::*;
 const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
 
 fn with_folding(question: ConformConfig) -> ConformConfig {
-    ConformConfig { driver: RunDriver::Algorithm(FOLDING), ..question }
+    ConformConfig { driver: RunDriver::from(FOLDING), ..question }
 }
 
 #[test]

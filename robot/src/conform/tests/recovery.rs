@@ -41,7 +41,7 @@ fn log_with(
         None => RunEnding::Mapped,
         Some(error) => RunEnding::OutOfBudget(error.to_string()),
     };
-    let end = Some(RunEnd { moves: run.moves(), ending });
+    let end = Some(RunEnd { moves: run.moves, ending });
     (RunEvents { end, ..log.recorded() }, run.mapped)
 }
 
@@ -83,7 +83,7 @@ fn each_door_of_a_robot_that_recovers_is_compared() {
         let is_without = ["dropped@30", "blocked@20"].contains(&fault);
         assert_eq!(mapped.unwrap().recoveries > 0, !is_without, "{fault}");
         let question = ConformConfig {
-            driver: RunDriver::from(recovering()),
+            driver: RunDriver::Method(recovering()),
             ..question(&place.0, Some(place.1))
         };
         let reached = judged(&events, &question).algorithm.unwrap().reached;
@@ -104,7 +104,7 @@ fn a_robot_that_got_lost_may_be_anywhere_in_its_world() {
     let place = building("building-12");
     let settings = RunSettings::new(recovering(), DARTS);
     let (events, _) = log_with(&settings, &place, Some("lights-out@40:120"), 1);
-    let driver = RunDriver::from(recovering());
+    let driver = RunDriver::Method(recovering());
     let known = ConformConfig { driver, ..question(&place.0, Some(place.1)) };
     let judgement = judged(&events, &known);
     assert_eq!((judgement.verdict(), judgement.divergence), (ConformVerdict::Conforms, None));
@@ -134,7 +134,7 @@ fn a_robot_turns_back_exactly_when_its_budget_of_moves_needs_it() {
         let budget = RunBudget { moves: Some(most), ..RunBudget::default() };
         let settings = RunSettings { budget, ..RunSettings::new(FOLDING, DARTS) };
         let (events, mapped) = log_with(&settings, &place, None, 1);
-        let driver = RunDriver::Algorithm(FOLDING);
+        let driver = RunDriver::from(FOLDING);
         let question =
             |budget| ConformConfig { driver, budget, ..question(&place.0, Some(place.1)) };
         let within = question(budget);
@@ -173,7 +173,7 @@ fn a_robot_that_recovers_does_not_end_with_lengths_that_contradict_each_other() 
     let place = building("shape-8");
     let settings = RunSettings::new(recovering(), DARTS);
     let (mut events, _) = log_with(&settings, &place, None, 1);
-    let driver = RunDriver::from(recovering());
+    let driver = RunDriver::Method(recovering());
     let question = ConformConfig { driver, ..question(&place.0, Some(place.1)) };
     assert_eq!(judged(&events, &question).algorithm.unwrap().reached, MatchEnd::Mapped);
     // In the last hallway, which it knows, it measures 8 m more.

@@ -161,7 +161,7 @@ fn contradictions_of_the_folding_explorer_are_tolerated_where_the_place_is_known
     let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
     let folding = DirectionalAlgorithm::Folding;
     let good = log_of(folding, &plan, starts_of(&plan)[0], 1).recorded();
-    let question = ConformConfig { driver: RunDriver::Algorithm(folding), ..without_world() };
+    let question = ConformConfig { driver: RunDriver::from(folding), ..without_world() };
     let quirks = everywhere(&["contradiction"]);
     let (mut known, mut by_marker) = (Vec::new(), 0);
     for event in (2..good.events.len()).step_by(2) {

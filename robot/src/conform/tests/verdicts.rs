@@ -39,8 +39,8 @@ struct Options {
 fn options() -> impl Strategy<Value = Options> {
     let world = prop::sample::select(vec![None, Some(true), Some(false)]);
     let drivers = prop::sample::select(vec![
-        RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
-        RunDriver::Algorithm(DirectionalAlgorithm::Folding),
+        RunDriver::from(DirectionalAlgorithm::Algorithm1),
+        RunDriver::from(DirectionalAlgorithm::Folding),
         RunDriver::Anyone,
     ]);
     let limits = (prop::sample::select(vec![0, 30, 2_000]), 3_usize..40);
@@ -376,7 +376,7 @@ fn the_marker_is_honoured_without_a_world() {
     assert_eq!(why, Impossibility::Marker);
     // Algorithm 1 needs one.
     let algorithm = ConformConfig {
-        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
         ..unmarked.clone()
     };
     let judged =

@@ -1,0 +1,93 @@
+//! A check of every start, shared by the processes of a cluster.
+
+use std::sync::Arc;
+
+use toposlam_model::{
+    check::{CheckPieces, FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm, PieceCounts},
+    enumerate::Watch,
+};
+
+use crate::{Cluster, ClusterError, ThreadUse, job::Job};
+
+/// The result of a check.
+#[derive(Debug)]
+pub struct ClusterCheck {
+    /// The same as that of one process.
+    pub check: LazyCheck,
+    /// What each thread did; nothing in other processes than the first.
+    pub threads: Vec<ThreadUse>,
+}
+
+struct CheckJob {
+    algorithm: MappingAlgorithm,
+    pieces: CheckPieces,
+}
+
+impl Job for CheckJob {
+    type Output = PieceCounts;
+    type Record = ();
+    type Group = ();
+
+    fn work(&self, task: usize) -> (PieceCounts, Vec<()>) {
+        (self.algorithm.check_piece(&self.pieces, task, &()), Vec::new())
+    }
+
+    fn key((): &()) -> u64 {
+        0
+    }
+
+    fn group(&self, _: Vec<()>) {}
+}
+
+impl Cluster {
+    /// Checks an algorithm, as [`LazySweep::resume`]; `None` with all choices. In process 0, `units` has those
+    /// that were finished before, and records others. If the watch stops process 0, its result has what is
+    /// known by then.
+    ///
+    /// # Errors
+    /// Returns an error if the watch stops another process.
+    pub fn check(
+        &self,
+        algorithm: MappingAlgorithm,
+        sweep: &LazySweep,
+        units: &dyn FinishedUnits,
+        watch: &dyn Watch,
+    ) -> Result<Option<ClusterCheck>, ClusterError> {
+        let Some(pieces) = algorithm.pieces(sweep, watch) else { return Ok(None) };
+        // The pieces of a watch that stops are not all.
+        watch.go_on().map_err(|_| ClusterError::Interrupted)?;
+        let job = Arc::new(CheckJob { algorithm, pieces });
+        let pieces = &job.pieces;
+        let mut counts = PieceCounts::default();
+        let mut tasks = Vec::new();
+        for piece in (0..pieces.count()).filter(|_| self.is_first()) {
+            let finished = Some(piece).filter(|&piece| piece < pieces.unit_count());
+            match finished.and_then(|unit| units.finished(unit)) {
+                Some(tally) => counts.tally.merge(tally),
+                None => tasks.push(piece),
+            }
+        }
+        watch.parts(tasks.len());
+        let mut add = |piece: usize, found: PieceCounts| {
+            watch.part_done(found.tally.starts);
+            if piece < pieces.unit_count() {
+                units.finish(piece, &found.tally);
+            }
+            counts.merge(found);
+        };
+        let ended = self.run(Arc::clone(&job), tasks, watch, &mut add);
+        let shared = ended.and_then(|end| {
+            let all = self.share(self.is_first().then(|| counts.clone()), watch)?;
+            Ok((all, end.threads))
+        });
+        let (counts, threads) = match shared {
+            Err(ClusterError::Interrupted) if self.is_first() => {
+                counts.tally.interrupted = true;
+                (counts, Vec::new())
+            }
+            shared => shared?,
+        };
+        let check = algorithm.finished_pieces(counts);
+        Ok(check.map(|check| ClusterCheck { check, threads }))
+    }
+}

@@ -1,0 +1,318 @@
+//! The dataflow of a job. Each process has one worker of timely dataflow, which exchanges messages and never
+//! computes for long; the tasks run on the threads of rayon's pool.
+//!
+//! ```text
+//!   +--> work ----- reports ----> dispatch --+      dispatch: process 0
+//!   |      \                                 |
+//!   |       +--- records by key ---> group ---> end: process 0
+//!   +------------- assignments <-------------+
+//! ```
+//!
+//! The loop ends when no task is left: then nobody has the right to send a message. Each process sees that and
+//! groups its records.
+
+use std::{
+    cell::RefCell,
+    net::TcpStream,
+    rc::Rc,
+    sync::{
+        Arc,
+        mpsc::{self, Sender},
+    },
+    time::{Duration, Instant},
+};
+
+use serde::{Deserialize, Serialize};
+pub(crate) use timely::worker::Worker as TimelyWorker;
+use timely::{
+    WorkerConfig,
+    communication::{
+        Hooks, WorkerGuards,
+        allocator::{
+            AllocatorBuilder, ProcessBuilder,
+            zero_copy::initialize::initialize_networking_from_sockets,
+        },
+    },
+    container::CapacityContainerBuilder,
+    dataflow::{
+        Scope, StreamVec,
+        channels::pact::Exchange,
+        operators::{
+            Capability, ConnectLoop, Feedback, Probe, ToStream,
+            generic::{
+                OutputBuilder, OutputBuilderSession, builder_rc::OperatorBuilder,
+                operator::Operator,
+            },
+            probe::Handle,
+        },
+    },
+    scheduling::SyncActivator,
+};
+
+use crate::job::{Job, Message};
+
+/// The rounds of the loop.
+type Round = u64;
+
+/// The output of an operator that sends nothing.
+type Nothing<'o> = OutputBuilderSession<'o, Round, CapacityContainerBuilder<Vec<()>>>;
+
+/// What a process is told of a job.
+pub(crate) enum Event<J: Job> {
+    /// In process 0: a task is done.
+    Done(usize, J::Output),
+    /// In process 0: what a process has at the end.
+    End(ProcessEnd<J::Group>),
+    /// The job has ended in all processes.
+    Complete,
+}
+
+/// What a process has at the end.
+#[derive(Clone, Serialize, Deserialize)]
+pub(crate) struct ProcessEnd<G> {
+    pub(crate) process: usize,
+    /// For each thread, the tasks that it did and the seconds that they took.
+    pub(crate) threads: Vec<(u64, f64)>,
+    pub(crate) group: G,
+}
+
+/// A process has done a task, and can do others.
+#[derive(Clone, Serialize, Deserialize)]
+struct Report<O> {
+    process: usize,
+    done: Option<(usize, O)>,
+    /// The number of tasks that it wants.
+    wanted: usize,
+}
+
+/// Tasks for a process.
+#[derive(Clone, Serialize, Deserialize)]
+struct Assignment {
+    process: usize,
+    tasks: Vec<usize>,
+}
+
+/// A task that a thread has done.
+struct Finished<J: Job> {
+    task: usize,
+    output: J::Output,
+    records: Vec<J::Record>,
+    thread: usize,
+    time: Duration,
+}
+
+/// The reports of tasks, and what they found.
+type Done<'s, J> =
+    (StreamVec<'s, Round, Report<<J as Job>::Output>>, StreamVec<'s, Round, <J as Job>::Record>);
+
+/// The tasks of each thread, and the seconds that they took.
+type ThreadTimes = Rc<RefCell<Vec<(u64, f64)>>>;
+
+/// Starts the worker of a process that is connected to the others.
+pub(crate) fn start(
+    streams: Vec<Option<TcpStream>>,
+    process: usize,
+    work: impl Fn(&mut TimelyWorker) + Send + Sync + 'static,
+) -> Result<WorkerGuards<()>, String> {
+    let hooks = Hooks::default();
+    let own = ProcessBuilder::new_typed_vector(1, hooks.refill.clone(), None);
+    let (builders, guard) = initialize_networking_from_sockets(own, streams, process, 1, hooks)
+        .map_err(|error| error.to_string())?;
+    let builders = builders.into_iter().map(AllocatorBuilder::Tcp).collect();
+    timely::execute::execute_from(builders, Box::new(guard), WorkerConfig::default(), work)
+}
+
+/// Does a job with all other workers. Only worker 0 needs its tasks.
+pub(crate) fn run<J: Job>(
+    worker: &mut TimelyWorker,
+    job: Arc<J>,
+    tasks: Vec<usize>,
+    events: &Sender<Event<J>>,
+) {
+    let probe = worker.dataflow::<Round, _, _>(|scope| {
+        let times = ThreadTimes::default();
+        times.borrow_mut().resize(rayon::current_num_threads(), (0, 0.0));
+        let (handle, assignments) = scope.feedback(1);
+        let (reports, records) = work(scope, assignments, Arc::clone(&job), Rc::clone(&times));
+        dispatch(reports, tasks, events.clone()).connect_loop(handle);
+        end(group(scope.index(), records, job, times), events.clone())
+    });
+    finish(worker, &probe);
+    // Without a receiver, nobody needs it any more.
+    let _ = events.send(Event::Complete);
+}
+
+/// Sends a value of worker 0 to all.
+pub(crate) fn share<T: Message>(worker: &mut TimelyWorker, value: Option<T>, values: Sender<T>) {
+    let probe = worker.dataflow::<Round, _, _>(|scope| {
+        let all = 0..scope.peers() as u64;
+        let copies = value
+            .into_iter()
+            .flat_map(move |value| all.clone().map(move |process| (process, value.clone())));
+        let copies: StreamVec<'_, Round, (u64, T)> = copies.to_stream(scope);
+        let shared: StreamVec<'_, Round, ()> =
+            copies.unary(Exchange::new(|(process, _): &(u64, T)| *process), "share", |_, _| {
+                move |input, _: &mut Nothing<'_>| {
+                    input.for_each(|_, shared| {
+                        for (_, value) in shared.drain(..) {
+                            let _ = values.send(value);
+                        }
+                    });
+                }
+            });
+        shared.probe().0
+    });
+    finish(worker, &probe);
+}
+
+/// Works until nothing can happen any more.
+fn finish(worker: &mut TimelyWorker, probe: &Handle<Round>) {
+    while !probe.done() {
+        worker.step_or_park(None);
+    }
+}
+
+/// Does the tasks of this process. Reports each of them, and sends what it found.
+fn work<'s, J: Job>(
+    scope: Scope<'s, Round>,
+    assignments: StreamVec<'s, Round, Assignment>,
+    job: Arc<J>,
+    times: ThreadTimes,
+) -> Done<'s, J> {
+    let mut builder = OperatorBuilder::new("work".to_owned(), scope);
+    let route = Exchange::new(|assignment: &Assignment| assignment.process as u64);
+    let mut input = builder.new_input(assignments, route);
+    let (reports_output, reports) = builder.new_output();
+    let (records_output, records) = builder.new_output();
+    let (mut reports_output, mut records_output) =
+        (OutputBuilder::from(reports_output), OutputBuilder::from(records_output));
+    let address = builder.operator_info().address.to_vec();
+    let pool = Pool { job, wake: Arc::new(scope.worker().sync_activator_for(address)) };
+    let process = scope.index();
+    let (sender, finished) = mpsc::channel();
+    builder.build(move |capabilities| {
+        // The right to send reports and records. It is held while tasks run.
+        let mut held: Option<Vec<Capability<Round>>> = Some(capabilities);
+        let mut running = 0;
+        let mut has_begun = false;
+        move |_| {
+            let (mut reports, mut records) = (reports_output.activate(), records_output.activate());
+            if let Some(held) = held.as_ref().filter(|_| !std::mem::replace(&mut has_begun, true)) {
+                // One task for each thread runs, and one waits.
+                let wanted = 2 * rayon::current_num_threads();
+                reports.session(&held[0]).give(Report { process, done: None, wanted });
+            }
+            input.for_each(|capability, assigned| {
+                held = [0, 1].iter().map(|&output| capability.retain_least(output)).collect();
+                for task in assigned.drain(..).flat_map(|assignment| assignment.tasks) {
+                    running += 1;
+                    pool.spawn(task, sender.clone());
+                }
+            });
+            if let Some(held) = &held {
+                for Finished { task, output, records: found, thread, time } in finished.try_iter() {
+                    running -= 1;
+                    if let Some((tasks, seconds)) = times.borrow_mut().get_mut(thread) {
+                        *tasks += 1;
+                        *seconds += time.as_secs_f64();
+                    }
+                    let report = Report { process, done: Some((task, output)), wanted: 1 };
+                    reports.session(&held[0]).give(report);
+                    records.session(&held[1]).give_iterator(found.into_iter());
+                }
+            }
+            if running == 0 {
+                held = None;
+            }
+        }
+    });
+    (reports, records)
+}
+
+/// Where tasks run.
+struct Pool<J> {
+    job: Arc<J>,
+    /// Wakes the worker.
+    wake: Arc<SyncActivator>,
+}
+
+impl<J: Job> Pool<J> {
+    fn spawn(&self, task: usize, finished: Sender<Finished<J>>) {
+        let (job, wake) = (Arc::clone(&self.job), Arc::clone(&self.wake));
+        rayon::spawn_fifo(move || {
+            let begun = Instant::now();
+            let (output, records) = job.work(task);
+            let time = begun.elapsed();
+            let thread = rayon::current_thread_index().unwrap_or_default();
+            // Without a worker, nobody needs it any more.
+            let _ = finished.send(Finished { task, output, records, thread, time });
+            let _ = wake.activate();
+        });
+    }
+}
+
+/// Process 0 gives tasks to those that want some.
+fn dispatch<J: Job>(
+    reports: StreamVec<'_, Round, Report<J::Output>>,
+    tasks: Vec<usize>,
+    events: Sender<Event<J>>,
+) -> StreamVec<'_, Round, Assignment> {
+    let mut tasks = tasks.into_iter();
+    reports.unary(Exchange::new(|_: &Report<J::Output>| 0), "dispatch", |_, _| {
+        move |input, output| {
+            input.for_each(|capability, reports| {
+                let mut session = output.session(&capability);
+                for Report { process, done, wanted } in reports.drain(..) {
+                    if let Some((task, output)) = done {
+                        let _ = events.send(Event::Done(task, output));
+                    }
+                    let tasks: Vec<_> = tasks.by_ref().take(wanted).collect();
+                    if !tasks.is_empty() {
+                        session.give(Assignment { process, tasks });
+                    }
+                }
+            });
+        }
+    })
+}
+
+/// When no task is left, each process groups the records of its keys.
+fn group<J: Job>(
+    process: usize,
+    records: StreamVec<'_, Round, J::Record>,
+    job: Arc<J>,
+    times: ThreadTimes,
+) -> StreamVec<'_, Round, ProcessEnd<J::Group>> {
+    records.unary_frontier(Exchange::new(J::key), "group", |capability, _| {
+        let mut held = Some(capability);
+        let mut all = Vec::new();
+        move |(input, frontier), output| {
+            input.for_each(|_, found| all.append(found));
+            if frontier.is_empty()
+                && let Some(capability) = held.take()
+            {
+                let group = job.group(std::mem::take(&mut all));
+                let threads = times.borrow().clone();
+                output.session(&capability).give(ProcessEnd { process, threads, group });
+            }
+        }
+    })
+}
+
+/// Process 0 gets what each process has.
+fn end<J: Job>(
+    ends: StreamVec<'_, Round, ProcessEnd<J::Group>>,
+    events: Sender<Event<J>>,
+) -> Handle<Round> {
+    let route = Exchange::new(|_: &ProcessEnd<J::Group>| 0);
+    let collected: StreamVec<'_, Round, ()> = ends.unary(route, "end", |_, _| {
+        move |input, _: &mut Nothing<'_>| {
+            input.for_each(|_, ends| {
+                for end in ends.drain(..) {
+                    let _ = events.send(Event::End(end));
+                }
+            });
+        }
+    });
+    collected.probe().0
+}

@@ -1,0 +1,54 @@
+//! The end of a process whose connection to another one is lost.
+//!
+//! The threads of timely dataflow that send and receive panic if their connection breaks. Their names have the
+//! number of the other process.
+
+use std::{
+    panic::{self, AssertUnwindSafe},
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+};
+
+/// Set when the work is done: a connection that breaks now is not lost.
+static DONE: AtomicBool = AtomicBool::new(false);
+
+/// Calls `lost` with the number of the process to which the connection is lost, once. It should not return.
+pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
+    static LOST: AtomicBool = AtomicBool::new(false);
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        let thread = thread::current();
+        match thread.name().and_then(other_process) {
+            _ if DONE.load(Ordering::Relaxed) => {}
+            None => usual(panic),
+            Some(_) if LOST.swap(true, Ordering::Relaxed) => {}
+            Some(process) => lost(process),
+        }
+    }));
+}
+
+/// Ends the connections: meanwhile none is lost, whatever the threads say that use them.
+pub(crate) fn without_loss(end: impl FnOnce()) {
+    DONE.store(true, Ordering::Relaxed);
+    let _ = panic::catch_unwind(AssertUnwindSafe(end));
+    DONE.store(false, Ordering::Relaxed);
+}
+
+/// The number of the process to which a thread of timely dataflow sends, or from which it receives.
+fn other_process(thread: &str) -> Option<usize> {
+    let number = thread.strip_prefix("timely:send-").or(thread.strip_prefix("timely:recv-"))?;
+    number.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_thread_has_the_other_process() {
+        assert_eq!(other_process("timely:send-12"), Some(12));
+        assert_eq!(other_process("timely:recv-0"), Some(0));
+        assert_eq!(other_process("timely:work-0"), None);
+        assert_eq!(other_process("main"), None);
+    }
+}

@@ -1,0 +1,204 @@
+//! The placed worlds that may be ambiguous, as bytes: they can be sorted, stored, and sent to another process.
+
+use serde::{Deserialize, Serialize};
+
+use super::{PlacedWorld, quotient::QuotientCode};
+use crate::{
+    isomorphism::StartCode,
+    percept::{Percept, Sighting},
+};
+
+/// A placed world that may be ambiguous, with the code of its quotient, as bytes.
+///
+/// Placed worlds of a search are indistinguishable exactly if their candidates have the same
+/// [quotient](Self::quotient). Candidates are ordered by their quotients, in some order, and then as in a report:
+/// fewer edges first, then the lesser code.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct AmbiguityCandidate(Box<[u8]>);
+
+/// The number of bytes of the length of a quotient.
+const LENGTH: usize = 4;
+
+/// The word of a [`StartCode`] in a byte: an enumerated world has at most 64 darts, so a dart is less than 64 and
+/// the word of a new vertex is more. The order stays.
+fn to_byte(word: u32) -> u8 {
+    word as u8
+}
+
+fn to_word(byte: u8) -> u32 {
+    if byte < 128 { byte.into() } else { u32::MAX - u32::from(u8::MAX - byte) }
+}
+
+fn push_label(bytes: &mut Vec<u8>, percept: Percept, carries: bool) {
+    use Sighting::{
+        Both, First, Lying, Nothing, Passed, PassedAgainst, PassedAlong, Pointing, Second,
+    };
+    let (kind, number) = match percept.sighting {
+        Nothing => (0, 0),
+        Pointing(door) => (1, door.0),
+        Lying(count) => (2, count),
+        First => (3, 0),
+        Second => (4, 0),
+        Both => (5, 0),
+        Passed => (6, 0),
+        PassedAlong => (7, 0),
+        PassedAgainst => (8, 0),
+    };
+    bytes.extend([percept.degree as u8, kind << 1 | u8::from(carries)]);
+    // A marker of your own may show any number.
+    match u8::try_from(number) {
+        Ok(number) if number < u8::MAX => bytes.push(number),
+        _ => {
+            bytes.push(u8::MAX);
+            bytes.extend(number.to_be_bytes());
+        }
+    }
+}
+
+impl AmbiguityCandidate {
+    /// A placed world of an enumeration, so with at most 32 edges.
+    pub(super) fn new(quotient: &QuotientCode, code: &StartCode) -> Self {
+        // A movable marker makes more classes than a byte can number.
+        let is_wide = quotient.len() > 1 << u8::BITS;
+        let mut bytes = vec![0; LENGTH];
+        for &((percept, carries), leads_to) in quotient {
+            push_label(&mut bytes, percept, carries);
+            for class in leads_to {
+                let class = (class as u16).to_be_bytes();
+                bytes.extend(&class[usize::from(!is_wide)..]);
+            }
+        }
+        let length = (bytes.len() - LENGTH) as u32;
+        bytes[..LENGTH].copy_from_slice(&length.to_be_bytes());
+        // A world with fewer edges has a shorter code.
+        bytes.push(code.words().len() as u8);
+        bytes.extend(code.words().iter().copied().map(to_byte));
+        Self(bytes.into_boxed_slice())
+    }
+
+    /// The most bytes of a candidate with so many states and edges.
+    pub(super) fn most_bytes(states: usize, edges: usize) -> usize {
+        // The degree, the kind of sighting and its number; and three classes.
+        let class = if states > 1 << u8::BITS { 2 } else { 1 };
+        LENGTH + states * (2 + 5 + 3 * class) + 1 + 1 + edges
+    }
+
+    /// The candidate of these bytes; `None` if they are not those of one.
+    #[must_use]
+    pub fn from_bytes(bytes: Box<[u8]>) -> Option<Self> {
+        let candidate = Self(bytes);
+        let (_, world) = candidate.parts()?;
+        let (&length, words) = world.split_first()?;
+        (usize::from(length) == words.len()).then_some(candidate)
+    }
+
+    /// Its bytes.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// The bytes of the quotient.
+    #[must_use]
+    pub fn quotient(&self) -> &[u8] {
+        self.parts().map_or(&[], |(quotient, _)| quotient)
+    }
+
+    /// The placed world; `None` if the bytes are not those of a candidate.
+    #[must_use]
+    pub fn world(&self) -> Option<PlacedWorld> {
+        let (_, world) = self.parts()?;
+        let words: Vec<u32> = world.get(1..)?.iter().copied().map(to_word).collect();
+        let graph = StartCode::start_of(&words)?;
+        Some(PlacedWorld { graph, code: StartCode::of_words(words) })
+    }
+
+    /// The quotient and the world.
+    fn parts(&self) -> Option<(&[u8], &[u8])> {
+        let (length, rest) = self.0.split_first_chunk::<LENGTH>()?;
+        rest.split_at_checked(u32::from_be_bytes(*length) as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{Class, any_graph},
+        embedded_graph::Dart,
+        isomorphism::{as_discovered, code},
+        percept::Door,
+    };
+
+    proptest! {
+        #[test]
+        fn a_placed_world_is_restored_from_its_candidate(
+            graph in any_graph(Class::Multigraph, 9),
+            facing in any::<prop::sample::Index>(),
+        ) {
+            let facing = Dart(facing.index(graph.dart_count()) as u32);
+            let placed = PlacedWorld {
+                graph: as_discovered(&graph, facing),
+                code: code(&graph, facing),
+            };
+            let candidate = AmbiguityCandidate::new(&Vec::new(), &placed.code);
+            prop_assert_eq!(candidate.world(), Some(placed));
+            let bytes: Box<[u8]> = candidate.as_bytes().into();
+            prop_assert_eq!(AmbiguityCandidate::from_bytes(bytes.clone()), Some(candidate));
+            for length in 0..bytes.len() {
+                prop_assert_eq!(AmbiguityCandidate::from_bytes(bytes[..length].into()), None);
+            }
+        }
+
+        /// Candidates with the same quotient are ordered as in a report.
+        #[test]
+        fn the_order_of_candidates_is_that_of_worlds(
+            one in any_graph(Class::Multigraph, 9),
+            other in any_graph(Class::Multigraph, 9),
+        ) {
+            let placed = [one, other].map(|graph| PlacedWorld {
+                graph: as_discovered(&graph, Dart(0)),
+                code: code(&graph, Dart(0)),
+            });
+            let [one, other] =
+                placed.each_ref().map(|world| AmbiguityCandidate::new(&Vec::new(), &world.code));
+            let [rank, other_rank] =
+                placed.each_ref().map(|world| (world.graph.edge_count(), &world.code));
+            prop_assert_eq!(one.cmp(&other), rank.cmp(&other_rank));
+        }
+    }
+
+    #[test]
+    fn different_quotients_have_different_bytes() {
+        let label = |degree, sighting, carries| (Percept { degree, sighting }, carries);
+        let quotients: [QuotientCode; 9] = [
+            vec![],
+            vec![(label(1, Sighting::Nothing, false), [0; 3])],
+            vec![(label(2, Sighting::Nothing, false), [0; 3])],
+            vec![(label(1, Sighting::Nothing, true), [0; 3])],
+            vec![(label(1, Sighting::Pointing(Door(0)), false), [0; 3])],
+            vec![(label(1, Sighting::Nothing, false), [0, 0, 1])],
+            vec![(label(1, Sighting::Lying(1), false), [0; 3])],
+            vec![(label(1, Sighting::Lying(257), false), [0; 3])],
+            vec![(label(1, Sighting::Nothing, false), [0; 3]); 300],
+        ];
+        let start = StartCode::of_words(vec![u32::MAX - 1, u32::MAX - 1]);
+        let candidates = quotients.map(|quotient| AmbiguityCandidate::new(&quotient, &start));
+        for (place, one) in candidates.iter().enumerate() {
+            for other in &candidates[..place] {
+                assert_ne!(one.quotient(), other.quotient());
+            }
+            assert!(one.world().is_some());
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_no_world_have_none() {
+        for wrong in [&[0, 0, 0, 0, 0][..], &[0, 0, 0, 0, 2, 254, 7], &[0, 0, 0, 0, 1, 254]] {
+            let candidate = AmbiguityCandidate::from_bytes(wrong.into());
+            assert_eq!(candidate.and_then(|candidate| candidate.world()), None, "{wrong:?}");
+        }
+    }
+}
