@@ -1,6 +1,6 @@
 //! Worlds with names, for Python.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use pyo3::{prelude::*, types::PyBytes};
 use toposlam::picture::{Placement, WorldPicture, png, svg};
