@@ -61,6 +61,16 @@ def test_a_wrong_percept_diverges(tmp_path):
     assert "event 7" in repr(report)
 
 
+def test_an_assumed_marker_must_be_seen(tmp_path):
+    """As the command: a robot that never perceives a marker does not follow an algorithm that needs one."""
+    lines = [{"degree": 1, "marker": -1, "door": 0, "stamp": 0.0}, {"degree": 1, "marker": -1, "stamp": 1.0}]
+    (tmp_path / "run.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    with pytest.raises(errors.LogError, match="no percept in it shows a marker, which Algorithm 1 needs"):
+        ts.conform(tmp_path / "run.jsonl")
+    assert ts.conform(tmp_path / "run.jsonl", driver="anyone", marker="none").verdict == "conforms"
+    assert ts.conform(tmp_path / "run.jsonl", marker="directional").verdict == "diverged"
+
+
 def test_tables_are_those_of_numpy_and_pandas(tmp_path):
     pandas, numpy = pytest.importorskip("pandas"), pytest.importorskip("numpy")
     run = recorded(ts.World.load("worlds/shape-6.toml"), tmp_path / "run.jsonl")

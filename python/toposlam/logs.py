@@ -175,6 +175,8 @@ class ConformReport:
     """The number of poses in which the robot may be after the last event that fits."""
     hallways: tuple[int, int, int]
     """The number of moves, of those measured by odometry, and of those compared with earlier ones."""
+    remarks: tuple[str, ...]
+    """What a reader should know: the log was recorded in another world, or goes on from an earlier run."""
 
     def __repr__(self) -> str:
         text = f"{self.path.name}: {self.verdict}, {len(self.events)} events, {self.evidence}"
@@ -254,4 +256,5 @@ def conform(
         determines_world=found["determines_world"],
         candidates=found["candidates"],
         hallways=tuple(found["hallways"]),
+        remarks=tuple(found["remarks"]),
     )
