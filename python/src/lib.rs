@@ -40,6 +40,7 @@ mod _core {
 
     /// No panic prints a text: it becomes an `InternalError`.
     #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "PyO3 asks for a result")]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         std::panic::set_hook(Box::new(|_| {}));
         Ok(())

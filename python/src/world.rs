@@ -66,7 +66,6 @@ impl CoreWorld {
     /// A world from its doors. `opposite` is numbered door by door, vertex by vertex.
     #[staticmethod]
     #[pyo3(signature = (degrees, opposite, vertex_names, name, about, start))]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
     fn from_doors(
         py: Python<'_>,
         degrees: Vec<u32>,
