@@ -179,6 +179,9 @@ fn exchange(mut stream: TcpStream, ours: &Greeting) -> io::Result<(TcpStream, Gr
     let (idle, between, tries) = KEEPALIVE;
     let keepalive = TcpKeepalive::new().with_time(idle).with_interval(between).with_retries(tries);
     SockRef::from(&stream).set_tcp_keepalive(&keepalive)?;
+    // The same for a machine that is silent while something is sent to it.
+    #[cfg(target_os = "linux")]
+    SockRef::from(&stream).set_tcp_user_timeout(Some(idle + tries * between))?;
     let text = serde_json::to_vec(ours)?;
     let mut message = MAGIC.to_vec();
     message.extend((text.len() as u32).to_be_bytes());

@@ -10,8 +10,8 @@ use std::{
 
 use toposlam_model::{
     ambiguity::{
-        AmbiguitySearch, Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Unfinished,
-        Walk, replay, state_count,
+        AmbiguitySearch, Comparison, Findings, KeptPairs, PlacedRobot, PlacedWorld, Relation,
+        Unfinished, Walk, replay, state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, SizeError, Watch},
@@ -34,6 +34,38 @@ fn counts(findings: &Findings) -> (Vec<u64>, Vec<u64>) {
 /// The sizes of the smallest pair.
 fn smallest(findings: &Findings) -> Option<[usize; 2]> {
     findings.smallest().map(|pair| pair.map(|world| world.graph.edge_count()))
+}
+
+/// As processes on several machines search: each looks at some parts, and groups the worlds of some quotients.
+#[test]
+fn the_groups_of_some_quotients_and_those_of_the_others_are_all() {
+    for (class, marker) in
+        [(Class::Multigraph, "undirected"), (Class::Corridor, "none"), (Class::Simple, "movable")]
+    {
+        let search = AmbiguitySearch::new(class, 4, named(marker).unwrap()).unwrap();
+        let whole = search.run(&()).unwrap();
+        for kept in [KeptPairs::All, KeptPairs::Smallest] {
+            let mut all = search.grouped(Vec::new(), kept, &()).unwrap();
+            let mut machines = [Vec::new(), Vec::new(), Vec::new()];
+            for part in search.parts().iter().rev() {
+                let (placed_worlds, candidates) = search.look_at_part(part);
+                all.count_placed(part.edges(), placed_worlds);
+                for candidate in candidates {
+                    let key: usize =
+                        candidate.quotient().iter().map(|&byte| usize::from(byte)).sum();
+                    machines[key % 3].push(candidate);
+                }
+            }
+            assert!(machines.iter().all(|candidates| !candidates.is_empty()), "{class}");
+            for candidates in machines {
+                all = all.merged(search.grouped(candidates, kept, &()).unwrap(), kept);
+            }
+            match kept {
+                KeptPairs::All => assert_eq!(all, whole, "{class}"),
+                KeptPairs::Smallest => assert_eq!(all, whole.clone().into_smallest(), "{class}"),
+            }
+        }
+    }
 }
 
 /// All numbers are those of the independent implementation in `tests/oracle/ambiguity.py` of the

@@ -18,7 +18,7 @@ use toposlam_model::{
         FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm, Shard, Sweep, Tally, WorstStart,
     },
     embedded_graph::EmbeddedGraph,
-    enumerate::Class,
+    enumerate::{Class, Watch},
     format::named_world::NamedWorld,
     marker::{self, Marker},
 };
@@ -32,7 +32,7 @@ use super::{
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
     output,
-    progress::{Progress, StopSignal},
+    progress::Progress,
     text::counted,
     use_threads,
     version::VERSION,
@@ -72,7 +72,7 @@ Examples:
 
 Ctrl-C stops the check and prints the results so far.",
     &[
-        (0, "every map is right"),
+        (0, "every map is right, or the estimate is printed"),
         (1, "a map is wrong"),
         (2, "bad usage or input"),
         (3, "not everything was checked: a limit was reached, there is nothing to check, Ctrl-C, or \
@@ -131,15 +131,15 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     json: bool,
 
-    /// Record finished parts of the work in a folder. A check that was killed goes on from there. With
-    /// --hosts, process 0 records the parts of all
+    /// Record finished parts of the work in a folder. If a check is killed, the same command continues
+    /// from there. With --hosts, process 0 records the parts of all
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     journal: Option<PathBuf>,
 
     #[command(flatten)]
     estimate: EstimateOptions,
 
-    /// Check larger worlds also after a map was wrong
+    /// Check larger worlds also after a map was wrong, or after an explorer reached a limit
     #[arg(long)]
     keep_going: bool,
 
@@ -226,7 +226,7 @@ impl CheckArguments {
                 let result = self.result(edges, &tally, None);
                 SizeLine::new(&result, subject, RunChoices::Default).name()
             };
-            cases.extend(self.not_checked(sizes.map(name)));
+            self.add_not_checked(&mut cases, sizes.map(name));
         }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
@@ -237,10 +237,11 @@ impl CheckArguments {
 
     /// With all choices, runs do not share their beginnings.
     fn check_shared_options(&self) -> Result<(), CliError> {
-        let cause = "this needs --choices default";
         match self.choices {
-            ChoicesOption::All if self.estimate.estimate => Err(CliError::at("--estimate", cause)),
-            ChoicesOption::All if self.journal.is_some() => Err(CliError::at("--journal", cause)),
+            ChoicesOption::All if self.estimate.estimate => {
+                Err(needs_default_choices("--estimate"))
+            }
+            ChoicesOption::All if self.journal.is_some() => Err(needs_default_choices("--journal")),
             ChoicesOption::All | ChoicesOption::Default => Ok(()),
         }
     }
@@ -280,15 +281,15 @@ impl CheckArguments {
         self.cluster.connect(&settings, end)
     }
 
-    /// The sizes after one in which a map was wrong, by their names, for CI systems.
-    fn not_checked(&self, names: impl Iterator<Item = String>) -> Vec<CiCase> {
+    /// Adds the sizes after the last one, by their names, for CI systems.
+    fn add_not_checked(&self, cases: &mut Vec<CiCase>, names: impl Iterator<Item = String>) {
+        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
         let file = self.from.as_deref().map(Path::to_owned);
-        let cases = names.map(|name| CiCase::not_checked(name, file.clone()));
-        let cases: Vec<_> = cases.collect();
-        if !cases.is_empty() {
+        let checked = cases.len();
+        cases.extend(names.map(|name| CiCase::not_checked(name, &after, file.clone())));
+        if cases.len() > checked {
             remark!("worlds with more edges are not checked; --keep-going checks them");
         }
-        cases
     }
 
     fn result<'t>(
@@ -321,22 +322,21 @@ impl CheckArguments {
         if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
             remark!("{edges} edges: {} of the work finished before", counted(before, "unit"));
         }
-        let units: &dyn FinishedUnits = match &journal {
-            Some(journal) => journal,
-            None => &(),
+        let (units, watched): (&dyn FinishedUnits, _) = match &journal {
+            Some(journal) => (journal, Some(journal.watch(&progress))),
+            None => (&(), None),
         };
+        let watch: &dyn Watch = watched.as_ref().map_or(&progress, |watched| watched);
         let checked = match (work, cluster) {
-            (Work::Lazy(sweep), None) => algorithm.lazy_sweep(sweep, units, &progress),
-            (Work::Lazy(sweep), Some(cluster)) => {
-                cluster.check(algorithm, sweep, units, &progress)?
-            }
+            (Work::Lazy(sweep), None) => algorithm.lazy_sweep(sweep, units, watch),
+            (Work::Lazy(sweep), Some(cluster)) => cluster.check(algorithm, sweep, units, watch)?,
             (Work::Sweep(_) | Work::Worlds(_), _) => None,
         };
         let checked = match (checked, work) {
             (Some(LazyCheck { tally, moves_made }), _) => (tally, Some(moves_made)),
             (None, Work::Worlds(graphs)) => (algorithm.check_worlds(graphs, &progress), None),
             (None, Work::Sweep(sweep)) => (algorithm.sweep(sweep, &progress), None),
-            (None, Work::Lazy(_)) => (Tally::default(), None),
+            (None, Work::Lazy(_)) => return Err(needs_default_choices("--choices")),
         };
         progress.finish();
         if let Some(journal) = journal {
@@ -359,7 +359,7 @@ impl CheckArguments {
             marker: algorithm.marker().name().to_owned(),
             algorithm: algorithm.name().to_owned(),
             shard: self.shard.to_string(),
-            units: algorithm.unit_count(sweep, &StopSignal).unwrap_or_default(),
+            units: algorithm.unit_count(sweep).unwrap_or_default(),
         }
     }
 
@@ -371,11 +371,12 @@ impl CheckArguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         for (&edges, work) in work {
-            if let Work::Lazy(sweep) = work {
-                let progress = Progress::new(&format!("{edges} edges"), "starts")?;
-                self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
-                progress.finish();
-            }
+            let Work::Lazy(sweep) = work else {
+                return Err(needs_default_choices("--estimate"));
+            };
+            let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+            self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
+            progress.finish();
         }
         Ok(Outcome::Holds)
     }
@@ -431,8 +432,13 @@ impl Work {
     }
 }
 
+/// The error for work whose runs cannot share their beginnings.
+fn needs_default_choices(option: &str) -> CliError {
+    CliError::at(option, "this needs --choices default")
+}
+
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
-    let moves = |start: &Option<WorstStart>| start.as_ref().map_or(0, |start| start.moves);
+    let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
     if moves(&other) > moves(worst) {
         *worst = other;
     }

@@ -58,6 +58,8 @@ impl RunningProgram {
             let mut running = running();
             self.status = self.child.try_wait().ok().flatten();
             if self.status.is_some() {
+                // Programs that it started may still run.
+                end_group(self.child.id());
                 running.as_mut().map(|running| running.remove(&self.child.id()));
                 break;
             }
@@ -103,7 +105,8 @@ pub(super) fn end_all() {
     }
 }
 
-/// Ends a program that was not waited for, and those that it started.
+/// Ends a program, and those that it started. Nothing else can have this id: the program was not waited for before
+/// now, or it started programs that still run.
 fn end_group(id: u32) {
     #[cfg(unix)]
     if let Ok(id) = i32::try_from(id) {

@@ -35,9 +35,9 @@ pub(super) struct CiCase {
 }
 
 impl CiCase {
-    /// What was not checked because something before it is violated.
-    pub(super) fn not_checked(name: String, file: Option<PathBuf>) -> Self {
-        let message = "not checked after a violation; --keep-going checks it".to_owned();
+    /// What was not checked because something before it does not hold.
+    pub(super) fn not_checked(name: String, after: &str, file: Option<PathBuf>) -> Self {
+        let message = format!("not checked after {after}; --keep-going checks it");
         Self { name, outcome: Outcome::Incomplete, message, file }
     }
 }

@@ -210,7 +210,8 @@ impl CounterexampleArguments {
                 counted(others.len(), "marker")
             );
         }
-        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, None)));
+        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
+        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, &after, None)));
         report.end()?;
         if let Some(cluster) = cluster {
             cluster.close();
@@ -227,12 +228,12 @@ impl CounterexampleArguments {
         markers: &[&dyn Marker],
         edges: usize,
     ) -> Result<Option<ClusterSession>, CliError> {
-        let markers: Vec<_> = markers.iter().map(|marker| marker.name()).collect();
+        let markers = markers.iter().fold(String::new(), |all, marker| all + marker.name() + " ");
         let settings = [
             ("the command", "counterexample".to_owned()),
             ("the class", self.class.name().to_owned()),
             ("--max-edges", edges.to_string()),
-            ("the markers", markers.join(" ")),
+            ("the markers", markers.trim_end().to_owned()),
             ("--all", self.all.to_string()),
             ("--expect", format!("{:?}", self.expect)),
             ("--keep-going", self.keep_going.to_string()),

@@ -12,15 +12,19 @@ use toposlam_model::check::{MappingAlgorithm, Shard};
 use super::{
     CliError, Outcome, RunChoices,
     check::{AlgorithmInfo, CheckReport, SizeLine},
+    ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     input,
+    text::counted,
 };
 
 /// Add up the results of the shards of a check
 ///
 /// Reads the lines that `check --shard I/N --json` printed, and prints the result of the whole check. Each
 /// shard of each size must be there exactly once, and all must be of the same version, class and algorithm.
-/// Otherwise the error lists what is missing, double or different.
+/// Otherwise the error lists what is missing, duplicated or different.
+///
+/// A shard stops after a size with a wrong map. If later sizes of it are missing, the result ends there, too.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -31,7 +35,7 @@ Examples:
     &[
         (0, "every map is right"),
         (1, "a map is wrong"),
-        (2, "bad usage or input, also a shard that is missing or there twice"),
+        (2, "bad usage or input, also a shard that is missing or occurs twice"),
         (3, "there is nothing to check, or a limit was reached"),
     ],
 ))]
@@ -43,6 +47,9 @@ pub(super) struct MergeArguments {
     /// Print one JSON object for each number of edges
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// The beginning of a line.
@@ -77,6 +84,7 @@ fn subject(line: &SizeLine) -> [(&'static str, String); 5] {
 
 impl MergeArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        self.ci.check_places()?;
         let mut shards = Vec::new();
         for file in &self.files {
             read_shards(file, &mut shards)?;
@@ -89,28 +97,80 @@ impl MergeArguments {
             None => RunChoices::Default,
             Some(budget) => RunChoices::All { budget },
         };
-        let problems = problems(&shards);
-        if !problems.is_empty() {
-            return Err(CliError::Input(problems.join("\n")));
-        }
-        let mut sizes: BTreeMap<usize, SizeLine> = BTreeMap::new();
-        shards.sort_by_key(|found| found.shard.index());
-        for FoundShard { mut line, .. } in shards {
-            (line.shard, line.version) = (None, None);
-            match sizes.get_mut(&line.edges) {
-                Some(sum) => sum.add(line),
-                None => {
-                    sizes.insert(line.edges, line);
-                }
-            }
-        }
+        let sizes = by_size(shards)?;
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
-        for line in sizes.into_values() {
+        let (mut cases, mut last) = (Vec::new(), String::new());
+        for line in sizes.complete {
+            last = line.name();
+            cases.push(line.ci_case());
             report.size(line)?;
         }
-        report.verdict(None)
+        let outcome = report.verdict(None)?;
+        if let Some(first) = sizes.left_out.first() {
+            let from = counted(first.edges, "edge");
+            remark!(
+                "shards are missing from {from} on, after a wrong map; those sizes are left out"
+            );
+        }
+        let left_out = sizes.left_out.iter();
+        cases.extend(left_out.map(|line| CiCase::not_checked(line.name(), &last, None)));
+        self.ci.write("check", &cases)?;
+        Ok(outcome)
     }
 }
+
+/// The results for each number of edges.
+struct MergedSizes {
+    /// With all shards.
+    complete: Vec<SizeLine>,
+    /// After a wrong map: shards are missing.
+    left_out: Vec<SizeLine>,
+}
+
+/// Adds up the shards of each size.
+///
+/// # Errors
+/// Returns an error if shards are missing, duplicated or different, or if a sum is too large.
+fn by_size(mut shards: Vec<FoundShard>) -> Result<MergedSizes, CliError> {
+    let mut problems = different_shards(&shards);
+    let mut found: BTreeMap<usize, Vec<FoundShard>> = BTreeMap::new();
+    shards.sort_by_key(|found| found.shard.index());
+    for shard in shards {
+        found.entry(shard.line.edges).or_default().push(shard);
+    }
+    let mut sizes = MergedSizes { complete: Vec::new(), left_out: Vec::new() };
+    let mut total = SizeLine::default();
+    let mut is_violated = false;
+    for (edges, shards) in found {
+        let MissingShards { places, missing } = check_shards(edges, &shards);
+        problems.extend(places);
+        // A shard whose map was wrong has checked no larger size.
+        let is_left_out = !sizes.left_out.is_empty() || is_violated && !missing.is_empty();
+        if !is_left_out {
+            problems.extend(missing);
+        }
+        is_violated |= shards.iter().any(|found| found.line.failed > 0);
+        let mut sum: Option<SizeLine> = None;
+        for FoundShard { place, mut line, .. } in shards {
+            (line.shard, line.version) = (None, None);
+            let at = |overflow| CliError::at(&place, overflow);
+            total.add(line.clone()).map_err(at)?;
+            match &mut sum {
+                Some(sum) => sum.add(line).map_err(at)?,
+                None => sum = Some(line),
+            }
+        }
+        if is_left_out { &mut sizes.left_out } else { &mut sizes.complete }.extend(sum);
+    }
+    if problems.len() > MOST_PROBLEMS {
+        problems.truncate(MOST_PROBLEMS);
+        problems.push("...".to_owned());
+    }
+    if problems.is_empty() { Ok(sizes) } else { Err(CliError::Input(problems.join("\n"))) }
+}
+
+/// The most problems that are listed. A wrong number of shards can be huge.
+const MOST_PROBLEMS: usize = 100;
 
 /// Reads the lines of a file.
 fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError> {
@@ -122,7 +182,7 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
         let place = format!("{}: line {number}", path.display());
         let at = |cause: String| CliError::at(&place, cause);
         let head: LineHead = serde_json::from_slice(text)
-            .map_err(|error| at(format!("this is no line of `check --json`: {error}")))?;
+            .map_err(|error| at(format!("this is not a line of `check --json`: {error}")))?;
         if (head.schema, head.kind.as_str()) != (1, "size") {
             let LineHead { schema, kind } = head;
             return Err(at(format!("this is a line `{kind}` of schema {schema}, not `size` of 1")));
@@ -132,6 +192,9 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
             return Err(at("this is the result of a whole check, not of a shard".to_owned()));
         };
         let shard = shard.parse().map_err(|error| at(format!("{error}")))?;
+        if let Some(contradiction) = line.contradiction() {
+            return Err(at(contradiction));
+        }
         shards.push(FoundShard { place, shard, line });
     }
     Ok(())
@@ -151,47 +214,49 @@ fn algorithm_of(found: &FoundShard) -> Result<MappingAlgorithm, CliError> {
         })
 }
 
-/// What is different, missing, double or interrupted.
-fn problems(shards: &[FoundShard]) -> Vec<String> {
+/// The shards that are not of the same check as the first one.
+fn different_shards(shards: &[FoundShard]) -> Vec<String> {
     let mut problems = Vec::new();
-    let mut sizes: BTreeMap<usize, Vec<&FoundShard>> = BTreeMap::new();
-    for found in shards {
-        let FoundShard { place, line, .. } = found;
+    for FoundShard { place, line, .. } in shards {
         for ((name, is), (_, first)) in subject(line).into_iter().zip(subject(&shards[0].line)) {
             if is != first {
                 problems.push(format!("{place}: {name} is {is}, not {first}"));
             }
         }
-        if line.interrupted {
-            problems.push(format!("{place}: shard {} was interrupted", found.shard));
-        }
-        sizes.entry(line.edges).or_default().push(found);
-    }
-    for (edges, found) in sizes {
-        let of = found[0].shard.of();
-        for other in found.iter().filter(|other| other.shard.of() != of) {
-            let FoundShard { place, shard, .. } = other;
-            problems.push(format!("{place}: {edges} edges: {shard} is not one of {of} shards"));
-        }
-        let of_shard = |index| {
-            found.iter().filter(move |found| (found.shard.index(), found.shard.of()) == (index, of))
-        };
-        for index in 1..=of {
-            match of_shard(index).count() {
-                0 => problems.push(format!("{edges} edges: shard {index}/{of} is missing")),
-                1 => {}
-                _ => {
-                    let places: Vec<_> = of_shard(index).map(|found| &*found.place).collect();
-                    let places = places.join(", ");
-                    problems.push(format!("{edges} edges: shard {index}/{of} is double: {places}"));
-                }
-            }
-            // A wrong number of shards can be huge.
-            if problems.len() > 100 {
-                problems.push("...".to_owned());
-                return problems;
-            }
-        }
     }
     problems
+}
+
+/// The problems of the shards of one size.
+struct MissingShards {
+    /// Shards that should not be there.
+    places: Vec<String>,
+    /// Shards without a whole result.
+    missing: Vec<String>,
+}
+
+/// What is missing, duplicated or interrupted in one size.
+fn check_shards(edges: usize, found: &[FoundShard]) -> MissingShards {
+    let (mut places, mut missing) = (Vec::new(), Vec::new());
+    let of = found[0].shard.of();
+    for FoundShard { place, shard, line } in found {
+        if shard.of() != of {
+            places.push(format!("{place}: {edges} edges: {shard} is not one of {of} shards"));
+        }
+        if line.interrupted {
+            missing.push(format!("{place}: shard {shard} was interrupted"));
+        }
+    }
+    let mut by_index: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
+    for FoundShard { place, shard, .. } in found.iter().filter(|found| found.shard.of() == of) {
+        by_index.entry(shard.index()).or_default().push(place);
+    }
+    for (index, twice) in by_index.iter().filter(|(_, places)| places.len() > 1) {
+        let twice = twice.join(", ");
+        places.push(format!("{edges} edges: shard {index}/{of} occurs twice: {twice}"));
+    }
+    let absent = (1..=of).filter(|index| !by_index.contains_key(index));
+    let absent = absent.map(|index| format!("{edges} edges: shard {index}/{of} is missing"));
+    missing.extend(absent.take(MOST_PROBLEMS + 1));
+    MissingShards { places, missing }
 }

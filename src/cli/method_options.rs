@@ -12,7 +12,7 @@ pub(super) struct MethodOptions {
     /// The algorithm that makes the map: algorithm1 or folding [default: algorithm1; with --recover: folding]
     #[arg(long, hide_possible_values = true)]
     algorithm: Option<AlgorithmOption>,
-    /// When the map is complete, walk once more and check it; with a number, so often
+    /// When the map is complete, walk once more and check it. N: the number of audits
     #[arg(
         long,
         value_name = "N",

@@ -55,16 +55,29 @@ pub(crate) fn create_growing(path: &Path) -> Result<fs::File, CliError> {
     fs::File::create(path).map_err(|error| not_writable(path, &error))
 }
 
-/// Opens a file to append to, or creates it, and returns what it contains.
-pub(crate) fn open_growing(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> {
+/// Opens a file to append to, or creates it, and returns what it contains. It is locked until it is closed.
+///
+/// # Errors
+/// Returns an error if it is not a file, if another process has locked it, or if it cannot be written.
+pub(crate) fn open_growing_alone(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> {
     files().grow(path)?;
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return Err(CliError::in_file(path, "this is not a file"));
+    }
     let open = fs::OpenOptions::new().read(true).append(true).create(true).open(path);
-    let read = open.and_then(|mut file| {
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
-        Ok((file, bytes))
-    });
-    read.map_err(|error| not_writable(path, &error))
+    let mut file = open.map_err(|error| not_writable(path, &error))?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(fs::TryLockError::WouldBlock) => {
+            return Err(CliError::in_file(path, "another process is writing this file"));
+        }
+        Err(fs::TryLockError::Error(error)) => {
+            return Err(CliError::in_file(path, format!("cannot be locked: {error}")));
+        }
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|error| CliError::in_file(path, error))?;
+    Ok((file, bytes))
 }
 
 /// Creates the folder if it does not exist.

@@ -169,8 +169,9 @@ impl ProofsArguments {
         }
         let outcome = report.verdict()?;
         if outcome == Outcome::Violated {
+            let after = results.last().map(|case| case.name.clone()).unwrap_or_default();
             let names = left.map(|lemma| lemma.name.to_owned());
-            results.extend(names.map(|name| CiCase::not_checked(name, None)));
+            results.extend(names.map(|name| CiCase::not_checked(name, &after, None)));
         }
         self.ci.write("proofs", &results)?;
         Ok(outcome)

@@ -43,7 +43,7 @@ pub(crate) fn open(script: &str, pages: &[String]) {
     let (node, chromium) = match browser() {
         Ok(found) => found,
         Err(missing) => {
-            skip(&missing);
+            fail_if_required(&missing);
             return eprintln!("skipped, {script} opened no page in a browser: {missing}");
         }
     };
@@ -55,7 +55,7 @@ pub(crate) fn open(script: &str, pages: &[String]) {
 /// Runs a script of this folder without a browser, and returns what it prints; `None` if there is no Node.
 pub(crate) fn run_in_node(script: &str, arguments: &[&OsStr]) -> Option<String> {
     let Some(node) = node() else {
-        skip(NO_NODE);
+        fail_if_required(NO_NODE);
         eprintln!("skipped, {script} was not run: {NO_NODE}");
         return None;
     };
@@ -63,8 +63,8 @@ pub(crate) fn run_in_node(script: &str, arguments: &[&OsStr]) -> Option<String> 
 }
 
 /// Panics if no test may be skipped.
-fn skip(missing: &str) {
-    let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|wish| wish == "required");
+fn fail_if_required(missing: &str) {
+    let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|value| value == "required");
     assert!(!required, "{missing}");
 }
 

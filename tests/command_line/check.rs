@@ -221,3 +221,14 @@ fn an_interrupted_check_prints_its_results_and_does_not_hold() {
     assert!(before.iter().all(|line| line["holds"] == true));
     assert_eq!((&last["failed"], &last["starts"]), (&0.into(), &last["mapped"]));
 }
+
+#[cfg(not(feature = "cluster"))]
+#[test]
+fn the_error_of_a_build_for_one_machine_has_the_command_that_adds_clusters() {
+    for command in ["check", "counterexample"] {
+        let output = run([command, "--hosts", "hosts.txt", "--process", "0"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = stderr(&output);
+        assert!(error.contains("cargo build --release --features cluster"), "{error}");
+    }
+}

@@ -1,7 +1,14 @@
 //! `check --explorer`: an explorer in any language, its failures and limits, and the examples of
 //! docs/protocol.md.
 
-use std::{env, fs, path::Path, process::Command, sync::LazyLock};
+use std::{
+    env, fs,
+    path::Path,
+    process::{Command, Stdio},
+    sync::LazyLock,
+    thread,
+    time::{Duration, Instant},
+};
 
 use serde_json::{Value, json};
 
@@ -286,25 +293,19 @@ fn a_time_out_and_too_many_moves_are_not_known() {
         line["limit"]["message"],
         "The explorer did not read a percept and answer it within 0.2 s"
     );
-    // One that never reads is answered until its input is full.
     let around = always(&folder, "around", "{\"door\":0}");
-    for (explorer, cause) in [(&around, "max-moves"), (&"yes '{\"door\":0}'".to_owned(), "timeout")]
-    {
-        let options = ["--edges", "1", "--max-moves", "5000", "--timeout", "1"];
-        let (code, lines) = check(explorer, &options);
-        let (line, limit) = (&lines[0], &lines[0]["limit"]);
-        assert_eq!(
-            (code, &limit["cause"], &line["unknown"]),
-            (3, &json!(cause), &json!(2)),
-            "{line}"
-        );
-        assert_eq!(limit["moves"] == 5000, cause == "max-moves", "{limit}");
-        assert_eq!(limit["last_actions"], json!(vec![0; 20]));
-    }
+    let (code, lines) = check(&around, &["--edges", "1", "--max-moves", "5000"]);
+    let (line, limit) = (&lines[0], &lines[0]["limit"]);
+    assert_eq!(
+        (code, &limit["cause"], &line["unknown"]),
+        (3, &json!("max-moves"), &json!(2)),
+        "{line}"
+    );
+    assert_eq!((&limit["moves"], &limit["last_actions"]), (&json!(5000), &json!(vec![0; 20])));
     // A failure on another start is one.
     let mixed = "while read line; do case $line in *2*) sleep 600;; *) echo hello;; esac; done\n";
     let mixed = script(&folder, "mixed", mixed);
-    let (code, lines) = check(&mixed, &["--edges", "1", "--timeout", "0.2"]);
+    let (code, lines) = check(&mixed, &["--edges", "1", "--timeout", "2"]);
     assert_eq!((code, &lines[0]["failed"], &lines[0]["unknown"]), (1, &json!(1), &json!(1)));
     assert_eq!(lines[0]["causes"], json!({"not-json": 1, "timeout": 1}));
     let text = stdout(&run(["check", "--edges", "1", "--explorer", &around, "--max-moves", "9"]));
@@ -312,6 +313,98 @@ fn a_time_out_and_too_many_moves_are_not_known() {
     let words: Vec<_> = text.split_whitespace().collect();
     let words = words.join(" ");
     assert!(words.contains(" After 9 moves, it did not end within 9 moves. "), "{text}");
+}
+
+/// A line that no percept asked for is not taken for the answer to the next percept.
+#[cfg(unix)]
+#[test]
+fn two_lines_for_one_percept_are_a_failure() {
+    let folder = folder("explorer_lines");
+    let twice = |name: &str, one: &str, other: &str| {
+        let text = format!("while read line; do printf '%s\\n%s\\n' '{one}' '{other}'; done\n");
+        script(&folder, name, &text)
+    };
+    let two = twice("two", "{\"door\":0}", "{\"door\":0}");
+    let done = twice("done", "{\"map\":[[[1,0]],[[0,0]]],\"pose\":[0,0]}", "done");
+    for explorer in [two, done, "yes '{\"door\":0}'".to_owned()] {
+        let (code, lines) = check(&explorer, &["--edges", "1"]);
+        assert_eq!((code, &lines[0]["causes"]), (1, &json!({"extra-line": 2})), "{explorer}");
+    }
+}
+
+/// Starts are left out only if there are more.
+#[cfg(unix)]
+#[test]
+fn the_last_start_of_a_size_is_not_followed_by_others() {
+    let folder = folder("explorer_last");
+    let crash = script(&folder, "exit", "read line; exit 3\n");
+    // 2 edges have 10 starts.
+    for (restarts, starts) in [("9", 9), ("10", 10)] {
+        let (_, lines) = check(&crash, &["--edges", "2", "--restarts", restarts]);
+        let line = &lines[0];
+        assert_eq!((&line["starts"], &line["stopped"]), (&json!(starts), &json!(starts < 10)));
+    }
+}
+
+/// Its answers come faster than the check looks whether it has to stop.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_a_fast_explorer_and_prints_the_results() {
+    let folder = folder("explorer_fast");
+    let begun = folder.join("begun");
+    let text =
+        format!("while read line; do : > {}; echo '{{\"door\":0}}'; done\n", begun.display());
+    let explorer = script(&folder, "fast", &text);
+    let mut command = super::toposlam();
+    command.args(["check", "--json", "--edges", "1", "--max-moves", "1000000000"]);
+    let command = command.args(["--explorer", &explorer]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while !begun.exists() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert_eq!(objects(&stdout(&output))[0]["interrupted"], true);
+}
+
+/// What an explorer started is ended with it, also if the explorer ends by itself.
+#[cfg(unix)]
+#[test]
+fn no_process_outlives_an_explorer_that_ended() {
+    let folder = folder("explorer_left");
+    let left = folder.join("left");
+    let text = format!("sleep 600 > /dev/null 2>&1 &\necho $! >> {}\nexit 1\n", left.display());
+    let (code, lines) = check(&script(&folder, "wrap", &text), &["--edges", "1"]);
+    assert_eq!((code, &lines[0]["failed"]), (1, &json!(2)));
+    let started = fs::read_to_string(&left).unwrap();
+    assert_eq!(started.lines().count(), 2);
+    for process in started.lines() {
+        let is_running = || {
+            let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+            !(state.is_empty() || state.contains(") Z "))
+        };
+        // A process ends some time after the signal.
+        let begun = Instant::now();
+        while is_running() && begun.elapsed() < Duration::from_secs(20) {
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert!(!is_running(), "{process}");
+    }
+}
+
+/// With every marker the certificate is unknown, so a map at once can be right.
+#[test]
+fn a_start_that_was_mapped_without_a_move_can_be_the_worst() {
+    let folder = folder("explorer_no_move");
+    let explorer = always(&folder, "at_once", "{\"map\":[[[1,0]],[[0,0]]],\"pose\":[0,0]}");
+    let worst = folder.join("worst.toml");
+    let options = ["--marker", "none", "--class", "simple", "--edges", "1", "--worst"];
+    let options = [&options[..], &[worst.to_str().unwrap()]].concat();
+    let (code, lines) = check(&explorer, &options);
+    assert_eq!((code, &lines[0]["mapped"], &lines[0]["moves_max"]), (0, &json!(1), &json!(0)));
+    assert!(worst.exists());
 }
 
 /// The explorer remembers its earlier runs, and ends its process on every 50th.
@@ -429,12 +522,6 @@ fn is_running(argument: &str) -> bool {
 #[cfg(target_os = "linux")]
 #[test]
 fn ctrl_c_stops_at_once_and_leaves_no_process() {
-    use std::{
-        process::Stdio,
-        thread,
-        time::{Duration, Instant},
-    };
-
     let folder = folder("explorer_ctrl_c");
     let time = format!("{}", 1_000_000 + std::process::id());
     // The process starts another one, which does not read.

@@ -102,11 +102,11 @@ impl MappingAlgorithm {
 
     /// The number of units of a lazy sweep; `None` with all choices.
     #[must_use]
-    pub fn unit_count(&self, sweep: &LazySweep, watch: &dyn Watch) -> Option<usize> {
+    pub fn unit_count(&self, sweep: &LazySweep) -> Option<usize> {
         match self {
-            Self::Algorithm1 => Some(sweep.unit_count(Algorithm1Explorer::default, watch)),
-            Self::MovableMarker => Some(sweep.unit_count(MovableMarkerExplorer::default, watch)),
-            Self::Folding => Some(sweep.unit_count(FoldingStepExplorer::default, watch)),
+            Self::Algorithm1 => Some(sweep.unit_count(Algorithm1Explorer::default)),
+            Self::MovableMarker => Some(sweep.unit_count(MovableMarkerExplorer::default)),
+            Self::Folding => Some(sweep.unit_count(FoldingStepExplorer::default)),
             Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
         }
     }

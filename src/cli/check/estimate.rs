@@ -24,7 +24,7 @@ use crate::cli::{
 /// The edges that are left where a probe no longer draws.
 const COMPLETE: usize = 4;
 
-/// 95 % of a normal distribution are within so many standard deviations of its mean.
+/// 95 % of a normal distribution are within this many standard deviations of its mean.
 const STANDARD_DEVIATIONS: f64 = 1.96;
 
 /// The options of an estimate.
@@ -100,7 +100,7 @@ struct EstimateLine<'a> {
     moves_total: Interval,
     /// Those that the check makes.
     moves_made: Interval,
-    /// On so many threads.
+    /// On `threads` threads.
     seconds: Interval,
     threads: usize,
 }
@@ -127,7 +127,9 @@ impl EstimateOptions {
             let draws = 1 + edges.saturating_sub(COMPLETE);
             let numbers = (0..draws).map(|_| random.random()).collect();
             let begun = Instant::now();
-            let Some(probe) = algorithm.probe(sweep, numbers, watch) else { break };
+            let Some(probe) = algorithm.probe(sweep, numbers, watch) else {
+                return Err(super::needs_default_choices("--estimate"));
+            };
             let elapsed = begun.elapsed().as_secs_f64();
             if watch.stop() {
                 return Err(CliError::Interrupted);

@@ -10,7 +10,7 @@ use toposlam_model::{
     marker::{Directional, Marker},
 };
 
-use crate::cli::{Outcome, RunChoices, version::VERSION};
+use crate::cli::{CliError, Outcome, RunChoices, version::VERSION};
 
 /// The algorithm that is checked, and its marker.
 #[derive(Clone, Copy)]
@@ -143,8 +143,37 @@ fn failed_world(failure: &FailedStart, subject: AlgorithmInfo) -> NamedWorld {
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
-fn sum(one: Option<u64>, other: Option<u64>) -> Option<u64> {
-    one.zip(other).map(|(one, other)| one + other).or(one).or(other)
+/// The sum of some counts is larger than 64 bits hold.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error("with this, the sum of `{0}` is 2^64 or more")]
+pub(in crate::cli) struct CountOverflow(&'static str);
+
+impl From<CountOverflow> for CliError {
+    fn from(overflow: CountOverflow) -> Self {
+        Self::Input(overflow.to_string())
+    }
+}
+
+/// Adds a count with a name.
+fn add_count(sum: &mut u64, count: u64, name: &'static str) -> Result<(), CountOverflow> {
+    *sum = sum.checked_add(count).ok_or(CountOverflow(name))?;
+    Ok(())
+}
+
+/// Adds a count that not all results have.
+fn add_some(
+    sum: &mut Option<u64>,
+    count: Option<u64>,
+    name: &'static str,
+) -> Result<(), CountOverflow> {
+    match (sum.as_mut(), count) {
+        (Some(sum), Some(count)) => add_count(sum, count, name),
+        (Some(_), None) => Ok(()),
+        (None, count) => {
+            *sum = count;
+            Ok(())
+        }
+    }
 }
 
 impl SizeLine {
@@ -210,31 +239,66 @@ impl SizeLine {
         self.limits.as_ref().and_then(|limits| limits.get(limit)).copied().unwrap_or_default()
     }
 
+    /// The first thing in which the counts of a line contradict each other.
+    pub(in crate::cli) fn contradiction(&self) -> Option<String> {
+        let Self { starts, mapped, failed, moves_total, moves_max, .. } = *self;
+        let (below, gave_up) = (self.below_certificate, self.gave_up);
+        let limits =
+            self.limits.iter().flatten().try_fold(0_u64, |sum, (_, &n)| sum.checked_add(n));
+        let is = |holds| if holds { "true" } else { "false" };
+        let holds = self.verdict().0 == Outcome::Holds;
+        let problem = match () {
+            () if mapped.checked_add(failed) != Some(starts) => {
+                format!("`starts` is {starts}, but {mapped} are mapped and {failed} failed")
+            }
+            () if self.failure.is_some() != (failed > 0) => {
+                format!("`failed` is {failed}, which disagrees with `failure`")
+            }
+            () if moves_max > moves_total => {
+                format!("`moves_max` is {moves_max}, but `moves_total` is {moves_total}")
+            }
+            () if below.is_some_and(|below| below > mapped) => {
+                format!("`below_certificate` is more than `mapped`, {mapped}")
+            }
+            () if gave_up.is_some_and(|gave_up| gave_up > starts || limits != Some(gave_up)) => {
+                "`gave_up` is not the sum of `limits`, or more than `starts`".to_owned()
+            }
+            () if self.holds != holds => {
+                format!("`holds` is {}, but by the counts it is {}", is(self.holds), is(holds))
+            }
+            () => return None,
+        };
+        Some(problem)
+    }
+
     /// Adds the result of other starts.
-    pub(in crate::cli) fn add(&mut self, other: Self) {
-        self.worlds += other.worlds;
-        self.starts += other.starts;
-        self.mapped += other.mapped;
-        self.failed += other.failed;
-        self.moves_total += other.moves_total;
+    ///
+    /// # Errors
+    /// Returns an error if a sum is too large.
+    pub(in crate::cli) fn add(&mut self, other: Self) -> Result<(), CountOverflow> {
+        add_count(&mut self.worlds, other.worlds, "worlds")?;
+        add_count(&mut self.starts, other.starts, "starts")?;
+        add_count(&mut self.mapped, other.mapped, "mapped")?;
+        add_count(&mut self.failed, other.failed, "failed")?;
+        add_count(&mut self.moves_total, other.moves_total, "moves_total")?;
         self.moves_max = self.moves_max.max(other.moves_max);
-        self.moves_made = sum(self.moves_made, other.moves_made);
-        self.certificate_total = sum(self.certificate_total, other.certificate_total);
+        add_some(&mut self.moves_made, other.moves_made, "moves_made")?;
+        add_some(&mut self.certificate_total, other.certificate_total, "certificate_total")?;
         self.certificate_max = self.certificate_max.max(other.certificate_max);
-        self.below_certificate = sum(self.below_certificate, other.below_certificate);
+        add_some(&mut self.below_certificate, other.below_certificate, "below_certificate")?;
         self.largest_ratio = self.largest_ratio.max(other.largest_ratio);
-        self.states = sum(self.states, other.states);
+        add_some(&mut self.states, other.states, "states")?;
         self.runs = match (self.runs, other.runs) {
             (Some(one), Some(other)) => Some(one.saturating_add(other)),
             (one, other) => one.or(other),
         };
         self.moves_least = self.moves_least.into_iter().chain(other.moves_least).min();
         self.moves_most = self.moves_most.max(other.moves_most);
-        self.gave_up = sum(self.gave_up, other.gave_up);
+        add_some(&mut self.gave_up, other.gave_up, "gave_up")?;
         if let Some(limits) = other.limits {
             let known = self.limits.get_or_insert_default();
             for (limit, starts) in limits {
-                *known.entry(limit).or_default() += starts;
+                add_count(known.entry(limit).or_default(), starts, "limits")?;
             }
         }
         self.interrupted |= other.interrupted;
@@ -243,6 +307,7 @@ impl SizeLine {
             (one, other) => one.or(other),
         };
         self.holds = self.verdict().0 == Outcome::Holds;
+        Ok(())
     }
 }
 

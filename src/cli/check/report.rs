@@ -1,8 +1,15 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
-use std::{fmt::Write as _, io::Write, time::Duration};
+use std::{
+    fmt::{Display, Write as _},
+    io::Write,
+    time::Duration,
+};
 
-use toposlam_model::format::world_file;
+use toposlam_model::{
+    check::{Algorithm, Folding},
+    format::world_file,
+};
 
 use super::line::{AlgorithmInfo, SizeLine, SizeResult};
 use crate::cli::{
@@ -13,13 +20,24 @@ use crate::cli::{
     text::{grouped, print_hanging, print_paragraph},
 };
 
+/// The worlds of a file or of a class, in words.
+pub(super) fn worlds_in_words(from: Option<impl Display>, class: &str) -> String {
+    match from {
+        Some(path) => format!("the worlds of {path}"),
+        None => format!("class {class}"),
+    }
+}
+
+/// The mean over some starts, and the largest value.
+pub(super) fn mean_and_most(total: u64, starts: u64, most: u64) -> String {
+    format!("{:.1}/{}", total as f64 / starts.max(1) as f64, grouped(most.into()))
+}
+
 impl SizeLine {
     /// The worlds, in words.
     fn worlds_in_words(&self) -> String {
-        let worlds = match (&self.from, &self.class) {
-            (Some(path), _) => format!("the worlds of {path}"),
-            (None, class) => format!("class {}", class.as_deref().unwrap_or_default()),
-        };
+        let class = self.class.as_deref().unwrap_or_default();
+        let worlds = worlds_in_words(self.from.as_ref(), class);
         match &self.shard {
             None => worlds,
             Some(shard) => format!("{worlds}, shard {shard}"),
@@ -44,11 +62,6 @@ impl SizeLine {
     /// What is checked.
     pub(in crate::cli) fn name(&self) -> String {
         format!("{} edges, {}", self.edges, self.worlds_in_words())
-    }
-
-    /// The mean over the starts, and the largest value.
-    fn mean_and_most(&self, total: u64, most: u64) -> String {
-        format!("{:.1}/{}", total as f64 / self.starts.max(1) as f64, grouped(most.into()))
     }
 }
 
@@ -85,8 +98,7 @@ impl<'o> CheckReport<'o> {
             self.row(&line)?;
         }
         self.out.flush()?;
-        self.total.add(line);
-        Ok(())
+        Ok(self.total.add(line)?)
     }
 
     /// Reports how busy the threads of a cluster were.
@@ -121,7 +133,9 @@ impl<'o> CheckReport<'o> {
             self.header(line)?;
         }
         let certificate = match (line.certificate_total, line.certificate_max) {
-            (Some(total), Some(most)) => format!("  {:>11}", line.mean_and_most(total, most)),
+            (Some(total), Some(most)) => {
+                format!("  {:>11}", mean_and_most(total, line.starts, most))
+            }
             _ => String::new(),
         };
         writeln!(
@@ -131,7 +145,7 @@ impl<'o> CheckReport<'o> {
             grouped(line.worlds.into()),
             grouped(line.starts.into()),
             grouped(line.failed.into()),
-            line.mean_and_most(line.moves_total, line.moves_max),
+            mean_and_most(line.moves_total, line.starts, line.moves_max),
             line.largest_ratio,
         )?;
         if let Some(runs) = line.runs {
@@ -153,7 +167,9 @@ impl<'o> CheckReport<'o> {
             let step = failure.step.as_ref().map_or(String::new(), |step| format!(" {step}"));
             writeln!(self.out)?;
             print_paragraph(self.out, &format!("Wrong{step}: {}", failure.cause))?;
-            let explore = format!("toposlam explore --marker {}", self.subject.marker);
+            let is_folding = self.subject.algorithm == Folding.name();
+            let algorithm = if is_folding { " --algorithm folding" } else { "" };
+            let explore = format!("toposlam explore --marker {}{algorithm}", self.subject.marker);
             print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
             if let Some(world) = failure.named_world() {
                 writeln!(self.out, "\n{}", world_file::to_toml(&world))?;

@@ -144,10 +144,11 @@ This command makes the folder:
 /// That there is no pair in any class, and why.
 fn no_pair(marker: &dyn Marker) -> String {
     let theorem = |class| proved(marker, class, true);
-    let mut theorems: Vec<_> = Class::ALL.into_iter().filter_map(theorem).collect();
+    let mut theorems: Vec<_> = Class::ALL.into_iter().map(theorem).collect();
     theorems.dedup();
     match theorems.as_slice() {
-        [theorem] => format!("No pair: `{theorem}`."),
+        // It is about all classes.
+        [Some(theorem)] => format!("No pair: `{theorem}`."),
         _ => "No pair: see the table.".to_owned(),
     }
 }
@@ -164,7 +165,7 @@ fn cell(marker: &dyn Marker, class: Class, found: &WorldPairs, edges: usize) -> 
     let Some(pair) = pairs.first() else {
         return match proved(marker, class, true) {
             Some(theorem) => format!("none: `{theorem}`"),
-            None => format!("none up to {edges} edges"),
+            None => format!("none up to {}", counted(edges, "edge")),
         };
     };
     let file = |world: &NamedWorld| {

@@ -15,7 +15,7 @@ use crate::cli::{
     CliError,
     cluster::ClusterSession,
     json::print_line,
-    text::{grouped, print_command, print_hanging, print_indented, print_paragraph},
+    text::{counted, grouped, print_command, print_hanging, print_indented, print_paragraph},
 };
 
 /// Prints the result of each marker when it is there.
@@ -157,7 +157,7 @@ impl<'o> SearchReport<'o> {
     fn sizes_of_smallest(&self, found: &WorldPairs) -> String {
         match found.pairs().first() {
             Some([one, other]) => sizes(one, other),
-            None => format!("none up to {} edges", self.edges),
+            None => format!("none up to {}", counted(self.edges, "edge")),
         }
     }
 
@@ -181,7 +181,10 @@ impl<'o> SearchReport<'o> {
         }
         let Some([one, other]) = found.pairs().first().copied() else {
             writeln!(self.out)?;
-            let none = format!("no pair up to {} edges: a walk distinguishes any two", self.edges);
+            let none = format!(
+                "no pair up to {}: a walk distinguishes any two",
+                counted(self.edges, "edge")
+            );
             print_paragraph(self.out, &none)?;
             return Ok(());
         };

@@ -330,6 +330,7 @@ mod tests {
     fn what_is_in_the_way_ends_a_hidden_hallway() {
         let crate_ahead = [[[3.4, -0.45], [3.4, 0.1]]];
         let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0), &crate_ahead].concat(), 3.3);
+        assert!(places.iter().any(|(_, place)| is_hidden(place)));
         for (x, place) in places {
             assert!(!is_hidden(&place) || x < 3.4 - FREE_AHEAD, "after {x} m");
         }

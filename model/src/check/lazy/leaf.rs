@@ -56,7 +56,8 @@ impl<'m> LeafJudge<'m> {
         graph: &EmbeddedGraph,
     ) -> Result<(), Flaw> {
         let map = explorer.explored()?;
-        // An explorer that numbers darts as it meets them often returns the record itself, dart for dart.
+        // An explorer that numbers darts as it meets them returns the record itself, dart for dart, and the identity
+        // is the bijection.
         let is_record =
             map.facing == FACING && map.pose == world.pose() && map.graph.as_ref() == graph;
         if !is_record {

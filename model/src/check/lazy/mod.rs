@@ -18,8 +18,8 @@
 //!   answer left. It restores the explorer and the robot as they were before the step of that decision, and
 //!   repeats this step. The record has the new answer already, so the step passes there without asking. Only
 //!   the moves of this step before the decision are made again.
-//! * `LeafJudge` judges each end by a bijection between the explorer's map and the record. It does not know
-//!   the algorithm.
+//! * `LeafJudge` judges each end by a bijection between the explorer's map and the record: by the identity if they
+//!   are equal, dart for dart. It does not know the algorithm.
 //! * [`LazySweep`] divides the tree into *units*, subtrees of equal first decisions, and adds up their
 //!   [`LazyTally`]s. Which start is the worst or the first that fails does not depend on the order of the runs:
 //!   starts are compared by their place in the [`Enumeration`](crate::enumerate::Enumeration), as in a

@@ -17,6 +17,9 @@ pub(super) enum ExplorerFault {
     /// A line does not end.
     #[error("wrote a line of more than {limit} bytes")]
     LineTooLong { limit: u64 },
+    /// After its answer, it wrote more before the next percept.
+    #[error("wrote more than one line for one percept")]
+    ExtraLine,
     /// The process ended, or closed its standard output.
     #[error("{}", match status {
         Some(status) => format!("ended with {status}"),
@@ -81,10 +84,14 @@ impl ExplorerFault {
             Self::NotJson { .. } => "not-json",
             Self::NotAnAnswer { .. } => "not-an-answer",
             Self::LineTooLong { .. } => "line-too-long",
+            Self::ExtraLine => "extra-line",
             Self::Ended { failed: true, .. } => "crashed",
             Self::Ended { .. } => "ended",
-            Self::Refused { refused: Refused::NoSuchDoor { .. } } => "no-such-door",
-            Self::Refused { .. } => "no-such-marker",
+            Self::Refused { refused } => match refused {
+                Refused::NoSuchDoor { .. } | Refused::NoWorldLeft => "no-such-door",
+                Refused::NothingToPickUp | Refused::NothingToDrop => "no-such-marker",
+                Refused::OutOfMoves { .. } => "max-moves",
+            },
             Self::GaveUp { .. } => "gave-up",
             Self::MissingEdge { .. } => "missing-edge",
             Self::InvalidMap { .. } => "invalid-map",
@@ -98,7 +105,11 @@ impl ExplorerFault {
 
     /// Whether a limit was reached. Then it is not known whether the explorer would have mapped the start.
     pub(super) fn is_limit(&self) -> bool {
-        matches!(self, Self::TimedOut { .. } | Self::OutOfMoves { .. })
+        match self {
+            Self::TimedOut { .. } | Self::OutOfMoves { .. } => true,
+            Self::Refused { refused } => matches!(refused, Refused::OutOfMoves { .. }),
+            _ => false,
+        }
     }
 
     /// Whether the run ended without the explorer's last answer, so that the process cannot begin another.
@@ -107,6 +118,7 @@ impl ExplorerFault {
             Self::NotJson { .. }
             | Self::NotAnAnswer { .. }
             | Self::LineTooLong { .. }
+            | Self::ExtraLine
             | Self::Ended { .. }
             | Self::Refused { .. }
             | Self::TimedOut { .. }

@@ -58,7 +58,7 @@ pub(super) struct ExplorerOptions {
     )]
     max_moves: u64,
 
-    /// Leave out the other starts with a number of edges after N runs that ended their process
+    /// Skip the rest of a size after N runs that ended their process
     #[arg(
         long,
         default_value_t = 10,
@@ -136,7 +136,7 @@ impl CheckArguments {
             let (class, from) = (self.class(), self.from.as_deref());
             let tally = ExplorerTally::default();
             let name = |(edges, _)| ExplorerSize { edges, class, from, tally: &tally }.name();
-            cases.extend(self.not_checked(sizes.map(name)));
+            self.add_not_checked(&mut cases, sizes.map(name));
         }
         self.ci.write("check", &cases)?;
         self.write_explorer_starts(&command.text, worst, unmapped)?;

@@ -68,7 +68,7 @@ impl ExplorerCommand {
         let (kept, (all_kept, ended)) = (Arc::clone(&errors), mpsc::channel());
         let keep = move || {
             keep_end(stderr, &kept);
-            // Without a receiver, nobody waits.
+            // Without a receiver, the process was dropped.
             let _ = all_kept.send(());
         };
         for work in [Box::new(converse) as Box<dyn FnOnce() + Send>, Box::new(keep)] {
@@ -84,6 +84,8 @@ impl ExplorerCommand {
 enum Reply {
     Line(Vec<u8>),
     TooLong,
+    /// More than one line for one percept.
+    ExtraLine,
     /// The standard output is closed.
     End,
 }
@@ -116,6 +118,10 @@ impl ExplorerProcess {
         }
         let begun = Instant::now();
         loop {
+            // An explorer can answer faster than it is looked at.
+            if must_stop() {
+                return Err(NoAnswer::Stopped);
+            }
             let left = timeout.saturating_sub(begun.elapsed());
             match self.received.recv_timeout(left.min(LOOK)) {
                 Ok(Reply::Line(line)) => return Ok(line),
@@ -124,13 +130,13 @@ impl ExplorerProcess {
                         limit: LONGEST_LINE,
                     }));
                 }
+                Ok(Reply::ExtraLine) => return Err(NoAnswer::Fault(ExplorerFault::ExtraLine)),
                 Ok(Reply::End) | Err(RecvTimeoutError::Disconnected) => {
                     let status = self.running.wait(TO_END);
                     let failed = status.is_some_and(|status| !status.success());
                     let status = status.map(status_text);
                     return Err(NoAnswer::Fault(ExplorerFault::Ended { status, failed }));
                 }
-                Err(RecvTimeoutError::Timeout) if must_stop() => return Err(NoAnswer::Stopped),
                 Err(RecvTimeoutError::Timeout) if begun.elapsed() >= timeout => {
                     let seconds = timeout.as_secs_f64();
                     return Err(NoAnswer::Fault(ExplorerFault::TimedOut { seconds }));
@@ -161,7 +167,7 @@ impl ExplorerProcess {
 /// Sends each line and then receives one.
 fn converse(
     mut stdin: impl Write,
-    mut stdout: impl BufRead,
+    mut stdout: BufReader<impl Read>,
     requests: &Receiver<String>,
     answers: &Sender<Reply>,
 ) {
@@ -171,6 +177,7 @@ fn converse(
         let mut line = Vec::new();
         let read = stdout.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
         let reply = match (read, line.last()) {
+            (Ok(_), Some(b'\n')) if !stdout.buffer().is_empty() => Reply::ExtraLine,
             (Ok(_), Some(b'\n')) => {
                 line.pop();
                 Reply::Line(line)

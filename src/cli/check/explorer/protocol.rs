@@ -144,7 +144,7 @@ impl ReportedMap {
             };
             let Some(there) = number(to) else {
                 return Err(invalid(format!(
-                    "dart {name} leads to {}, which it lacks",
+                    "dart {name} leads to {}, which the map does not have",
                     dart_text(to)
                 )));
             };
@@ -299,7 +299,7 @@ mod tests {
                 "[[[1,1]],[[0,0]]]",
                 "[0,0]",
                 "invalid-map",
-                "dart v0.0 leads to v1.1, which it lacks",
+                "dart v0.0 leads to v1.1, which the map does not have",
             ),
             (
                 "[[[0,1],[1,0]],[[0,1]]]",

@@ -10,7 +10,10 @@ use toposlam_model::{
     marker::{Directional, Marker},
 };
 
-use super::tally::{ExplorerTally, UnmappedStart};
+use super::{
+    super::report::{mean_and_most, worlds_in_words},
+    tally::{ExplorerTally, UnmappedStart},
+};
 use crate::cli::{
     CliError, Outcome,
     ci_report::CiCase,
@@ -30,10 +33,7 @@ pub(super) struct ExplorerSize<'a> {
 impl ExplorerSize<'_> {
     /// The worlds, in words.
     fn worlds(&self) -> String {
-        match self.from {
-            Some(path) => format!("the worlds of {}", path.display()),
-            None => format!("class {}", self.class),
-        }
+        worlds_in_words(self.from.map(Path::display), self.class.name())
     }
 
     /// Its name for CI systems.
@@ -121,10 +121,7 @@ impl<'o> ExplorerReport<'o> {
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
         }
-        let mean_and_most = |total: u64, most: u64| {
-            let mean = total as f64 / tally.mapped.max(1) as f64;
-            format!("{mean:.1}/{}", grouped(most.into()))
-        };
+        let mean_and_most = |total, most| mean_and_most(total, tally.mapped, most);
         let certificates = match tally.ratio() {
             Some(ratio) => {
                 let certificate = mean_and_most(tally.certificate_total, tally.certificate_max);

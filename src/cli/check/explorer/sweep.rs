@@ -33,7 +33,7 @@ use crate::cli::{
     progress::{Progress, must_stop},
 };
 
-/// A batch is complete with its first world that gives it so many starts.
+/// A batch is complete with the first world that gives it this many starts.
 const BATCH: usize = 256;
 
 /// The worlds of one number of edges.
@@ -47,7 +47,7 @@ pub(super) struct ExplorerSweep<'a> {
     pub(super) command: &'a ExplorerCommand,
     pub(super) marker: &'static dyn Marker,
     pub(super) limits: RunLimits,
-    /// So many runs may end their process; then the rest of the starts is left out.
+    /// After this many runs that ended their process, the rest of the starts is left out.
     pub(super) restarts: u64,
     /// The number of processes at once.
     pub(super) processes: usize,
@@ -57,10 +57,19 @@ pub(super) struct ExplorerSweep<'a> {
 struct Batch {
     number: usize,
     worlds: Vec<(EmbeddedGraph, Vec<Dart>)>,
+    is_last: bool,
 }
 
-/// The tallies of a batch. Each but the last ends with a run that ended its process.
-type BatchResult = Result<(usize, Vec<ExplorerTally>), CliError>;
+/// A batch that was run.
+struct BatchRun {
+    /// Each but the last ends with a run that ended its process.
+    tallies: Vec<ExplorerTally>,
+    /// Whether there are starts after these.
+    has_more: bool,
+}
+
+/// The number of a batch, and its results.
+type BatchResult = Result<(usize, BatchRun), CliError>;
 
 impl ExplorerWorlds {
     /// Whether no world has a loop or parallel edges.
@@ -71,36 +80,34 @@ impl ExplorerWorlds {
         }
     }
 
-    /// Sends the batches until nobody receives them.
+    /// Sends the batches until the receiver is dropped.
     fn send_batches(&self, batches: &SyncSender<Batch>) {
         let mut number = 0;
         let mut worlds = Vec::new();
         let mut starts = 0;
         let mut add = |graph: &EmbeddedGraph| {
+            if starts >= BATCH {
+                starts = 0;
+                let batch = Batch { number, worlds: std::mem::take(&mut worlds), is_last: false };
+                number += 1;
+                if batches.send(batch).is_err() {
+                    return ControlFlow::Break(());
+                }
+            }
             let orbit = canonical(graph).orbit;
             // Darts that an automorphism takes to each other are the same start.
             let facing: Vec<_> = graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect();
             starts += facing.len();
             worlds.push((graph.clone(), facing));
-            if starts < BATCH {
-                return ControlFlow::Continue(());
-            }
-            starts = 0;
-            number += 1;
-            let batch = Batch { number: number - 1, worlds: std::mem::take(&mut worlds) };
-            if batches.send(batch).is_ok() {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
+            ControlFlow::Continue(())
         };
         let all = match self {
             Self::Enumerated(enumeration) => enumeration.for_each(&mut |found| add(found.graph)),
             Self::Listed(graphs) => graphs.iter().try_for_each(add),
         };
         if all.is_continue() && !worlds.is_empty() {
-            // Nobody receives it if the check stops.
-            let _ = batches.send(Batch { number, worlds });
+            // If the check stops, there is no receiver.
+            let _ = batches.send(Batch { number, worlds, is_last: true });
         }
     }
 }
@@ -125,7 +132,7 @@ impl ExplorerSweep<'_> {
                 let (to_run, results, enough) = (Arc::clone(&to_run), results.clone(), &enough);
                 scope.spawn(move || self.work(&to_run, &results, enough, progress));
             }
-            // When the last worker ends, nobody receives batches, and nobody sends results.
+            // When the last worker ends, the other ends of the channels are dropped.
             drop((to_run, results));
             let merged = self.merge(&to_merge, &enough);
             enough.store(true, Ordering::Relaxed);
@@ -145,20 +152,18 @@ impl ExplorerSweep<'_> {
             let next = batches.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(batch) = next else { break };
             let result = self.run_batch(&batch, enough);
-            let starts = result.iter().flatten().map(|tally| tally.starts).sum();
-            progress.part_done(starts);
-            if results.send(result.map(|tallies| (batch.number, tallies))).is_err() {
+            let tallies = result.iter().flat_map(|run| &run.tallies);
+            progress.part_done(tallies.map(|tally| tally.starts).sum());
+            if results.send(result.map(|run| (batch.number, run))).is_err() {
                 break;
             }
         }
     }
 
     /// Runs the explorer on the starts of a batch.
-    fn run_batch(
-        &self,
-        batch: &Batch,
-        enough: &AtomicBool,
-    ) -> Result<Vec<ExplorerTally>, CliError> {
+    fn run_batch(&self, batch: &Batch, enough: &AtomicBool) -> Result<BatchRun, CliError> {
+        let mut left: usize = batch.worlds.iter().map(|(_, facing)| facing.len()).sum();
+        let ended = |tallies, left| BatchRun { tallies, has_more: left > 0 || !batch.is_last };
         let mut tallies = Vec::new();
         let mut tally = ExplorerTally::default();
         let mut process: Option<ExplorerProcess> = None;
@@ -172,8 +177,9 @@ impl ExplorerSweep<'_> {
                 }
                 if tally.interrupted || enough.load(Ordering::Relaxed) {
                     tallies.push(tally);
-                    return Ok(tallies);
+                    return Ok(ended(tallies, left));
                 }
+                left -= 1;
                 let certificate = directional.then(|| certificate_length(graph, facing) as u64);
                 let start = ExplorerStart { graph, facing, marker: self.marker, certificate };
                 let mut running = match process.take() {
@@ -192,7 +198,7 @@ impl ExplorerSweep<'_> {
                 tally.count(&start, run, running.end());
                 tallies.push(std::mem::take(&mut tally));
                 if tallies.len() as u64 == self.restarts {
-                    return Ok(tallies);
+                    return Ok(ended(tallies, left));
                 }
             }
         }
@@ -200,7 +206,7 @@ impl ExplorerSweep<'_> {
             process.finish();
         }
         tallies.push(tally);
-        Ok(tallies)
+        Ok(ended(tallies, left))
     }
 
     /// Merges the results in the order of the starts, up to the run that ends the last process.
@@ -213,22 +219,24 @@ impl ExplorerSweep<'_> {
         let mut waiting = BTreeMap::new();
         let mut next = 0;
         for result in results {
-            let (number, tallies) = result?;
-            waiting.insert(number, tallies);
-            while let Some(tallies) = waiting.remove(&next) {
+            let (number, run) = result?;
+            waiting.insert(number, run);
+            while let Some(BatchRun { tallies, has_more }) = waiting.remove(&next) {
                 next += 1;
-                for tally in tallies {
+                let mut tallies = tallies.into_iter();
+                while let Some(tally) = tallies.next() {
                     total.merge(tally);
                     if total.processes_ended == self.restarts {
                         enough.store(true, Ordering::Relaxed);
-                        total.stopped = true;
+                        total.stopped = has_more || tallies.any(|later| later.starts > 0);
                         return Ok(total);
                     }
                 }
             }
         }
         // After Ctrl-C, a batch may be missing.
-        waiting.into_values().flatten().for_each(|tally| total.merge(tally));
+        let unmerged = waiting.into_values().flat_map(|run| run.tallies);
+        unmerged.for_each(|tally| total.merge(tally));
         total.interrupted |= must_stop();
         Ok(total)
     }
