@@ -229,7 +229,7 @@ class _Permutation(NamedTuple):
         if self.cycles is None:
             if sorted(self.listed) != list(darts):
                 raise PermutationError(
-                    f"{self.name}: the images are not those of a permutation of {_range(darts)}"
+                    f"{self.name}: the images are not those of a permutation of darts {_range(darts)}"
                 )
             return [image - least for image in self.listed]
         moved = self.darts()
@@ -258,7 +258,8 @@ def _read(name: str, permutation: object) -> _Permutation:
     if callable(cycle_tuples):
         return _of_cycles(name, cycle_tuples())
     if isinstance(permutation, Mapping):
-        if set(permutation) != set(permutation.values()):
+        darts = [*permutation, *permutation.values()]
+        if not all(is_int(dart) for dart in darts) or set(permutation) != set(permutation.values()):
             raise PermutationError(f"{name}: the images are not the darts")
         permutation = [permutation[dart] for dart in sorted(permutation)]
     if not isinstance(permutation, Iterable):
