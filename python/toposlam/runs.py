@@ -85,7 +85,8 @@ def explore(
         check_unused("with an explorer of your own", max_darts=max_darts)
         max_moves = MAX_MOVES if max_moves is None else max_moves
         seconds = SECONDS if seconds is None else seconds
-        return _explored(world, algorithm, marker or "directional", max_moves, seconds)
+        kind = "directional" if marker is None else marker
+        return _explored(world, algorithm, kind, max_moves, seconds)
     check_unused("with an algorithm", marker=marker, max_moves=max_moves, seconds=seconds)
     max_darts = 1_000_000 if max_darts is None else max_darts
     check_limit("max_darts", max_darts)
