@@ -135,7 +135,16 @@ def test_a_real_building():
         ts.conform(log.path)
 
 
-@pytest.mark.parametrize("data", [b"", b"hello\n", b"\x89MCAP0\r\n", b"#ROSBAG V2.0\n\xff\xff"])
+@pytest.mark.parametrize("data", [b"\x89MCAP0\r\n", b"#ROSBAG V2.0\n\xff\xff"])
+def test_a_log_of_which_only_the_beginning_is_left(tmp_path, data):
+    (tmp_path / "log").write_bytes(data)
+    log = ts.read_log(tmp_path / "log")
+    assert log.truncation is not None and log.events.rows == 0
+    with pytest.raises(errors.LogError, match="log: "):
+        ts.conform(tmp_path / "log")
+
+
+@pytest.mark.parametrize("data", [b"", b"hello\n"])
 def test_a_file_that_is_not_a_log(tmp_path, data):
     (tmp_path / "log").write_bytes(data)
     for read in [ts.read_log, ts.conform]:
