@@ -400,7 +400,7 @@ fn a_start_that_was_mapped_without_a_move_can_be_the_worst() {
     let folder = folder("explorer_no_move");
     let explorer = always(&folder, "at_once", "{\"map\":[[[1,0]],[[0,0]]],\"pose\":[0,0]}");
     let worst = folder.join("worst.toml");
-    let options = ["--marker", "none", "--class", "simple", "--edges", "1", "--worst"];
+    let options = ["--marker", "undirected", "--class", "simple", "--edges", "1", "--worst"];
     let options = [&options[..], &[worst.to_str().unwrap()]].concat();
     let (code, lines) = check(&explorer, &options);
     assert_eq!((code, &lines[0]["mapped"], &lines[0]["moves_max"]), (0, &json!(1), &json!(0)));

@@ -9,7 +9,7 @@ use toposlam_model::{
     marker::{self, Directional, Marker, UnknownMarker},
 };
 
-use super::RunEvents;
+use super::events::RunEvents;
 use crate::{
     log::{messages::Run, world_hash},
     run_settings::RecordedSettings,
