@@ -262,7 +262,7 @@ impl LaserEvents {
         let [entry, exit] = bend.arms;
         let in_doubt = bend.arms.iter().any(|back| {
             // A corridor may go straight on there.
-            view.grid.sight(bend.point, back + PI, sight).0 >= sight
+            view.clearances.sight(&view.grid, bend.point, back + PI, sight).0 >= sight
         });
         self.waiting.push_back(Visit {
             kind: VisitKind::Bend { way: bend.way, in_doubt },

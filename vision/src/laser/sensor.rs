@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
+    clearances::Clearances,
     grid::Grid,
     junctions::LaserJunction,
     matching::ScanMatcher,
@@ -43,6 +44,8 @@ pub struct LaserView {
     pub to_odometry: Motion,
     /// The local map.
     pub grid: Grid,
+    /// The distances on it.
+    pub clearances: Clearances,
     /// The middle lines of its ways; `None` if the robot has no way.
     pub skeleton: Option<Skeleton>,
     /// Those that count.
@@ -98,12 +101,14 @@ impl LaserSensor {
         let counts = self.counts.as_ref()?;
         let mut grid = counts.window(robot.position, side, &params);
         grid.clean(&params);
-        let skeleton = Skeleton::new(&grid, robot.position, &self.params);
-        let ways = skeleton.as_ref().map(|skeleton| WayGraph::new(skeleton, &grid));
+        let clearances = Clearances::new(&grid);
+        let skeleton = Skeleton::new(&grid, &clearances, robot.position, &self.params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
         let ways = ways.unwrap_or_default();
         let judge = ArmJudge {
             robot: robot.position,
             grid: &grid,
+            clearances: &clearances,
             viewpoints: self.viewpoints.make_contiguous(),
             params: &self.params.arm,
         };
@@ -115,7 +120,16 @@ impl LaserSensor {
             junctions.clone()
         };
         let to_odometry = self.matcher.correction().inverse();
-        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions, possible_junctions })
+        Some(LaserView {
+            robot,
+            to_odometry,
+            grid,
+            clearances,
+            skeleton,
+            graph,
+            junctions,
+            possible_junctions,
+        })
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
@@ -144,8 +158,9 @@ impl LaserSensor {
 
 /// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
 fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
-    let motion = Motion::from_robot(robot);
-    let place = |point: [f64; 2]| motion.point(point);
+    let (sine, cosine) = robot.heading.sin_cos();
+    let [east, north] = robot.position;
+    let place = |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
     let mut rays = Rays { from: place(scan.mount().position), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan
         .readings()
@@ -157,10 +172,9 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
     let point = |bearing: f64, range: f64| place(scan.point(bearing, range));
-    let end = |index: usize| {
-        let &(bearing, range) = readings.get(index)?;
-        Some(point(bearing, range?))
-    };
+    let ends: Vec<Option<[f64; 2]>> =
+        readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
+    let end = |index: usize| *ends.get(index)?;
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
         if range > farthest {
