@@ -2,11 +2,13 @@
 
 use std::{io::Write, path::PathBuf, time::Instant};
 
+use clap::ValueEnum;
 use serde_json::json;
 use toposlam_robot::{
     evaluation::{
         RobotEquipment,
         laser::{
+            corridor_world::BuildingKind,
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
             laser_report::{LaserGroup, LaserReport},
             scanned_run::ScannedRun,
@@ -54,6 +56,7 @@ Examples:
   toposlam evaluate laser                          takes two minutes
   toposlam evaluate laser --walks 400 --runs 0 --traversals 0 --json
   toposlam evaluate laser --drift 5                odometry that drifts
+  toposlam evaluate laser --buildings long         other buildings
   toposlam evaluate laser --scanner scanner.toml   another scanner
   toposlam evaluate laser --walk 17                each visit of one walk
 
@@ -79,6 +82,9 @@ pub(super) struct EvaluateLaserArguments {
     /// Number of places that a walk passes: junctions, bends and dead ends
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     places: u16,
+    /// The buildings
+    #[arg(long, value_enum, default_value_t = Buildings::Mixed, value_name = "KIND")]
+    buildings: Buildings,
     /// Random seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
@@ -100,6 +106,38 @@ pub(super) struct EvaluateLaserArguments {
     json: bool,
 }
 
+/// A kind of random buildings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Buildings {
+    /// Corridors of 11 to 24 m that meet at right angles, or at 60 and 120 degrees, and near these
+    Mixed,
+    /// Corridors of 20 to 55 m with loops
+    Long,
+    /// Corridors of 11 to 35 m that bend by 45 degrees, and fork
+    Diagonal,
+}
+
+impl Buildings {
+    /// The name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Mixed => "mixed",
+            Self::Long => "long",
+            Self::Diagonal => "diagonal",
+        }
+    }
+}
+
+impl From<Buildings> for BuildingKind {
+    fn from(kind: Buildings) -> Self {
+        match kind {
+            Buildings::Mixed => Self::Mixed,
+            Buildings::Long => Self::Long,
+            Buildings::Diagonal => Self::Diagonal,
+        }
+    }
+}
+
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
@@ -107,6 +145,7 @@ impl EvaluateLaserArguments {
         let scanner = self.scanner.as_deref().map(input::read_scanner).transpose()?;
         let sampler = WalkSampler {
             seed: self.seed,
+            buildings: self.buildings.into(),
             places: self.places.into(),
             drift: self.drift.to_radians() / 10.0,
             scanner,
@@ -173,6 +212,7 @@ impl EvaluateLaserArguments {
         let count = counted(walks.len(), "walk");
         let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
+        writeln!(out, "  buildings: {}", self.buildings.name())?;
         writeln!(out, "  odometry drifts by up to {} degrees in 10 m\n", self.drift)?;
         let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
         let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
@@ -231,7 +271,7 @@ impl EvaluateLaserArguments {
     ) -> Result<(), CliError> {
         let line = json!({
             "walks": walks.len(), "runs": runs.len(), "traversals": traversals,
-            "places": self.places, "seed": self.seed, "drift": self.drift,
+            "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
         });
         print_line(out, "source", &line)?;
         for walk in walks {

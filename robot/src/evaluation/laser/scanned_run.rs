@@ -217,7 +217,7 @@ impl WalkSampler {
     /// Makes the whole run with this number by the folding explorer; `None` if the watch stops.
     fn run(&self, number: u64, watch: &dyn Watch) -> Option<ScannedRun> {
         let seed = self.run_seed(number);
-        let world = CorridorWorld::random(seed);
+        let world = CorridorWorld::random(self.buildings, seed);
         let smoothed = SmoothedWorld::of(&world)?;
         let params = self.scanner_of(number);
         let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
@@ -272,12 +272,12 @@ impl WalkSampler {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::corridor_world::BuildingKind, *};
 
     #[test]
     fn the_graph_of_a_building_has_its_junctions_and_dead_ends() {
         for seed in 0..200 {
-            let world = CorridorWorld::random(seed);
+            let world = CorridorWorld::random(BuildingKind::Mixed, seed);
             let smoothed = SmoothedWorld::of(&world).unwrap();
             let graph = &smoothed.graph;
             let degrees = |degree: usize| {

@@ -205,10 +205,10 @@ pub fn clockwise(from: f64, to: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::corridor_world::BuildingKind, *};
 
     fn walk(seed: u64, drift: f64) -> (CorridorWorld, LaserWalk) {
-        let world = CorridorWorld::random(seed);
+        let world = CorridorWorld::random(BuildingKind::Mixed, seed);
         let walk = LaserWalk::random(&world, 12, drift, seed);
         (world, walk)
     }
