@@ -174,6 +174,11 @@ impl Judged<'_> {
             let unseen = "arms that point back beside the robot's way are hardly seen";
             facts.push(("scanner", format!("{field:.0} degrees: {unseen}")));
         }
+        facts.extend(self.gathered.drift.map(|drift| {
+            let drift = drift.to_degrees();
+            let what = "scans are matched with the walls of earlier ones";
+            ("odometry", format!("its heading drifts by {drift:.1} degrees in 10 m: {what}"))
+        }));
         facts.extend(self.added.map(|added| ("marker", added.in_words())));
         match (&self.known, &judgement.poses) {
             (Some(known), Some(poses)) => {

@@ -43,8 +43,8 @@ use crate::cli::{
 ///
 /// A view is one scan and those before it. A visit is derived from several views, as `conform --events laser`
 /// derives it. It is right if it has the right degree and the right door. A walk is right if all of its visits
-/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it
-/// decides by the views up to there.
+/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it looks
+/// around, and decides by the views up to there.
 ///
 /// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
 /// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor

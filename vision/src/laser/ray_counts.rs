@@ -31,14 +31,15 @@ pub(super) struct RayCounts {
 }
 
 impl RayCounts {
-    /// Counts around a point, in a square of this many cells a side.
-    pub(super) fn around(point: [f64; 2], side: usize, cell: f64) -> Self {
-        // Whole cells from the origin of the frame.
-        let corner = |at: f64| ((at / cell).floor() - (side / 2) as f64) * cell;
+    /// Counts around a point, in a square of this many cells a side. The corners of cells lie `shift` cells from
+    /// the origin of the frame.
+    pub(super) fn around(point: [f64; 2], side: usize, cell: f64, shift: [f64; 2]) -> Self {
+        let half = (side / 2) as f64;
+        let corner = |axis: usize| ((point[axis] / cell).floor() - half + shift[axis]) * cell;
         Self {
             side,
             cell,
-            origin: point.map(corner),
+            origin: [0, 1].map(corner),
             hits: vec![0; side * side],
             passes: vec![0; side * side],
         }

@@ -24,7 +24,10 @@ use super::{
 pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
-    counts: Option<RayCounts>,
+    /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
+    counts: Vec<RayCounts>,
+    /// The number of views so far.
+    views: usize,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
     /// Where they were taken, in the same order.
@@ -58,6 +61,9 @@ pub struct LaserView {
 
 /// Odometry beyond this is wrong, in metres; cells near it would have no place.
 const FARTHEST: f64 = 1e7;
+/// Corners of cells, in cells from the origin. If scans are matched, successive views take them in turn: matched
+/// walls move a little, and what is seen must not depend on how they lie in the cells.
+const CORNERS: [[f64; 2]; 2] = [[0.0, 0.0], [0.5, 0.5]];
 /// The counts reach this many times as far as a window of the local map.
 const MARGIN: usize = 3;
 
@@ -69,7 +75,8 @@ impl LaserSensor {
         Self {
             params,
             matcher,
-            counts: None,
+            counts: Vec::new(),
+            views: 0,
             scans: VecDeque::new(),
             viewpoints: VecDeque::new(),
             way: 0.0,
@@ -98,7 +105,8 @@ impl LaserSensor {
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, &robot, &params), robot.position, side);
         self.viewpoints.push_back(Viewpoint::new(scan, &robot));
-        let counts = self.counts.as_ref()?;
+        let counts = self.counts.get(self.views % self.counts.len().max(1))?;
+        self.views += 1;
         let mut grid = counts.window(robot.position, side, &params);
         grid.clean(&params);
         let clearances = Clearances::new(&grid);
@@ -134,10 +142,11 @@ impl LaserSensor {
 
     /// Adds the rays of a scan, and forgets those of old ones.
     fn add(&mut self, rays: Rays, robot: [f64; 2], side: usize) {
-        let moved = self.counts.as_ref().is_none_or(|counts| !counts.covers(robot, side));
+        let covers = |counts: &RayCounts| counts.covers(robot, side);
+        let moved = self.counts.is_empty() || !self.counts.iter().all(covers);
         let forgotten = self.way - self.params.map.memory;
         while let Some((_, old)) = self.scans.front().filter(|(way, _)| *way < forgotten) {
-            if let Some(counts) = self.counts.as_mut().filter(|_| !moved) {
+            for counts in self.counts.iter_mut().filter(|_| !moved) {
                 counts.remove(old);
             }
             self.scans.pop_front();
@@ -145,13 +154,17 @@ impl LaserSensor {
         }
         self.scans.push_back((self.way, rays));
         if moved {
-            let mut counts = RayCounts::around(robot, MARGIN * side, self.params.map.cell);
-            for (_, rays) in &self.scans {
-                counts.add(rays);
-            }
-            self.counts = Some(counts);
-        } else if let (Some(counts), Some((_, rays))) = (&mut self.counts, self.scans.back()) {
-            counts.add(rays);
+            let corners =
+                if self.params.matching.rounds > 0 { &CORNERS[..] } else { &CORNERS[..1] };
+            let around = |&corner: &[f64; 2]| {
+                let cell = self.params.map.cell;
+                let mut counts = RayCounts::around(robot, MARGIN * side, cell, corner);
+                self.scans.iter().for_each(|(_, rays)| counts.add(rays));
+                counts
+            };
+            self.counts = corners.iter().map(around).collect();
+        } else if let Some((_, rays)) = self.scans.back() {
+            self.counts.iter_mut().for_each(|counts| counts.add(rays));
         }
     }
 }

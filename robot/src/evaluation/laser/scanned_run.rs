@@ -1,7 +1,7 @@
 //! A whole run by laser: a robot maps a random building by its scans alone. Corners are no vertices.
 //!
-//! At each junction it decides by the views up to there how many doors there are. A pilot drives it along the
-//! corridors, and a detector of its own reports the marker.
+//! At each junction it looks around, and decides by the views up to there how many doors there are. A pilot drives it
+//! along the corridors, and a detector of its own reports the marker.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -192,6 +192,7 @@ impl World for ScannedWorld<'_> {
         for &place in &self.smoothed.chains[dart.at()][1..] {
             self.driver.drive_near(self.world.places[place]);
         }
+        self.driver.look_around();
         self.sense()?;
         self.check_doors()
     }
@@ -231,6 +232,7 @@ impl WalkSampler {
         let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
         driver.begin_at([0, 1].map(|axis| start[axis] + share * off[axis]));
         driver.drive_near(start);
+        driver.look_around();
         let mut scanned = ScannedWorld {
             world: &world,
             smoothed: &smoothed,

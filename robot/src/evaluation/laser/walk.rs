@@ -169,6 +169,16 @@ impl WalkDriver {
         self.at = point;
     }
 
+    /// Turns around once where it is.
+    pub(super) fn look_around(&mut self) {
+        let Some(heading) = self.heading else { return };
+        let turns = (TAU / TURN).ceil();
+        for part in 1..=turns as u32 {
+            let heading = wrapped(heading + TAU * f64::from(part) / turns);
+            self.push(Pose { position: self.at, heading }, self.way);
+        }
+    }
+
     /// Adds a step, with odometry that drifts.
     fn push(&mut self, pose: Pose, way: f64) {
         let Some(&last) = self.steps.last() else {
