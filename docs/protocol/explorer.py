@@ -1,34 +1,27 @@
 # Maps every world with a directional marker. far[v][i] is the other end of dart i of vertex v.
 import json, sys
 
-def send(answer=None):
-    if answer: print(json.dumps(answer), flush=True)
-    percept = json.loads(sys.stdin.readline() or sys.exit())["percept"]
-    return percept["degree"], percept["marker"]
+def go(door):
+    print(json.dumps({"door": door}), flush=True)
+    return json.loads(sys.stdin.readline())["percept"]
 
-def at(far, v, i):  # the percept of a robot that came in by dart i of vertex v
-    return len(far[v]), None if v else -i % len(far[v])
+def home(v, i, seen, way=()):  # to the marker; or back, if the robot did not come in by dart i of v
+    if seen != {"degree": len(far[v]), "marker": None if v else -i % len(far[v])}:
+        return [go(door) for door in (0, *way, 0) if way] and None
+    return home(*far[v][0], go(-i % len(far[v])), (i, *way)) if v else (0, i, seen)
 
-def home(far, v, i, seen, way=()):  # to the marker; or back, if this is not dart i of vertex v
-    if seen != at(far, v, i):
-        return [send({"door": door}) for door in (0, *way, 0) if way] and None
-    door = -i % len(far[v])
-    return home(far, *far[v][0], send({"door": door}), (i, *way)) if v else (0, i)
-
-def explore(seen):
-    far, pose = [[None] * seen[0]], (0, 0)
+while line := sys.stdin.readline():
+    at = 0, 0, json.loads(line)["percept"]  # the robot came in by dart 0 of vertex 0, and perceives this
+    far = [[None] * at[2]["degree"]]
     while ends := [(v, i) for v in range(len(far)) for i in range(len(far[v])) if not far[v][i]]:
         way = [edge := ends.pop()]  # the edge to follow, after the way to it from the marker
         while way[0][0]: way.insert(0, far[way[0][0]][0])
-        pose = home(far, *pose, at(far, *pose))
-        for v, i in way: seen, pose = send({"door": (i - pose[1]) % len(far[v])}), far[v][i]
+        pose = home(*at)
+        for v, i in way: seen, pose = go((i - pose[1]) % len(far[v])), far[v][i]
         for end in ends:  # is the robot at a place that it knows?
-            if pose := home(far, *end, seen): break
+            if at := home(*end, seen): break
         else:
-            end = pose = len(far), 0
-            far.append([None] * seen[0])
+            end, at = (len(far), 0), (len(far), 0, seen)
+            far.append([None] * seen["degree"])
         far[edge[0]][edge[1]], far[end[0]][end[1]] = end, edge
-    return {"map": far, "pose": pose}
-
-answer = None
-while True: answer = explore(send(answer))
+    print(json.dumps({"map": far, "pose": at[:2]}), flush=True)

@@ -32,7 +32,6 @@ pub(crate) struct Compared {
     /// The start in the second world that is indistinguishable from that in the first.
     start_like: Option<u32>,
     relation: Option<Vec<(StateNumbers, StateNumbers)>>,
-    verified: bool,
     /// The shortest walk that distinguishes them: what both robots do.
     walk: Option<Vec<Py<PyAny>>>,
     percepts: Option<(Percept, Percept)>,
@@ -48,6 +47,7 @@ const MOST_STATES: usize = 1 << 26;
 struct Answer {
     start_like: Option<Dart>,
     relation: Option<Vec<(State, State)>>,
+    /// Whether the relation, or the walk, is what it should be.
     verified: bool,
     walk: Option<Walk>,
 }
@@ -77,7 +77,8 @@ pub(crate) fn compare(
         let text = format!("a world has more than {MOST_STATES} states of robot and marker");
         return Err(error(py, "SizeError", text));
     }
-    let answer = watched(py, None, |watcher| {
+    let on_signal = own.as_ref().map(OwnMarker::stopper);
+    let answer = watched(py, None, on_signal, |watcher| {
         let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
         let comparison = Comparison::new(kind, sides[0], sides[1]);
         answer(&comparison, kind, sides[1], facings, watcher)
@@ -91,6 +92,9 @@ pub(crate) fn compare(
         let text = format!("the relation has more than {MOST_PAIRS} pairs");
         return Err(error(py, "SizeError", text));
     }
+    if !answer.verified {
+        return Err(error(py, "InternalError", "the relation or the walk is not verified"));
+    }
     let same = isomorphism(graphs[0], graphs[1]);
     let numbers = |state: State| (state.pose.0, state.placed.map(|placed| placed.0));
     let relation = answer.relation.map(|pairs| {
@@ -102,7 +106,6 @@ pub(crate) fn compare(
         mirror: mirror_isomorphism(graphs[0], graphs[1]).is_some(),
         start_like: answer.start_like.map(|start| start.0),
         relation,
-        verified: answer.verified,
         percepts: answer.walk.as_ref().map(|walk| {
             let [here, there] = walk.percepts;
             (Percept(here), Percept(there))

@@ -13,12 +13,12 @@ use toposlam_model::{
     world::{GraphWorld, State},
 };
 use toposlam_robot::{
-    budget::RunBudget,
     conform::{
         CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement,
-        KnownWorld, Quirks, RunDriver, assume_marker, extract, judge, marker_at_start,
+        KnownWorld, LogHead, Quirks, RESUMED, RunDriver, assume_marker, extract, judge,
+        marker_at_start,
     },
-    log::{topic_map::TopicMap, world_hash},
+    log::topic_map::TopicMap,
     run_settings::RecordedSettings,
 };
 use toposlam_vision::{
@@ -38,8 +38,10 @@ struct Question {
     world: Option<NamedWorld>,
     start: Option<Dart>,
     marker: &'static dyn Marker,
+    /// Whether the marker is not given, but that of the log or, without a record, assumed.
+    is_assumed: bool,
     driver: RunDriver,
-    budget: RunBudget,
+    settings: RecordedSettings,
     class: Class,
     corners: bool,
     assume_marker: bool,
@@ -50,8 +52,10 @@ struct Question {
 
 /// A log that was checked.
 struct Checked {
-    gathered: ExtractedRun,
+    extracted: ExtractedRun,
     judgement: Judgement,
+    /// What a reader of the report should know about the run.
+    remarks: Vec<String>,
 }
 
 /// Checks a log. Returns what the report contains.
@@ -63,7 +67,7 @@ pub(crate) fn conform<'py>(
     world: Option<&CoreWorld>,
     marker: Option<&str>,
     driver: &str,
-    class: &str,
+    class_: &str,
     corners: bool,
     assumed: bool,
     max_edges: Option<usize>,
@@ -71,32 +75,34 @@ pub(crate) fn conform<'py>(
     max_darts: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let recorded = |text: fn(&toposlam_robot::log::messages::Run) -> &String| {
-        log.run.as_ref().map(text).filter(|text| !text.is_empty())
+    let head = LogHead(log.run.as_ref());
+    let is_assumed = marker.is_none();
+    let marker = match marker {
+        Some(name) => named_marker(py, name)?,
+        None => head.marker().map_err(|unknown| error(py, "UnknownMarkerError", unknown))?,
     };
-    let marker = match (marker, recorded(|run| &run.marker)) {
-        (Some(name), _) => named_marker(py, name)?,
-        (None, Some(name)) => named_marker(py, name)?,
-        (None, None) => &Directional,
-    };
-    let head = recorded(|run| &run.algorithm);
-    let settings = head.map_or(Ok(RecordedSettings::default()), |head| RecordedSettings::from_head(head));
+    let unknown = |cause: &dyn std::fmt::Display| error(py, "UnknownAlgorithmError", cause);
     let settings = match driver {
-        "anyone" => Ok(RecordedSettings::default()),
-        "algorithm" => settings,
-        name => name
-            .parse::<DirectionalAlgorithm>()
-            .map(|algorithm| settings.unwrap_or_default().with_algorithm(algorithm)),
+        "anyone" => RecordedSettings::default(),
+        "algorithm" => head.settings(None).map_err(|head| {
+            unknown(&format!(
+                "the algorithm `{head}` of the log is unknown; use driver=\"algorithm1\""
+            ))
+        })?,
+        name => {
+            let algorithm: DirectionalAlgorithm = name.parse().map_err(|cause| unknown(&cause))?;
+            head.settings(Some(algorithm)).map_err(|head| unknown(&head))?
+        }
     };
-    let settings = settings.map_err(|unknown| error(py, "UnknownAlgorithmError", unknown))?;
     let driver = if driver == "anyone" { RunDriver::Anyone } else { RunDriver::from(settings) };
-    let class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let class = class_.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let question = Question {
         world: world.map(|world| world.0.clone()),
         start: None,
         marker,
+        is_assumed,
         driver,
-        budget: settings.budget,
+        settings,
         class,
         corners,
         assume_marker: assumed,
@@ -104,7 +110,7 @@ pub(crate) fn conform<'py>(
         max_steps,
         max_darts: max_darts.unwrap_or(settings.dart_bound),
     };
-    let checked = watched(py, progress, |watcher| {
+    let checked = watched(py, progress, None, |watcher| {
         let checked = check(log, question, watcher);
         (checked, toposlam_model::enumerate::Watch::stop(watcher))
     })?;
@@ -132,23 +138,29 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
     let sensor = sensor(log)?;
     let marked = question.marker.name() == Directional.name();
     let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
-    let mut gathered =
+    let mut extracted =
         extract(&log.log, &log.mapping, &config, watcher).map_err(|cause| text(&cause))?;
     if question.assume_marker {
-        let place = marker_at_start(&gathered.junctions).ok_or("no junction is visited")?;
-        let events = &mut gathered.events.events;
-        assume_marker(events, &gathered.junctions, question.marker, place)
+        let place = marker_at_start(&extracted.junctions).ok_or("no junction is visited")?;
+        let events = &mut extracted.events.events;
+        assume_marker(events, &extracted.junctions, question.marker, place)
             .map_err(|cause| text(&cause))?;
     }
     if evidence == Evidence::Laser && !question.corners {
         // In a laser log bends of corridors are vertices only if that is asked for.
         question.world = question.world.as_ref().map(NamedWorld::smoothed);
     }
-    question.start = question.world.as_ref().and_then(|world| {
-        let run = log.run.as_ref()?;
-        let start = world.start_from_text(&run.start).ok()?;
-        (world_hash(&world.graph, start) == run.world_hash).then_some(start)
-    });
+    let head = LogHead(log.run.as_ref());
+    if question.is_assumed && question.driver != RunDriver::Anyone {
+        let algorithm = question.settings.method.algorithm();
+        head.check_marker(&extracted.events, algorithm).map_err(|cause| {
+            format!("{cause}; for a run without a marker add driver=\"anyone\", marker=\"none\"")
+        })?;
+    }
+    question.start = question.world.as_ref().and_then(|world| head.start(world));
+    let resumed = question.settings.is_resumed.then(|| RESUMED.to_owned());
+    let other = question.world.as_ref().and_then(|world| head.other_world(&world.graph));
+    let remarks = other.into_iter().chain(resumed).collect();
     let known = question.world.as_ref().map(|world| {
         let start = question.start.or(world.start);
         KnownWorld { graph: &world.graph, states: states(world, question.marker, start) }
@@ -162,18 +174,18 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
         world: known,
         marker: question.marker,
         driver: question.driver,
-        budget: question.budget,
+        budget: question.settings.budget,
         search,
         dart_bound: question.max_darts,
     };
     // Whoever drives may turn back between junctions. The algorithms do not.
     let events = match question.driver {
-        RunDriver::Anyone => gathered.events.without_excursions(),
-        _ => gathered.events.clone(),
+        RunDriver::Anyone => extracted.events.without_excursions(),
+        RunDriver::Method(_) => extracted.events.clone(),
     };
     let judgement =
         judge(events, &config, &Quirks::default(), watcher).map_err(|cause| text(&cause))?;
-    Ok(Checked { gathered, judgement })
+    Ok(Checked { extracted, judgement, remarks })
 }
 
 /// The possible states of the robot and its marker at the start.
@@ -200,10 +212,11 @@ fn sensor(log: &LogReader) -> Result<Option<Sensor>, String> {
 
 /// The fields of the report.
 fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
-    let Checked { gathered, judgement } = checked;
+    let Checked { extracted, judgement, remarks } = checked;
     let fields = PyDict::new(py);
+    fields.set_item("remarks", remarks)?;
     fields.set_item("verdict", judgement.verdict().name())?;
-    let evidence = match gathered.evidence {
+    let evidence = match extracted.evidence {
         Evidence::Recorded => "recorded",
         Evidence::Scenes => "scenes",
         Evidence::Pictures => "pictures",
@@ -236,14 +249,6 @@ fn report<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict
         fields.set_item("smallest", Py::new(py, CoreWorld(world))?)?;
         fields.set_item("is_least", limit.is_none())?;
     }
-    fields.set_item(
-        "junctions",
-        gathered
-            .junctions
-            .iter()
-            .map(|junction| (junction.event, junction.centre, junction.doors.clone()))
-            .collect::<Vec<_>>(),
-    )?;
     Ok(fields)
 }
 

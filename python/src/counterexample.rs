@@ -42,16 +42,16 @@ impl Watch for OwnWatch<'_> {
 pub(crate) fn counterexample(
     py: Python<'_>,
     marker: &Bound<'_, PyAny>,
-    class: &str,
+    class_: &str,
     edges: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
-    let class: Class = class.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
+    let class: Class = class_.parse().map_err(|unknown| error(py, "UnknownClassError", unknown))?;
     let size = |cause| error(py, "SizeError", cause);
     let findings = if let Ok(name) = marker.extract::<String>() {
         let kind = named_marker(py, &name)?;
         let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
-        watched(py, progress, |watcher| search.run(watcher))?
+        watched(py, progress, None, |watcher| search.run(watcher))?
     } else {
         let own = OwnMarker::new(marker.clone().unbind());
         let kind: &dyn Marker = &own;
@@ -59,7 +59,7 @@ pub(crate) fn counterexample(
         // The function is called by one thread at a time, and always in the same order.
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|cause| error(py, "InternalError", cause))?;
-        let findings = watched(py, progress, |watcher| {
+        let findings = watched(py, progress, Some(own.stopper()), |watcher| {
             pool.install(|| search.run(&OwnWatch { watcher, marker: &own }))
         })?;
         if let Some(failure) = own.failure() {

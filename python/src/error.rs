@@ -1,6 +1,9 @@
-//! Exceptions of the Python half, raised from here.
+//! Exceptions of the Python modules, raised from here.
 
-use std::fmt::Display;
+use std::{
+    fmt::Display,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
 
 use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*};
 
@@ -14,6 +17,17 @@ pub(crate) fn error(py: Python<'_>, class: &str, message: impl Display) -> PyErr
         Ok(exception) => PyErr::from_value(exception),
         Err(error) => error,
     }
+}
+
+/// A bug in this package.
+pub(crate) fn internal(py: Python<'_>) -> PyErr {
+    let cause = "this is a bug in toposlam; please report it, with what you called";
+    error(py, "InternalError", cause)
+}
+
+/// Does short work; a panic becomes an `InternalError`.
+pub(crate) fn guarded<R>(py: Python<'_>, work: impl FnOnce() -> PyResult<R>) -> PyResult<R> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(internal(py)))
 }
 
 /// Ctrl-C, during work without the interpreter.

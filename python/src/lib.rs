@@ -1,5 +1,5 @@
-//! The Rust half of the Python package `toposlam`. `toposlam/_core.pyi` describes what is in it. The
-//! classes that people use are in the Python half.
+//! The extension module of the Python package `toposlam`. `toposlam/_core.pyi` describes what is in it. The
+//! classes that people use are in its Python modules.
 
 mod comparison;
 mod conformance;
@@ -17,6 +17,8 @@ mod world;
 /// The module `toposlam._core`.
 #[pyo3::pymodule]
 mod _core {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::comparison::compare;
     #[pymodule_export]
@@ -34,5 +36,13 @@ mod _core {
     #[pymodule_export]
     use super::starts::{Start, count_starts, visit_starts};
     #[pymodule_export]
-    use super::world::CoreWorld;
+    use super::world::{CoreWorld, is_name};
+
+    /// No panic prints a text: it becomes an `InternalError`.
+    #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "PyO3 asks for a result")]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        std::panic::set_hook(Box::new(|_| {}));
+        Ok(())
+    }
 }

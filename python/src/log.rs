@@ -75,7 +75,7 @@ impl LogReader {
         let failed = |cause: &dyn std::fmt::Display| {
             error(py, "LogError", format!("{}: {cause}", path.display()))
         };
-        let opened = watched(py, None, |_| {
+        let opened = watched(py, None, None, |_| {
             let log = Log::open(&path)?;
             let mapping = TopicMap::unambiguous(&log);
             let run = head(&log, &mapping)?;
@@ -144,7 +144,7 @@ impl LogReader {
         py: Python<'py>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let read = watched(py, progress, |watcher| self.read(watcher))?;
+        let read = watched(py, progress, None, |watcher| self.read(watcher))?;
         let tables = match read {
             Ok(Some(tables)) => tables,
             Ok(None) => return Err(interrupted()),
@@ -306,16 +306,21 @@ impl Tables {
 /// What the scans of a laser log hit, and the robot's way, as an SVG document.
 #[pyfunction]
 pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> PyResult<String> {
-    let drawn = watched(py, None, |_| {
+    let drawn = watched(py, None, None, |watcher| {
         let bound = reader.mapping.only(&[Role::Scan, Role::Odometry]).bind(&reader.log);
         let mut picture = LaserRunPicture { title: title.to_owned(), ..LaserRunPicture::default() };
         for entry in reader.log.entries(&bound.map_err(|cause| cause.to_string())?) {
+            if watcher.stop() {
+                return Ok(None);
+            }
             let entry = entry.map_err(|cause| cause.to_string())?;
             add_scan(&mut picture, entry);
         }
-        Ok::<_, String>(laser_run_svg(&picture))
+        Ok::<_, String>(Some(laser_run_svg(&picture)))
     })?;
-    drawn.map_err(|cause| error(py, "LogError", format!("{}: {cause}", reader.path.display())))
+    let drawn = drawn
+        .map_err(|cause| error(py, "LogError", format!("{}: {cause}", reader.path.display())))?;
+    drawn.ok_or_else(interrupted)
 }
 
 fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {

@@ -12,7 +12,8 @@ use toposlam_model::{
 /// A marker whose sightings are computed in Python, once for a graph. An exception is kept; from then on nothing
 /// is sighted.
 pub(crate) struct OwnMarker {
-    /// From the doors of a graph to a table: for each facing dart, the number of the sighting at each pose.
+    /// From the doors of a graph to a table: for each facing dart, the number of the sighting at each pose. Its
+    /// method `stop` ends a call.
     sightings: Py<PyAny>,
     last: Mutex<Option<Sighted>>,
     failed: Mutex<Option<PyErr>>,
@@ -31,6 +32,11 @@ impl OwnMarker {
     /// The exception of the function, if it raised one.
     pub(crate) fn failure(&self) -> Option<PyErr> {
         self.failed.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Ends a call of the function, in its thread.
+    pub(crate) fn stopper(&self) -> &Py<PyAny> {
+        &self.sightings
     }
 
     pub(crate) fn has_failed(&self) -> bool {

@@ -28,8 +28,8 @@ impl Percept {
             Sighting::Second => "second",
             Sighting::Both => "both",
             Sighting::Passed => "passed",
-            Sighting::PassedAlong => "passed-along",
-            Sighting::PassedAgainst => "passed-against",
+            Sighting::PassedAlong => "along",
+            Sighting::PassedAgainst => "against",
         };
         word.into_py_any(py).map(Some)
     }

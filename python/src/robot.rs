@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use toposlam_model::{
+    check::determines_world,
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
     percept::{Door, Percept as ModelPercept},
@@ -11,7 +12,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    error::error,
+    error::{error, guarded},
     percept::Percept,
     world::{CoreWorld, named_marker},
 };
@@ -21,11 +22,16 @@ use crate::{
 pub(crate) struct Robot {
     graph: Arc<EmbeddedGraph>,
     marker: &'static dyn Marker,
+    facing: Dart,
     state: State,
     sensed: ModelPercept,
-    bound: u64,
+    /// The most moves, pick-ups and drops.
+    bound: usize,
     moves: u64,
     actions: Vec<Action>,
+    /// The first action that was not possible. In a check it ends the run.
+    refusal: Option<PyErr>,
+    ends_at_refusal: bool,
 }
 
 impl Robot {
@@ -33,11 +39,37 @@ impl Robot {
         graph: Arc<EmbeddedGraph>,
         marker: &'static dyn Marker,
         facing: Dart,
-        bound: u64,
+        bound: usize,
     ) -> Self {
         let world = GraphWorld::with_marker(&graph, marker, facing);
         let (state, sensed) = (world.state(), world.sensed());
-        Self { graph, marker, state, sensed, bound, moves: 0, actions: Vec::new() }
+        Self {
+            graph,
+            marker,
+            facing,
+            state,
+            sensed,
+            bound,
+            moves: 0,
+            actions: Vec::new(),
+            refusal: None,
+            ends_at_refusal: false,
+        }
+    }
+
+    /// A robot whose run ends with the first action that is not possible, whatever the explorer does then.
+    pub(crate) fn ending_at_refusal(self) -> Self {
+        Self { ends_at_refusal: true, ..self }
+    }
+
+    /// Whether the walk so far determines the world; `None` if that is not known.
+    pub(crate) fn determines_world(&self) -> Option<bool> {
+        let door = |action: &Action| match action {
+            Action::Take(door) => Some(*door),
+            Action::PickUp | Action::Drop => None,
+        };
+        let doors: Vec<Door> = self.actions.iter().filter_map(door).collect();
+        determines_world((&self.graph, self.facing), self.marker, &doors)
     }
 
     /// The robot's pose in the world.
@@ -45,7 +77,27 @@ impl Robot {
         self.state.pose
     }
 
+    /// Does something, or keeps the exception. After the end of its run a robot does nothing.
+    fn attempt<R>(
+        &mut self,
+        py: Python<'_>,
+        act: impl FnOnce(&mut Self) -> PyResult<R>,
+    ) -> PyResult<R> {
+        if let Some(refusal) = self.refusal.as_ref().filter(|_| self.ends_at_refusal) {
+            return Err(refusal.clone_ref(py));
+        }
+        let done = guarded(py, || act(self));
+        if let Err(refusal) = &done {
+            self.refusal.get_or_insert_with(|| refusal.clone_ref(py));
+        }
+        done
+    }
+
     fn act(&mut self, py: Python<'_>, action: Action) -> PyResult<()> {
+        if self.actions.len() >= self.bound {
+            let refused = Refused::OutOfMoves { bound: self.bound as u64 };
+            return Err(error(py, class_of(&refused), refused));
+        }
         // `with_marker` places the marker; the state is the robot's own.
         let mut world =
             GraphWorld::with_marker(&self.graph, self.marker, self.state.pose).at(self.state);
@@ -76,7 +128,7 @@ impl Robot {
         world: &CoreWorld,
         facing: u32,
         marker: &str,
-        max_moves: u64,
+        max_moves: usize,
     ) -> PyResult<Self> {
         let facing = world.dart(py, facing)?;
         let marker = named_marker(py, marker)?;
@@ -101,8 +153,36 @@ impl Robot {
         crate::comparison::actions(py, &self.actions)
     }
 
+    /// The exception of the first action that was not possible.
+    #[getter]
+    fn refusal(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        self.refusal.as_ref().map(|refusal| refusal.clone_ref(py).into_value(py).into_any())
+    }
+
     /// Leaves by a door, and returns what the robot senses behind it.
     fn go(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<Percept> {
+        self.attempt(py, |robot| robot.take(py, door))
+    }
+
+    /// Picks the marker up here, to carry it.
+    fn pick_up(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.attempt(py, |robot| robot.act(py, Action::PickUp))
+    }
+
+    /// Drops the marker here.
+    fn drop(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.attempt(py, |robot| robot.act(py, Action::Drop))
+    }
+
+    fn __repr__(&self) -> String {
+        let (moves, sensed) = (self.moves, self.sensed);
+        format!("<Robot after {moves} move{}: {sensed}>", if moves == 1 { "" } else { "s" })
+    }
+}
+
+impl Robot {
+    /// Leaves by a door, which may be any value.
+    fn take(&mut self, py: Python<'_>, door: &Bound<'_, PyAny>) -> PyResult<Percept> {
         let degree = self.sensed.degree;
         let number: i128 = door.extract().map_err(|_| {
             let kind = door.get_type();
@@ -113,30 +193,11 @@ impl Robot {
                 format!("a door is a number from 0 to {}, not {text}", degree - 1),
             )
         })?;
-        if self.moves >= self.bound {
-            let refused = Refused::OutOfMoves { bound: self.bound };
-            return Err(error(py, class_of(&refused), refused));
-        }
         let Some(door) = u32::try_from(number).ok().filter(|&door| door < degree) else {
             let text = format!("door {number} was taken at a vertex with {degree} doors");
             return Err(error(py, "NoSuchDoorError", text));
         };
         self.act(py, Action::Take(Door(door)))?;
         Ok(Percept(self.sensed))
-    }
-
-    /// Picks the marker up here, to carry it.
-    fn pick_up(&mut self, py: Python<'_>) -> PyResult<()> {
-        self.act(py, Action::PickUp)
-    }
-
-    /// Drops the marker here.
-    fn drop(&mut self, py: Python<'_>) -> PyResult<()> {
-        self.act(py, Action::Drop)
-    }
-
-    fn __repr__(&self) -> String {
-        let (moves, sensed) = (self.moves, self.sensed);
-        format!("<Robot after {moves} move{}: {sensed}>", if moves == 1 { "" } else { "s" })
     }
 }

@@ -13,7 +13,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    error::{error, interrupted},
+    error::{error, guarded, interrupted},
     robot::Robot,
     watched::watched,
     world::{CoreWorld, graph_of, named_marker},
@@ -56,14 +56,15 @@ impl Start {
         CoreWorld(NamedWorld::discovered(name, "", &self.graph, FACING))
     }
 
-    /// A robot at the start.
-    fn robot(&self, py: Python<'_>, marker: &str, max_moves: u64) -> PyResult<Robot> {
+    /// A robot at the start. Its run ends with the first action that is not possible.
+    fn robot(&self, py: Python<'_>, marker: &str, max_moves: usize) -> PyResult<Robot> {
         let marker = named_marker(py, marker)?;
-        Ok(Robot::new(self.graph.clone(), marker, FACING, max_moves))
+        Ok(Robot::new(self.graph.clone(), marker, FACING, max_moves).ending_at_refusal())
     }
 
-    /// Judges a map: doors, the facing dart and the robot's pose in it. Returns None if it is right; the pose
-    /// that is right if only the pose is wrong; or else what is wrong.
+    /// Judges a map: doors, the facing dart and the robot's pose in it. Returns None if it is right and the
+    /// walk determines the world; or else what is wrong: "wrong-map", "wrong-pose" or "guessed", in words, and
+    /// the pose that is right if only the pose is wrong.
     fn judge(
         &self,
         py: Python<'_>,
@@ -71,7 +72,22 @@ impl Start {
         doors: (Vec<u32>, Vec<u32>),
         facing: u32,
         pose: u32,
-    ) -> PyResult<Option<(String, Option<u32>)>> {
+    ) -> PyResult<Option<Wrong>> {
+        guarded(py, || self.judged(py, robot, doors, (facing, pose)))
+    }
+}
+
+/// What is wrong: its name, in words, and the pose that is right if only the pose is wrong.
+type Wrong = (&'static str, String, Option<u32>);
+
+impl Start {
+    fn judged(
+        &self,
+        py: Python<'_>,
+        robot: &Robot,
+        doors: (Vec<u32>, Vec<u32>),
+        (facing, pose): (u32, u32),
+    ) -> PyResult<Option<Wrong>> {
         let failed = |text: &dyn std::fmt::Display| error(py, "AnswerError", text);
         let map = graph_of(&doors.0, &doors.1).map_err(|fault| failed(&fault))?;
         let explored = ExploredMap {
@@ -82,11 +98,16 @@ impl Start {
         let mut candidate = Candidate::default();
         let truly = robot.pose();
         match judge_map(&explored, (&self.graph, FACING), truly, &mut candidate) {
+            Ok(_) if robot.determines_world() == Some(false) => {
+                let text = "it guessed: the map is right, but there is another world in which it makes the \
+                            same walk, and returns the same map";
+                Ok(Some(("guessed", text.to_owned(), None)))
+            }
             Ok(_) => Ok(None),
             Err(flaw @ Flaw::WrongPose { .. }) => {
                 let bijection = Bijection::of_starts((&map, Dart(facing)), (&self.graph, FACING));
                 let right = map.darts().find(|&dart| bijection.image(dart) == Some(truly));
-                Ok(Some((flaw.to_string(), right.map(|dart| dart.0))))
+                Ok(Some(("wrong-pose", flaw.to_string(), right.map(|dart| dart.0))))
             }
             Err(Flaw::WrongMap) => {
                 let text = match isomorphism(&map, &self.graph) {
@@ -95,7 +116,7 @@ impl Start {
                     }
                     Err(difference) => format!("the map is not the world: {difference}"),
                 };
-                Ok(Some((text, None)))
+                Ok(Some(("wrong-map", text, None)))
             }
             Err(flaw) => Err(failed(&flaw)),
         }
@@ -111,7 +132,7 @@ fn starts(py: Python<'_>, class: &str, edges: usize) -> PyResult<Enumeration> {
 #[pyfunction]
 pub(crate) fn visit_starts(
     py: Python<'_>,
-    class: &str,
+    class_: &str,
     edges: usize,
     index: u64,
     of: u64,
@@ -122,7 +143,7 @@ pub(crate) fn visit_starts(
     }
     let mut number = 0;
     let mut failed = None;
-    let _ = starts(py, class, edges)?.for_each(&mut |found| {
+    let _ = starts(py, class_, edges)?.for_each(&mut |found| {
         let mine = number % of == index;
         let visited = if mine {
             let start = Start { graph: Arc::new(found.graph.clone()), number };
@@ -146,9 +167,9 @@ pub(crate) fn visit_starts(
 
 /// The number of starts.
 #[pyfunction]
-pub(crate) fn count_starts(py: Python<'_>, class: &str, edges: usize) -> PyResult<u64> {
-    let starts = starts(py, class, edges)?;
-    let count = watched(py, None, |watcher| {
+pub(crate) fn count_starts(py: Python<'_>, class_: &str, edges: usize) -> PyResult<u64> {
+    let starts = starts(py, class_, edges)?;
+    let count = watched(py, None, None, |watcher| {
         let mut count = 0;
         let end = starts.for_each(&mut |_| {
             count += 1;

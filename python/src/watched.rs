@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use toposlam_model::enumerate::Watch;
 use toposlam_robot::conform::SensingProgress;
 
-use crate::error::error;
+use crate::error::internal;
 
 /// Counts the cases that are done, and stops the work.
 #[derive(Default)]
@@ -56,10 +56,12 @@ impl SensingProgress for Watcher {
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Does long work. `progress` is called with the number of cases since the last call. After a signal the work
-/// is stopped, and the exception of the signal is raised.
+/// is stopped, and the exception of the signal is raised. If the work calls functions in Python, the method
+/// `stop` of `calls` ends such a call.
 pub(crate) fn watched<R: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
+    calls: Option<&Py<PyAny>>,
     work: impl FnOnce(&Watcher) -> R + Send,
 ) -> PyResult<R> {
     let watcher = Watcher::default();
@@ -89,6 +91,13 @@ pub(crate) fn watched<R: Send>(
                 });
                 if let Err(signal) = signalled {
                     watcher.stop_work();
+                    // A call may catch the exception that ends it, so it is raised until the work has ended.
+                    while matches!(end.recv_timeout(PATIENCE), Err(mpsc::RecvTimeoutError::Timeout))
+                    {
+                        if let Some(calls) = calls {
+                            Python::attach(|py| calls.call_method0(py, "stop").map(drop))?;
+                        }
+                    }
                     return Err(signal);
                 }
                 match ended {
@@ -99,6 +108,5 @@ pub(crate) fn watched<R: Send>(
             }
         })
     })?;
-    let cause = "this is a bug in toposlam; please report it, with what you called";
-    result.ok_or_else(|| error(py, "InternalError", cause))
+    result.ok_or_else(|| internal(py))
 }

@@ -1,6 +1,6 @@
 //! Worlds with names, for Python.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use pyo3::{prelude::*, types::PyBytes};
 use toposlam::picture::{Placement, WorldPicture, png, svg};
@@ -16,7 +16,7 @@ use toposlam_model::{
     marker::{self, Marker},
 };
 
-use crate::error::error;
+use crate::error::{error, guarded};
 
 /// A world with names.
 #[pyclass(frozen, name = "World", module = "toposlam._core")]
@@ -35,10 +35,10 @@ impl CoreWorld {
         let failed = |class, cause: &dyn std::fmt::Display| {
             error(py, class, format!("{}: {cause}", path.display()))
         };
-        let worlds = match plantri::PlantriCode::of_file(&path, bytes) {
+        let worlds = guarded(py, || match plantri::PlantriCode::of_file(&path, bytes) {
             None => {
                 let read = world_file::read(bytes);
-                vec![read.map_err(|error| failed(file_error(&error.kind), &error))?]
+                Ok(vec![read.map_err(|error| failed(file_error(&error.kind), &error))?])
             }
             Some(code) => {
                 let worlds = if bytes.starts_with(b">>") {
@@ -50,9 +50,9 @@ impl CoreWorld {
                 let numbered = |graph| NamedWorld::numbered("", "", graph, None);
                 graphs
                     .map(|graphs| graphs.into_iter().map(numbered).collect())
-                    .map_err(|error| failed("WorldFileError", &error))?
+                    .map_err(|error| failed("WorldFileError", &error))
             }
-        };
+        })?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let named = |mut world: NamedWorld| {
             if world.name.is_empty() {
@@ -65,30 +65,25 @@ impl CoreWorld {
 
     /// A world from its doors. `opposite` is numbered door by door, vertex by vertex.
     #[staticmethod]
-    #[pyo3(signature = (degrees, opposite, vertex_names, edge_names, name, about, start))]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+    #[pyo3(signature = (degrees, opposite, vertex_names, name, about, start))]
     fn from_doors(
         py: Python<'_>,
         degrees: Vec<u32>,
         opposite: Vec<u32>,
         vertex_names: Vec<String>,
-        edge_names: Option<Vec<String>>,
         name: String,
         about: String,
         start: Option<u32>,
     ) -> PyResult<Self> {
-        let graph = graph_of(&degrees, &opposite)
+        let graph = guarded(py, || Ok(graph_of(&degrees, &opposite)))?
             .map_err(|fault| graph_error(py, fault, &degrees, &vertex_names))?;
         if vertex_names.len() != graph.vertex_count()
-            || edge_names.as_ref().is_some_and(|names| names.len() != graph.dart_count())
             || start.is_some_and(|start| start as usize >= graph.dart_count())
         {
             return Err(error(py, "WorldError", "the names and the start do not fit the doors"));
         }
-        let start = start.map(Dart);
-        let world = NamedWorld::numbered(&name, &about, graph, start);
-        let edge_names = edge_names.or(world.edge_names);
-        Ok(Self(NamedWorld { vertex_names, edge_names, ..world }))
+        let world = NamedWorld::numbered(&name, &about, graph, start.map(Dart));
+        Ok(Self(NamedWorld { vertex_names, ..world }))
     }
 
     /// A world from two permutations, and the number of each dart in it.
@@ -98,8 +93,8 @@ impl CoreWorld {
         opposite: Vec<u32>,
         clockwise: Vec<u32>,
     ) -> PyResult<(Self, Vec<u32>)> {
-        let (graph, number) = EmbeddedGraph::from_permutations(&opposite, &clockwise)
-            .map_err(|fault| error(py, fault_class(&fault), fault))?;
+        let made = guarded(py, || Ok(EmbeddedGraph::from_permutations(&opposite, &clockwise)))?;
+        let (graph, number) = made.map_err(|fault| error(py, fault_class(&fault), fault))?;
         let world = NamedWorld::numbered("", "", graph, None);
         Ok((Self(world), number.into_iter().map(|dart| dart.0).collect()))
     }
@@ -134,16 +129,6 @@ impl CoreWorld {
     }
 
     #[getter]
-    fn edge_names(&self) -> Option<Vec<String>> {
-        self.0.edge_names.clone()
-    }
-
-    #[getter]
-    fn positions(&self) -> Option<Vec<[f64; 2]>> {
-        self.0.positions.clone()
-    }
-
-    #[getter]
     fn start(&self) -> Option<u32> {
         self.0.start.map(|dart| dart.0)
     }
@@ -163,11 +148,6 @@ impl CoreWorld {
     #[getter]
     fn genus(&self) -> usize {
         self.0.graph.genus()
-    }
-
-    #[getter]
-    fn face_count(&self) -> usize {
-        self.0.graph.face_count()
     }
 
     #[getter]
@@ -225,13 +205,13 @@ impl CoreWorld {
         let placement = Placement::from(&self.0);
         let picture =
             WorldPicture { title, caption, marker: kind, placement, ..WorldPicture::from(&self.0) };
-        Ok(py.detach(|| svg(&picture)))
+        guarded(py, || Ok(py.detach(|| svg(&picture))))
     }
 
     /// An SVG document as a PNG image.
     #[staticmethod]
     fn png<'py>(py: Python<'py>, document: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| png(document));
+        let bytes = guarded(py, || Ok(py.detach(|| png(document))))?;
         bytes
             .map(|bytes| PyBytes::new(py, &bytes))
             .map_err(|cause| error(py, "PictureError", cause))
@@ -246,6 +226,12 @@ impl CoreWorld {
         }
         Err(error(py, "UnknownStartError", format!("the world has no dart {dart}")))
     }
+}
+
+/// Whether a text can be the name of a vertex in a world file.
+#[pyfunction]
+pub(crate) fn is_name(text: &str) -> bool {
+    world_file::is_name(text)
 }
 
 /// The kind of marker with this name.

@@ -1,9 +1,15 @@
 """Explorers, checked on every start."""
 
 import contextlib
+import dataclasses
+import math
+import multiprocessing
+import os
 import pickle
 import random
 import re
+import signal
+import threading
 import time
 
 import pytest
@@ -13,11 +19,6 @@ import toposlam as ts
 from toposlam import errors
 
 
-def by_algorithm(robot):
-    """Cannot be: an explorer gets a robot and nothing else."""
-    raise NotImplementedError("no")
-
-
 def test_a_depth_first_explorer_maps_every_start():
     """The numbers of starts are those of `toposlam check`."""
     report = ts.check(depth_first, edges=range(1, 6))
@@ -25,7 +26,6 @@ def test_a_depth_first_explorer_maps_every_start():
     assert (report.verdict, report.failed, report.failures) == ("holds", 0, ())
     # Certificate totals of all starts.
     assert [size.certificate for size in report.sizes] == [2, 22, 266, 3625, 55411]
-    assert report.below_certificate == 0
     assert report.vs_certificate > 1
 
 
@@ -91,6 +91,15 @@ def test_shards_together_are_the_whole_check_in_any_order():
         ts.merge([right[0], right[0]])
     with pytest.raises(errors.ShardError, match="one check"):
         ts.merge([right[0], shards[1]])
+    other_limit = ts.check_shard("3/3", depth_first, edges=3, max_moves=70)
+    with pytest.raises(errors.ShardError, match="one check"):
+        ts.merge([*right[:2], other_limit])
+    other_time = ts.check_shard("3/3", depth_first, edges=3, seconds=3)
+    with pytest.raises(errors.ShardError, match="one check"):
+        ts.merge([*right[:2], other_time])
+    other_version = dataclasses.replace(right[2], version="0.0.1")
+    with pytest.raises(errors.ShardError, match="one check"):
+        ts.merge([*right[:2], other_version])
     with pytest.raises(errors.ShardError):
         ts.merge([])
 
@@ -115,16 +124,148 @@ def test_the_number_of_failures_that_are_kept():
     assert report.failed == together.failed > 3
 
 
-def test_a_guess_is_below_the_certificate():
+def test_a_guess_fails():
     def guess(robot):
         return {0: [(1, 0)], 1: [(0, 0)]}, (0, 0)
 
     report = ts.check(guess, edges=[1])
-    assert (report.mapped, report.starts, report.below_certificate) == (1, 2, 1)
+    assert (report.verdict, report.mapped, report.failed) == ("violated", 0, 2)
+    kinds = {type(failure.error) for failure in report.failures}
+    assert kinds == {errors.GuessedError, errors.WrongMapError}
+    with pytest.raises(errors.GuessedError, match="another world in which it makes the same walk"):
+        ts.explore(ts.World({0: [1], 1: [0]}), algorithm=guess)
+    # Without a marker it is one, too; with an undirected marker that is not known.
+    edge = {"edges": 1, "cls": "simple"}
+    assert type(ts.check(guess, marker="none", **edge).failures[0].error) is errors.GuessedError
+    assert ts.check(guess, marker="undirected", **edge).verdict == "holds"
 
 
-def looks_at(robot):
-    return robot.percept.marker
+def test_a_guess_may_be_longer_than_the_certificate():
+    """From an end of a chain to its middle and back, three times: the other end is never seen."""
+
+    def back_and_forth(robot):
+        for _ in range(6):
+            robot.go(0)
+        return {0: [1], 1: [0, 2], 2: [1]}, (0, 0)
+
+    chain = ts.World({0: [1], 1: [0, 2], 2: [1]})
+    assert len(chain.certificate()) == 2
+    with pytest.raises(errors.GuessedError):
+        ts.explore(chain, algorithm=back_and_forth)
+
+
+def catches_a_limit(robot):
+    try:
+        while True:
+            robot.go(0)
+    except Exception:
+        return {0: [1], 1: [0]}, (0, 0)
+
+
+def raises_after_a_limit(robot):
+    try:
+        while True:
+            robot.go(0)
+    except errors.OutOfMovesError:
+        raise KeyError("gave up") from None
+
+
+def yields_after_a_limit(robot):
+    while True:
+        with contextlib.suppress(BaseException):
+            yield 0
+
+
+@pytest.mark.parametrize("explorer", [catches_a_limit, raises_after_a_limit, yields_after_a_limit])
+def test_a_limit_is_one_even_if_the_explorer_catches_it(explorer):
+    report = ts.check(explorer, edges=1, cls="simple", max_moves=20)
+    assert (report.verdict, report.failed, report.unknown) == ("not known", 0, 1)
+    error = report.limits[0].error
+    assert (type(error), error.moves) == (errors.OutOfMovesError, 20)
+    assert "not known on" in report.limits[0].draw().svg
+
+
+def test_a_door_that_does_not_exist_ends_the_run():
+    def careful(robot):
+        with contextlib.suppress(Exception):
+            robot.go(7)
+        with contextlib.suppress(Exception):
+            robot.go(0)
+        return {0: [1], 1: [0]}, (1, 0)
+
+    error = ts.check(careful, edges=1, cls="simple").failures[0].error
+    assert (type(error), error.moves) == (errors.NoSuchDoorError, 0)
+    # By hand, a robot goes on.
+    robot = ts.World({0: [1], 1: [0]}).robot()
+    with pytest.raises(errors.NoSuchDoorError):
+        robot.go(7)
+    assert robot.go(0).degree == 1
+
+
+def test_pick_ups_and_drops_are_limited_as_moves_are():
+    def plays(robot):
+        while True:
+            robot.pick_up()
+            robot.drop()
+
+    report = ts.check(plays, edges=1, cls="simple", marker="movable", max_moves=9)
+    assert (report.verdict, len(report.limits[0].actions)) == ("not known", 9)
+
+
+def test_an_explorer_cannot_raise_a_limit_of_its_own():
+    def claims(robot):
+        raise errors.OutOfTimeError("I say so")
+
+    assert type(ts.check(claims, edges=1).failures[0].error) is errors.RaisedError
+
+
+@pytest.mark.parametrize("exception", [SystemExit, GeneratorExit])
+def test_an_explorer_that_ends_the_program_fails(exception):
+    def quits(robot):
+        raise exception("done")
+
+    error = ts.check(quits, edges=1).failures[0].error
+    assert type(error) is errors.RaisedError and exception.__name__ in error.message
+
+
+def quits_python(robot):
+    import os
+
+    os._exit(3)
+
+
+def test_a_worker_that_ends_has_an_error_of_its_own():
+    with pytest.raises(errors.WorkerLostError, match="a worker process"):
+        ts.check(quits_python, edges=1, processes=2)
+
+
+def rests(robot):
+    time.sleep(60)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Ctrl-C is a signal on POSIX")
+def test_ctrl_c_does_not_wait_for_running_shards():
+    threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        ts.check(rests, edges=1, processes=2, seconds=math.inf)
+    for worker in multiprocessing.active_children():
+        worker.join(10)
+    assert time.monotonic() - begun < 20
+
+
+def test_the_marker_of_a_failure_is_kept():
+    def counts(robot):
+        return {0: [1], 1: [0]}, (0, robot.percept.marker)
+
+    failure = ts.check(counts, edges=1, cls="simple", marker="undirected").failures[0]
+    assert failure.marker == "undirected"
+    again = {"algorithm": counts, "marker": failure.marker}
+    with pytest.raises(type(failure.error), match="no door 1"):
+        ts.explore(failure.world, **again)
+    assert failure.draw().svg != failure.world.draw(marker="directional").svg
+    directional = dataclasses.replace(failure, marker="directional")
+    assert failure.draw().svg != directional.draw().svg
 
 
 EXPLORERS = [
@@ -211,11 +352,11 @@ def test_an_explorer_that_never_ends():
     assert (report.verdict, report.failed, report.unknown) == ("not known", 0, report.starts)
     error = report.limits[0].error
     assert type(error) is errors.OutOfMovesError and error.moves == 50
-    for explorer in (swallows, thinks):
+    for explorer, kind in [(swallows, errors.OutOfMovesError), (thinks, errors.OutOfTimeError)]:
         begun = time.monotonic()
         report = ts.check(explorer, edges=1, cls="simple", seconds=0.3)
         assert report.verdict == "not known" and not report.failures
-        assert type(report.limits[0].error) is errors.OutOfTimeError
+        assert type(report.limits[0].error) is kind
         assert time.monotonic() - begun < 5
     error = ts.check(recurses, edges=1).failures[0].error
     assert type(error) is errors.RaisedError and "RecursionError" in error.message
@@ -258,6 +399,9 @@ def test_ctrl_c_in_an_explorer_ends_the_check():
         ({"max_moves": 0}, errors.SizeError),
         ({"max_failures": -1}, errors.SizeError),
         ({"seconds": 0}, errors.SizeError),
+        ({"seconds": "10"}, errors.SizeError),
+        ({"seconds": math.nan}, errors.SizeError),
+        ({"max_moves": 10**30}, errors.SizeError),
         ({"processes": 0}, errors.SizeError),
         ({"processes": 2, "explorer": lambda robot: None}, errors.NotPicklableError),
     ],
@@ -292,6 +436,41 @@ def test_the_algorithms_of_the_package():
         ts.explore(world, algorithm=3)
     with pytest.raises(errors.SizeError):
         ts.explore(world, max_darts="many")
+    assert ts.explore(world, algorithm="movable").certificate is None
+
+
+@pytest.mark.parametrize(
+    "algorithm, options, kind",
+    [
+        ("folding", {"max_moves": 5}, errors.UnusedOptionError),
+        ("folding", {"seconds": 1}, errors.UnusedOptionError),
+        ("folding", {"marker": "none"}, errors.UnusedOptionError),
+        (depth_first, {"max_darts": 3}, errors.UnusedOptionError),
+        (depth_first, {"max_moves": -1}, errors.SizeError),
+        (depth_first, {"seconds": 0}, errors.SizeError),
+        (depth_first, {"seconds": "10"}, errors.SizeError),
+        (depth_first, {"marker": "chalk"}, errors.UnknownMarkerError),
+    ],
+)
+def test_wrong_options_of_a_run(algorithm, options, kind):
+    with pytest.raises(kind):
+        ts.explore(ts.World.load("worlds/shape-6.toml"), algorithm, **options)
+
+
+def test_what_is_not_a_world():
+    world = ts.World.load("worlds/shape-6.toml")
+    for wrong in [
+        lambda: ts.explore("worlds/figure-1a.toml"),
+        lambda: ts.compare("a", "b"),
+        lambda: ts.compare(world, None),
+        lambda: ts.conform("log", {0: [1], 1: [0]}),
+        lambda: world.is_isomorphic(7),
+    ]:
+        with pytest.raises(errors.WorldTypeError, match=r"World\.load"):
+            wrong()
+    for max_moves in [-1, "3", 2**64]:
+        with pytest.raises(errors.SizeError):
+            world.robot(max_moves=max_moves)
 
 
 def test_the_moves_of_algorithm_1_are_those_of_the_robot():
@@ -309,10 +488,42 @@ def test_the_moves_of_algorithm_1_are_those_of_the_robot():
 
 def test_a_map_that_is_a_world_has_its_own_start():
     world = ts.World.load("worlds/figure-1a.toml").with_start(("a", 1))
-    assert ts.explore(world, algorithm=lambda robot: (world, world.start)).moves == 0
+    walk = world.certificate()
+
+    def knows(robot):
+        for door in walk:
+            robot.go(door)
+        return world, world.walk(world.start, walk)
+
+    assert ts.explore(world, algorithm=knows).moves == len(walk)
     elsewhere = world.with_start(("x", 0))
     with pytest.raises(errors.WrongMapError, match="its start is at another place"):
         ts.explore(world, algorithm=lambda robot: (elsewhere, elsewhere.start))
+
+
+def test_a_map_may_be_that_of_the_protocol():
+    """Lists of lists, as in docs/protocol.md."""
+
+    def there(robot):
+        robot.go(0)
+        return [[[1, 0]], [[0, 0]]], [1, 0]
+
+    assert ts.check(there, edges=1, cls="simple").verdict == "holds"
+
+
+def test_a_map_may_have_vertices_of_any_kind():
+    networkx = pytest.importorskip("networkx")
+    _, grid = networkx.check_planarity(networkx.grid_2d_graph(2, 3))
+    world = ts.World(grid, start=((0, 1), 0))
+    walk = world.certificate()
+
+    def knows(robot):
+        for door in walk:
+            robot.go(door)
+        vertex, index = world.walk(world.start, walk)
+        return world, (next(v for v in grid if str(v) == vertex), index)
+
+    assert ts.explore(world, algorithm=knows).moves == len(walk)
 
 
 @pytest.mark.parametrize("algorithm, mean", [("algorithm1", 7.296), ("folding", 7.093)])
@@ -339,4 +550,12 @@ def test_a_map_that_is_a_planar_embedding():
     lists = {vertex: world.neighbours[vertex] for vertex in order}
     turned = lists[first][world.start.index :] + lists[first][: world.start.index]
     embedding = ts.World({**lists, first: turned}).to_networkx()
-    assert ts.explore(world, algorithm=lambda robot: (embedding, (first, 0))).moves == 0
+    walk = world.certificate()
+
+    def knows(robot):
+        for door in walk:
+            robot.go(door)
+        vertex, index = ts.World(embedding).walk((first, 0), walk)
+        return embedding, (vertex, index)
+
+    assert ts.explore(world, algorithm=knows).moves == len(walk)

@@ -51,8 +51,8 @@ def test_types_are_strict():
     run("mypy", "toposlam")
 
 
-def test_the_stub_is_that_of_the_rust_half(tmp_path):
-    """That of the installed package: in the folder of its source there is no Rust half."""
+def test_the_stub_is_that_of_the_extension_module(tmp_path):
+    """That of the installed package: in the folder of its source there is no extension module."""
     pytest.importorskip("mypy")
     configuration = str(ROOT / "python" / "pyproject.toml")
     arguments = ["toposlam._core", "--concise", "--mypy-config-file", configuration]

@@ -61,6 +61,16 @@ def test_a_wrong_percept_diverges(tmp_path):
     assert "event 7" in repr(report)
 
 
+def test_an_assumed_marker_must_be_seen(tmp_path):
+    """As the command: a robot that never perceives a marker does not follow an algorithm that needs one."""
+    lines = [{"degree": 1, "marker": -1, "door": 0, "stamp": 0.0}, {"degree": 1, "marker": -1, "stamp": 1.0}]
+    (tmp_path / "run.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    with pytest.raises(errors.LogError, match="no percept in it shows a marker, which Algorithm 1 needs"):
+        ts.conform(tmp_path / "run.jsonl")
+    assert ts.conform(tmp_path / "run.jsonl", driver="anyone", marker="none").verdict == "conforms"
+    assert ts.conform(tmp_path / "run.jsonl", marker="directional").verdict == "diverged"
+
+
 def test_tables_are_those_of_numpy_and_pandas(tmp_path):
     pandas, numpy = pytest.importorskip("pandas"), pytest.importorskip("numpy")
     run = recorded(ts.World.load("worlds/shape-6.toml"), tmp_path / "run.jsonl")
@@ -128,9 +138,13 @@ def test_a_real_building():
 @pytest.mark.parametrize("data", [b"", b"hello\n", b"\x89MCAP0\r\n", b"#ROSBAG V2.0\n\xff\xff"])
 def test_a_file_that_is_not_a_log(tmp_path, data):
     (tmp_path / "log").write_bytes(data)
-    with pytest.raises(errors.LogError, match="log: "):
-        ts.read_log(tmp_path / "log")
-        ts.conform(tmp_path / "log")
+    for read in [ts.read_log, ts.conform]:
+        with pytest.raises(errors.LogError, match="log: "):
+            read(tmp_path / "log")
+
+
+EDGE = ts.World({"a": ["b"], "b": ["a"]})
+"""Any world."""
 
 
 @pytest.mark.parametrize(
@@ -141,7 +155,12 @@ def test_a_file_that_is_not_a_log(tmp_path, data):
         ({"cls": "tree"}, errors.UnknownClassError),
         ({"max_steps": 0}, errors.SizeError),
         ({"max_darts": -3}, errors.SizeError),
+        ({"max_edges": -1}, errors.SizeError),
         ({"marker": "undirected"}, errors.LogError),
+        ({"corners": True}, errors.UnusedOptionError),
+        ({"world": EDGE, "cls": "simple"}, errors.UnusedOptionError),
+        ({"world": EDGE, "max_edges": 9}, errors.UnusedOptionError),
+        ({"world": EDGE, "max_steps": 9}, errors.UnusedOptionError),
     ],
 )
 def test_wrong_options(tmp_path, options, kind):

@@ -19,7 +19,8 @@ def test_a_dict_of_neighbours():
     assert (world.vertex_count, world.edge_count, world.genus, world.is_simple) == (4, 6, 0, True)
     assert world.start == ("a", 0)
     assert world.neighbours["b"] == ("a", "d", "c")
-    assert world.is_isomorphic(ts.World.load("worlds/k4-plane.toml")) in (True, False)
+    # All starts of the planar tetrahedron are alike.
+    assert world.is_isomorphic(ts.World.load("worlds/k4-plane.toml"))
     assert world.with_start(None).is_isomorphic(ts.World.load("worlds/k4-plane.toml").with_start(None))
     assert not world.is_isomorphic(ts.World.load("worlds/k4-torus.toml"))
 
@@ -46,6 +47,30 @@ def test_a_dict_of_far_ends_has_loops_and_parallel_edges():
 def test_permutations_of_all_kinds(opposite, clockwise):
     path = ts.World({1: [2], 2: [1, 3], 3: [2]})
     assert ts.World.from_permutations(opposite, clockwise).is_isomorphic(path)
+
+
+def test_both_permutations_count_from_the_same_dart():
+    """Darts 0 to 3: two edges, joined by darts 1 and 2. The start is an end of the path."""
+    path = ts.World({1: [2], 2: [1, 3], 3: [2]})
+    assert ts.World.from_permutations("(0,1)(2,3)", "(1,2)").is_isomorphic(path)
+    middle = ts.World.from_permutations("(0,2)(1,3)", "(1,2)")
+    assert middle.degree(middle.start.vertex) == 1
+    # An iterator is read once.
+    assert ts.World.from_permutations(iter([1, 0, 3, 2]), iter([0, 2, 1, 3])).is_isomorphic(path)
+    assert ts.World.from_permutations({1: 2, 2: 1, 3: 4, 4: 3}, {1: 1, 2: 3, 3: 2, 4: 4}).is_isomorphic(path)
+
+
+def test_vertices_of_any_kind_are_found():
+    networkx = pytest.importorskip("networkx")
+    _, grid = networkx.check_planarity(networkx.grid_2d_graph(2, 2))
+    world = ts.World(grid, start=((0, 1), 0))
+    assert world.start.vertex == "(0, 1)" and world.degree((0, 1)) == 2
+    assert world.darts((0, 1)) == world.darts("(0, 1)")
+    for same in [world.with_start(((1, 1), 1)), pickle.loads(pickle.dumps(world)), world.mirror_image()]:
+        assert same.opposite(((1, 1), 0)).index in (0, 1)
+    rooms = ts.World({"Room 3": ["a/b"], "a/b": ["Room 3"]}, start=("a/b", 0))
+    assert rooms.vertices == ("Room 3", "a_b")
+    assert rooms.opposite(("a/b", 0)) == ("Room 3", 0) == rooms.opposite("a_b:Room 3")
 
 
 def test_permutations_of_sage():
@@ -78,9 +103,11 @@ def test_a_planar_embedding_there_and_back():
 
 
 def test_a_world_is_saved_pickled_and_drawn(tmp_path):
-    for name in ["figure-1b", "theta-torus", "shape-6", "two-loops-plane"]:
+    for name in ["figure-1b", "theta-torus", "shape-6", "two-loops-plane", "real/aces"]:
         world = ts.World.load(f"worlds/{name}.toml")
-        assert pickle.loads(pickle.dumps(world)) == world
+        again = pickle.loads(pickle.dumps(world))
+        assert again == world and again.draw().svg == world.draw().svg
+        assert again.far_ends == world.far_ends and again.start == world.start
         world.save(tmp_path / "world.json")
         assert ts.World.load(tmp_path / "world.json").is_isomorphic(world)
         world.draw().save(tmp_path / "world.png")
@@ -134,6 +161,7 @@ WRONG = [
     ({1: [2], "1": [2], 2: [1, "1"]}, errors.WorldError, "two vertices have the name 1"),
     (None, errors.WorldTypeError, "NoneType"),
     ([1, 2], errors.WorldTypeError, "list"),
+    ([[1], []], errors.MissingEdgeError, "does not list 0 back"),
     ("worlds/figure-1a.toml", errors.WorldTypeError, "str"),
 ]
 

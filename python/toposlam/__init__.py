@@ -30,7 +30,7 @@ from .comparisons import (
 )
 from .errors import ExplorerError, ToposlamError, WorldError
 from .logs import ConformReport, Divergence, Log, LogEvent, Table, conform, read_log
-from .markers import MARKERS
+from .markers import MARKERS, OwnPercept
 from .plots import plot_costs, plot_visits, plot_way
 from .runs import Run, explore
 from .worlds import Dart, Picture, World
@@ -48,6 +48,7 @@ __all__ = [
     "Failure",
     "Log",
     "LogEvent",
+    "OwnPercept",
     "Percept",
     "Picture",
     "Robot",

@@ -8,7 +8,9 @@ import re
 import sys
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
+from importlib.metadata import version
 from typing import Union
 
 from . import _core
@@ -20,8 +22,10 @@ from .errors import (
     SizeError,
     UnknownClassError,
     UnknownMarkerError,
+    WorkerLostError,
 )
-from .explorers import MAX_MOVES, SECONDS, Clock, Explorer, check_explorer, judged
+from .explorers import Clock, Explorer, check_explorer, judged
+from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits
 from .markers import MARKERS
 from .progress import Advance, bar
 from .worlds import Picture, World
@@ -44,6 +48,8 @@ class Failure:
     """What the robot did."""
     number: int
     """The number of the start among those with as many edges."""
+    marker: str
+    """The kind of marker of the robot."""
 
     @property
     def moves(self) -> int:
@@ -55,7 +61,8 @@ class Failure:
         text = self.error.message
         moves = f"after {self.moves} move{'' if self.moves == 1 else 's'}"
         caption = f"{moves}: {text if len(text) <= 90 else text[:87] + '...'}"
-        return self.world.draw(title=f"fails on {self.world.name}", caption=caption)
+        verdict = "not known" if isinstance(self.error, LimitError) else "fails"
+        return self.world.draw(title=f"{verdict} on {self.world.name}", caption=caption, marker=self.marker)
 
     def _repr_svg_(self) -> str:
         return self.draw().svg
@@ -70,17 +77,18 @@ class SizeReport:
 
     edges: int
     starts: int = 0
+    """The starts that were checked."""
     mapped: int = 0
-    """The starts that were mapped right."""
+    """The starts that were mapped right, by a walk that is not known to be a guess."""
     unknown: int = 0
     """The starts on which the explorer reached a limit."""
     moves: int = 0
-    """All moves on those starts."""
-    max_moves: int = 0
+    """All moves on the starts that were mapped right."""
+    most_moves: int = 0
+    """The most moves on a start that was mapped right."""
     certificate: int = 0
-    """The lengths of the certificates of those starts, added up."""
-    below_certificate: int = 0
-    """Starts that were mapped right in fewer moves than their certificate has: the explorer guessed."""
+    """The lengths of the certificates of the starts that were mapped right, in moves, added up; 0 if the
+    marker is not directional."""
 
     def __add__(self, other: SizeReport) -> SizeReport:
         return SizeReport(
@@ -89,9 +97,8 @@ class SizeReport:
             self.mapped + other.mapped,
             self.unknown + other.unknown,
             self.moves + other.moves,
-            max(self.max_moves, other.max_moves),
+            max(self.most_moves, other.most_moves),
             self.certificate + other.certificate,
-            self.below_certificate + other.below_certificate,
         )
 
 
@@ -100,14 +107,25 @@ class CheckReport:
     """The result of a check."""
 
     explorer: str
+    """The explorer's name."""
     cls: str
+    """The class of the worlds."""
     marker: str
+    """The kind of marker of the robot."""
     sizes: tuple[SizeReport, ...]
+    """The counts for each number of edges."""
     failures: tuple[Failure, ...]
     """The first failures, those in the smallest worlds first."""
     limits: tuple[Failure, ...]
     """The first starts on which the explorer reached a limit, in the same order."""
     max_failures: int
+    """The most failures, and the most starts that reached a limit, that are kept."""
+    max_moves: int
+    """The most moves, pick-ups and drops of a run."""
+    seconds: float
+    """The most seconds of a run."""
+    version: str
+    """The version of the package."""
     shards: tuple[int, ...]
     """The shards that were checked, counted from 1."""
     of: int
@@ -158,34 +176,28 @@ class CheckReport:
         return self.moves / self.mapped if self.mapped else None
 
     @property
-    def max_moves(self) -> int:
+    def most_moves(self) -> int:
         """The most moves on a start that was mapped right."""
-        return max((size.max_moves for size in self.sizes), default=0)
+        return max((size.most_moves for size in self.sizes), default=0)
 
     @property
     def vs_certificate(self) -> float | None:
-        """How many times as many moves as the certificates have: 1.0 is the least that any correct explorer
-        can reach. None if the marker is not directional."""
+        """The moves divided by those of the certificates. No correct explorer makes fewer moves, so it is
+        never below 1.0. None if the marker is not directional, or no start was mapped right."""
         certificate = sum(size.certificate for size in self.sizes)
         return self.moves / certificate if certificate else None
 
-    @property
-    def below_certificate(self) -> int:
-        """Starts that were mapped right in fewer moves than their certificate has: the explorer guessed, and
-        fails in another world."""
-        return sum(size.below_certificate for size in self.sizes)
-
     def merge(self, *others: CheckReport) -> CheckReport:
-        """The report of several shards together. The order does not matter."""
+        """The report of several shards together. The order does not matter. Raises `ShardError` if a shard
+        occurs twice, or the reports are not of one check: of one explorer's name, class, marker, limits and
+        version."""
         reports = sorted((self, *others), key=lambda report: report.shards)
         shards = tuple(sorted(shard for report in reports for shard in report.shards))
         if len(set(shards)) < len(shards):
             raise ShardError(f"a shard occurs twice: {shards}")
-        head = (self.explorer, self.cls, self.marker, self.of, self.max_failures)
         sizes: dict[int, SizeReport] = {size.edges: SizeReport(size.edges) for size in self.sizes}
         for report in reports:
-            same = (report.explorer, report.cls, report.marker, report.of, report.max_failures)
-            if same != head or [size.edges for size in report.sizes] != list(sizes):
+            if report._head() != self._head() or [size.edges for size in report.sizes] != list(sizes):
                 raise ShardError("the reports are not of one check")
             for size in report.sizes:
                 sizes[size.edges] += size
@@ -198,6 +210,11 @@ class CheckReport:
         limits = first(limit for report in reports for limit in report.limits)
         return replace(self, sizes=tuple(sizes.values()), failures=failures, limits=limits, shards=shards)
 
+    def _head(self) -> tuple[object, ...]:
+        """What is the same in all shards of a check."""
+        limits = (self.max_failures, self.max_moves, self.seconds)
+        return (self.explorer, self.cls, self.marker, self.of, *limits, self.version)
+
     def __repr__(self) -> str:
         edges = ", ".join(str(size.edges) for size in self.sizes)
         text = f"{self.mapped:,} of {self.starts:,} starts mapped right"
@@ -205,7 +222,7 @@ class CheckReport:
             text += f", {self.unknown:,} not known"
         mean = self.mean_moves
         if mean is not None:
-            text += f", {mean:.2f} moves on average, at most {self.max_moves}"
+            text += f", {mean:.2f} moves on average, at most {self.most_moves}"
         if self.vs_certificate is not None:
             text += f", {self.vs_certificate:.2f} times the certificate"
         return f"<CheckReport {self.verdict}: {self.explorer}, {self.cls}, edges {edges}: {text}>"
@@ -220,7 +237,7 @@ class _Question:
     cls: str
     marker: str
     max_moves: int
-    seconds: float | None
+    seconds: float
     max_failures: int
 
     @property
@@ -250,7 +267,7 @@ def _question(
     cls: str,
     marker: str,
     max_moves: int,
-    seconds: float | None,
+    seconds: float,
     max_failures: int,
 ) -> _Question:
     check_explorer(explorer)
@@ -258,11 +275,8 @@ def _question(
         raise UnknownClassError(f"{cls!r} is not a class of worlds; they are {', '.join(CLASSES)}")
     if marker not in MARKERS:
         raise UnknownMarkerError(f"{marker!r} is not a marker; they are {', '.join(MARKERS)}")
-    for name, value in {"max_moves": max_moves, "max_failures": max_failures}.items():
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise SizeError(f"{name} is a number from 1, not {value!r}")
-    if seconds is not None and not seconds > 0:
-        raise SizeError(f"seconds is more than 0, not {seconds!r}")
+    check_limit("max_failures", max_failures)
+    check_run_limits(max_moves, seconds)
     wanted = _edges(edges)
     return _Question(explorer, wanted, cls, marker, max_moves, seconds, max_failures)
 
@@ -284,6 +298,9 @@ def _checked(question: _Question, index: int, of: int, advance: Advance | None) 
         failures=tuple(failures),
         limits=tuple(limits),
         max_failures=question.max_failures,
+        max_moves=question.max_moves,
+        seconds=question.seconds,
+        version=version("toposlam"),
         shards=(index + 1,),
         of=of,
     )
@@ -300,10 +317,10 @@ def _size(
     explorer, marker, bound = question.explorer, question.marker, question.max_moves
     with_certificates = marker == "directional"
     failures, limits = found
-    starts = mapped = unknown = total = most = certificates = below = shown = 0
+    starts = mapped = unknown = total = most = certificates = shown = 0
 
     def visit(start: _core.Start) -> None:
-        nonlocal starts, mapped, unknown, total, most, certificates, below, shown
+        nonlocal starts, mapped, unknown, total, most, certificates, shown
         robot = start.robot(marker, bound)
         error = judged(explorer, start, robot, clock)
         starts += 1
@@ -313,15 +330,13 @@ def _size(
             total += moves
             most = max(most, moves)
             if with_certificates:
-                certificate = start.certificate
-                certificates += certificate
-                below += moves < certificate
+                certificates += start.certificate
         else:
             is_limit = isinstance(error, LimitError)
             unknown += is_limit
             kept = limits if is_limit else failures
             if len(kept) < question.max_failures:
-                kept.append(_failure(question.cls, start, robot, error))
+                kept.append(_failure(question, start, robot, error))
         if advance is not None and starts - shown == 256:
             advance(starts - shown)
             shown = starts
@@ -329,15 +344,15 @@ def _size(
     _core.visit_starts(question.cls, edges, *shard, visit)
     if advance is not None:
         advance(starts - shown)
-    return SizeReport(edges, starts, mapped, unknown, total, most, certificates, below)
+    return SizeReport(edges, starts, mapped, unknown, total, most, certificates)
 
 
-def _failure(cls: str, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
-    name = f"{cls}-{start.edges}-{start.number}"
+def _failure(question: _Question, start: _core.Start, robot: _core.Robot, error: ExplorerError) -> Failure:
+    name = f"{question.cls}-{start.edges}-{start.number}"
     core = start.world(name)
     error.start = f"{name} v0:{core.start_text(0).split(':', 1)[1]}"
     error.moves = robot.moves
-    return Failure(World._of(core), error, tuple(robot.actions), start.number)
+    return Failure(World._of(core), error, tuple(robot.actions), start.number, question.marker)
 
 
 def check(
@@ -347,29 +362,39 @@ def check(
     *,
     marker: str = "directional",
     max_moves: int = MAX_MOVES,
-    seconds: float | None = SECONDS,
+    seconds: float = SECONDS,
     max_failures: int = 100,
     processes: int = 1,
     progress: bool | None = None,
 ) -> CheckReport:
     """Checks an explorer on every start of every world with `edges` edges: a number, or several.
 
-    A map is right if it is isomorphic to the world, start to start, and the robot is where the explorer
-    says. After `max_moves` moves, or `seconds` seconds for a start, its result is not known. With several
-    `processes` the report is the same.
+    `cls` is the class of the worlds, one of `CLASSES`, and `marker` the kind of the robot's marker, one of
+    `MARKERS`. A map is right if it is isomorphic to the world, start to start, and the robot is where the
+    explorer says. A right map after a walk that does not determine the world is a guess, which fails: there
+    is another world in which the explorer makes the same walk, and returns the same map. With another
+    marker than `"directional"` and `"none"` that is not known, and no map is called a guess.
+
+    After `max_moves` moves, pick-ups and drops, or `seconds` seconds for a start (`math.inf` is no limit),
+    its result is not known. The report keeps the first `max_failures` failures, and as many starts that
+    reached a limit. With several `processes` the report is the same. `progress` shows a bar or not; without
+    it, on a terminal and in a notebook.
+
+    Raises `NotAnExplorerError`, `SizeError`, `UnknownClassError` or `UnknownMarkerError` for arguments that
+    cannot be; with several processes also `NotPicklableError`, and `WorkerLostError` if one of them ends.
 
     >>> import toposlam as ts
-    >>> def there_and_back(robot):
-    ...     return {0: [1], 1: [0]}, (0, 0)
-    >>> report = ts.check(there_and_back, edges=[1, 2], cls="simple")
-    >>> report.verdict, report.mapped, report.starts, report.below_certificate
-    ('violated', 1, 3, 1)
+    >>> def there(robot):
+    ...     robot.go(0)
+    ...     return {0: [1], 1: [0]}, (1, 0)
+    >>> report = ts.check(there, edges=[1, 2], cls="simple")
+    >>> report.verdict, report.mapped, report.starts
+    ('violated', 1, 3)
     >>> print(report.failures[0])
-    start simple-2-0 v0:v1, after 0 moves: the map is not the world: 1 edges against 2
+    start simple-2-0 v0:v1, after 1 move: the map is not the world: 1 edges against 2
     """
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
-    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
-        raise SizeError(f"processes is a number from 1, not {processes!r}")
+    check_limit("processes", processes)
     with bar("checking", "starts", progress, question.total) as advance:
         if processes == 1:
             report = _checked(question, 0, 1, advance)
@@ -388,17 +413,24 @@ def _in_processes(question: _Question, processes: int, advance: Advance | None) 
     fork = sys.platform == "linux"
     context = multiprocessing.get_context("fork") if fork else multiprocessing.get_context()
     of = 8 * processes
-    with ProcessPoolExecutor(processes, mp_context=context) as pool:
+    others = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(processes, mp_context=context)
+    try:
         shards = [pool.submit(_checked, question, index, of, None) for index in range(of)]
-        try:
-            reports = []
-            for done in as_completed(shards):
-                reports.append(done.result())
-                if advance is not None:
-                    advance(reports[-1].starts)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        reports = []
+        for done in as_completed(shards):
+            reports.append(done.result())
+            if advance is not None:
+                advance(reports[-1].starts)
+        pool.shutdown()
+    except BaseException as cause:
+        # After Ctrl-C, nobody waits for the shards that are running.
+        pool.shutdown(wait=False, cancel_futures=True)
+        for worker in set(multiprocessing.active_children()) - others:
+            worker.terminate()
+        if isinstance(cause, BrokenProcessPool):
+            raise WorkerLostError("a worker process of the check ended before its result") from cause
+        raise
     return replace(reports[0].merge(*reports[1:]), shards=(1,), of=1)
 
 
@@ -422,15 +454,18 @@ def check_shard(
     *,
     marker: str = "directional",
     max_moves: int = MAX_MOVES,
-    seconds: float | None = SECONDS,
+    seconds: float = SECONDS,
     max_failures: int = 100,
 ) -> CheckReport:
     """Checks one of the disjoint shards of a check, for a cluster. `CheckReport.merge` adds the reports up.
 
+    The other arguments are those of `check`. Raises what `check` does, and `ShardError` if `shard` is none.
+
     >>> import toposlam as ts
-    >>> def there_and_back(robot):
-    ...     return {0: [1], 1: [0]}, (0, 0)
-    >>> reports = [ts.check_shard(s, there_and_back, edges=1, cls="simple") for s in ts.shards(2)]
+    >>> def there(robot):
+    ...     robot.go(0)
+    ...     return {0: [1], 1: [0]}, (1, 0)
+    >>> reports = [ts.check_shard(s, there, edges=1, cls="simple") for s in ts.shards(2)]
     >>> ts.merge(reports).verdict
     'holds'
     """
@@ -442,7 +477,8 @@ def check_shard(
 
 
 def merge(reports: Sequence[CheckReport]) -> CheckReport:
-    """The report of several shards together. The order does not matter."""
+    """The report of several shards together. The order does not matter. Raises `ShardError` if they are not
+    disjoint shards of one check."""
     listed = list(reports)
     if not listed or not all(isinstance(report, CheckReport) for report in listed):
         raise ShardError("merge needs reports of shards")

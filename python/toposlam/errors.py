@@ -51,6 +51,10 @@ class SizeError(ToposlamError, ValueError):
     """A number of edges is too small, or too large."""
 
 
+class UnusedOptionError(ToposlamError, TypeError):
+    """An option has no effect beside the others."""
+
+
 class ShardError(ToposlamError, ValueError):
     """A text is not a shard `i/n`, or reports are not of disjoint shards of one check."""
 
@@ -178,7 +182,8 @@ class OutOfTimeError(LimitError):
 
 
 class RaisedError(ExplorerError):
-    """An explorer raised an exception, which is the `__cause__`."""
+    """An explorer raised an exception. That is the `__cause__`, unless the error comes from another
+    process."""
 
 
 class NoAnswerError(ExplorerError):
@@ -197,5 +202,14 @@ class WrongPoseError(ExplorerError):
     """An explorer's map is right, and the robot is elsewhere."""
 
 
+class GuessedError(ExplorerError):
+    """An explorer's map is right, and its walk does not determine the world: it makes the same walk in
+    another world, and returns the same map."""
+
+
 class NotPicklableError(ToposlamError, TypeError):
     """An explorer cannot be sent to another process."""
+
+
+class WorkerLostError(ToposlamError):
+    """A worker process of a check ended before its result."""

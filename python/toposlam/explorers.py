@@ -7,7 +7,6 @@ a map and the robot's pose in it, a dart `(vertex, index)` of the map. It may al
 
 from __future__ import annotations
 
-import ctypes
 import threading
 import time
 from collections.abc import Generator
@@ -18,17 +17,19 @@ from . import _core
 from .errors import (
     AnswerError,
     ExplorerError,
+    GuessedError,
+    InternalError,
     NoAnswerError,
     NotAnExplorerError,
     OutOfTimeError,
     RaisedError,
     ToposlamError,
     UnknownStartError,
-    WorldError,
     WrongMapError,
     WrongPoseError,
 )
 from .maps import Doors, doors_of
+from .threads import raise_in
 from .worlds import World
 
 Answer = Any
@@ -36,12 +37,6 @@ Answer = Any
 
 Explorer = Callable[[_core.Robot], Union[Answer, "Generator[int, _core.Percept, Answer]"]]
 """An explorer: a function of a robot, or a generator."""
-
-MAX_MOVES = 10_000
-"""How many moves an explorer may make in a small world, unless the caller says otherwise."""
-
-SECONDS = 10.0
-"""How many seconds an explorer may take for a start, unless the caller says otherwise."""
 
 
 class _TimeIsUp(BaseException):
@@ -51,28 +46,24 @@ class _TimeIsUp(BaseException):
 class Clock:
     """Stops an explorer that takes too long: `with Clock(10.0) as clock: clock.run(explorer, robot)`."""
 
-    def __init__(self, seconds: float | None) -> None:
+    def __init__(self, seconds: float) -> None:
         self.seconds = seconds
         self._thread = threading.get_ident()
         self._lock = threading.Lock()
         self._runs = 0
         self._running = False
         self._stopped = threading.Event()
-        self._watch: threading.Thread | None = None
+        self._watch = threading.Thread(target=self._look, daemon=True)
 
     def __enter__(self) -> Clock:
-        if self.seconds is not None:
-            self._watch = threading.Thread(target=self._look, daemon=True)
-            self._watch.start()
+        self._watch.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stopped.set()
-        if self._watch is not None:
-            self._watch.join()
+        self._watch.join()
 
     def _look(self) -> None:
-        assert self.seconds is not None
         seen, since = -1, time.monotonic()
         while not self._stopped.wait(min(self.seconds / 4, 0.5)):
             with self._lock:
@@ -80,25 +71,21 @@ class Clock:
                     seen, since = self._runs, time.monotonic()
                 elif time.monotonic() - since > self.seconds:
                     since = time.monotonic()
-                    target, raised = ctypes.c_ulong(self._thread), ctypes.py_object(_TimeIsUp)
-                    ctypes.pythonapi.PyThreadState_SetAsyncExc(target, raised)
+                    raise_in(self._thread, _TimeIsUp)
 
     def run(self, explorer: Explorer, robot: _core.Robot) -> Answer:
-        """What the explorer returns."""
+        """What the explorer returns. Raises `_TimeIsUp` if it takes too long."""
         with self._lock:
             self._runs += 1
             self._running = True
         try:
-            try:
-                return _called(explorer, robot)
-            finally:
-                with self._lock:
-                    self._running = False
-                # An exception that the clock has raised by now arrives here, and not later.
-                for _ in range(4):
-                    pass
-        except _TimeIsUp:
-            raise OutOfTimeError(f"it took more than {self.seconds:g} s") from None
+            return _called(explorer, robot)
+        finally:
+            with self._lock:
+                self._running = False
+            # An exception that the clock has raised by now arrives here, and not later.
+            for _ in range(4):
+                pass
 
 
 def _called(explorer: Explorer, robot: _core.Robot) -> Answer:
@@ -109,10 +96,10 @@ def _called(explorer: Explorer, robot: _core.Robot) -> Answer:
             while True:
                 try:
                     percept = robot.go(door)
-                except ExplorerError as error:
-                    # The generator may end in peace, and no more.
+                except ExplorerError:
+                    # The generator may only clean up.
                     answer.close()
-                    raise error from None
+                    raise
                 door = answer.send(percept)
         except StopIteration as end:
             return end.value
@@ -127,27 +114,29 @@ def check_explorer(explorer: object) -> None:
 
 
 def judged(explorer: Explorer, start: _core.Start, robot: _core.Robot, clock: Clock) -> ExplorerError | None:
-    """Runs an explorer, and returns what is wrong, or None."""
+    """Runs an explorer, and returns what is wrong, or None.
+
+    The run ends with the first action that is not possible, even if the explorer catches the exception.
+    """
     try:
         answer = clock.run(explorer, robot)
-        return judge(answer, start, robot)
-    except ExplorerError as error:
-        return error
+        wrong = None if robot.refusal is not None else judge(answer, start, robot)
+    except InternalError:
+        raise
     except _TimeIsUp:
-        return OutOfTimeError(f"it took more than {clock.seconds:g} s")
-    except RecursionError as cause:
-        return _raised(cause)
-    except Exception as cause:
-        return _raised(cause)
+        wrong = OutOfTimeError(f"it took more than {clock.seconds:g} s")
+    except (Exception, SystemExit, GeneratorExit) as cause:
+        wrong = _raised(cause)
+    return wrong if robot.refusal is None else robot.refusal
 
 
-def _raised(cause: Exception) -> RaisedError:
+def _raised(cause: BaseException) -> RaisedError:
     error = RaisedError(f"it raised {type(cause).__name__}: {cause}{_line(cause)}")
     error.__cause__ = cause
     return error
 
 
-def _line(cause: Exception) -> str:
+def _line(cause: BaseException) -> str:
     trace = cause.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
@@ -168,7 +157,7 @@ def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerErr
     map_, pose = answer
     try:
         doors, facing, place = _numbers(map_, pose)
-    except (WorldError, ToposlamError) as cause:
+    except ToposlamError as cause:
         error = AnswerError(f"its map: {cause.message}")
         error.__cause__ = cause
         return error
@@ -178,7 +167,9 @@ def judge(answer: Answer, start: _core.Start, robot: _core.Robot) -> ExplorerErr
         return AnswerError(f"its map: {cause}")
     if wrong is None:
         return None
-    text, right = wrong
+    kind, text, right = wrong
+    if kind == "guessed":
+        return GuessedError(text)
     if right is None:
         return WrongMapError(text)
     believed, truly = doors.place(place), doors.place(right)

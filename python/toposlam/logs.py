@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from . import _core
-from .errors import LogError, SizeError
+from .errors import LogError
+from .limits import check_limit, check_unused
 from .progress import bar, library
-from .worlds import Dart, Picture, World
+from .worlds import Dart, Picture, World, world_of
 
 
 class Table(Mapping[str, "list[Any]"]):
@@ -41,7 +42,8 @@ class Table(Mapping[str, "list[Any]"]):
         return library("pandas", "a table as a DataFrame").DataFrame(self._columns)
 
     def numpy(self) -> dict[str, Any]:
-        """Each column as a numpy array: of floats where there are only numbers and None."""
+        """Each column as a numpy array. A column of integers is one of integers; one of numbers and None is
+        one of floats, NaN for None; any other is one of objects."""
         numpy = library("numpy", "a table as arrays")
 
         def array(column: list[Any]) -> Any:
@@ -64,6 +66,7 @@ class Log:
 
     path: Path
     format: str
+    """`mcap`, `bag`, `rosbag2`, `db3`, `carmen` or `events`."""
     topics: tuple[tuple[str, str, int], ...]
     """Each topic: its name, its type, and the number of its messages."""
     head: Mapping[str, str]
@@ -87,7 +90,11 @@ class Log:
 
 
 def read_log(path: str | os.PathLike[str], *, progress: bool | None = None) -> Log:
-    """Reads a log: MCAP, a ROS 1 bag, a folder of rosbag2, a CARMEN log, or a list of events."""
+    """Reads a log: MCAP, a ROS 1 bag, a folder of rosbag2, a CARMEN log, or a list of events.
+
+    `progress` shows a bar or not; without it, on a terminal and in a notebook. Raises `LogError` if the file
+    cannot be read.
+    """
     reader = _open(path)
     with bar("reading", "messages", progress) as advance:
         tables = reader.tables(advance)
@@ -168,6 +175,8 @@ class ConformReport:
     """The number of poses in which the robot may be after the last event that fits."""
     hallways: tuple[int, int, int]
     """The number of moves, of those measured by odometry, and of those compared with earlier ones."""
+    remarks: tuple[str, ...]
+    """What a reader should know: the log was recorded in another world, or goes on from an earlier run."""
 
     def __repr__(self) -> str:
         text = f"{self.path.name}: {self.verdict}, {len(self.events)} events, {self.evidence}"
@@ -183,10 +192,10 @@ def conform(
     driver: str = "algorithm",
     marker: str | None = None,
     assume_marker: bool = False,
-    cls: str = "multigraph",
+    cls: str | None = None,
     corners: bool = False,
     max_edges: int | None = None,
-    max_steps: int = 500_000,
+    max_steps: int | None = None,
     max_darts: int | None = None,
     progress: bool | None = None,
 ) -> ConformReport:
@@ -194,20 +203,36 @@ def conform(
 
     `driver` is what chose the doors: `"algorithm"` as the log records it, or else `"algorithm1"` or
     `"folding"`, or `"anyone"`. `marker` is the robot's marker, by default that of the log; `assume_marker`
-    adds one at the first junction of a laser log.
-    `cls`, `max_edges` and `max_steps` bound the search for a world, `max_darts` the map of the algorithm; by
-    default it is that of the log, or 1,000.
+    adds one at the first junction of a laser log. With `corners`, the bends of corridors are vertices in a
+    laser log; otherwise they are none in the world either.
+
+    Without a world, the search for one is bounded: `cls` is its class (`"multigraph"`), `max_edges` the
+    most edges, and `max_steps` (500,000) the most steps. `max_darts` is the most darts of the map that the
+    algorithm is allowed; by default it is that of the log, or 1,000. If a bound is reached, the verdict is
+    `incomplete`. `progress` shows a bar or not; without it, on a terminal and in a notebook.
+
+    Returns the report: the verdict, the events, and the first divergence or the world.
+
+    Raises `LogError` if the log cannot be read or does not record what is needed, `WorldTypeError`,
+    `UnknownAlgorithmError`, `UnknownMarkerError`, `UnknownClassError`, `SizeError`, or `UnusedOptionError`
+    for an option that has no effect: a bound of the search with a world, or `corners` for a log without a
+    laser.
     """
+    core = None if world is None else world_of(world)._core
+    if world is not None:
+        check_unused("with a world", cls=cls, max_edges=max_edges, max_steps=max_steps)
+    cls = "multigraph" if cls is None else cls
+    max_steps = 500_000 if max_steps is None else max_steps
+    limits = {"max_edges": max_edges, "max_steps": max_steps, "max_darts": max_darts}
+    for name, value in limits.items():
+        if value is not None:
+            check_limit(name, value)
     reader = _open(path)
-    for name, value in {"max_steps": max_steps, "max_darts": max_darts}.items():
-        if name == "max_darts" and value is None:
-            continue
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise SizeError(f"{name} is a number from 1, not {value!r}")
-    core = None if world is None else world._core
     options = (core, marker, driver, cls, corners, assume_marker, max_edges, max_steps, max_darts)
     with bar("checking", "images and scans", progress) as advance:
         found = _core.conform(reader, *options, advance)
+    if corners and found["evidence"] != "laser":
+        check_unused("for a log without a laser", corners=corners)
     known = world
     if world is not None and found["evidence"] == "laser" and not corners:
         known = world.without_corners()
@@ -231,4 +256,5 @@ def conform(
         determines_world=found["determines_world"],
         candidates=found["candidates"],
         hallways=tuple(found["hallways"]),
+        remarks=tuple(found["remarks"]),
     )

@@ -36,13 +36,13 @@ class Doors(NamedTuple):
         return sum(self.degrees[:index])
 
     def number(self, place: object) -> int:
-        """The number of a place `(vertex, index)`."""
-        if not (isinstance(place, tuple) and len(place) == 2):
-            raise UnknownStartError(f"a place is a pair (vertex, index), not {place!r}")
+        """The number of a dart `(vertex, index)`."""
+        if not (isinstance(place, (tuple, list)) and len(place) == 2):
+            raise UnknownStartError(f"a dart is a pair (vertex, index), not {place!r}")
         vertex, index = place
         first = self.first(vertex)
         degree = self.degrees[self.vertices.index(vertex)]
-        if not _is_int(index):
+        if not is_int(index):
             raise UnknownStartError(f"the index in {place!r} is not a number")
         if not 0 <= index < degree:
             raise UnknownStartError(
@@ -59,7 +59,7 @@ class Doors(NamedTuple):
         raise UnknownStartError("there is no such door")
 
 
-def _is_int(value: object) -> bool:
+def is_int(value: object) -> bool:
     if isinstance(value, bool):
         return False
     return isinstance(value, int) or (hasattr(value, "__index__") and not hasattr(value, "__len__"))
@@ -72,13 +72,15 @@ def is_networkx(value: object) -> bool:
 
 
 def doors_of(value: object) -> Doors:
-    """The doors of a dict or of a networkx graph."""
+    """The doors of a dict, of a list of lists, or of a networkx graph."""
     if is_networkx(value):
         return of_networkx(value)
     if isinstance(value, Mapping):
         return of_dict(value)
+    if isinstance(value, (list, tuple)) and all(isinstance(listed, (list, tuple)) for listed in value):
+        return of_dict(dict(enumerate(value)))
     raise WorldTypeError(
-        f"a map is a dict, a networkx.PlanarEmbedding or a toposlam.World, not {_kind(value)}"
+        f"a map is a dict, a list of lists, a networkx.PlanarEmbedding or a World, not {_kind(value)}"
     )
 
 
@@ -126,7 +128,7 @@ def _is_far_end(entry: object, lists: Mapping[Any, Any]) -> bool:
         isinstance(entry, (tuple, list))
         and len(entry) == 2
         and _is_vertex(entry[0], lists)
-        and _is_int(entry[1])
+        and is_int(entry[1])
     )
 
 
@@ -197,49 +199,81 @@ def of_networkx(graph: Any) -> Doors:
 _CYCLES = re.compile(r"\s*(\(\s*\d*(\s*,\s*\d+)*\s*\)\s*)*")
 
 
-def images_of(name: str, permutation: object, count: int | None = None) -> list[int]:
-    """The images of a permutation, as it is given: cycles, a text of cycles, a list, or an object of Sage."""
+def of_permutations(opposite: object, clockwise: object) -> tuple[list[int], list[int], int]:
+    """The images of two permutations, counted from 0, and the least dart: 0 or 1.
+
+    A permutation is given as cycles, as a text of cycles, as a list of images, or as an object of Sage. Each
+    dart occurs in `opposite`, so the least one there is the least one in both.
+    """
+    pairs, turns = _read("opposite", opposite), _read("clockwise", clockwise)
+    least = min(pairs.darts(), default=0)
+    if least not in (0, 1):
+        raise PermutationError(f"opposite: the darts are numbered from 0 or from 1, not from {least}")
+    images = pairs.images(least, len(pairs.darts()))
+    return images, turns.images(least, len(images)), least
+
+
+class _Permutation(NamedTuple):
+    """A permutation as it is given: its cycles, or else the image of each dart."""
+
+    name: str
+    cycles: list[list[int]] | None
+    listed: list[int]
+
+    def darts(self) -> list[int]:
+        return self.listed if self.cycles is None else [dart for cycle in self.cycles for dart in cycle]
+
+    def images(self, least: int, count: int) -> list[int]:
+        """The images of `count` darts, counted from 0; `least` is the least dart."""
+        darts = range(least, least + count)
+        if self.cycles is None:
+            if sorted(self.listed) != list(darts):
+                raise PermutationError(
+                    f"{self.name}: the images are not those of a permutation of darts {_range(darts)}"
+                )
+            return [image - least for image in self.listed]
+        moved = self.darts()
+        if len(set(moved)) < len(moved):
+            raise PermutationError(f"{self.name}: a number is in two cycles")
+        if any(dart not in darts for dart in moved):
+            raise PermutationError(f"{self.name}: the darts are not numbered {_range(darts)}")
+        images = list(range(count))
+        for cycle in self.cycles:
+            for here, there in zip(cycle, cycle[1:] + cycle[:1]):
+                images[here - least] = there - least
+        return images
+
+
+def _range(darts: range) -> str:
+    return f"from {darts.start} to {darts.stop - 1}" if darts else "at all"
+
+
+def _read(name: str, permutation: object) -> _Permutation:
     if isinstance(permutation, str):
         if not _CYCLES.fullmatch(permutation):
             raise PermutationError(f"{name}: {permutation!r} is not a product of cycles: (1,2)(3,4)")
         cycles = [part.split(",") for part in re.findall(r"\(([^)]*)\)", permutation)]
-        return _of_cycles(name, [[int(x) for x in cycle if x.strip()] for cycle in cycles], count)
+        return _of_cycles(name, [[x for x in cycle if x.strip()] for cycle in cycles])
     cycle_tuples = getattr(permutation, "cycle_tuples", None)
     if callable(cycle_tuples):
-        return _of_cycles(name, cycle_tuples(), count)
+        return _of_cycles(name, cycle_tuples())
     if isinstance(permutation, Mapping):
-        permutation = [permutation.get(key) for key in sorted(permutation)]
+        darts = [*permutation, *permutation.values()]
+        if not all(is_int(dart) for dart in darts) or set(permutation) != set(permutation.values()):
+            raise PermutationError(f"{name}: the images are not the darts")
+        permutation = [permutation[dart] for dart in sorted(permutation)]
     if not isinstance(permutation, Iterable):
         raise PermutationError(f"{name}: {_kind(permutation)} is not a permutation")
     listed = list(permutation)
     if listed and all(isinstance(cycle, (tuple, list)) for cycle in listed):
-        return _of_cycles(name, listed, count)
-    if not all(_is_int(image) for image in listed):
+        return _of_cycles(name, listed)
+    if not all(is_int(image) for image in listed):
         raise PermutationError(f"{name}: the images of a permutation are numbers")
-    images = [int(image) for image in listed]
-    if images and min(images) == 1:
-        images = [image - 1 for image in images]
-    if sorted(images) != list(range(len(images))):
-        raise PermutationError(f"{name}: the images are not those of a permutation of 0 .. or of 1 ..")
-    return images
+    return _Permutation(name, None, [int(image) for image in listed])
 
 
-def _of_cycles(name: str, cycles: Iterable[Sequence[Any]], count: int | None) -> list[int]:
+def _of_cycles(name: str, cycles: Iterable[Sequence[Any]]) -> _Permutation:
     try:
-        listed = [[int(x) for x in cycle] for cycle in cycles]
+        return _Permutation(name, [[int(dart) for dart in cycle] for cycle in cycles], [])
     except (TypeError, ValueError, OverflowError):
         raise PermutationError(f"{name}: the entries of a cycle are numbers") from None
-    moved = [x for cycle in listed for x in cycle]
-    if len(set(moved)) < len(moved):
-        raise PermutationError(f"{name}: a number is in two cycles")
-    base = 0 if 0 in moved else 1
-    size = max([count or 0, *(x - base + 1 for x in moved)])
-    # Without a count these are the edges, and each dart is in one.
-    if min(moved, default=base) < base or size > (len(moved) if count is None else count):
-        last = "" if count is None else f" to {count - 1 + base}"
-        raise PermutationError(f"{name}: the darts are not numbered from {base}{last}")
-    images = list(range(size))
-    for cycle in listed:
-        for here, there in zip(cycle, cycle[1:] + cycle[:1]):
-            images[here - base] = there - base
-    return images

@@ -8,9 +8,11 @@ from typing import Union
 
 from . import _core
 from .comparisons import Action
-from .errors import SizeError
-from .explorers import MAX_MOVES, SECONDS, Clock, Explorer, check_explorer, judged
-from .worlds import Dart, Picture, World
+from .errors import UnknownMarkerError
+from .explorers import Clock, Explorer, check_explorer, judged
+from .limits import MAX_MOVES, SECONDS, check_limit, check_run_limits, check_unused
+from .markers import MARKERS
+from .worlds import Dart, Picture, World, world_of
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,8 @@ class Run:
 
     world: World
     algorithm: str
+    marker: str
+    """The kind of marker that the robot used."""
     moves: int
     actions: tuple[Action, ...]
     """What the robot did: doors, and "pick-up" and "drop"."""
@@ -30,9 +34,10 @@ class Run:
     """The run, round by round; empty for an explorer of your own."""
 
     @cached_property
-    def certificate(self) -> int:
-        """The number of moves of a shortest walk that proves the map: no correct explorer makes fewer."""
-        return len(self.world.certificate())
+    def certificate(self) -> int | None:
+        """The number of moves of a shortest walk that proves the map: with the directional marker, no correct
+        explorer makes fewer. None with another marker."""
+        return len(self.world.certificate()) if self.marker == "directional" else None
 
     def draw(self) -> Picture:
         """The map, or else the world."""
@@ -50,14 +55,21 @@ def explore(
     world: World,
     algorithm: Union[str, Explorer] = "algorithm1",
     *,
-    max_darts: int = 1_000_000,
-    max_moves: int = MAX_MOVES,
-    seconds: float | None = SECONDS,
+    max_darts: int | None = None,
+    marker: str | None = None,
+    max_moves: int | None = None,
+    seconds: float | None = None,
 ) -> Run:
     """Maps a world with `"algorithm1"`, `"folding"`, `"movable"`, or with an explorer of your own.
 
-    An explorer that fails raises an `ExplorerError`. `max_moves` and `seconds` are for explorers, `max_darts`
-    is for the algorithms.
+    `marker`, the kind of marker of the robot (`"directional"`), `max_moves` (100,000 moves, pick-ups and
+    drops) and `seconds` (10; `math.inf` is no limit) are for explorers. `max_darts` (1,000,000), the most
+    darts of the map, is for the algorithms.
+
+    Raises an `ExplorerError` of the class that is the cause if an explorer fails or reaches a limit;
+    `MapTooLargeError` or `NotSimpleError` for an algorithm; `WorldTypeError` or `NoStartError`;
+    `UnknownAlgorithmError`, `UnknownMarkerError`, `SizeError`, or `UnusedOptionError` for an option that is
+    not for this explorer or algorithm.
 
     >>> import toposlam as ts
     >>> run = ts.explore(ts.World.load("worlds/shape-6.toml"), algorithm="folding")
@@ -66,16 +78,24 @@ def explore(
     >>> print(run.story.splitlines()[0])
     World shape-6. The robot starts at corner, with its back to the door to tee.
     """
+    world = world_of(world)
     facing = world.facing()
     if not isinstance(algorithm, str):
-        return _explored(world, algorithm, max_moves, seconds)
-    if isinstance(max_darts, bool) or not isinstance(max_darts, int) or max_darts < 1:
-        raise SizeError(f"max_darts is a number from 1, not {max_darts!r}")
+        check_explorer(algorithm)
+        check_unused("with an explorer of your own", max_darts=max_darts)
+        max_moves = MAX_MOVES if max_moves is None else max_moves
+        seconds = SECONDS if seconds is None else seconds
+        kind = "directional" if marker is None else marker
+        return _explored(world, algorithm, kind, max_moves, seconds)
+    check_unused("with an algorithm", marker=marker, max_moves=max_moves, seconds=seconds)
+    max_darts = 1_000_000 if max_darts is None else max_darts
+    check_limit("max_darts", max_darts)
     found = _core.explore(world._core, facing, algorithm, max_darts)
     map_ = World._of(found["map"])
     return Run(
         world=world,
         algorithm=algorithm,
+        marker="movable" if algorithm == "movable" else "directional",
         moves=found["moves"],
         actions=tuple(found["actions"]),
         map=map_,
@@ -84,10 +104,12 @@ def explore(
     )
 
 
-def _explored(world: World, explorer: Explorer, max_moves: int, seconds: float | None) -> Run:
-    check_explorer(explorer)
+def _explored(world: World, explorer: Explorer, marker: str, max_moves: int, seconds: float) -> Run:
+    if marker not in MARKERS:
+        raise UnknownMarkerError(f"{marker!r} is not a marker; they are {', '.join(MARKERS)}")
+    check_run_limits(max_moves, seconds)
     start = _core.Start.of(world._core, world.facing())
-    robot = start.robot("directional", max_moves)
+    robot = start.robot(marker, max_moves)
     with Clock(seconds) as clock:
         error = judged(explorer, start, robot, clock)
     if error is not None:
@@ -95,4 +117,4 @@ def _explored(world: World, explorer: Explorer, max_moves: int, seconds: float |
         error.moves = robot.moves
         raise error
     name = getattr(explorer, "__name__", type(explorer).__name__)
-    return Run(world, name, robot.moves, tuple(robot.actions), None, None, "")
+    return Run(world, name, marker, robot.moves, tuple(robot.actions), None, None, "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, Union
@@ -21,8 +21,10 @@ from .errors import (
     UnknownStartError,
     WorldError,
     WorldFileError,
+    WorldTypeError,
 )
-from .maps import Doors, doors_of, images_of
+from .limits import MAX_MOVES, check_limit
+from .maps import doors_of, is_int, of_permutations
 from .progress import library
 
 
@@ -33,7 +35,7 @@ class Dart(NamedTuple):
     index: int  # type: ignore[assignment]
 
 
-Place = Union[str, "tuple[object, int]"]
+DartLike = Union[str, "tuple[Hashable, int]", "list[Any]"]
 """A dart of a world: `"vertex:facing"` as on the command line, or `(vertex, index)`."""
 
 
@@ -72,10 +74,14 @@ class World:
     * a dict of neighbours in clockwise order: `{"a": ["b", "c"], "b": ["a"], "c": ["a"]}`;
     * a dict of far ends, for loops and parallel edges: door `i` of vertex `v` leads to `(w, j)`, door `j` of
       `w`;
+    * a list of such lists: its vertices are 0, 1, and so on;
     * a `networkx.PlanarEmbedding`.
 
     `start` is the dart behind the robot at the start, along which a directional marker points. Without
-    one, it is the first door of the first vertex.
+    one, it is the first door of the first vertex. A vertex has the name `str(vertex)`, with `_` for what no
+    name in a world file has; where a vertex is asked for, both do.
+
+    Raises a `WorldError` of the class that is the cause.
 
     >>> import toposlam as ts
     >>> triangle = ts.World({"a": ["b", "c"], "b": ["a", "c"], "c": ["a", "b"]}, name="triangle")
@@ -86,41 +92,47 @@ class World:
     1
     """
 
-    __slots__ = ("_core", "_degree", "_first", "_opposite", "_places")
+    __slots__ = ("_core", "_degree", "_first", "_opposite", "_places", "_vertices")
 
     _core: CoreWorld
     _degree: dict[str, int]
     _first: dict[str, int]
     _opposite: list[int]
     _places: list[Dart]
+    _vertices: dict[Hashable, str]
 
     def __init__(
-        self, value: object, start: Place | None = None, *, name: str = "world", about: str = ""
+        self, value: object, start: DartLike | None = None, *, name: str = "world", about: str = ""
     ) -> None:
         if isinstance(value, World):
             core = value._core.with_start(value._core.start, name, about)
+            vertices = value._vertices
         else:
             doors = doors_of(value)
-            core = _core.World.from_doors(doors.degrees, doors.opposite, _names(doors), None, name, about, 0)
-        self._set(core)
+            vertices = _names(doors.vertices)
+            named = list(vertices.values())
+            core = _core.World.from_doors(doors.degrees, doors.opposite, named, name, about, 0)
+        self._set(core, vertices)
         if start is not None:
-            self._set(core.with_start(self.number(start), name, about))
+            self._set(core.with_start(self.number(start), name, about), vertices)
 
-    def _set(self, core: CoreWorld) -> None:
+    def _set(self, core: CoreWorld, vertices: Mapping[Hashable, str]) -> None:
         degrees, opposite = core.doors
         first: dict[str, int] = {}
         places: list[Dart] = []
         for vertex, degree in zip(core.vertex_names, degrees):
             first[vertex] = len(places)
             places.extend(Dart(vertex, index) for index in range(degree))
-        values = (core, dict(zip(first, degrees)), first, opposite, places)
+        known = {vertex: named for vertex, named in vertices.items() if named in first}
+        values = (core, dict(zip(first, degrees)), first, opposite, places, known)
         for slot, value in zip(self.__slots__, values):
             object.__setattr__(self, slot, value)
 
     @classmethod
-    def _of(cls, core: CoreWorld) -> World:
+    def _of(cls, core: CoreWorld, vertices: Mapping[Hashable, str] = MappingProxyType({})) -> World:
+        """The world of the extension module. `vertices` are other vertices, with their names."""
         world = cls.__new__(cls)
-        world._set(core)
+        world._set(core, vertices)
         return world
 
     @classmethod
@@ -153,20 +165,21 @@ class World:
         clockwise around the vertex.
 
         A permutation is a list of images, counted from 0 or from 1, as in GAP's `ListPerm`; a list or a text
-        of cycles, `"(1,2)(3,4)"`; or an object of SageMath. `start` is a dart, counted as in them.
+        of cycles, `"(1,2)(3,4)"`; or an object of SageMath. Both count from the same number, the least in
+        `opposite`. `start` is a dart, counted as in them.
+
+        Raises `PermutationError`, `NoEdgeError`, `NotConnectedError` or `UnknownStartError`.
 
         >>> import toposlam as ts
         >>> ts.World.from_permutations("(1,2)(3,4)", "(2,3)")
         <World world: 3 vertices, 2 edges, genus 0, start v0:v1>
         """
-        pairs = images_of("opposite", opposite)
-        turns = images_of("clockwise", clockwise, len(pairs))
+        pairs, turns, least = of_permutations(opposite, clockwise)
         core, numbers = _core.World.from_permutations(pairs, turns)
-        one = _counts_from_one(opposite)
-        first = (1 if one else 0) if start is None else start
-        if not 0 <= first - one < len(numbers):
-            raise UnknownStartError(f"there is no dart {start}")
-        return cls._of(core.with_start(numbers[first - one], name, ""))
+        first = least if start is None else start
+        if isinstance(first, bool) or not isinstance(first, int) or not 0 <= first - least < len(numbers):
+            raise UnknownStartError(f"there is no dart {start!r}")
+        return cls._of(core.with_start(numbers[first - least], name, ""))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenError("a World cannot be changed; World(...) makes another one")
@@ -175,14 +188,12 @@ class World:
         raise FrozenError("a World cannot be changed; World(...) makes another one")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        core = self._core
-        parts = (core.vertex_names, core.edge_names, core.name, core.about, core.start)
-        return _rebuilt, (list(self._degree.values()), self._opposite, *parts)
+        return _rebuilt, (self.to_json(), self.name, self._vertices)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, World):
             return NotImplemented
-        return bool(self.__reduce__()[1] == other.__reduce__()[1])
+        return (self.name, self.to_json()) == (other.name, other.to_json())
 
     def __hash__(self) -> int:
         return hash((tuple(self._opposite), self._core.start))
@@ -252,62 +263,70 @@ class World:
         listed = {vertex: tuple(self.opposite(dart) for dart in self.darts(vertex)) for vertex in self._first}
         return MappingProxyType(listed)
 
-    def degree(self, vertex: str) -> int:
-        """The number of doors of a vertex."""
+    def _named(self, vertex: Hashable) -> str | None:
+        """The name of a vertex."""
+        try:
+            if vertex in self._vertices:
+                return self._vertices[vertex]
+        except TypeError:  # it is not hashable
+            return None
+        text = str(vertex)
+        return text if text in self._first else None
+
+    def degree(self, vertex: Hashable) -> int:
+        """The number of doors of a vertex. Raises `UnknownStartError` if there is none."""
         return len(self.darts(vertex))
 
-    def darts(self, vertex: str | None = None) -> list[Dart]:
-        """The darts of a vertex in clockwise order, or all darts."""
+    def darts(self, vertex: Hashable | None = None) -> list[Dart]:
+        """The darts of a vertex in clockwise order, or all darts. Raises `UnknownStartError` if there is no
+        such vertex."""
         if vertex is None:
             return list(self._places)
-        if vertex not in self._first:
+        named = self._named(vertex)
+        if named is None:
             raise UnknownStartError(f"there is no vertex {vertex!r}")
-        first = self._first[vertex]
-        return self._places[first : first + self._degree[vertex]]
+        first = self._first[named]
+        return self._places[first : first + self._degree[named]]
 
-    def number(self, place: Place) -> int:
-        """The number of a dart, counted vertex by vertex."""
-        if isinstance(place, str):
-            return self._core.start_from_text(place)
-        try:
-            vertex, index = place
-            first = self._first[str(vertex)]
-            found = self._places[first + index]
-        except (TypeError, ValueError, KeyError, IndexError):
-            found = Dart("", -1)
-        if found.index < 0 or found != (str(vertex), index):
-            raise UnknownStartError(
-                f"{place!r} is not a dart of {self.name}; write 'vertex:facing' or (vertex, index)"
-            )
-        return first + index
+    def number(self, dart: DartLike) -> int:
+        """The number of a dart, counted vertex by vertex. Raises `UnknownStartError` if there is none."""
+        if isinstance(dart, str):
+            return self._core.start_from_text(dart)
+        if isinstance(dart, (tuple, list)) and len(dart) == 2:
+            named, index = self._named(dart[0]), dart[1]
+            if named is not None and is_int(index) and 0 <= index < self._degree[named]:
+                return self._first[named] + int(index)
+        raise UnknownStartError(
+            f"{dart!r} is not a dart of {self.name}; write 'vertex:facing' or (vertex, index)"
+        )
 
-    def opposite(self, dart: Place) -> Dart:
+    def opposite(self, dart: DartLike) -> Dart:
         """The other end of the dart's edge."""
         return self._places[self._opposite[self.number(dart)]]
 
-    def clockwise(self, dart: Place) -> Dart:
+    def clockwise(self, dart: DartLike) -> Dart:
         """The next dart around the same vertex."""
         vertex, index = self._places[self.number(dart)]
         return Dart(vertex, (index + 1) % self.degree(vertex))
 
-    def after(self, pose: Place, door: int) -> Dart:
+    def after(self, pose: DartLike, door: int) -> Dart:
         """The pose of a robot that came in by the dart `pose` and leaves by a door."""
         vertex, index = self._places[self.number(pose)]
         return self.opposite(Dart(vertex, (index + door) % self.degree(vertex)))
 
-    def walk(self, pose: Place, doors: Iterator[int] | list[int] | tuple[int, ...]) -> Dart:
+    def walk(self, pose: DartLike, doors: Iterable[int]) -> Dart:
         """The pose at the end of a door sequence."""
         for door in doors:
             pose = self.after(pose, door)
         return self._places[self.number(pose)]
 
-    def with_start(self, start: Place | None) -> World:
-        """The same world with another start."""
+    def with_start(self, start: DartLike | None) -> World:
+        """The same world with another start. Raises `UnknownStartError` if there is no such dart."""
         number = None if start is None else self.number(start)
-        return World._of(self._core.with_start(number, self.name, self.about))
+        return World._of(self._core.with_start(number, self.name, self.about), self._vertices)
 
     def facing(self) -> int:
-        """The number of the start's dart."""
+        """The number of the start's dart. Raises `NoStartError` if the world has no start."""
         if self._core.start is None:
             raise NoStartError(f"{self.name} has no start; with_start('vertex:facing') gives it one")
         return self._core.start
@@ -323,21 +342,22 @@ class World:
         >>> path.is_isomorphic(path.with_start((2, 0)))
         False
         """
+        other = world_of(other)
         if (self._core.start is None) != (other._core.start is None):
             return self.with_start(None).is_isomorphic(other.with_start(None))
         return self._core.code() == other._core.code()
 
     def mirror_image(self) -> World:
         """The same graph with every order reversed."""
-        return World._of(self._core.mirror_image())
+        return World._of(self._core.mirror_image(), self._vertices)
 
     def without_corners(self) -> World:
         """The same world without vertices of degree 2."""
-        return World._of(self._core.smoothed())
+        return World._of(self._core.smoothed(), self._vertices)
 
     def certificate(self) -> tuple[int, ...]:
         """A shortest walk, as doors, that proves a map of the world from its start: no correct explorer
-        makes fewer moves.
+        with a directional marker makes fewer moves. Raises `NoStartError` if the world has no start.
 
         >>> import toposlam as ts
         >>> len(ts.World.load("worlds/figure-1a.toml").certificate())
@@ -345,8 +365,12 @@ class World:
         """
         return tuple(_core.certificate(self._core, self.facing()))
 
-    def robot(self, marker: str = "directional", max_moves: int = 1_000_000) -> Robot:
-        """A robot at the start.
+    def robot(self, marker: str = "directional", max_moves: int = MAX_MOVES) -> Robot:
+        """A robot at the start, with a kind of marker. It makes at most `max_moves` moves, pick-ups and
+        drops.
+
+        Raises `NoStartError`, `UnknownMarkerError` or `SizeError`; the robot raises `NoSuchDoorError`,
+        `DoorTypeError`, `NoMarkerError` or `OutOfMovesError` if an action is not possible.
 
         >>> import toposlam as ts
         >>> robot = ts.World.load("worlds/figure-1a.toml").robot()
@@ -355,6 +379,7 @@ class World:
         >>> robot.go(1)
         Percept(degree=3, marker=None)
         """
+        check_limit("max_moves", max_moves)
         return _core.Robot(self._core, self.facing(), marker, max_moves)
 
     def draw(
@@ -401,37 +426,32 @@ class World:
         return embedding
 
 
-def _rebuilt(
-    degrees: list[int],
-    opposite: list[int],
-    vertex_names: list[str],
-    edge_names: list[str] | None,
-    name: str,
-    about: str,
-    start: int | None,
-) -> World:
-    core = _core.World.from_doors(degrees, opposite, vertex_names, edge_names, name, about, start)
-    return World._of(core)
+def world_of(value: object) -> World:
+    """The value, which must be a world."""
+    if isinstance(value, World):
+        return value
+    raise WorldTypeError(
+        f"a world is a World, not {value!r}; load it with World.load(...) or make one with World(...)"
+    )
 
 
-def _names(doors: Doors) -> list[str]:
-    """The names of the vertices: their texts, with other letters for those that no name has."""
-    names = [re.sub(r"[\"'/\\\s]+", "_", str(vertex)).strip("_") for vertex in doors.vertices]
-    if "" in names:
-        names = [name or f"v{number}" for number, name in enumerate(names)]
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
+def _rebuilt(text: str, name: str, vertices: dict[Hashable, str]) -> World:
+    """A world from a world file in JSON, for pickle."""
+    (core,) = _core.World.read(Path(), text.encode())
+    return World._of(core.with_start(core.start, name, core.about), vertices)
+
+
+def _names(vertices: list[Hashable]) -> dict[Hashable, str]:
+    """The names of the vertices: their texts, with `_` for letters that no name in a world file has."""
+    names = {}
+    for number, vertex in enumerate(vertices):
+        text = str(vertex)
+        if not _core.is_name(text):
+            kept = "".join(letter if letter == " " or _core.is_name(letter) else "_" for letter in text)
+            text = re.sub("_+", "_", kept).strip("_ ") or f"v{number}"
+        names[vertex] = text
+    texts = list(names.values())
+    if len(set(texts)) < len(texts):
+        twice = next(text for text in texts if texts.count(text) > 1)
         raise WorldError(f"two vertices have the name {twice}")
     return names
-
-
-def _counts_from_one(permutation: Any) -> int:
-    """1 if the darts of a permutation are counted from 1, otherwise 0."""
-    if isinstance(permutation, str):
-        return int("0" not in re.findall(r"\d+", permutation))
-    cycles = getattr(permutation, "cycle_tuples", None)
-    values = cycles() if callable(cycles) else permutation
-    flat = [
-        int(number) for entry in values for number in (entry if isinstance(entry, (tuple, list)) else [entry])
-    ]
-    return int(0 not in flat)

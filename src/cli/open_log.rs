@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_model::marker::{self, Marker};
+use toposlam_model::marker::Marker;
 use toposlam_robot::{
-    conform::{Evidence, ExtractError},
+    conform::{Evidence, ExtractError, LogHead},
     log::{
         entries::Content,
         messages::Run,
@@ -152,9 +152,7 @@ impl OpenLog {
 
     /// The kind of marker in the log. The default is directional.
     pub(super) fn marker(&self) -> Result<&'static dyn Marker, CliError> {
-        let name = self.run.as_ref().map_or("", |run| &run.marker);
-        let name = if name.is_empty() { "directional" } else { name };
-        marker::named(name).map_err(|error| CliError::at("the log", error))
+        LogHead(self.run.as_ref()).marker().map_err(|error| CliError::at("the log", error))
     }
 
     /// How the robot of the log mapped, and within which limits, by the algorithm that is asked for if one is; without
@@ -164,21 +162,11 @@ impl OpenLog {
         path: &Path,
         option: Option<AlgorithmOption>,
     ) -> Result<RecordedSettings, CliError> {
-        let head = self.run.as_ref().map_or("", |run| &run.algorithm);
-        let recorded = match head {
-            "" => Ok(RecordedSettings::default()),
-            head => RecordedSettings::from_head(head),
-        };
-        match (option.map(AlgorithmOption::directional), recorded) {
-            (Some(algorithm), recorded) => {
-                Ok(recorded.unwrap_or_default().with_algorithm(algorithm))
-            }
-            (None, Ok(recorded)) => Ok(recorded),
-            (None, Err(_)) => {
-                let cause = format!("its algorithm `{head}` is unknown; use --algorithm");
-                Err(CliError::in_file(path, cause))
-            }
-        }
+        let settings =
+            LogHead(self.run.as_ref()).settings(option.map(AlgorithmOption::directional));
+        settings.map_err(|head| {
+            CliError::in_file(path, format!("its algorithm `{head}` is unknown; use --algorithm"))
+        })
     }
 
     /// The error for a topic map that does not fit its log.

@@ -154,6 +154,11 @@ async function win(page, file) {
   return { moves: folding.length, claims };
 }
 
+/** Answers the next question of the page. */
+function answerNext(page, answer) {
+  page.once("dialog", (dialog) => (answer ? dialog.accept() : dialog.dismiss()));
+}
+
 const press = async (page, keys) => {
   for (const key of keys) await page.keyboard.press(key);
 };
@@ -193,12 +198,27 @@ async function playLoops(page, file) {
   assert.equal(wrong[0], "Wrong map");
   assert.match(wrong[1], /^Your map is not the world: its v1 is several places, or one that is turned\.$/);
   assert.equal((await compared(page))[1][0], "You (wrong map)");
-  // After the end nothing moves.
+  // After the end nothing moves, and the page says so.
   await page.keyboard.press("0");
   assert.equal((await shown(page)).moves, "3 moves");
+  assert.equal((await shown(page)).status, "The run has ended. Restart it to try again.");
+  assert.ok(await page.locator(".status").isVisible());
+  assert.equal(await page.locator(".doors").isVisible(), false);
   await page.keyboard.press("r");
   const again = await shown(page);
   assert.deepEqual([again.result, again.worlds, again.moves], [false, 0, "0 moves"]);
+  // A key that is held counts once.
+  await page.keyboard.down("0");
+  await page.keyboard.down("0");
+  await page.keyboard.up("0");
+  assert.equal((await shown(page)).moves, "1 move");
+  // A run is discarded only if the person agrees.
+  answerNext(page, false);
+  await page.keyboard.press("r");
+  assert.equal((await shown(page)).moves, "1 move");
+  answerNext(page, true);
+  await page.keyboard.press("r");
+  assert.equal((await shown(page)).moves, "0 moves");
   // What the percepts contradict is refused.
   await press(page, ["f"]);
   assert.match((await shown(page)).status, /not complete: a door of v0 leads nowhere/);

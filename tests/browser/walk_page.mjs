@@ -123,7 +123,7 @@ async function walkByKeyboard(page) {
 async function tellApart(page) {
   const data = await readData(page);
   assert.ok(data.walk, "the page has no walk that distinguishes the worlds");
-  await page.getByRole("button", { name: "Play the walk that tells them apart" }).click();
+  await page.getByRole("button", { name: "Play the walk that distinguishes them" }).click();
   const rows = page.locator(".percepts tbody tr");
   await rows.nth(data.walk.length).waitFor({ timeout: 5000 + 2000 * data.walk.length });
   const now = await shown(page);

@@ -212,7 +212,7 @@ fn each_failure_has_its_cause_its_start_and_its_step() {
             "guessed",
             "{\"map\":[[[0,1],[0,0]]],\"pose\":[0,0]}",
             "guessed: it returned the right map after 0 moves, but there is another world in which it \
-             makes the same walk; the shortest walk that determines this one takes 1",
+             makes the same walk, and returns the same map",
         ),
     ];
     for (cause, answer, message) in answers {
@@ -234,6 +234,25 @@ fn each_failure_has_its_cause_its_start_and_its_step() {
     assert_eq!(failure["cause"], "ended");
     assert_eq!(failure["message"], "The explorer ended with exit code 0");
     assert_eq!((&failure["moves"], &failure["last_actions"]), (&json!(3), &json!([0, 1, 1])));
+}
+
+/// From an end of a chain with two edges, the explorer goes to the middle and back: as many moves as the
+/// certificate has. It never sees the other end.
+#[test]
+fn a_walk_that_is_long_enough_may_still_be_a_guess() {
+    let folder = folder("explorer_guess");
+    let text = "while read line; do case $line in\n\
+                *'\"degree\":1'*) echo '{\"door\":0}'; read line; echo '{\"door\":0}'; read line\n\
+                echo '{\"map\":[[[1,0]],[[0,0],[2,0]],[[1,1]]],\"pose\":[0,0]}';;\n\
+                *) echo '{\"give_up\":\"\"}';; esac; done\n";
+    let options = ["--class", "simple", "--edges", "2"];
+    let (code, lines) = check(&script(&folder, "back", text), &options);
+    assert_eq!((code, &lines[0]["mapped"]), (1, &json!(0)), "{lines:?}");
+    assert_eq!(lines[0]["causes"], json!({"gave-up": 1, "guessed": 1}));
+    // With an undirected marker it is not known whether it is one.
+    let options = [&options[..], &["--marker", "undirected"]].concat();
+    let (_, lines) = check(&script(&folder, "back", text), &options);
+    assert_eq!(lines[0]["causes"], json!({"gave-up": 1}), "{lines:?}");
 }
 
 #[cfg(unix)]

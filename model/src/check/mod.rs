@@ -8,6 +8,7 @@ mod every_way;
 mod explorer;
 mod flaw;
 mod folding_explorer;
+mod guess;
 mod judge;
 mod lazy;
 mod mapping_algorithm;
@@ -25,6 +26,7 @@ pub use every_way::every_way;
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
+pub use guess::determines_world;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
 pub use lazy::{
     Algorithm1Explorer, CheckPieces, EnumeratedStart, FinishedUnits, FoldingStepExplorer,

@@ -130,6 +130,17 @@ impl RunEvents {
         Ok(())
     }
 
+    /// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
+    #[must_use]
+    pub fn may_show_marker(&self) -> bool {
+        self.events.iter().any(|event| match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => {
+                arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
+            }
+            _ => false,
+        })
+    }
+
     /// The trace of the arrivals and doors. The id of an event is its index here. An arrival that does not
     /// record whether the marker was seen counts as one without it.
     ///

@@ -14,6 +14,7 @@ mod judgement;
 mod known_world;
 mod laser_events;
 mod laser_visit;
+mod log_head;
 mod marked_visits;
 mod measured_hallways;
 mod quirks;
@@ -41,6 +42,7 @@ pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::KnownWorld;
 pub use laser_events::LaserEvents;
+pub use log_head::{LogHead, MarkerNotShown, RESUMED};
 pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
 };

@@ -7,7 +7,7 @@ use toposlam_model::{
     trace::{AlgorithmMatch, MatchedChoices},
 };
 use toposlam_robot::{
-    conform::{Evidence, MeasuredHallways},
+    conform::{Evidence, LogHead, MeasuredHallways},
     record::RunEnding,
 };
 
@@ -144,7 +144,9 @@ impl<'j> FactFields<'j> {
             recorded: run.filter(|run| !run.world_hash.is_empty()).map(|run| Recorded {
                 world: &run.world,
                 start: &run.start,
-                same_world: known.as_ref().map(|known| !known.is_other_than_of(run)),
+                same_world: known
+                    .as_ref()
+                    .map(|known| !LogHead(Some(run)).is_of_other_world(&known.world.graph)),
             }),
             ending: judgement.events.end.as_ref().map(|end| Ending::of(&end.ending)),
             world: known.as_ref().map(|known| {

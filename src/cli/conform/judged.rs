@@ -8,13 +8,12 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
     marker::{Directional, Marker},
-    percept::Sighting,
 };
 use toposlam_robot::{
     budget::RunBudget,
     conform::{
-        CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun,
-        JudgeError, Judgement, Quirks, RunDriver, RunEvents, SensingProgress, extract, judge,
+        ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, JudgeError, Judgement,
+        LogHead, Quirks, RESUMED, RunDriver, SensingProgress, extract, judge,
     },
     run_settings::RecordedSettings,
 };
@@ -90,11 +89,7 @@ impl ConformArguments {
             Who::Anyone => RunDriver::Anyone,
         };
         if settings.is_resumed {
-            let path = path.display();
-            remark!(
-                "{path}: its robot went on from an earlier run, which is not in this log; its doors are \
-                 compared with no algorithm"
-            );
+            remark!("{}: {RESUMED}", path.display());
         }
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
@@ -116,11 +111,9 @@ impl ConformArguments {
             error => CliError::in_file(path, error),
         })?;
         let added = self.add_marker(path, &opened, &mut gathered, marker)?;
-        let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
-        if assumed && driver != RunDriver::Anyone && !shows_marker(&gathered.events) {
-            let needs = algorithm.in_words();
-            let cause = format!("no percept in it shows a marker, which {needs} needs");
-            return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
+        if self.marker.is_none() && driver != RunDriver::Anyone {
+            let checked = LogHead(run).check_marker(&gathered.events, algorithm);
+            checked.map_err(|cause| CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")))?;
         }
         let dart_bound = self.max_darts.unwrap_or(settings.dart_bound);
         let limits = (settings.budget, dart_bound);
@@ -202,14 +195,4 @@ fn not_judged(path: &Path, gathered: &ExtractedRun, error: JudgeError) -> CliErr
         }
         error => CliError::in_file(path, error),
     }
-}
-
-/// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
-fn shows_marker(events: &RunEvents) -> bool {
-    events.events.iter().any(|event| match &event.kind {
-        CheckedKind::Arrival { arrival, .. } => {
-            arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
-        }
-        _ => false,
-    })
 }

@@ -11,8 +11,8 @@ use toposlam_model::{
     world::{GraphWorld, State},
 };
 use toposlam_robot::{
-    conform::KnownWorld,
-    log::{messages::Run, world_hash},
+    conform::{KnownWorld, LogHead},
+    log::messages::Run,
     pose::Pose,
     truth::{JunctionTruth, angle},
 };
@@ -57,7 +57,7 @@ impl<'w> Known<'w> {
         let start = match start {
             Some(ANY) => None,
             Some(_) => Some(input::start_of(world, start)?),
-            None => run.and_then(|run| recorded_start(world, run)).or(world.start),
+            None => LogHead(run).start(world).or(world.start),
         };
         let graph = &world.graph;
         let states = match (lies, start) {
@@ -88,20 +88,6 @@ impl<'w> Known<'w> {
         KnownWorld { graph: &self.world.graph, states: self.states.clone() }
     }
 
-    /// Whether a log records another world.
-    pub(super) fn is_other_than_of(&self, run: &Run) -> bool {
-        let graph = &self.world.graph;
-        let recorded = &run.world_hash;
-        !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
-    }
-
-    /// A remark if the log was recorded in another world.
-    pub(super) fn other_world(&self, run: &Run) -> Option<String> {
-        let name = if run.world.is_empty() { "" } else { ", " };
-        self.is_other_than_of(run)
-            .then(|| format!("the log was recorded in another world{name}{}", run.world))
-    }
-
     /// A pose in words.
     pub(super) fn pose(&self, pose: Dart) -> String {
         format!("at {}, having come from {}", self.world.at_text(pose), self.world.leads_to(pose))
@@ -126,12 +112,6 @@ fn wherever_it_lies(
     }
     let with = |placed| poses.iter().map(move |&pose| State { pose, placed: Some(placed) });
     Ok(places.into_iter().flat_map(with).collect())
-}
-
-/// The start that a log records, if it was recorded in this world.
-fn recorded_start(world: &NamedWorld, run: &Run) -> Option<Dart> {
-    let start = world.start_from_text(&run.start).ok()?;
-    (world_hash(&world.graph, start) == run.world_hash).then_some(start)
 }
 
 /// The shapes of the junctions of a floor plan, from each of their entries.

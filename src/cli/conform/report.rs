@@ -16,7 +16,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence,
+        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, LogHead,
         MeasuredHallways, Quirks, ReachedLimit, RunDriver, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
@@ -71,9 +71,8 @@ impl Judged<'_> {
 
     fn remarks(&self, verdict: ConformVerdict) -> Vec<String> {
         let mut remarks = Vec::new();
-        let run = self.opened.run.as_ref();
-        remarks
-            .extend(self.known.as_ref().zip(run).and_then(|(known, run)| known.other_world(run)));
+        let head = LogHead(self.opened.run.as_ref());
+        remarks.extend(self.known.as_ref().and_then(|known| head.other_world(&known.world.graph)));
         if let Some(truncation) = self.opened.log.truncation() {
             remarks.push(format!("the log is {truncation}"));
         }

@@ -11,6 +11,36 @@ function drawn(name, attributes = {}, ...children) {
 }
 
 
+/** Shows and announces what happened. */
+function say(text) {
+  find(".status").textContent = text;
+}
+
+/** A button for an action: the number of a door, as a text, or a word. */
+function actionButton(action, onClick) {
+  const button = Object.assign(document.createElement("button"), { type: "button", textContent: action });
+  if (action === "0") button.textContent = "0 back";
+  if (/^\d+$/.test(action)) button.setAttribute("aria-label", action === "0" ? "door 0, back" : `door ${action}`);
+  button.addEventListener("click", onClick);
+  return button;
+}
+
+/** Does what a key means: `actionOf` returns an action for the event of the key, or nothing. */
+function onKey(actionOf) {
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // Space presses a focused button, as usual, and a list has its own keys.
+    if (event.target.closest("select") || (event.key === " " && event.target.closest("button"))) return;
+    const act = actionOf(event);
+    if (!act) return;
+    act();
+    event.preventDefault();
+  });
+}
+
+/** The door that a key means, as a text, or null. */
+const doorOfKey = ({ key }) => (/^\d$/.test(key) ? key : null);
+
 /** The smallest font size that is readable, in pixels. */
 const READABLE = 11;
 

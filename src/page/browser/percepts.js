@@ -1,4 +1,4 @@
-// The percepts of both robots: a row for each step, the newest first.
+// The percepts of one robot, or of two: a row for each step, the newest first.
 
 class Percepts {
   constructor(section) {
@@ -6,14 +6,18 @@ class Percepts {
     this.box = section.querySelector(".scroll");
   }
 
-  add(action, percepts) {
+  /** The number of rows. */
+  get length() {
+    return this.body.childElementCount;
+  }
+
+  add(action, [first, ...others]) {
     const row = document.createElement("tr");
-    const equal = percepts[0] === percepts[1];
-    const step = this.body.childElementCount;
-    for (const text of [step, action ?? "start", percepts[0], equal ? "=" : "≠", percepts[1]]) {
+    const compared = others.flatMap((other) => [other === first ? "=" : "≠", other]);
+    for (const text of [this.length, action ?? "start", first, ...compared]) {
       row.insertCell().textContent = text;
     }
-    row.classList.toggle("differs", !equal);
+    row.classList.toggle("differs", others.some((other) => other !== first));
     this.body.prepend(row);
     this.box.scrollTop = 0;
   }

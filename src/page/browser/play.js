@@ -14,10 +14,10 @@ let finished = false;
 const write = (selector, text) => {
   find(selector).textContent = text;
 };
-const say = (text) => write(".status", text);
 
 const here = new Here(find(".here"), go);
 const drawing = new MapDrawing(find(".drawing"), choose);
+const walk = new Percepts(find(".percepts"));
 
 function percept() {
   const [v, i] = truth;
@@ -119,7 +119,14 @@ function nameEarlier() {
   }
 }
 
+/** Begins again. Asks before it discards a run that has not ended. */
 function restart() {
+  const isDiscarded = !finished && doors.length > 0;
+  if (isDiscarded && !confirm(`Discard this run of ${movesText(doors.length)}?`)) return;
+  begin();
+}
+
+function begin() {
   truth = start;
   percepts = [percept()];
   doors = [];
@@ -127,9 +134,9 @@ function restart() {
   names = new Map([[0, "v0"]]);
   finished = false;
   find(".result").hidden = true;
-  find(".controls").hidden = false;
+  find(".doors").hidden = false;
   find(".solution .ground").replaceChildren();
-  find(".percepts tbody").replaceChildren();
+  walk.clear();
   drawing.clear();
   fold();
   show();
@@ -160,10 +167,11 @@ function finish() {
   find(".solution .ground").replaceChildren(find(".solution template").content.cloneNode(true));
   keepReadable(find(".solution svg"));
   find(".result").hidden = false;
-  find(".controls").hidden = true;
+  find(".doors").hidden = true;
   show();
   find("#result-heading").focus();
   find(".result").scrollIntoView();
+  say(`The run has ended. ${find("#result-heading").textContent}.`);
 }
 
 function rightText(proved) {
@@ -249,13 +257,8 @@ function showList() {
 }
 
 function showWalk() {
-  const body = find(".percepts tbody");
-  for (let step = body.childElementCount; step < percepts.length; step += 1) {
-    const row = document.createElement("tr");
-    for (const text of [step, step === 0 ? "start" : doors[step - 1], perceptText(percepts[step])]) {
-      row.insertCell().textContent = text;
-    }
-    body.prepend(row);
+  for (let step = walk.length; step < percepts.length; step += 1) {
+    walk.add(doors[step - 1], [perceptText(percepts[step])]);
   }
 }
 
@@ -263,14 +266,7 @@ function showWalk() {
 function showDoors(degree) {
   const row = find(".doors");
   const focused = [...row.children].indexOf(document.activeElement);
-  const buttons = [...Array(degree).keys()].map((door) => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = door === 0 ? "0 back" : door;
-    button.setAttribute("aria-label", door === 0 ? "door 0, back" : `door ${door}`);
-    button.addEventListener("click", () => go(door));
-    return button;
-  });
+  const buttons = [...Array(degree).keys()].map((door) => actionButton(String(door), () => go(door)));
   row.replaceChildren(...buttons);
   if (focused >= 0) buttons[Math.min(focused, degree - 1)].focus();
 }
@@ -331,12 +327,11 @@ find("#finish").addEventListener("click", finish);
 find("#restart").addEventListener("click", restart);
 
 const keys = { c: () => find("#place").focus(), w: withdraw, f: finish, r: restart };
-document.addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select")) return;
-  const deed = /^\d$/.test(event.key) ? () => go(Number(event.key)) : keys[event.key.toLowerCase()];
-  if (!deed) return;
-  deed();
-  event.preventDefault();
+onKey((event) => {
+  const door = doorOfKey(event);
+  const act = door === null ? keys[event.key.toLowerCase()] : () => go(Number(door));
+  // A key that is held counts once: each move costs.
+  return act && (event.repeat ? () => {} : act);
 });
 
-restart();
+begin();

@@ -184,15 +184,7 @@ if (last >= 0) {
   slider.max = last;
   slider.addEventListener("input", () => go(Number(slider.value)));
   for (const [id, deed] of Object.entries(deeds)) find(`#${id}`).addEventListener("click", deed);
-  document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    // Space presses a focused button, as usual, and a list has its own keys.
-    if (event.target.closest("select") || (event.key === " " && event.target.closest("button"))) return;
-    const deed = keyed(event);
-    if (!deed) return;
-    deed();
-    event.preventDefault();
-  });
+  onKey(keyed);
 
   const marks = find(".marks");
   marks.setAttribute("viewBox", `0 0 ${Math.max(last, 1)} 1`);

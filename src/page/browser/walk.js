@@ -29,10 +29,6 @@ const differ = ([a, b]) => a.percept !== b.percept;
 const shared = (action) => here().every((state) => state.actions.has(action));
 const called = (action) => (isDoor(action) ? `door ${action}` : action);
 
-function say(text) {
-  find(".status").textContent = text;
-}
-
 function stepText({ action, states }) {
   const [a, b] = states.map((state) => state.percept);
   const when = action === null ? "At the start" : `Step ${steps.length - 1}, ${called(action)}`;
@@ -138,12 +134,7 @@ const buttons = new Map();
 {
   const actions = new Set(data.sides.flatMap(({ states }) => states.flatMap((s) => [...s.actions.keys()])));
   for (const action of [...actions].sort((one, two) => order(one) - order(two) || (one < two ? 1 : -1))) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = action === "0" ? "0 back" : action;
-    if (isDoor(action)) button.setAttribute("aria-label", action === "0" ? "door 0, back" : called(action));
-    button.addEventListener("click", () => byHand(action));
-    buttons.set(action, button);
+    buttons.set(action, actionButton(action, () => byHand(action)));
   }
   find(".doors").append(...buttons.values());
 }
@@ -169,15 +160,10 @@ for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
   if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
 }
 
-document.addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  // Space presses a focused button, as usual.
-  if (event.key === " " && event.target.closest("button")) return;
+onKey((event) => {
   const meant = keys.find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
-  if (meant) meant[3]();
-  else if (/^\d$/.test(event.key)) byHand(event.key);
-  else return;
-  event.preventDefault();
+  const door = doorOfKey(event);
+  return meant?.[3] ?? (door === null ? null : () => byHand(door));
 });
 
 find("#random").addEventListener("click", randomWalk);

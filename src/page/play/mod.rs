@@ -17,8 +17,9 @@ use crate::{
 const PAGE: &str = include_str!("../browser/play.html");
 const STYLE: &str = include_str!("../browser/play.css");
 /// In the order of their dependencies; they share one scope.
-const SCRIPT: [&str; 6] = [
+const SCRIPT: [&str; 7] = [
     PAGE_SCRIPT,
+    include_str!("../browser/percepts.js"),
     include_str!("../browser/play_map.js"),
     include_str!("../browser/play_judge.js"),
     include_str!("../browser/play_drawing.js"),

@@ -3,6 +3,8 @@
 use thiserror::Error;
 use toposlam_model::world::Refused;
 
+use crate::cli::text::counted;
+
 /// What is wrong with a run. Its message is a clause without a subject: the explorer.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(super) enum ExplorerFault {
@@ -49,12 +51,12 @@ pub(super) enum ExplorerFault {
     /// The robot is elsewhere.
     #[error("returned the pose {believed}; the robot came in by dart {truly} of the map")]
     WrongPose { believed: String, truly: String },
-    /// It returned a right map too early.
+    /// It returned a right map after a walk that does not determine the world.
     #[error(
-        "guessed: it returned the right map after {moves} moves, but there is another world in which \
-         it makes the same walk; the shortest walk that determines this one takes {certificate}"
+        "guessed: it returned the right map after {}, but there is another world in which it makes the \
+         same walk, and returns the same map", counted(*moves as usize, "move")
     )]
-    Guessed { moves: u64, certificate: u64 },
+    Guessed { moves: u64 },
     /// An answer takes too long.
     #[error("did not read a percept and answer it within {seconds} s")]
     TimedOut { seconds: f64 },

@@ -4,10 +4,11 @@ use std::{collections::VecDeque, time::Duration};
 
 use toposlam_model::{
     ambiguity::Comparison,
-    check::{Flaw, judge_map},
+    check::{Flaw, determines_world, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Candidate,
     marker::Marker,
+    percept::Door,
     world::{Action, GraphWorld},
 };
 
@@ -60,6 +61,7 @@ impl ExplorerStart<'_> {
     ) -> Result<EndedRun, RunStopped> {
         let mut world = GraphWorld::with_marker(self.graph, self.marker, self.facing);
         let mut last = VecDeque::with_capacity(LAST_ACTIONS + 1);
+        let mut doors = Vec::new();
         let mut count = 0;
         let result = loop {
             let line = match process.ask(percept_line(world.sensed()), limits.timeout) {
@@ -69,7 +71,7 @@ impl ExplorerStart<'_> {
             };
             let action = match ExplorerAnswer::from_line(&line) {
                 Ok(ExplorerAnswer::Act(action)) => action,
-                Ok(ExplorerAnswer::Done(map)) => break self.judge(&map, &world, candidate),
+                Ok(ExplorerAnswer::Done(map)) => break self.judge(&map, &world, &doors, candidate),
                 Ok(ExplorerAnswer::GiveUp(reason)) => break Err(ExplorerFault::GaveUp { reason }),
                 Err(fault) => break Err(fault),
             };
@@ -84,15 +86,19 @@ impl ExplorerStart<'_> {
             if let Err(refused) = world.act(action) {
                 break Err(ExplorerFault::Refused { refused });
             }
+            if let Action::Take(door) = action {
+                doors.push(door);
+            }
         };
         Ok(EndedRun { moves: world.moves(), actions: last.into(), result })
     }
 
-    /// Judges the map and the robot's pose in it.
+    /// Judges the map and the robot's pose in it, after a walk through `doors`.
     fn judge(
         &self,
         reported: &ReportedMap,
         world: &GraphWorld<&dyn Marker>,
+        doors: &[Door],
         candidate: &mut Candidate,
     ) -> Result<(), ExplorerFault> {
         let map = reported.explored()?;
@@ -112,11 +118,9 @@ impl ExplorerStart<'_> {
                 return Err(ExplorerFault::WrongMap { difference });
             }
         }
-        match self.certificate {
-            Some(certificate) if world.moves() < certificate => {
-                Err(ExplorerFault::Guessed { moves: world.moves(), certificate })
-            }
-            _ => Ok(()),
+        match determines_world((graph, facing), self.marker, doors) {
+            Some(false) => Err(ExplorerFault::Guessed { moves: world.moves() }),
+            Some(true) | None => Ok(()),
         }
     }
 
