@@ -91,7 +91,7 @@ impl Judged<'_> {
         }
         let is_first = self.judgement.divergence.as_ref().is_some_and(|found| found.event == 0);
         let has_start = self.known.as_ref().is_some_and(|known| known.start.is_some());
-        if is_first && has_start && run.is_none() {
+        if is_first && has_start && self.opened.run.is_none() {
             remarks.push("the log may begin elsewhere: --start any tries every start".to_owned());
         }
         if let Some(event) = self.judgement.unrecognised {
