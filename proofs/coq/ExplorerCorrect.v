@@ -353,7 +353,7 @@ Lemma folding_explorer_spec bound :
        (right_answer answer r \/ answer = None /\ bound < 2 * m * (m + 1)) /\
        (only_short -> soon_strict -> k <= cost (6 * n * m * m + 2 * n * m + 2 * m))).
 Proof.
-rewrite /folding_explorer; set K := Knowledge _ _ _ _ _ _ _ _ _ _.
+rewrite /folding_explorer /known_at_start; set K := Knowledge _ _ _ _ _ _ _ _ _ _.
 set g := degree (facing W).
 have sz : size (with_vertex [::] g) = g by rewrite size_with_vertex.
 have g_gt0 : 0 < g := degree_gt0 _.

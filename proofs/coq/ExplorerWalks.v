@@ -177,7 +177,13 @@ Lemma contradicts_right x h : h < size S -> x.1 < size (trail K) -> contradicts 
 Proof.
 move=> h_lt x_lt contra same; have [at_lt atE] := be_in_trail be h_lt.
 have [f folded_f right] := fold_with_right (be_explains be) (be_classes be) x_lt at_lt (etrans same (esym atE)).
-move: contra; rewrite /contradicts folded_f => /negP; apply; rewrite map_inj_in_uniq ?filter_uniq ?iota_uniq //.
+move: contra; rewrite /contradicts folded_f => /orP[/negP|/hasP[p /(mem_passages (be_explains be)) ok /eqP own]]; last first.
+  have [from_lt to_lt edgeE] := passage_ends (be_explains be) ok.
+  have [_ fromE _] := standing_for_right (be_explains be) right from_lt.
+  have [_ toE _] := standing_for_right (be_explains be) right to_lt.
+  have := opposite_moves (image spots (from_dart (trail K) p)).
+  by rewrite -edgeE -toE -own fromE eqxx.
+apply; rewrite map_inj_in_uniq ?filter_uniq ?iota_uniq //.
 move=> d e; rewrite !mem_filter !mem_iota => /andP[/eqP d_first d_lt] /andP[/eqP e_first e_lt] same_root.
 rewrite -d_first -e_first; apply/eqP; rewrite -(same_vertex_known em d_lt e_lt).
 have [d_at <-] := be_in_trail be d_lt; have [e_at <-] := be_in_trail be e_lt.

@@ -140,10 +140,12 @@ Definition far_end (e : nat) : option trail_dart :=
 Definition is_refuted (e h : nat) : bool := (minn e h, maxn e h) \in refuted K.
 
 (** Whether the far end [x] of an edge can not be the dart [h] of the map: that would be a contradiction, or
-    would make two places of the map one. *)
+    would make two places of the map one, or a dart its own opposite. *)
 Definition contradicts (x : trail_dart) (h : nat) : bool :=
   if fold_with (trail K) (folding K) x (dart_in_trail h) is Some f then
+    let same := fun y z => standing_for (trail K) f y == standing_for (trail K) f z in
     ~~ uniq [seq (standing_for (trail K) f (dart_in_trail d)).1 | d <- iota 0 (size S) & vertex S d == d]
+    || has (fun p => same (from_dart (trail K) p) (to_dart (trail K) p)) (passages (trail K))
   else true.
 
 (** Whether it follows that the dart [x] of the trail is opposite to the dart [entry] of the map if the far end
@@ -371,12 +373,14 @@ Fixpoint explorer_actions bound (K : knowledge) : program (option (partial_map *
     explorer_actions bound' K'
   else Return None.
 
-(** At the marker the robot perceives [seen]: the map is its vertex, the trail one visit. The answer is the map
-    and the robot's pose in it. *)
+(** At the marker the robot perceives [seen]: the map is its vertex, the trail one visit. *)
+Definition known_at_start (seen : percept) : knowledge :=
+  Knowledge (with_vertex [::] seen.1) [seq (0, i) | i <- iota 0 seen.1] [::] [::] [:: ((0, 0), seen)] [:: (0, 0)]
+    (0, 0) 0 [::] 0.
+
+(** The answer is the map and the robot's pose in it. *)
 Definition folding_explorer bound (seen : percept) : program (option (partial_map * nat)) :=
-  explorer_actions bound
-    (Knowledge (with_vertex [::] seen.1) [seq (0, i) | i <- iota 0 seen.1] [::] [::] [:: ((0, 0), seen)] [:: (0, 0)]
-      (0, 0) 0 [::] 0).
+  explorer_actions bound (known_at_start seen).
 
 End Explorer.
 

@@ -2,10 +2,10 @@
     [MovableMarker.v]. Definitions only. Section 2.3. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec.
-From toposlam Require Program MovableMarker.
+From toposlam Require Import Spec Program.
+From toposlam Require MovableMarker.
 
-Import (coercions) Program.
+Import MovableMarker(handling_action, LeaveBy, PickUp, Drop).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -13,36 +13,33 @@ Unset Printing Implicit Defensive.
 
 (** From its percepts so far the robot decides by which door to leave, to pick up the marker or to drop it,
     or what to answer. It perceives its place again when it has picked up or dropped the marker. *)
-Inductive handling (A : Type) := LeaveBy of door | PickUp | Drop | Report of A.
+Inductive handling (A : Type) := Act of handling_action | Report of A.
 
-Arguments LeaveBy {A}.
-Arguments PickUp {A}.
-Arguments Drop {A}.
+Arguments Act {A}.
 
 Definition handling_strategy (A : Type) := seq percept -> handling A.
+
+(** The robot's pose and the place of the marker after an action. It cannot pick up a marker that does not lie there,
+    and cannot drop one that it does not carry. *)
+Definition handle (W : start) (e : handling_action) (pose : W) (lying : option W) : W * option W :=
+  match e with
+  | LeaveBy i => (traverse pose i, lying)
+  | PickUp => (pose, if lying is Some spot then if same_vertex pose spot then None else lying else lying)
+  | Drop => (pose, if lying is None then Some pose else lying)
+  end.
 
 Section Runs.
 
 Variables (A : Type) (robot : handling_strategy A) (W : start).
 
-(** The robot's pose and the place of the marker after a decision. It cannot pick up a marker that does not
-    lie there, and cannot drop one that it does not carry. *)
-Definition handle (d : handling A) (pose : W) (lying : option W) : W * option W :=
-  match d with
-  | LeaveBy i => (traverse pose i, lying)
-  | PickUp => (pose, if lying is Some spot then if same_vertex pose spot then None else lying else lying)
-  | Drop => (pose, if lying is None then Some pose else lying)
-  | Report _ => (pose, lying)
-  end.
-
 (** The robot's percepts, its pose and the place of the marker after a number of decisions. *)
 Fixpoint handling_situation (decisions : nat) : seq percept * (W * option W) :=
   if decisions is earlier.+1 then
     let: (past, (pose, lying)) := handling_situation earlier in
-    if robot past is Report _ then (past, (pose, lying))
-    else
-      let: (pose', lying') := handle (robot past) pose lying in
+    if robot past is Act e then
+      let: (pose', lying') := handle e pose lying in
       (rcons past (MovableMarker.perceive_lying lying' pose'), (pose', lying'))
+    else (past, (pose, lying))
   else
     ([:: MovableMarker.perceive_lying (Some (facing W)) (facing W)], (facing W, Some (facing W))).
 
@@ -60,26 +57,23 @@ Definition handling_maps (robot : handling_strategy embedded_graph) (W : start) 
 
 (** The decision of a robot that runs the program of [MovableMarker.v] with the default choices, after these
     percepts. *)
-Fixpoint obey_handling A (p : MovableMarker.handling_program A) (past : seq percept) : handling A :=
+Fixpoint obey_handling A (p : program_of handling_action A) (past : seq percept) : handling A :=
   match p with
-  | MovableMarker.Return a => Report a
-  | MovableMarker.Move i go => if past is seen :: later then obey_handling (go seen) later else LeaveBy i
-  | MovableMarker.PickUp go => if past is _ :: later then obey_handling go later else PickUp
-  | MovableMarker.Drop go => if past is _ :: later then obey_handling go later else Drop
-  | MovableMarker.Choose T _ default go => obey_handling (go default) past
+  | Return a => Report a
+  | Do e go => if past is seen :: later then obey_handling (go seen) later else Act e
+  | Choose T _ default go => obey_handling (go default) past
   end.
 
 (** For all choices: the program, begun at this pose and with this place of the marker, ends within a number
     of decisions: moves, pick-ups and drops. *)
-Fixpoint within (W : start) A (decisions : nat) (p : MovableMarker.handling_program A)
+Fixpoint within (W : start) A (decisions : nat) (p : program_of handling_action A)
     (pose : W) (lying : option W) : Prop :=
   match p with
-  | MovableMarker.Return _ => True
-  | MovableMarker.Move i go =>
+  | Return _ => True
+  | Do e go =>
       if decisions is others.+1 then
-        within others (go (MovableMarker.perceive_lying lying (traverse pose i))) (traverse pose i) lying
+        let: (pose', lying') := handle e pose lying in
+        within others (go (MovableMarker.perceive_lying lying' pose')) pose' lying'
       else False
-  | MovableMarker.PickUp go => if decisions is others.+1 then within others go pose None else False
-  | MovableMarker.Drop go => if decisions is others.+1 then within others go pose (Some pose) else False
-  | MovableMarker.Choose T allowed _ go => forall x, allowed x -> within decisions (go x) pose lying
+  | Choose T allowed _ go => forall x, allowed x -> within decisions (go x) pose lying
   end.

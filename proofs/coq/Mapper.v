@@ -33,7 +33,7 @@ Definition mapper : strategy start := fun past =>
 Fixpoint finish A (p : program A) (past : seq percept) : door + A * seq percept :=
   match p with
   | Return a => inr (a, past)
-  | Move i go => if past is seen :: later then finish (go seen) later else inl i
+  | Do i go => if past is seen :: later then finish (go seen) later else inl i
   | Choose T _ default go => finish (go default) past
   end.
 
@@ -83,7 +83,7 @@ Variables (A : Type) (M : marker) (W : start).
 Fixpoint heard (p : program A) (pose : W) : seq percept :=
   match p with
   | Return _ => [::]
-  | Move i go =>
+  | Do i go =>
       perceive M (traverse pose i) :: heard (go (perceive M (traverse pose i))) (traverse pose i)
   | Choose T _ default go => heard (go default) pose
   end.

@@ -3,7 +3,7 @@
     (1991). *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
+From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
 From toposlam Require Import Correct MovableMarker.
 
 Set Implicit Arguments.
@@ -20,7 +20,7 @@ Implicit Types (p : handling_program A) (pose : W) (Q R : A -> W -> marker_place
 Lemma always_handling_weaken p pose lying Q R : (forall a q l, Q a q l -> R a q l) ->
   always_handling p pose lying Q -> always_handling p pose lying R.
 Proof.
-move=> QR; elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying /=.
+move=> QR; elim: p pose lying => [a|[i||] go IH|T ok default go IH] pose lying /=.
 - exact: QR.
 - by case=> open_i all; split=> //; apply: IH.
 - by case: lying => // spot [here /IH].
@@ -31,10 +31,10 @@ Qed.
 (** What holds for all runs holds for some run. *)
 Lemma some_handling p pose lying : ~ always_handling p pose lying (fun _ _ _ => False).
 Proof.
-elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
+elim: p pose lying => [a|[i||] go IH|T ok default go IH] pose lying //=.
 - by case=> _ /IH.
 - by case: lying => [spot [_ /IH]|].
-- by case: lying => [spot [] | all]; case: (IH pose (Some pose)).
+- by case: lying => [spot [] | /IH].
 - by case=> okd /(_ default okd)/IH.
 Qed.
 
@@ -46,7 +46,7 @@ Lemma always_handling_bind p (next : A -> handling_program B) pose lying Q
   always_handling (let* a := p in next a) pose lying R.
 Proof.
 move=> pQ QR; suff: always_handling p pose lying (fun a q l => always_handling (next a) q l R).
-  elim: p pose lying {pQ} => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
+  elim: p pose lying {pQ} => [a|[i||] go IH|T ok default go IH] pose lying //=.
   - by case=> open_i all; split=> //; apply: IH.
   - by case: lying => // spot [here /IH].
   - by case: lying => // /IH.

@@ -2,7 +2,7 @@
     marker. Section 2.3, after Dudek, Jenkin, Milios and Wilkes (1991). *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
+From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
 From toposlam Require Import Correct MovableMarker MovableCorrect.
 From toposlam Require Handling.
 
@@ -15,7 +15,7 @@ Notation within := Handling.within.
 Lemma within_le (W : start) A k k' (p : handling_program A) (pose : W) (l : option W) :
   k <= k' -> within k p pose l -> within k' p pose l.
 Proof.
-elim: p k k' pose l => [a|i go IH|go IH|go IH|T ok default go IH] [|k] [|k'] pose l //= le;
+elim: p k k' pose l => [a|[i||] go IH|T ok default go IH] [|k] [|k'] pose l //= le;
   try exact: IH; by move=> all x /all; apply: IH.
 Qed.
 
@@ -28,10 +28,10 @@ Lemma within_bind (Q : A -> W -> option W -> Prop) k k' p (next : A -> handling_
   within k p pose l -> always_handling p pose l Q ->
   (forall a q l, Q a q l -> within k' (next a) q l) -> within (k + k') (let* a := p in next a) pose l.
 Proof.
-move=> p_k pQ nextQ; elim: p k pose l p_k pQ => [a|i go IH|go IH|go IH|T ok default go IH] k pose l /=.
+move=> p_k pQ nextQ; elim: p k pose l p_k pQ => [a|[i||] go IH|T ok default go IH] k pose l /=.
 - by move=> _ /nextQ; apply: within_le; apply: leq_addl.
 - by case: k => // k p_k [_ pQ]; apply: IH.
-- by case: k l => // k [spot|] // p_k [_ pQ]; apply: IH.
+- by case: k l => // k [spot|] //= p_k [here pQ]; rewrite here in p_k *; apply: (IH _ _ _ _ p_k pQ).
 - by case: k l => // k [spot|] // p_k pQ; apply: IH.
 by move=> p_k [_ pQ] x ok_x; apply: IH; [apply: p_k | apply: pQ].
 Qed.
@@ -40,7 +40,7 @@ Qed.
 Lemma within_then k k' p (next : A -> handling_program B) pose l :
   within k p pose l -> (forall a q l, within k' (next a) q l) -> within (k + k') (let* a := p in next a) pose l.
 Proof.
-move=> p_k next_k'; elim: p k pose l p_k => [a|i go IH|go IH|go IH|T ok default go IH] k pose l /=.
+move=> p_k next_k'; elim: p k pose l p_k => [a|[i||] go IH|T ok default go IH] k pose l /=.
 - by move=> _; apply: within_le (next_k' _ _ _); apply: leq_addl.
 - by case: k => // k p_k; apply: IH.
 - by case: k => // k p_k; apply: IH.
@@ -210,7 +210,8 @@ Lemma movable_within bound :
 Proof.
 have sz : size (with_vertex [::] (degree (facing W))) = degree (facing W) by rewrite size_with_vertex.
 rewrite add1n; suff: within (edges W * round_cost)
-    (explore_edges allowed bound (with_vertex [::] (degree (facing W))) 0) (facing W) None by [].
+    (explore_edges allowed bound (with_vertex [::] (degree (facing W))) 0) (facing W) None.
+  by rewrite /= same_vertex_refl.
 apply: (explore_edges_within bound (embeds_at_start W)); first by rewrite sz degree_gt0.
 by rewrite unexplored_at_start sz size_iota addnC.
 Qed.

@@ -2,11 +2,11 @@
     a robot that maps every simple world with a movable marker. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Algorithm1 Walks Arithmetic Complete.
+From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Complete.
 From toposlam Require Import MovableMarker MovableCorrect MovableCost.
 From toposlam Require Handling.
 
-Import Handling(handling, LeaveBy, Report, handling_strategy, handling_situation, handling_history, obey_handling).
+Import Handling(handling, Act, Report, handling_strategy, handling_situation, handling_history, obey_handling).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -16,17 +16,15 @@ Unset Printing Implicit Defensive.
     it. *)
 Definition drawing_handled (d : handling (option (partial_map * nat))) : handling located :=
   match d with
-  | LeaveBy i => LeaveBy i
-  | Handling.PickUp => Handling.PickUp
-  | Handling.Drop => Handling.Drop
-  | Report (Some (T, pose)) => if drawn T pose is Some map then Report map else Handling.Drop
-  | Report None => Handling.Drop
+  | Act e => Act e
+  | Report (Some (T, pose)) => if drawn T pose is Some map then Report map else Act Drop
+  | Report None => Act Drop
   end.
 
 (** The robot runs the algorithm with its default choices. It has made fewer rounds than it has percepts. *)
 Definition movable_mapper : handling_strategy located := fun past =>
   if past is first :: later then drawing_handled (obey_handling (movable short_paths (size past) first) later)
-  else Handling.Drop.
+  else Act Drop.
 
 (** * The limit makes no difference before it is reached *)
 
@@ -34,9 +32,7 @@ Definition movable_mapper : handling_strategy located := fun past =>
 Fixpoint finish A (p : handling_program A) (past : seq percept) : option (A * seq percept) :=
   match p with
   | Return a => Some (a, past)
-  | Move _ go => if past is seen :: later then finish (go seen) later else None
-  | PickUp go => if past is _ :: later then finish go later else None
-  | Drop go => if past is _ :: later then finish go later else None
+  | Do _ go => if past is seen :: later then finish (go seen) later else None
   | Choose T _ default go => finish (go default) past
   end.
 
@@ -45,25 +41,21 @@ Lemma obey_same A B (p : handling_program A) (next next' : A -> handling_program
      obey_handling (next a) later = obey_handling (next' a) later) ->
   obey_handling (let* a := p in next a) past = obey_handling (let* a := p in next' a) past.
 Proof.
-elim: p past => [a|i go IH|go IH|go IH|T ok default go IH] past /= same; first exact: same.
-- by case: past same => // seen past; apply: IH.
-- by case: past same => // seen past; apply: IH.
-- by case: past same => // seen past; apply: IH.
+elim: p past => [a|e go IH|T ok default go IH] past /= same; first exact: same.
+  by case: past same => // seen past; apply: IH.
 exact: IH.
 Qed.
 
 Lemma finish_bind A B (p : handling_program A) (next : A -> handling_program B) past :
   finish (let* a := p in next a) past =
   if finish p past is Some (a, later) then finish (next a) later else None.
-Proof. by elim: p past => [a|i go IH|go IH|go IH|T ok default go IH] [|seen past] /=. Qed.
+Proof. by elim: p past => [a|e go IH|T ok default go IH] [|seen past] /=. Qed.
 
 Lemma finish_le A (p : handling_program A) past a later :
   finish p past = Some (a, later) -> size later <= size past.
 Proof.
-elim: p past => [b|i go IH|go IH|go IH|T ok default go IH] past /=; first by case=> _ ->.
-- by case: past => // seen past /IH le; apply: leq_trans le (leqnSn _).
-- by case: past => // seen past /IH le; apply: leq_trans le (leqnSn _).
-- by case: past => // seen past /IH le; apply: leq_trans le (leqnSn _).
+elim: p past => [b|e go IH|T ok default go IH] past /=; first by case=> _ ->.
+  by case: past => // seen past /IH le; apply: leq_trans le (leqnSn _).
 exact: IH.
 Qed.
 
@@ -111,9 +103,7 @@ Qed.
 Section Obedient.
 
 Variables (A B : Type) (W : start) (report : handling A -> handling B) (robot : handling_strategy B).
-Hypothesis report_leave : forall i, report (LeaveBy i) = LeaveBy i.
-Hypothesis report_pick_up : report Handling.PickUp = Handling.PickUp.
-Hypothesis report_drop : report Handling.Drop = Handling.Drop.
+Hypothesis report_act : forall e, report (Act e) = Act e.
 
 Notation situation := (handling_situation robot W).
 
@@ -124,9 +114,9 @@ Lemma obedient p past n (pose : W) l K (Q : A -> W -> option W -> Prop) :
   exists a k,
     [/\ robot (handling_history robot W (n + k)) = report (Report a),
         Q a (situation (n + k)).2.1 (situation (n + k)).2.2, k <= K
-      & forall j i, n <= j -> robot (handling_history robot W j) = LeaveBy i -> i < degree (situation j).2.1].
+      & forall j i, n <= j -> robot (handling_history robot W j) = Act (LeaveBy i) -> i < degree (situation j).2.1].
 Proof.
-elim: p past n pose l K => [a|i go IH|go IH|go IH|T ok default go IH] past n pose l K at_n /=.
+elim: p past n pose l K => [a|[i||] go IH|T ok default go IH] past n pose l K at_n /=.
 - move=> q _ obeys reports; have [b reported] := reports a pose l q.
   have answered : robot past = Report b by have := obeys [::] isT; rewrite cats0 /= reported.
   exists a, 0; rewrite addn0 /handling_history at_n reported; split=> // j i /subnKC <-.
@@ -134,26 +124,26 @@ elim: p past n pose l K => [a|i go IH|go IH|go IH|T ok default go IH] past n pos
     by elim: (j - n) => [|k stays]; rewrite ?addn0 // addnS /= stays answered.
   by rewrite /= answered.
 - case: K => // K [open_i all] p_K obeys reports.
-  have does : robot past = LeaveBy i by have := obeys [::] isT; rewrite cats0 /= report_leave.
+  have does : robot past = Act (LeaveBy i) by have := obeys [::] isT; rewrite cats0 /= report_act.
   set seen := perceive_lying l (traverse pose i).
   have at_n1 : situation n.+1 = (rcons past seen, (traverse pose i, l)) by rewrite /= at_n does.
   have [|a [k [answered q k_le doors]]] := IH seen _ _ _ _ _ at_n1 all p_K _ reports.
     by move=> later le; rewrite cat_rcons obeys.
   exists a, k.+1; rewrite -addSnnS; split=> // j i'; rewrite leq_eqVlt => /predU1P[<-|]; last exact: doors.
   by rewrite /handling_history at_n /= does => -[<-].
-- case: K l at_n => // K [spot|] // at_n [here all] p_K obeys reports.
-  have does : robot past = Handling.PickUp by have := obeys [::] isT; rewrite cats0 /= report_pick_up.
+- case: K l at_n => // K [spot|] // at_n [here all] /=; rewrite here => p_K obeys reports.
+  have does : robot past = Act PickUp by have := obeys [::] isT; rewrite cats0 /= report_act.
   set seen := perceive_lying None pose.
   have at_n1 : situation n.+1 = (rcons past seen, (pose, None)) by rewrite /= at_n does /= here.
-  have [|a [k [answered q k_le doors]]] := IH _ _ _ _ _ at_n1 all p_K _ reports.
+  have [|a [k [answered q k_le doors]]] := IH seen _ _ _ _ _ at_n1 all p_K _ reports.
     by move=> later le; rewrite cat_rcons obeys.
   exists a, k.+1; rewrite -addSnnS; split=> // j i'; rewrite leq_eqVlt => /predU1P[<-|]; last exact: doors.
   by rewrite /handling_history at_n /= does.
 - case: K l at_n => // K [spot|] // at_n all p_K obeys reports.
-  have does : robot past = Handling.Drop by have := obeys [::] isT; rewrite cats0 /= report_drop.
+  have does : robot past = Act Drop by have := obeys [::] isT; rewrite cats0 /= report_act.
   set seen := perceive_lying (Some pose) pose.
   have at_n1 : situation n.+1 = (rcons past seen, (pose, Some pose)) by rewrite /= at_n does.
-  have [|a [k [answered q k_le doors]]] := IH _ _ _ _ _ at_n1 all p_K _ reports.
+  have [|a [k [answered q k_le doors]]] := IH seen _ _ _ _ _ at_n1 all p_K _ reports.
     by move=> later le; rewrite cat_rcons obeys.
   exists a, k.+1; rewrite -addSnnS; split=> // j i'; rewrite leq_eqVlt => /predU1P[<-|]; last exact: doors.
   by rewrite /handling_history at_n /= does.
@@ -167,7 +157,7 @@ Lemma movable_mapper_maps (W : start) : simple W ->
     let: (pose, lying) := (handling_situation movable_mapper W n).2 in
     [/\ movable_mapper (handling_history movable_mapper W n) = Report map, lying = None,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (robot map) = pose],
-        forall j i, movable_mapper (handling_history movable_mapper W j) = LeaveBy i ->
+        forall j i, movable_mapper (handling_history movable_mapper W j) = Act (LeaveBy i) ->
           i < degree (handling_situation movable_mapper W j).2.1
       & n <= 1 + edges W * round_cost W].
 Proof.
@@ -177,8 +167,8 @@ pose first := perceive_lying (Some (facing W)) (facing W).
 have spec := movable_marker_answers_right short simple_W (leq_addr K.+1 (edges W)).
 have p_K := movable_within short simple_W (fun S path => id) bound.
 have at_first : handling_situation movable_mapper W 0 = ([:: first], (facing W, Some (facing W))) by [].
-have [//|//|//|later later_le|answer r m [_ [T [p [map [-> _ drawn_map _]]]]]|] :=
-  @obedient _ _ _ drawing_handled _ _ _ _ _ _ _ _ _ _ _ at_first spec p_K.
+have [//|later later_le|answer r m [_ [T [p [map [-> _ drawn_map _]]]]]|] :=
+  @obedient _ _ _ drawing_handled _ _ _ _ _ _ _ _ _ at_first spec p_K.
 - rewrite -[LHS]/(drawing_handled (obey_handling (movable short_paths (size later).+1 first) later)).
   rewrite (@same_movable _ bound) //.
   by rewrite /bound addnS ltnS (leq_trans later_le) ?leq_addl.

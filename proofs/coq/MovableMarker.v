@@ -5,11 +5,7 @@
     *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Algorithm1.
-From toposlam Require Program.
-
-Import (coercions) Program.
-Import Program(options, such_that, among).
+From toposlam Require Import Spec Program Algorithm1.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -17,40 +13,17 @@ Unset Printing Implicit Defensive.
 
 (** * Programs of a robot that handles a marker *)
 
-(** As in [Program.v]; the robot may also pick up the marker, carry it and drop it. Of that file only the
-    options are imported: its other names are defined here for such a marker. *)
-Inductive handling_program (A : Type) : Type :=
-  | Return of A
-  | Move of door & (percept -> handling_program A)
-  | PickUp of handling_program A
-  | Drop of handling_program A
-  | Choose (T : Type) of options T & T & (T -> handling_program A).
+(** Besides leaving by a door, the robot may pick up the marker, carry it and drop it. *)
+Inductive handling_action := LeaveBy of door | PickUp | Drop.
 
-Fixpoint bind A B (first : handling_program A) (next : A -> handling_program B) : handling_program B :=
-  match first with
-  | Return a => next a
-  | Move i go => Move i (fun seen => bind (go seen) next)
-  | PickUp go => PickUp (bind go next)
-  | Drop go => Drop (bind go next)
-  | Choose T allowed default go => Choose allowed default (fun x => bind (go x) next)
-  end.
+Notation handling_program := (program_of handling_action).
 
-Notation "'let*' x := first 'in' next" := (bind first (fun x => next))
-  (at level 200, x name, first at level 100, next at level 200, right associativity).
-Notation "first ;; next" := (bind first (fun=> next))
-  (at level 100, next at level 200, right associativity).
-
-Definition move (i : door) : handling_program percept := Move i (@Return percept).
-Definition pick_up : handling_program unit := PickUp (Return tt).
-Definition drop : handling_program unit := Drop (Return tt).
-Definition choose T (allowed : T -> bool) (default : T) : handling_program T :=
-  Choose (such_that allowed) default (@Return T).
-Definition choose_among (T : eqType) (xs : seq T) (default : T) : handling_program T :=
-  Choose (among xs) default (@Return T).
+Definition move (i : door) : handling_program percept := do_action (LeaveBy i).
+Definition pick_up : handling_program percept := do_action PickUp.
+Definition drop : handling_program percept := do_action Drop.
 
 (** Moves by one door after the other, for any percepts. *)
-Fixpoint moves (doors : seq door) : handling_program unit :=
-  if doors is i :: others then (move i ;; moves others) else Return tt.
+Definition moves (doors : seq door) : handling_program unit := do_all [seq LeaveBy i | i <- doors].
 
 (** * Worlds with such a marker *)
 
@@ -74,12 +47,14 @@ Fixpoint always_handling A (p : handling_program A) (pose : W) (lying : marker_p
     (Q : A -> W -> marker_place -> Prop) : Prop :=
   match p with
   | Return a => Q a pose lying
-  | Move i go =>
+  | Do (LeaveBy i) go =>
       i < degree pose /\
       always_handling (go (perceive_lying lying (traverse pose i))) (traverse pose i) lying Q
-  | PickUp go =>
-      if lying is Some spot then same_vertex pose spot /\ always_handling go pose None Q else False
-  | Drop go => if lying is None then always_handling go pose (Some pose) Q else False
+  | Do PickUp go =>
+      if lying is Some spot then same_vertex pose spot /\ always_handling (go (perceive_lying None pose)) pose None Q
+      else False
+  | Do Drop go =>
+      if lying is None then always_handling (go (perceive_lying (Some pose) pose)) pose (Some pose) Q else False
   | Choose T allowed default go =>
       allowed default /\ forall x, allowed x -> always_handling (go x) pose lying Q
   end.

@@ -256,11 +256,12 @@ suff [] : handling_history robot V n = handling_history robot W n /\
            R_place (handling_situation robot V n).2.2 (handling_situation robot W n).2.2) by [].
 rewrite /handling_history; elim: n => [|n] /=; first by rewrite (R_perceive (q := facing W) (l' := Some (facing W))).
 case: (handling_situation _ V n) (handling_situation _ W n) => [past [p l]] [past' [q l']] /= [<- [pq same_l]].
-have next_l : R_place (handle (robot past) p l).2 (handle (robot past) q l').2.
-  by case: (robot past) => //=; case: l l' same_l => [s|] [t|] //= st; rewrite (R_vertex pq st); case: ifP.
-have next_p : R (handle (robot past) p l).1 (handle (robot past) q l').1.
-  by case: (robot past) => [i|||a] //=; apply: R_traverse.
-case: (robot past) next_l next_p => [i|||a] next_l next_p; split=> //; by congr rcons; apply: R_perceive.
+case: (robot past) => [e|a] //=.
+have next_l : R_place (handle e p l).2 (handle e q l').2.
+  by case: e => //=; case: l l' same_l => [s|] [t|] //= st; rewrite (R_vertex pq st); case: ifP.
+have next_p : R (handle e p l).1 (handle e q l').1 by case: e {next_l} => [i||] //=; apply: R_traverse.
+case: (handle e p l) (handle e q l') next_l next_p => [p' m] [q' m'] /= next_l next_p; split=> //.
+by congr rcons; apply: R_perceive.
 Qed.
 
 End Handling.

@@ -16,17 +16,19 @@ Record options (T : Type) := Options { allows :> T -> bool; listed : seq T }.
 Definition such_that T (allowed : T -> bool) : options T := Options allowed [::].
 Definition among (T : eqType) (xs : seq T) : options T := Options (fun x => x \in xs) xs.
 
-(** Return an answer; move by a door, and continue with the percept behind it; or choose anything that is
-    allowed, the default unless stated otherwise. *)
-Inductive program (A : Type) : Type :=
+(** A program of a robot that can do the actions [E], and then perceives its place. Return an answer; do an action, and
+    continue with the percept after it; or choose anything that is allowed, the default unless stated otherwise. *)
+Inductive program_of (E A : Type) : Type :=
   | Return of A
-  | Move of door & (percept -> program A)
-  | Choose (T : Type) of options T & T & (T -> program A).
+  | Do of E & (percept -> program_of E A)
+  | Choose (T : Type) of options T & T & (T -> program_of E A).
 
-Fixpoint bind A B (first : program A) (next : A -> program B) : program B :=
+Arguments Return {E A}.
+
+Fixpoint bind E A B (first : program_of E A) (next : A -> program_of E B) : program_of E B :=
   match first with
   | Return a => next a
-  | Move i go => Move i (fun seen => bind (go seen) next)
+  | Do e go => Do e (fun seen => bind (go seen) next)
   | Choose T allowed default go => Choose allowed default (fun x => bind (go x) next)
   end.
 
@@ -35,15 +37,25 @@ Notation "'let*' x := first 'in' next" := (bind first (fun x => next))
 Notation "first ;; next" := (bind first (fun=> next))
   (at level 100, next at level 200, right associativity).
 
-Definition move (i : door) : program percept := Move i (@Return percept).
-Definition choose T (allowed : T -> bool) (default : T) : program T :=
-  Choose (such_that allowed) default (@Return T).
-Definition choose_among (T : eqType) (xs : seq T) (default : T) : program T :=
-  Choose (among xs) default (@Return T).
+Definition do_action E (e : E) : program_of E percept := Do e Return.
+Definition choose {E} T (allowed : T -> bool) (default : T) : program_of E T :=
+  Choose (such_that allowed) default Return.
+Definition choose_among {E} (T : eqType) (xs : seq T) (default : T) : program_of E T :=
+  Choose (among xs) default Return.
+
+(** Some actions, one after the other, for any percepts. *)
+Fixpoint do_all E (actions : seq E) : program_of E unit :=
+  if actions is e :: others then (do_action e ;; do_all others) else Return tt.
+
+(** * A robot that only moves *)
+
+(** Its actions are the doors by which it leaves. *)
+Notation program := (program_of door).
+
+Definition move (i : door) : program percept := do_action i.
 
 (** Moves by one door after the other, for any percepts. *)
-Fixpoint moves (doors : seq door) : program unit :=
-  if doors is i :: others then (move i ;; moves others) else Return tt.
+Definition moves (doors : seq door) : program unit := do_all doors.
 
 (** For all choices: the program, begun at this pose, takes only doors that exist, and ends with an
     answer, at a pose, after a number of moves, for which [Q] holds. The default is always allowed, so
@@ -51,7 +63,7 @@ Fixpoint moves (doors : seq door) : program unit :=
 Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> W -> nat -> Prop) : Prop :=
   match p with
   | Return a => Q a pose 0
-  | Move i go =>
+  | Do i go =>
       i < degree pose /\
       always M (go (perceive M (traverse pose i))) (traverse pose i)
         (fun a pose' moves => Q a pose' moves.+1)
@@ -63,7 +75,7 @@ Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> 
 Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
   match p with
   | Return a => Answer a
-  | Move i go => if past is seen :: later then obey (go seen) later else Leave i
+  | Do i go => if past is seen :: later then obey (go seen) later else Leave i
   | Choose T _ default go => obey (go default) past
   end.
 

@@ -1,5 +1,6 @@
-(** A robot that maps every world comes back to the marker m - n + 1 times. Otherwise a world of twice the size
-    has the same percepts: a double cover in which each return ends on the sheet of the marker. *)
+(** A walk that determines its world comes back to the marker m - n + 1 times, and so does a robot that maps every
+    world. Otherwise a world of twice the size has the same percepts: a double cover in which each return ends on the
+    sheet of the marker. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Folding Walks Arithmetic Bisimulation Parts Complete Moves.
@@ -152,11 +153,9 @@ Proof. by elim: doors p => //= i doors IH p; rewrite IH addbACA. Qed.
 
 Section Counting.
 
-Variables (robot : strategy start) (W : start) (n : nat) (answer : start).
-Hypothesis maps_all : forall W, maps_start directional robot W.
-Hypothesis answered : robot (history robot directional W n) = Answer answer.
-
-Let doors := doors_taken robot directional W n.
+(** A walk that determines its world. *)
+Variables (W : start) (doors : seq door).
+Hypothesis determined : forall V : start, sees V doors = sees W doors -> isomorphic_starts V W.
 
 Definition coming_back : {set 'I_(size doors)} :=
   [set k : 'I_(size doors) | same_vertex (walk (facing W) (take k.+1 doors)) (facing W)].
@@ -278,7 +277,7 @@ have [crossed_over|apart] := boolP (connect (fun x y => (y == cover_opposite c x
   (facing W, false) (facing W, true)).
   have one_piece := cover_connected c_opposite crossed_over.
   have [f [iso _]] : isomorphic_starts (cover c_opposite one_piece) W.
-    apply: mapped_alike answered _ => //; apply: cover_sees => k lt near.
+    apply/determined/cover_sees => k lt near.
     by rewrite crossings_add -!/(crossed _ _) (odd_returns_all g_far h_far same lt near) addbb.
   by case: (cover_not_isomorphic (ex_intro _ f iso)).
 have sym := fconnect_sym (@clockwise_injective W).
@@ -334,15 +333,24 @@ Qed.
 
 End Counting.
 
+(** The walk of a robot that maps every world determines its world. *)
+Lemma robot_determined (robot : strategy start) (W : start) n answer :
+  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  let doors := doors_taken robot directional W n in
+  forall V : start, sees V doors = sees W doors -> isomorphic_starts V W.
+Proof. by move=> maps_all answered doors V; apply: mapped_alike answered. Qed.
+
 (** With all edges: the marked vertex is near, and all returns may be far. *)
 Lemma returns_needed (robot : strategy start) (W : start) n answer :
   (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof.
-move=> maps_all answered; have needed := @far_returns_needed robot W n answer maps_all answered predT (fun=> erefl).
+move=> maps_all answered; have determined := robot_determined maps_all answered.
+set doors := doors_taken _ _ _ _ in determined *.
+have needed := @far_returns_needed W doors determined predT (fun=> erefl).
 have all_edges : far_edges (W := W) predT = edges W.
   by rewrite -card_edge_roots; apply: eq_card => d; rewrite !inE andbT.
-have some_returns : #|far_returns robot (W := W) n predT| <= returns W (doors_taken robot directional W n).
+have some_returns : #|far_returns doors (W := W) predT| <= returns W doors.
   by rewrite -card_coming_back; apply/subset_leq_card/subsetP=> k; rewrite inE => /andP[].
 have others : far_vertices (W := W) predT <= #|vertex_roots W|.
   apply/subset_leq_card/subsetP=> d; rewrite !inE => /andP[-> away]; rewrite andbT.
@@ -368,11 +376,7 @@ Qed.
 
 Section Cost.
 
-Variables (robot : strategy start) (W : start) (n : nat).
-
-Let doors := doors_taken robot directional W n.
-
-Variables (far : pred W) (depth : nat).
+Variables (W : start) (doors : seq door) (far : pred W) (depth : nat).
 Hypothesis far_opposite : forall d, far (opposite d) = far d.
 Hypothesis far_deep : forall ds d, same_vertex (walk (facing W) ds) d -> far d -> depth <= size ds.
 
@@ -390,8 +394,8 @@ Let walk_between a b : a <= b ->
   walk (facing W) (take b doors) = walk (walk (facing W) (take a doors)) (drop a (take b doors)).
 Proof. by move=> le; rewrite -walk_cat -[take a doors](take_take le) cat_take_drop. Qed.
 
-Lemma far_return_apart (k : 'I_(size doors)) : k \in far_returns robot n far ->
-  2 * depth <= k /\ forall k' : 'I_(size doors), k' \in coming_back robot W n -> k' < k -> k' + (2 * depth).+1 <= k.
+Lemma far_return_apart (k : 'I_(size doors)) : k \in far_returns doors far ->
+  2 * depth <= k /\ forall k' : 'I_(size doors), k' \in coming_back W doors -> k' < k -> k' + (2 * depth).+1 <= k.
 Proof.
 rewrite inE => /andP[]; rewrite inE => back_k /existsP[j /and3P[j_k far_j /forallP none]].
 have late : depth <= k - j.
@@ -417,17 +421,17 @@ have := early k'.+1 k'_j; rewrite same_vertex_sym; move: back_k'; rewrite inE =>
 by rewrite mul2n -addnn; arithmetic.
 Qed.
 
-Lemma far_returns_cost : (2 * depth).+1 * #|far_returns robot n far| <= size doors.
+Lemma far_returns_cost : (2 * depth).+1 * #|far_returns doors far| <= size doors.
 Proof.
 pose f (x : 'I_(size doors) * 'I_(2 * depth).+1) : 'I_(size doors) :=
   Ordinal (leq_ltn_trans (leq_subr x.2 x.1) (ltn_ord x.1)).
 have apart (k k' : 'I_(size doors)) (i i' : 'I_(2 * depth).+1) :
-    k \in far_returns robot n far -> k' \in far_returns robot n far -> k' < k -> k - i <> k' - i'.
+    k \in far_returns doors far -> k' \in far_returns doors far -> k' < k -> k - i <> k' - i'.
   move=> /far_return_apart[_ gap] far_k' lt same; have := gap k'; rewrite lt.
-  have -> : k' \in coming_back robot W n by move: far_k'; rewrite inE => /andP[].
+  have -> : k' \in coming_back W doors by move: far_k'; rewrite inE => /andP[].
   have i_lt := ltn_ord i; move=> /(_ erefl erefl) le; have le' := leq_subr i' k'.
   by arithmetic.
-have f_inj : {in setX (far_returns robot n far) setT &, injective f}.
+have f_inj : {in setX (far_returns doors far) setT &, injective f}.
   move=> [k i] [k' i'] /setXP[/= far_k _] /setXP[/= far_k' _] /(congr1 val) /= same.
   have [lt|lt|eq_k] := ltngtP k k'.
   - by case: (apart k' k i' i far_k' far_k lt).
@@ -449,6 +453,7 @@ Lemma far_cycles_cost (robot : strategy start) (W : start) n answer (far : pred 
   (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).
 Proof.
 move=> maps_all answered far_opposite far_deep.
-apply: leq_trans (@far_returns_cost robot W n far depth far_opposite far_deep); rewrite addn1 leq_mul2l leq_subLR /=.
-exact: (far_returns_needed maps_all answered far_opposite).
+set doors := doors_taken _ _ _ _.
+apply: leq_trans (@far_returns_cost W doors far depth far_opposite far_deep); rewrite addn1 leq_mul2l leq_subLR /=.
+exact: (far_returns_needed (robot_determined maps_all answered) far_opposite).
 Qed.

@@ -1,13 +1,14 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v] and [FoldingExplorer.v] define the terms; the
-    proofs are in the other files. *)
+    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding FoldingExplorer Markers Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions Markers
+  Handling.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect.
+  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect CertificateNeeded CertificateAttained.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -352,7 +353,7 @@ Theorem movable_marker_locates :
     let: (pose, lying) := (handling_situation robot W decisions).2 in
     [/\ robot (handling_history robot W decisions) = Report map, lying = None,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (handling_history robot W j) = LeaveBy i ->
+        forall j i, robot (handling_history robot W j) = Act (MovableMarker.LeaveBy i) ->
           i < degree (handling_situation robot W j).2.1
       & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
 Proof.
@@ -562,6 +563,27 @@ split=> // robot maps_all n answer answered.
 by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
 Qed.
 
+(** In every world there is a walk with a complete folded trail that has as many moves as the formula of the
+    certificate says. Paper: beyond 2.3. *)
+Theorem certificate_attained (W : start) :
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+Proof. exact: CertificateAttained.certificate_attained. Qed.
+
+(** No walk with a complete folded trail has fewer moves. Paper: beyond 2.3. *)
+Theorem certificate_shortest (W : start) (doors : seq door) :
+  complete doors (sees W doors) -> certificate_length W <= size doors.
+Proof. exact: CertificateAttained.certificate_shortest. Qed.
+
+(** So a robot that maps every world makes at least as many moves in each. Paper: beyond 2.3. *)
+Theorem certificate_needed (robot : strategy start) :
+  (forall W, maps_start directional robot W) ->
+  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  certificate_length W <= size (doors_taken robot directional W n).
+Proof.
+move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed.
+exact: Returns.robot_determined answered.
+Qed.
+
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
     darts it explores and hypotheses it tests, by any ways through the map and its trail, and whenever its tests
     become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
@@ -595,6 +617,15 @@ Theorem folding_explorer_cost (W : start) (bound : nat) :
   always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
 Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
+
+(** The explorer that is compared with the running one, whose actions are given from outside, is the folding
+    explorer: what always holds for the folding explorer holds for it, as long as the actions are allowed. Paper:
+    beyond 2.3. *)
+Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
+    (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
+  always M (folding_explorer allowed patience bound seen) pose Q ->
+  always_guided M (guided_explorer allowed patience bound seen) pose Q.
+Proof. exact: GivenActions.always_guided_actions. Qed.
 
 (** * Maps that can be checked *)
 

@@ -10,7 +10,7 @@ use toposlam_model::driving::odometry::Odometry;
 use toposlam_robot::{
     conform::{EventSource, LaserEvents},
     evaluation::laser::{
-        corridor_world::CorridorWorld,
+        corridor_world::{BuildingKind, CorridorWorld},
         walk::{LaserWalk, WalkStep},
     },
     simulator::{LaserScanner, ScannedBuilding, ScannerParams},
@@ -29,7 +29,7 @@ fn scanner(world: &CorridorWorld) -> LaserScanner {
 
 /// The scans of a walk: one each 0.25 m, at the speed of the robot two in a second.
 fn scans() -> Vec<(Scan, Odometry)> {
-    let world = CorridorWorld::random(1);
+    let world = CorridorWorld::random(BuildingKind::Mixed, 1);
     let scanner = scanner(&world);
     let walk = LaserWalk::random(&world, 8, 0.0, 1);
     let scan = |(number, step): (usize, &WalkStep)| {
@@ -64,7 +64,7 @@ fn places(bencher: Bencher) {
 /// Simulated scans.
 #[divan::bench(sample_count = 5)]
 fn simulated(bencher: Bencher) {
-    let world = CorridorWorld::random(1);
+    let world = CorridorWorld::random(BuildingKind::Mixed, 1);
     let scanner = scanner(&world);
     let walk = LaserWalk::random(&world, 2, 0.0, 1);
     bencher.counter(ItemsCount::new(walk.steps.len())).bench(|| {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{PathExecution, Standing, Step},
+        algorithm2::{Command, PathExecution, Standing, Step},
         scene::{Scene, wrapped},
     },
     mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured},
@@ -262,18 +262,22 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Ok(Step::Arrived(_)) | Err(_) => None,
             };
             self.emit(EventKind::Command { state: path.state(), command });
-            let command = match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
+            match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
                 Step::Arrived(standing) => return Ok(standing),
-                Step::Go(command) => command,
-            };
-            if command.turn != 0.0 {
-                self.robot.turn(command.turn).map_err(|error| self.robot_error(error))?;
-            }
-            if command.forward != 0.0 {
-                self.metres += command.forward.abs();
-                self.robot.forward(command.forward).map_err(|error| self.robot_error(error))?;
+                Step::Go(command) => self.carry_out(command)?,
             }
         }
+    }
+
+    fn carry_out(&mut self, command: Command) -> Result<(), ExplorerError> {
+        if command.turn != 0.0 {
+            self.robot.turn(command.turn).map_err(|error| self.robot_error(error))?;
+        }
+        if command.forward != 0.0 {
+            self.metres += command.forward.abs();
+            self.robot.forward(command.forward).map_err(|error| self.robot_error(error))?;
+        }
+        Ok(())
     }
 
     fn robot_error(&self, error: RobotError) -> ExplorerError {

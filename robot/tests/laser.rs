@@ -10,6 +10,7 @@ use toposlam_robot::{
     record::{EventKind, Frame},
 };
 use toposlam_vision::laser::{
+    drift::{DriftMeter, ROUNDS},
     params::LaserParams,
     scan::{Scan, ScanGeometry, ScannerPose},
 };
@@ -97,13 +98,25 @@ fn events_of_scanner(
     drift: f64,
 ) -> RunEvents {
     let mut inferred = LaserEvents::new(*params);
+    for (number, (scan, odometry)) in drive(degrees, corridors, way, drift).iter().enumerate() {
+        let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
+        inferred.see(source, scan, odometry);
+    }
+    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+}
+
+/// The scans of that robot, and its odometry.
+fn drive(
+    degrees: u32,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> Vec<(Scan, Odometry)> {
+    let mut scans = Vec::new();
     let (mut believed, mut driven) = (way[0], 0.0);
     let mut heading = f64::NAN;
-    let mut number = 0;
     let mut see = |truth: Odometry, believed: Odometry| {
-        number += 1;
-        let source = EventSource { time: number * 1_000_000_000, ..EventSource::default() };
-        inferred.see(source, &scan(corridors, &truth, degrees), &believed);
+        scans.push((scan(corridors, &truth, degrees), believed));
     };
     for leg in way.windows(2) {
         let off = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
@@ -133,7 +146,7 @@ fn events_of_scanner(
             see(Odometry { position, heading }, Odometry { position: believed, heading: drifted });
         }
     }
-    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+    scans
 }
 
 /// The degree of each junction and the door taken, with `None` for turning back and for what is undecided.
@@ -361,6 +374,64 @@ fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand()
         marked.retain(|visit| visit.0 >= 3);
         assert_eq!(marked.len(), count);
         are_as_marked(name, &marked, &events_of(&scans, &LaserParams::default()));
+    }
+}
+
+/// Odometry whose heading drifts by so many degrees in 10 m.
+fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<PlacedScan> {
+    let drift = drift.to_radians() / 10.0;
+    let mut last: Option<([f64; 2], [f64; 2])> = None;
+    let mut turned = 0.0;
+    let moved = |(scan, odometry): &PlacedScan| {
+        let Odometry { position, heading } = *odometry;
+        let (before, moved) = last.unwrap_or((position, position));
+        let off = [0, 1].map(|axis| position[axis] - before[axis]);
+        let length = off[0].hypot(off[1]);
+        let (sine, cosine) = (turned + drift * length / 2.0).sin_cos();
+        turned += drift * length;
+        let moved = [
+            moved[0] + off[0] * cosine - off[1] * sine,
+            moved[1] + off[0] * sine + off[1] * cosine,
+        ];
+        last = Some((position, moved));
+        (scan.clone(), Odometry { position: moved, heading: heading + turned })
+    };
+    scans.iter().map(moved).collect()
+}
+
+fn measured_drift<'a>(scans: impl Iterator<Item = (&'a Scan, Odometry)>) -> f64 {
+    let mut meter = DriftMeter::new(LaserParams::default());
+    scans.for_each(|(scan, odometry)| meter.see(scan, &odometry));
+    meter.finish().unwrap().to_degrees()
+}
+
+#[test]
+fn the_drift_of_the_heading_is_measured_by_the_walls() {
+    let way = [[3.0, 0.0], [14.0, 0.0], [14.0, 8.0], [14.0, 0.0], [26.0, 0.0]];
+    for degrees in [0.0, 2.0, -2.0, 5.0, -5.0_f64] {
+        let scans = drive(180, &comb(), &way, degrees.to_radians() / 10.0);
+        let measured = measured_drift(scans.iter().map(|(scan, odometry)| (scan, *odometry)));
+        assert!((measured - degrees.abs()).abs() < 0.5, "{measured} for {degrees}");
+    }
+}
+
+#[test]
+fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts() {
+    let limit = LaserParams::default().matching.max_drift.to_degrees();
+    let mut matched = LaserParams::default();
+    matched.matching.rounds = ROUNDS;
+    for name in ["aces", "seattle"] {
+        let Some((mut marked, scans)) = recorded(name) else { return };
+        marked.retain(|visit| visit.0 >= 3);
+        for drift in [0.0, 2.0, -2.0, 5.0, -5.0] {
+            let scans = drifted(&scans, drift);
+            let measured =
+                measured_drift(scans.iter().map(|(scan, odometry)| (&**scan, *odometry)));
+            assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
+            if drift != 0.0 {
+                are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));
+            }
+        }
     }
 }
 

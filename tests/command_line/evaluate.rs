@@ -89,6 +89,18 @@ fn one_view_is_shown_stage_by_stage() {
     assert_eq!(fs::read_to_string(view.join("view.json")).unwrap(), stdout(&output));
 }
 
+/// In this view of an L a hallway fits well in which the robot is not.
+#[test]
+fn a_view_with_a_strong_yellow_cast_is_not_called_a_hallway_elsewhere() {
+    let options = ["--size", "640x480", "--look", "vinyl", "--seed", "100", "--view", "118"];
+    let effect = ["--effect", "cast=0.77"];
+    let output = run([&["evaluate", "vision"][..], &options, &effect].concat());
+    let line = &objects(&stdout(&output))[0];
+    assert_eq!((&line["view"], &line["truth"]), (&118.into(), &"l-left".into()));
+    let verdict = line["verdict"].as_str().unwrap();
+    assert!(["right", "unknown"].contains(&verdict), "{line}");
+}
+
 #[test]
 fn a_world_without_a_floor_plan_is_refused() {
     let output = run(["evaluate", "vision", "--plan", "worlds/petersen.toml"]);

@@ -110,9 +110,9 @@ fn control_and_runs_can_be_measured_by_laser() {
 #[test]
 fn walks_are_measured_alike_on_any_number_of_threads() {
     let measured = |threads| {
-        let arguments =
-            ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1", "--json"];
-        let output = run([&arguments[..], &["--threads", threads]].concat());
+        let arguments = ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1"];
+        let output =
+            run([&arguments[..], &["--traversals", "2", "--json", "--threads", threads]].concat());
         (output.status.code(), stdout(&output))
     };
     let (code, text) = measured("1");
@@ -129,6 +129,7 @@ fn walks_are_measured_alike_on_any_number_of_threads() {
     assert!(visits["cases"].as_u64().unwrap() > 3, "{visits}");
     assert_eq!(rate("walk", "wrong")["cases"], 3);
     assert_eq!(rate("run", "wrong")["cases"], 1);
+    assert_eq!(rate("control", "wrong")["cases"], 2);
     assert!(rate("hallway", "called junction")["cases"].as_u64().unwrap() > 30);
     // Three walks are too few to show anything but a miss.
     let expected = if lines.last().unwrap()["target"] == "missed" { 1 } else { 3 };

@@ -197,6 +197,34 @@ fn a_marker_that_is_assumed_is_bad_usage_unless_it_is_asked_for() {
 }
 
 #[test]
+fn a_log_that_begins_elsewhere_than_its_world_has_a_hint() {
+    let (folder, log) = written("laser_elsewhere");
+    let world = ["--marker", "none", "--world", "worlds/figure-1a.toml"];
+    let (code, lines) = conform(&log, &world);
+    let verdict = lines.last().unwrap();
+    assert_eq!((code, &verdict["event"]), (Some(1), &1.into()), "{verdict}");
+    let hint = json!(["the log may begin elsewhere: --start any tries every start"]);
+    assert_eq!(verdict["remarks"], hint);
+    // With it the log begins at some T of the wheel.
+    let (_, lines) = conform(&log, &[&world[..], &["--start", "any"]].concat());
+    assert_eq!(lines.last().unwrap()["remarks"], json!([]), "{lines:?}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn scans_that_a_log_does_not_have_are_an_error() {
+    let (folder, log) = written("laser_scans");
+    let output = run(["sense", &log, "--scans", "9999"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    let message = stderr(&output);
+    assert!(
+        message.contains("--scans: the log has 2") && message.contains("counted from 0"),
+        "{message}"
+    );
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn the_picture_of_a_run_shows_its_visits() {
     let (folder, log) = written("laser_picture");
     let [svg, png] = ["run.svg", "run.png"].map(|name| folder.join(name));

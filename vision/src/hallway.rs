@@ -85,13 +85,14 @@ fn between(
         && goes_on(axis, -1.0, square, walls, boundary, &frame, params);
     let likely = agreement.holds(params.hallway.min_trust, &params.outline)
         && agreement.cover(&params.outline) >= params.hallway.min_cover;
-    (likely && goes_on).then(|| FittedHallway {
+    let found = (likely && goes_on).then(|| FittedHallway {
         frame,
         axis,
         square,
         status: status(axis, frame.ahead(axis), square, walls, &params.hallway),
         agreement,
-    })
+    });
+    found.filter(FittedHallway::has_robot)
 }
 
 /// The offsets of the nearest walls on one side of the robot. The first is that of the major cluster,
@@ -239,6 +240,11 @@ pub(crate) fn status(
 }
 
 impl FittedHallway {
+    /// Whether the robot is between its walls.
+    pub(crate) fn has_robot(&self) -> bool {
+        self.square.middle[self.axis.split().1].abs() < self.square.half
+    }
+
     /// Whether no part of its walls looks open, so that there is no need to search for a junction.
     #[must_use]
     pub fn is_sure(&self, params: &SensingParams) -> bool {

@@ -190,7 +190,9 @@ impl FittedJunction {
         let mut square = self.square;
         square.middle[axis.split().0] = 0.0;
         let status = status(axis, self.frame.ahead(axis), square, walls, params);
-        Some(FittedHallway { frame: self.frame, axis, square, status, agreement: self.agreement })
+        let agreement = self.agreement;
+        let hallway = FittedHallway { frame: self.frame, axis, square, status, agreement };
+        Some(hallway).filter(FittedHallway::has_robot)
     }
 
     /// The axis of the hallway that the robot is in.

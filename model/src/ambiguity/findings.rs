@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::SorterError;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::StartCode,
@@ -105,17 +104,6 @@ pub enum Unfinished {
     /// A candidate that was stored and read again is not that of a placed world.
     #[error("what was stored of a world cannot be read: the storage is at fault")]
     Unreadable,
-}
-
-/// Why a search with a [sorter](super::CandidateSorter) has no findings.
-#[derive(Debug, Error)]
-pub enum SearchError {
-    /// The search did not finish.
-    #[error(transparent)]
-    Unfinished(#[from] Unfinished),
-    /// The sorter failed.
-    #[error("{0}")]
-    Sorter(SorterError),
 }
 
 impl Findings {

@@ -20,11 +20,9 @@ mod witness;
 
 pub use candidate::AmbiguityCandidate;
 pub use comparison::{Bisimulation, Comparison};
-pub use findings::{
-    AmbiguousGroup, Findings, KeptPairs, PlacedWorld, SearchError, SizeFindings, Unfinished,
-};
+pub use findings::{AmbiguousGroup, Findings, KeptPairs, PlacedWorld, SizeFindings, Unfinished};
 pub use search::{AmbiguitySearch, SearchPart};
-pub use sorter::{CandidateSorter, CandidatesInMemory, SortedCandidates, SorterError};
+pub use sorter::{CandidateSorter, CandidatesInMemory, SearchError, SortedCandidates, SorterError};
 pub use space::{PlacedRobot, state_count};
 pub use state_classes::StateClasses;
 pub use twins::{Twin, Twins, twins};

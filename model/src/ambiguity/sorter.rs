@@ -1,14 +1,27 @@
 //! Where a search puts its candidates, to get them back in order.
 
 use std::{
-    error::Error,
+    error,
     sync::{Mutex, PoisonError},
 };
 
-use super::AmbiguityCandidate;
+use thiserror::Error;
+
+use super::{AmbiguityCandidate, Unfinished};
 
 /// Why candidates cannot be stored or read.
-pub type SorterError = Box<dyn Error + Send + Sync>;
+pub type SorterError = Box<dyn error::Error + Send + Sync>;
+
+/// Why a search with a [sorter](CandidateSorter) has no findings.
+#[derive(Debug, Error)]
+pub enum SearchError {
+    /// The search did not finish.
+    #[error(transparent)]
+    Unfinished(#[from] Unfinished),
+    /// The sorter failed.
+    #[error("{0}")]
+    Sorter(SorterError),
+}
 
 /// Candidates in their order.
 pub type SortedCandidates = Box<dyn Iterator<Item = Result<AmbiguityCandidate, SorterError>>>;

@@ -38,7 +38,7 @@ pub fn determines_world(
 mod tests {
     use super::*;
     use crate::{
-        check::{Algorithm, Algorithm1, RunState},
+        check::{Algorithm, Algorithm1},
         folding::certificate,
         mapping::{Journey, MappingEvent},
         marker::Undirected,

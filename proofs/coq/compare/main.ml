@@ -13,6 +13,14 @@
      movable; opposite 1 0; clockwise 0 1; choices 0
      did pick-up 0; chose 0/1; first 0 1; degree 1 1; other 1 0; robot 1
 
+   The folding explorer has actions instead of choices, with commas between them. Numbers are darts of its map,
+   and after [by] the doors that the robot took: it explored a dart; it tested whether two darts are the ends of one
+   edge; it found without a move that they are; it added the place behind a dart to its map. Its output ends with
+   the number of moves:
+
+     folding; opposite 1 0; clockwise 0 1; actions explore 0 by 0, add 0
+     did 0; chose; first 0 1; degree 1 1; other 1 0; robot 1; moves 1
+
    Here the world is: what stands in [Spec.v] and in [MovableMarker.v] on finite types is written again, on
    arrays. *)
 
@@ -74,11 +82,14 @@ let rec run start sighting choices state ended deeds =
   | PicksUp go -> (
       match state.spot with
       | Some dart when List.mem dart (doors start state.pose) ->
-          go_on choices { state with spot = None; did = "pick-up" :: state.did } ended go
+          let seen = percept start (sighting None) state.pose in
+          go_on choices { state with spot = None; did = "pick-up" :: state.did } ended (go seen)
       | _ -> failwith "a marker was picked up where none lies")
   | Drops go ->
       if state.spot <> None then failwith "a marker was dropped that is not carried";
-      go_on choices { state with spot = Some state.pose; did = "drop" :: state.did } ended go
+      let spot = Some state.pose in
+      let seen = percept start (sighting spot) state.pose in
+      go_on choices { state with spot; did = "drop" :: state.did } ended (go seen)
   | Chooses (options, go) -> (
       let options = int options in
       let choose choice choices =
@@ -92,22 +103,27 @@ let rec run start sighting choices state ended deeds =
       | These (choice :: later) -> choose choice (These later)
       | These [] -> failwith "there are fewer choices than the run makes")
 
+let list name words = String.concat " " (name :: words)
+
+let print_parts state parts =
+  let did = [ list "did" (List.rev state.did); list "chose" (List.rev state.chose) ] in
+  print_endline (String.concat "; " (did @ parts))
+
+let known (map, robot) =
+  let of_each name what = list name (List.map (fun dart -> string_of_int (what dart)) map) in
+  [
+    of_each "first" (fun dart -> int dart.first_of);
+    of_each "degree" (fun dart -> int dart.doors_of);
+    of_each "other" (fun dart -> match dart.other_of with None -> -1 | Some other -> int other);
+    list "robot" [ string_of_int (int robot) ];
+  ]
+
+let not_ended = "it has not come to an end"
+
 let print_end answer state =
-  let list name words = String.concat " " (name :: words) in
-  let parts = [ list "did" (List.rev state.did); list "chose" (List.rev state.chose) ] in
-  let known =
-    match answer with
-    | None -> [ "it has not come to an end" ]
-    | Some (map, robot) ->
-        let of_each name what = list name (List.map (fun dart -> string_of_int (what dart)) map) in
-        [
-          of_each "first" (fun dart -> int dart.first_of);
-          of_each "degree" (fun dart -> int dart.doors_of);
-          of_each "other" (fun dart -> match dart.other_of with None -> -1 | Some other -> int other);
-          list "robot" [ string_of_int (int robot) ];
-        ]
-  in
-  print_endline (String.concat "; " (parts @ known))
+  print_parts state (match answer with None -> [ not_ended ] | Some answer -> known answer)
+
+let begun = { pose = facing; spot = Some facing; did = []; chose = [] }
 
 let run_from marker start choices =
   let mapping, sighting =
@@ -116,20 +132,111 @@ let run_from marker start choices =
     | "movable" -> (movable_mapping, lying)
     | _ -> failwith ("there is no marker " ^ marker)
   in
-  let edges = nat (Array.length start.opposite / 2) and spot = Some facing in
-  let seen = percept start (sighting spot) facing in
-  run start sighting choices { pose = facing; spot; did = []; chose = [] } print_end (mapping edges seen)
+  let edges = nat (Array.length start.opposite / 2) in
+  let seen = percept start (sighting begun.spot) facing in
+  run start sighting choices begun print_end (mapping edges seen)
+
+(* What the running folding explorer did. *)
+type given =
+  | Explored of nat * nat list
+  | Tested of nat * nat * nat list
+  | Joined of nat * nat
+  | Added of nat
+
+(* The edge of the trail that begins at a dart of the trail, if the robot has gone over it. *)
+let passage knowledge dart =
+  let dart = stands_for knowledge dart in
+  let begins passage = stands_for knowledge (from_dart knowledge.trail passage) = dart in
+  List.find_opt begins (passages knowledge.trail)
+
+(* The edges of the trail that the robot goes along by these doors, and the first dart that it goes out by
+   without having done so before. *)
+let rec walk knowledge (visit, door) = function
+  | [] -> failwith "the walk goes along known edges only"
+  | next :: later -> (
+      let rec plus = function O -> door | S n -> S (plus n) in
+      let out = (visit, plus next) in
+      match passage knowledge out with
+      | None -> ([], out)
+      | Some found ->
+          let way, out = walk knowledge (to_dart knowledge.trail found) later in
+          (found :: way, out))
+
+(* The action that the robot took; or, before it, that it finds the far end of an edge in its trail. *)
+let action_of knowledge given =
+  let noticed edge action =
+    match (far_end knowledge edge, passage knowledge (dart_in_trail knowledge edge)) with
+    | Some far, _ -> (action far, true)
+    | None, Some found -> (Notice (edge, found), false)
+    | None, None -> failwith (Printf.sprintf "what is behind dart %d is not known" (int edge))
+  in
+  match given with
+  | Explored (edge, doors) ->
+      let way, _ = walk knowledge knowledge.here doors in
+      (Explore (edge, Through way), true)
+  | Joined (edge, other) -> noticed edge (fun _ -> Join (edge, other))
+  | Added edge -> noticed edge (fun _ -> Add edge)
+  | Tested (edge, other, doors) ->
+      noticed edge (fun far ->
+          let way, out = walk knowledge knowledge.here doors in
+          let map = knowledge.known_map in
+          let darts = List.init (List.length map) nat in
+          match List.find_opt (predicts knowledge far other out) darts with
+          | None -> failwith "a test does not predict where the robot comes in"
+          | Some entry ->
+              Test (edge, other, Free (way, out, entry, path_to_marker map entry)))
+
+let rec run_given start (last, given) state = function
+  | Complete knowledge ->
+      if given <> [] then failwith "there are more actions than the run needs";
+      let moves = [ list "moves" [ string_of_int (int knowledge.made) ] ] in
+      print_parts state (known (knowledge.known_map, pose_in_map knowledge) @ moves)
+  | OutOfActions -> print_parts state [ not_ended ]
+  | NotAllowed -> failwith ("this is not allowed: " ^ last)
+  | Leaving (door, go) ->
+      let door = int door in
+      let pose = traverse start state.pose door in
+      let state = { state with pose; did = string_of_int door :: state.did } in
+      run_given start (last, given) state (go (percept start (pointing 0) pose))
+  | Asking (knowledge, ask) -> (
+      match given with
+      | [] -> failwith "there are fewer actions than the run needs"
+      | (text, next) :: later ->
+          let action, is_all = action_of knowledge next in
+          run_given start (text, if is_all then later else given) state (ask action))
+
+let run_folding start given =
+  let edges = Array.length start.opposite / 2 in
+  let seen = percept start (pointing 0) facing in
+  run_given start ("", given) begun (folding_mapping (nat (2 * edges * (edges + 1))) seen)
+
+let words text = List.filter (( <> ) "") (String.split_on_char ' ' text)
+
+let given text =
+  let number word = nat (int_of_string word) in
+  let text = String.trim text in
+  (text,
+  match words text with
+  | "explore" :: edge :: "by" :: doors -> Explored (number edge, List.map number doors)
+  | "test" :: edge :: other :: "by" :: doors ->
+      Tested (number edge, number other, List.map number doors)
+  | [ "join"; edge; other ] -> Joined (number edge, number other)
+  | [ "add"; edge ] -> Added (number edge)
+  | _ -> failwith ("this is no action: " ^ text))
 
 let run_line line =
-  match List.map (String.split_on_char ' ') (String.split_on_char ';' line) with
-  | [ [ marker ]; "" :: "opposite" :: opposite; "" :: "clockwise" :: clockwise; "" :: "choices" :: choices ] ->
-      let darts numbers = Array.of_list (List.map int_of_string numbers) in
-      run_from marker
-        { opposite = darts opposite; clockwise = darts clockwise }
-        (match choices with
-        | [ "default" ] -> Default
-        | [ "all" ] -> All
-        | _ -> These (List.map int_of_string choices))
+  let darts numbers = Array.of_list (List.map int_of_string numbers) in
+  match List.map words (String.split_on_char ';' line) with
+  | [ [ algorithm ]; "opposite" :: opposite; "clockwise" :: clockwise; last :: rest ] -> (
+      let start = { opposite = darts opposite; clockwise = darts clockwise } in
+      match (algorithm, last, rest) with
+      | "folding", "actions", _ ->
+          run_folding start
+            (List.map given (String.split_on_char ',' (String.concat " " rest)))
+      | _, "choices", [ "default" ] -> run_from algorithm start Default
+      | _, "choices", [ "all" ] -> run_from algorithm start All
+      | _, "choices", _ -> run_from algorithm start (These (List.map int_of_string rest))
+      | _ -> failwith ("this is no start: " ^ line))
   | _ -> failwith ("this is no start: " ^ line)
 
 (* A run that is not possible is a line of its own, with the reason. *)

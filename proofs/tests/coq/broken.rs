@@ -199,3 +199,10 @@ fn a_place_of_the_folding_explorer_joins_the_map_only_without_hypotheses() {
         "[|| true, is_refuted K e h |",
     );
 }
+
+/// A robot comes to a hanging leaf at the end and not back, so it saves each hanging edge twice.
+#[test]
+fn a_certificate_saves_what_leads_to_a_leaf() {
+    let saved = "(2 * hanging_above leaf - distance leaf)";
+    assert_matters("leaf", "Certificate.v", saved, "(hanging_above leaf - distance leaf)");
+}

@@ -31,7 +31,7 @@ use toposlam_proofs::{choose::Choose, draw, odometer::ChoiceOdometer};
 use super::{OCAMLOPT, compiled, printed, source};
 
 /// Every start with up to so many edges; its facing dart is dart 0.
-fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {
+pub(super) fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {
     let mut starts = Vec::new();
     for edges in 1..=most {
         let _ = Enumeration::new(Each::Start, class, edges).unwrap().for_each(&mut |found| {
@@ -43,7 +43,7 @@ fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {
 }
 
 /// A line of a run: the name of what is listed, and the numbers.
-fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
+pub(super) fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
     iter::once(name.to_owned()).chain(numbers.map(|n| n.to_string())).collect::<Vec<_>>().join(" ")
 }
 
@@ -55,6 +55,14 @@ enum Mapping {
 }
 
 impl Mapping {
+    /// As `compare/main.ml` reads it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Directional => "directional",
+            Self::Movable => "movable",
+        }
+    }
+
     /// The run of the running algorithm from a start, with these choices, in the format of
     /// `compare/main.ml`.
     fn run_line(self, start: &EmbeddedGraph, choices: &mut impl RecordedChoices) -> String {
@@ -90,7 +98,7 @@ impl<W: ?Sized> Observer<W> for Actions {
 }
 
 /// The map and the robot's pose in it.
-fn known(map: &PartialMap, robot: Dart) -> String {
+pub(super) fn known(map: &PartialMap, robot: Dart) -> String {
     let map = map.complete().unwrap();
     let first = |dart| map.darts_of(map.vertex(dart)).next().unwrap().0;
     let known = [
@@ -205,19 +213,21 @@ impl Choose for Random {
     }
 }
 
-/// A start, the choices as `compare/main.ml` reads them, and the lines of the running algorithm.
-struct Case {
-    mapping: Mapping,
-    start: EmbeddedGraph,
-    choices: String,
-    lines: Vec<String>,
+/// A start, the choices or actions as `compare/main.ml` reads them, and the lines of the running algorithm.
+#[derive(Clone, Debug)]
+pub(super) struct Case {
+    /// The name of the algorithm, as `compare/main.ml` reads it.
+    pub(super) algorithm: &'static str,
+    pub(super) start: EmbeddedGraph,
+    pub(super) given: String,
+    pub(super) lines: Vec<String>,
 }
 
 impl Case {
     /// The run with the default choices.
     fn by_default(mapping: Mapping, start: EmbeddedGraph) -> Self {
         let lines = vec![mapping.run_line(&start, &mut Nearest)];
-        Self { mapping, start, choices: "default".to_owned(), lines }
+        Self { algorithm: mapping.name(), start, given: "choices default".to_owned(), lines }
     }
 
     /// Every run.
@@ -228,33 +238,29 @@ impl Case {
             Ok(())
         };
         ChoiceOdometer::exhaust(run, &mut |_| {}).unwrap();
-        Self { mapping, start, choices: "all".to_owned(), lines }
+        Self { algorithm: mapping.name(), start, given: "choices all".to_owned(), lines }
     }
 
     /// A run with random choices.
     fn at_random(mapping: Mapping, start: EmbeddedGraph, random: &mut Random) -> Self {
         let mut chosen = Chosen::new(random);
         let lines = vec![mapping.run_line(&start, &mut chosen)];
-        let choices = chosen.made.iter().map(|(choice, _)| choice.to_string());
-        Self { mapping, start, choices: choices.collect::<Vec<_>>().join(" "), lines }
+        let given = listed("choices", chosen.made.iter().map(|(choice, _)| choice));
+        Self { algorithm: mapping.name(), start, given, lines }
     }
 
-    /// The start and the choices, as `compare/main.ml` reads them.
+    /// The start and the choices or actions, as `compare/main.ml` reads them.
     fn line(&self) -> String {
-        let Self { start, choices, .. } = self;
-        let marker = match self.mapping {
-            Mapping::Directional => "directional",
-            Mapping::Movable => "movable",
-        };
+        let Self { algorithm, start, given, .. } = self;
         let opposite = listed("opposite", start.darts().map(|dart| start.opposite(dart).0));
         let clockwise = listed("clockwise", start.darts().map(|dart| start.clockwise(dart).0));
-        format!("{marker}; {opposite}; {clockwise}; choices {choices}\n")
+        format!("{algorithm}; {opposite}; {clockwise}; {given}\n")
     }
 }
 
 /// Extracts the program in a folder where the development is compiled, builds it, and runs the algorithms
 /// in these cases: a line for each run.
-fn extracted(folder: &Path, cases: &[Case]) -> String {
+pub(super) fn extracted(folder: &Path, cases: &[Case]) -> String {
     printed(Command::new("make").arg("Extraction.vo").current_dir(folder));
     let program = folder.join("compare");
     let mut ocamlopt = Command::new(OCAMLOPT);
@@ -267,22 +273,22 @@ fn extracted(folder: &Path, cases: &[Case]) -> String {
 }
 
 /// The first case with different runs, and the difference.
-fn difference(cases: &[Case], proved: &str) -> Option<String> {
+pub(super) fn difference(cases: &[Case], proved: &str) -> Option<String> {
     let running = cases.iter().flat_map(|case| case.lines.iter().map(move |line| (case, line)));
     let lines = proved.lines().chain(iter::repeat("nothing"));
     let ((case, running), proved) =
         running.zip(lines).find(|((_, line), proved)| line != proved)?;
     let world = NamedWorld::numbered("start", "", case.start.clone(), Some(Dart(0)));
     let world = world_file::to_toml(&world);
-    let choices = &case.choices;
+    let given = &case.given;
     Some(format!(
         "the proved algorithm\n  {proved}\nthe running one\n  {running}\n\
-         with the choices {choices}, in\n\n{world}"
+         with {given}, in\n\n{world}"
     ))
 }
 
 /// In all these cases the proved algorithm and the running one do the same.
-fn assert_same(folder: &Path, cases: &[Case]) {
+pub(super) fn assert_same(folder: &Path, cases: &[Case]) {
     let proved = extracted(folder, cases);
     if let Some(difference) = difference(cases, &proved) {
         panic!("{difference}");

@@ -8,6 +8,7 @@
 mod broken;
 mod comparison;
 mod figures;
+mod folding;
 
 use std::{
     env, fs,

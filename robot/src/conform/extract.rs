@@ -7,7 +7,13 @@ use toposlam_model::{
     driving::{odometry::Odometry, scene::Scene},
     measurement::MeasurementNoise,
 };
-use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
+use toposlam_vision::{
+    laser::{
+        drift::{DriftMeter, ROUNDS},
+        params::LaserParams,
+    },
+    sensing::Sensor,
+};
 
 use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
@@ -21,7 +27,7 @@ use crate::{
         error::LogError,
         messages,
         reader::Log,
-        topic_map::{Role, TopicMap, TopicMapError},
+        topic_map::{BoundTopicMap, Role, TopicMap, TopicMapError},
     },
     measured_hallway::log_noise,
     record::{EventKind, Frame, FrameSensor, SensingError},
@@ -72,6 +78,8 @@ pub struct ExtractedRun {
     pub scans: u64,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
+    /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
+    pub drift: Option<f64>,
     /// The junctions of the events that are inferred from laser scans.
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
@@ -193,11 +201,17 @@ pub fn extract(
     config: &ExtractConfig,
     watch: &impl SensingProgress,
 ) -> Result<ExtractedRun, ExtractError> {
-    let ExtractConfig { evidence, sensor, marked, laser } = *config;
+    let ExtractConfig { evidence, sensor, marked, mut laser } = *config;
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
     let threads = rayon::current_num_threads();
     let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
     let bound = mapping.only(asked).bind(log)?;
+    let is_matched = evidence != Evidence::Laser || laser.matching.rounds > 0;
+    let drift = if is_matched { None } else { measured_drift(log, &bound, laser) };
+    let drift = drift.filter(|&drift| drift > laser.matching.max_drift);
+    if drift.is_some() {
+        laser.matching.rounds = ROUNDS;
+    }
     let mut gathering = Extraction {
         recorded: RecordedEvents::default(),
         track: Vec::new(),
@@ -278,9 +292,32 @@ pub fn extract(
         unreadable,
         scans,
         field_of_view,
+        drift,
         junctions,
         sightings,
     })
+}
+
+/// The drift of the heading of the odometry of a log with laser scans, in radians in 10 m. `None` if it is too
+/// short, up to its end or to what cannot be read.
+fn measured_drift(log: &Log, bound: &BoundTopicMap, params: LaserParams) -> Option<f64> {
+    let mut meter = DriftMeter::new(params);
+    let mut placing = ScanOdometry::default();
+    for entry in log.entries(bound) {
+        let Ok(Entry { stamp, content, .. }) = entry else { break };
+        let stamp = stamp.nanoseconds();
+        let placed: Vec<PlacedScan> = match content {
+            Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
+            Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
+                let source = EventSource::default();
+                let placed = placing.scan(stamp, PlacedScan { source, scan, odometry });
+                placed.into_iter().collect()
+            }
+            _ => continue,
+        };
+        placed.iter().for_each(|placed| meter.see(&placed.scan, &placed.odometry));
+    }
+    meter.finish()
 }
 
 /// The events that are inferred from scenes.

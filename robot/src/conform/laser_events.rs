@@ -114,9 +114,15 @@ impl LaserEvents {
         }
     }
 
-    /// The next scan, and the odometry at its time.
-    pub fn see(&mut self, source: EventSource, scan: &Scan, odometry: &Odometry) {
-        let Some(view) = self.sensor.see(scan, odometry) else { return };
+    /// Takes the next scan, and the odometry at its time. Returns what the last scans show, as
+    /// [`LaserSensor::see`] does.
+    pub fn see(
+        &mut self,
+        source: EventSource,
+        scan: &Scan,
+        odometry: &Odometry,
+    ) -> Option<LaserView> {
+        let view = self.sensor.see(scan, odometry)?;
         self.source = source;
         self.to_odometry = view.to_odometry;
         self.behind.get_or_insert(wrapped(view.robot.heading + PI));
@@ -149,6 +155,7 @@ impl LaserEvents {
             }
             self.decide(&visit);
         }
+        Some(view)
     }
 
     /// The events, after the last scan.
@@ -262,7 +269,7 @@ impl LaserEvents {
         let [entry, exit] = bend.arms;
         let in_doubt = bend.arms.iter().any(|back| {
             // A corridor may go straight on there.
-            view.grid.sight(bend.point, back + PI, sight).0 >= sight
+            view.clearances.sight(&view.grid, bend.point, back + PI, sight).0 >= sight
         });
         self.waiting.push_back(Visit {
             kind: VisitKind::Bend { way: bend.way, in_doubt },

@@ -52,6 +52,8 @@ pub enum ReportSubject {
     Walk,
     /// Whole runs.
     Run,
+    /// Traversals from junction to junction.
+    Traversal,
 }
 
 /// The rate of a failure.
@@ -435,6 +437,7 @@ impl ReportSubject {
             Self::Visit => "visit",
             Self::Walk => "walk",
             Self::Run => "run",
+            Self::Traversal => "control",
         }
     }
 }

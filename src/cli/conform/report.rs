@@ -89,6 +89,11 @@ impl Judged<'_> {
             }
             Some(RunEnding::Mapped) | None => {}
         }
+        let is_first = self.judgement.divergence.as_ref().is_some_and(|found| found.event == 0);
+        let has_start = self.known.as_ref().is_some_and(|known| known.start.is_some());
+        if is_first && has_start && self.opened.run.is_none() {
+            remarks.push("the log may begin elsewhere: --start any tries every start".to_owned());
+        }
         if let Some(event) = self.judgement.unrecognised {
             remarks.push(format!(
                 "the junction of event {} was not recognised: the events from there on are not checked",
@@ -173,6 +178,11 @@ impl Judged<'_> {
             let unseen = "arms that point back beside the robot's way are hardly seen";
             facts.push(("scanner", format!("{field:.0} degrees: {unseen}")));
         }
+        facts.extend(self.gathered.drift.map(|drift| {
+            let drift = drift.to_degrees();
+            let what = "scans are matched with the walls of earlier ones";
+            ("odometry", format!("its heading drifts by {drift:.1} degrees in 10 m: {what}"))
+        }));
         facts.extend(self.added.map(|added| ("marker", added.in_words())));
         match (&self.known, &judgement.poses) {
             (Some(known), Some(poses)) => {

@@ -191,7 +191,7 @@ mod tests {
     }
 
     fn candidates() -> Vec<AmbiguityCandidate> {
-        let search = AmbiguitySearch::new(Class::Multigraph, 5, named("undirected").unwrap());
+        let search = AmbiguitySearch::new(Class::Multigraph, 6, named("undirected").unwrap());
         let collected = Collected::default();
         let sorter = Box::new(&collected);
         search.unwrap().run_sorted(sorter, KeptPairs::Smallest, &()).unwrap();
@@ -202,7 +202,7 @@ mod tests {
     fn candidates_come_back_in_their_order_from_many_files() {
         let mut all = candidates();
         assert!(all.len() > 1000);
-        for at_once in [usize::MAX, 100, 7] {
+        for at_once in [usize::MAX, 200, 50] {
             let on_disk = CandidatesOnDisk::new(at_once).unwrap();
             let folder = on_disk.folder.directory().path().to_owned();
             on_disk.add(all.clone()).unwrap();

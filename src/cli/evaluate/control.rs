@@ -8,7 +8,7 @@ use toposlam_robot::evaluation::traversals::{
     JudgedTraversal, Traversal, TraversalOutcome as Made, TraversalSampler,
 };
 
-use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
+use super::robots::{PLANS, RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
@@ -43,7 +43,7 @@ pub(super) struct EvaluateControlArguments {
     #[arg(long, default_value_t = 20_000, value_name = "N")]
     traversals: u64,
     /// Number of random plans, if no plan is given
-    #[arg(long, default_value_t = 40, value_name = "N", conflicts_with = "plan")]
+    #[arg(long, default_value_t = PLANS, value_name = "N", conflicts_with = "plan")]
     plans: u64,
     #[command(flatten)]
     robots: RobotArguments,
@@ -149,7 +149,7 @@ fn junctions(judged: &JudgedTraversal) -> [&str; 2] {
         .map(|dart| config.plan.junction(graph.vertex(dart)).name.as_str())
 }
 
-fn named(judged: &JudgedTraversal) -> String {
+pub(super) fn named(judged: &JudgedTraversal) -> String {
     let traversal = &judged.traversal;
     let [junction, from] = junctions(judged);
     format!(

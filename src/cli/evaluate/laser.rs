@@ -2,18 +2,29 @@
 
 use std::{io::Write, path::PathBuf, time::Instant};
 
+use clap::ValueEnum;
 use serde_json::json;
-use toposlam_robot::evaluation::{
-    laser::{
-        judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
-        laser_report::{LaserGroup, LaserReport},
-        scanned_run::ScannedRun,
+use toposlam_robot::{
+    evaluation::{
+        RobotEquipment,
+        laser::{
+            corridor_world::BuildingKind,
+            judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
+            laser_report::{LaserGroup, LaserReport},
+            scanned_run::ScannedRun,
+        },
+        report::{Rate, TargetStatus},
+        traversals::{JudgedTraversal, TraversalOutcome, TraversalSampler},
     },
-    report::{Rate, TargetStatus},
+    simulator::ScannerParams,
 };
 use toposlam_vision::laser::params::LaserParams;
 
-use super::report::{percent, rate_row};
+use super::{
+    control,
+    report::{percent, rate_row},
+    robots::{PLANS, RandomPlans, print_failure, usual_plans},
+};
 use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
@@ -32,14 +43,20 @@ use crate::cli::{
 ///
 /// A view is one scan and those before it. A visit is derived from several views, as `conform --events laser`
 /// derives it. It is right if it has the right degree and the right door. A walk is right if all of its visits
-/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it
-/// decides by the views up to there.
+/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it looks
+/// around, and decides by the views up to there.
+///
+/// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
+/// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor
+/// laser` measures whole runs of that robot.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
 Examples:
   toposlam evaluate laser                          takes two minutes
-  toposlam evaluate laser --walks 400 --runs 0 --drift 5 --json
+  toposlam evaluate laser --walks 400 --runs 0 --traversals 0 --json
+  toposlam evaluate laser --drift 5                odometry that drifts
+  toposlam evaluate laser --buildings long         other buildings
   toposlam evaluate laser --scanner scanner.toml   another scanner
   toposlam evaluate laser --walk 17                each visit of one walk
 
@@ -59,9 +76,15 @@ pub(super) struct EvaluateLaserArguments {
     /// Number of whole runs, each in another building
     #[arg(long, default_value_t = 10, value_name = "N")]
     runs: u64,
+    /// Number of traversals by the robot that drives by its scans
+    #[arg(long, default_value_t = 100, value_name = "N")]
+    traversals: u64,
     /// Number of places that a walk passes: junctions, bends and dead ends
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     places: u16,
+    /// The buildings
+    #[arg(long, value_enum, default_value_t = Buildings::Mixed, value_name = "KIND")]
+    buildings: Buildings,
     /// Random seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
@@ -73,7 +96,7 @@ pub(super) struct EvaluateLaserArguments {
     #[arg(long, value_name = "FILE")]
     scanner: Option<PathBuf>,
     /// Measure only the walk with this number, and print each of its visits
-    #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs", "traversals"])]
     walk: Option<u64>,
     /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -83,6 +106,38 @@ pub(super) struct EvaluateLaserArguments {
     json: bool,
 }
 
+/// A kind of random buildings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Buildings {
+    /// Corridors of 11 to 24 m that meet at right angles, or at 60 and 120 degrees, and near these
+    Mixed,
+    /// Corridors of 20 to 55 m with loops
+    Long,
+    /// Corridors of 11 to 35 m that bend by 45 degrees, and fork
+    Diagonal,
+}
+
+impl Buildings {
+    /// The name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Mixed => "mixed",
+            Self::Long => "long",
+            Self::Diagonal => "diagonal",
+        }
+    }
+}
+
+impl From<Buildings> for BuildingKind {
+    fn from(kind: Buildings) -> Self {
+        match kind {
+            Buildings::Mixed => Self::Mixed,
+            Buildings::Long => Self::Long,
+            Buildings::Diagonal => Self::Diagonal,
+        }
+    }
+}
+
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
@@ -90,6 +145,7 @@ impl EvaluateLaserArguments {
         let scanner = self.scanner.as_deref().map(input::read_scanner).transpose()?;
         let sampler = WalkSampler {
             seed: self.seed,
+            buildings: self.buildings.into(),
             places: self.places.into(),
             drift: self.drift.to_radians() / 10.0,
             scanner,
@@ -99,7 +155,10 @@ impl EvaluateLaserArguments {
             Some(walk) => walk..walk.saturating_add(1),
             None => 0..self.walks,
         };
-        let runs = if self.walk.is_some() { 0 } else { self.runs };
+        let [runs, traversals] = match self.walk {
+            Some(_) => [0, 0],
+            None => [self.runs, self.traversals],
+        };
         let wanted = numbers.end - numbers.start;
         let progress = Progress::new("walks", "walks")?;
         let walks = sampler.judged(numbers, &progress);
@@ -107,27 +166,43 @@ impl EvaluateLaserArguments {
         let progress = Progress::new("runs", "runs")?;
         let made = sampler.runs(0..runs, &progress);
         progress.finish();
-        let interrupted = (walks.len() as u64) < wanted || (made.len() as u64) < runs;
-        let report = LaserReport::of(&walks, &made);
+        let driven = self.driven(traversals, scanner.unwrap_or_default())?;
+        let interrupted = (walks.len() as u64) < wanted
+            || (made.len() as u64) < runs
+            || (driven.len() as u64) < traversals;
+        let report = LaserReport::of(&walks, &made, &driven);
         let outcome = match report.standing() {
             TargetStatus::Missed => Outcome::Violated,
             TargetStatus::Met if !interrupted => Outcome::Holds,
             TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
         };
         if self.json {
-            self.print_json(&walks, &made, &report, interrupted, outcome, out)?;
+            let count = driven.len();
+            self.print_json((&walks, &made, count), &report, interrupted, outcome, out)?;
         } else {
-            self.print(&walks, &made, &report, interrupted, outcome, out)?;
+            self.print((&walks, &made, &driven), &report, interrupted, outcome, out)?;
         }
         let threads = rayon::current_num_threads();
         remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
+    /// Drives by scans from junction to junction of floor plans.
+    fn driven(&self, count: u64, scanner: ScannerParams) -> Result<Vec<JudgedTraversal>, CliError> {
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let plans = usual_plans(self.seed, RandomPlans::Any(PLANS), usize::MAX)?;
+        let traversals = TraversalSampler::new(plans, self.seed, 1.0);
+        let progress = Progress::new("traversals", "traversals")?;
+        let driven = traversals.judged(0..count, &RobotEquipment::Laser(scanner), &progress);
+        progress.finish();
+        Ok(driven)
+    }
+
     fn print(
         &self,
-        walks: &[JudgedWalk],
-        runs: &[ScannedRun],
+        (walks, runs, traversals): (&[JudgedWalk], &[ScannedRun], &[JudgedTraversal]),
         report: &LaserReport,
         interrupted: bool,
         outcome: Outcome,
@@ -137,6 +212,7 @@ impl EvaluateLaserArguments {
         let count = counted(walks.len(), "walk");
         let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
+        writeln!(out, "  buildings: {}", self.buildings.name())?;
         writeln!(out, "  odometry drifts by up to {} degrees in 10 m\n", self.drift)?;
         let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
         let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
@@ -165,6 +241,10 @@ impl EvaluateLaserArguments {
             let text = format!("run {number}, {moves}, {way:.0} m: {}", verdict.name());
             print_indented(out, "  ", 4, &text)?;
         }
+        let is_right = |traversal: &&JudgedTraversal| traversal.outcome == TraversalOutcome::Right;
+        for traversal in traversals.iter().filter(|traversal| !is_right(traversal)) {
+            print_failure(out, control::named(traversal), &traversal.outcome)?;
+        }
         let count =
             |is: TargetStatus| report.rates.iter().filter(|rate| rate.standing() == is).count();
         let verdict = match outcome {
@@ -183,15 +263,15 @@ impl EvaluateLaserArguments {
 
     fn print_json(
         &self,
-        walks: &[JudgedWalk],
-        runs: &[ScannedRun],
+        (walks, runs, traversals): (&[JudgedWalk], &[ScannedRun], usize),
         report: &LaserReport,
         interrupted: bool,
         outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         let line = json!({
-            "walks": walks.len(), "runs": runs.len(), "places": self.places, "seed": self.seed, "drift": self.drift,
+            "walks": walks.len(), "runs": runs.len(), "traversals": traversals,
+            "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
         });
         print_line(out, "source", &line)?;
         for walk in walks {

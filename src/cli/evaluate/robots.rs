@@ -61,6 +61,9 @@ pub(super) struct RobotArguments {
     pub(super) json: bool,
 }
 
+/// The number of random plans in which driving is measured.
+pub(super) const PLANS: u64 = 40;
+
 /// A plan's name and the plan.
 pub(super) type NamedPlan = (String, Arc<FloorPlan>);
 
@@ -80,24 +83,11 @@ impl RobotArguments {
         random: RandomPlans,
         most: usize,
     ) -> Result<Vec<NamedPlan>, CliError> {
-        if !self.plan.is_empty() {
-            return self.plan.iter().map(|path| read_plan(path)).collect();
+        if self.plan.is_empty() {
+            usual_plans(self.seed, random, most)
+        } else {
+            self.plan.iter().map(|path| read_plan(path)).collect()
         }
-        let mut named = plans().map_err(unmeasured)?;
-        named.retain(|(_, plan)| plan.junctions().len() <= most);
-        let (count, size): (u64, fn(u64) -> Option<usize>) = match random {
-            RandomPlans::Any(count) => (count, |_| None),
-            RandomPlans::Large(count) => (count, |number| Some(5 + (number % 21) as usize)),
-        };
-        for number in 0..count {
-            let seed = self.seed.wrapping_mul(1_000_003).wrapping_add(number);
-            let plan = match size(number) {
-                None => random_plan(seed),
-                Some(junctions) => random_plan_with(seed, junctions),
-            };
-            named.push((format!("random-{number}"), Arc::new(plan.map_err(unmeasured)?)));
-        }
-        Ok(named)
     }
 
     /// The sensors of the robots.
@@ -131,6 +121,29 @@ impl RobotArguments {
             "scenes with the measured error rates".to_owned()
         }
     }
+}
+
+/// The plans of `worlds/` with at most `most` junctions, and random ones.
+pub(super) fn usual_plans(
+    seed: u64,
+    random: RandomPlans,
+    most: usize,
+) -> Result<Vec<NamedPlan>, CliError> {
+    let mut named = plans().map_err(unmeasured)?;
+    named.retain(|(_, plan)| plan.junctions().len() <= most);
+    let (count, size): (u64, fn(u64) -> Option<usize>) = match random {
+        RandomPlans::Any(count) => (count, |_| None),
+        RandomPlans::Large(count) => (count, |number| Some(5 + (number % 21) as usize)),
+    };
+    for number in 0..count {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
+        let plan = match size(number) {
+            None => random_plan(seed),
+            Some(junctions) => random_plan_with(seed, junctions),
+        };
+        named.push((format!("random-{number}"), Arc::new(plan.map_err(unmeasured)?)));
+    }
+    Ok(named)
 }
 
 /// A count, its rate, and the upper bound of the rate with a confidence of 95 %.

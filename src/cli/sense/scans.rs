@@ -25,7 +25,7 @@ use crate::cli::{
     json::print_line,
     picture_file,
     scene::{bearing, place_in_words, rounded, rounded_angle},
-    text::print_hanging,
+    text::{counted, print_hanging},
 };
 
 /// The JSON line of a scan.
@@ -109,7 +109,13 @@ impl SenseArguments {
             self.print_scan(path, scan_number, stamp, &view, out)?;
             self.write_stages(path, scan_number, &view, &scan)?;
         }
-        Ok(())
+        match self.scans {
+            Some(scans) if scans.first >= number => {
+                let count = counted(number as usize, "scan");
+                Err(CliError::at("--scans", format!("the log has {count}, counted from 0")))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn print_scan(

@@ -3,6 +3,7 @@
 //! seen from the side only, one sees straight walls.
 
 use super::{
+    clearances::Clearances,
     grid::{Cell, Grid},
     plane::{direction, distance},
 };
@@ -51,7 +52,7 @@ impl ArmView {
     pub(super) fn new(
         line: &[([f64; 2], f64)],
         (meet, clearance): ([f64; 2], f64),
-        grid: &Grid,
+        (grid, clearances): (&Grid, &Clearances),
         far: f64,
     ) -> Self {
         let behind = |least: f64| {
@@ -72,7 +73,7 @@ impl ArmView {
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
-                let (free, _) = grid.sight(from, angle, far - before);
+                let (free, _) = clearances.sight(grid, from, angle, far - before);
                 if free + before >= far {
                     return Self::Far;
                 }
@@ -81,7 +82,7 @@ impl ArmView {
                 }
             }
         }
-        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid));
+        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid, clearances));
         walled.sort_by(f64::total_cmp);
         Self::Near { depth: length + distance(longest.from, meet), walled }
     }
@@ -95,12 +96,12 @@ impl Ray {
 
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
-    fn walled(&self, length: f64, side: f64, grid: &Grid) -> f64 {
+    fn walled(&self, length: f64, side: f64, grid: &Grid, clearances: &Clearances) -> f64 {
         let points = ((length.min(FAR) / APART) as u32).max(1);
         let across = self.angle + side * std::f64::consts::FRAC_PI_2;
         let beside = |point: u32| {
             let from = self.at(APART * f64::from(point));
-            let (off, cell) = grid.sight(from, across, BESIDE);
+            let (off, cell) = clearances.sight(grid, from, across, BESIDE);
             (cell == Cell::Occupied).then_some(off)
         };
         let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();

@@ -1,9 +1,8 @@
 //! The ends of the ways around the robot: where free space goes on unseen, and where it was seen to end.
 
-use std::{cmp::Reverse, collections::VecDeque};
-
 use super::{
     clearances::Clearances,
+    counting_sort::sorted_by_key,
     grid::{Cell, Grid},
     params::LaserParams,
 };
@@ -40,11 +39,11 @@ pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u
     let mut lengths = vec![u32::MAX; ways.len()];
     lengths[start] = 0;
     // Cells wait in a ring of buckets by their length: no step is longer than the ring.
-    let mut buckets: [VecDeque<usize>; 8] = Default::default();
-    buckets[0].push_back(start);
+    let mut buckets: [Vec<usize>; 8] = Default::default();
+    buckets[0].push(start);
     let (mut length, mut waiting) = (0_u32, 1_usize);
     while waiting > 0 {
-        while let Some(at) = buckets[length as usize % 8].pop_front() {
+        while let Some(at) = buckets[length as usize % 8].pop() {
             waiting -= 1;
             if lengths[at] != length {
                 continue;
@@ -53,7 +52,7 @@ pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u
                 let to = length + if number % 2 == 0 { DIAGONAL } else { STRAIGHT };
                 if ways[near] && lengths[near] > to {
                     lengths[near] = to;
-                    buckets[to as usize % 8].push_back(near);
+                    buckets[to as usize % 8].push(near);
                     waiting += 1;
                 }
             }
@@ -67,18 +66,20 @@ pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u
 }
 
 /// The ends of the ways: one cell for each stretch of border to the unknown, and the maxima of the distance
-/// from the robot.
+/// from the robot. The ways are the indices of cells, in their order.
 pub(super) fn ends(
-    ways: &[bool],
+    ways: &[usize],
     lengths: &[u32],
     clearances: &Clearances,
     grid: &Grid,
     params: &LaserParams,
 ) -> Vec<End> {
     let metres = |length: u32| f64::from(length) / f64::from(STRAIGHT) * grid.cell;
-    let mut at_gap = vec![false; ways.len()];
+    let mut at_gap = vec![false; grid.cells.len()];
     let mut ends = Vec::new();
-    for gap in grid.groups(|at| ways[at] && clearances.border[at] <= 4) {
+    let near_border: Vec<usize> =
+        ways.iter().copied().filter(|&at| clearances.border[at] <= 4).collect();
+    for gap in grid.groups(&near_border) {
         for &at in &gap {
             at_gap[at] = true;
         }
@@ -113,7 +114,8 @@ fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -
     let is_border = |at: usize| {
         grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
     };
-    for border in grid.groups(is_border) {
+    let all: Vec<usize> = (0..grid.cells.len()).filter(|&at| is_border(at)).collect();
+    for border in grid.groups(&all) {
         if border.len() as f64 * grid.cell >= params.arm.border {
             for at in border {
                 borders[at] = true;
@@ -138,20 +140,21 @@ fn is_near(set: &[bool], cell: usize, grid: &Grid, distance: f64) -> bool {
 
 /// The maxima of a function on a set of cells from which one must descend at least this far to reach a
 /// greater one.
-fn maxima(set: &[bool], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
-    let set = (0..set.len()).filter(|&at| set[at]);
-    let mut order: Vec<(Reverse<u32>, usize)> = set.map(|at| (Reverse(value[at]), at)).collect();
-    order.sort_unstable();
+fn maxima(set: &[usize], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
+    let highest = set.iter().map(|&at| value[at]).max().unwrap_or_default();
+    let order = sorted_by_key(set, |at| highest - value[at]);
     // Components of the cells so far, each with its maximum as its root.
-    let mut parent: Vec<Option<usize>> = vec![None; value.len()];
-    let mut maxima: Vec<usize> = order.first().map(|&(_, at)| at).into_iter().collect();
-    for (_, at) in order {
-        parent[at] = Some(at);
+    let mut parent: Vec<u32> = vec![NONE; value.len()];
+    let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();
+    for at in order {
+        parent[at] = at as u32;
+        // The root of the component of this cell.
+        let mut one = at;
         for near in grid.neighbours(at) {
-            if parent[near].is_none() {
+            if parent[near] == NONE {
                 continue;
             }
-            let (one, other) = (root(&mut parent, at), root(&mut parent, near));
+            let other = root(&mut parent, near);
             if one == other {
                 continue;
             }
@@ -159,14 +162,19 @@ fn maxima(set: &[bool], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usiz
             if value[low] - value[at] >= prominence {
                 maxima.push(low);
             }
-            parent[low] = Some(high);
+            parent[low] = high as u32;
+            one = high;
         }
     }
     maxima
 }
 
-fn root(parent: &mut [Option<usize>], mut at: usize) -> usize {
-    while let Some(above) = parent[at].filter(|&above| above != at) {
+/// A cell that belongs to no component yet.
+const NONE: u32 = u32::MAX;
+
+fn root(parent: &mut [u32], mut at: usize) -> usize {
+    while parent[at] as usize != at {
+        let above = parent[at] as usize;
         parent[at] = parent[above];
         at = above;
     }

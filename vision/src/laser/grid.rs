@@ -55,22 +55,6 @@ impl Grid {
         [0, 1].map(|axis| self.origin[axis] + (at[axis] as f64 + 0.5) * self.cell)
     }
 
-    /// How far one sees from a point in a direction: the length up to the first cell that is not free, or to a
-    /// limit, in metres; and what that cell is.
-    #[must_use]
-    pub fn sight(&self, from: [f64; 2], direction: f64, limit: f64) -> (f64, Cell) {
-        let (sine, cosine) = direction.sin_cos();
-        let mut length = 0.0;
-        loop {
-            let point = [from[0] + length * cosine, from[1] + length * sine];
-            let cell = self.index(point).map_or(Cell::Unknown, |at| self.cells[at]);
-            if cell != Cell::Free || length > limit {
-                return (length, cell);
-            }
-            length += self.cell / 2.0;
-        }
-    }
-
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.
     #[must_use]
     pub fn neighbours(&self, index: usize) -> [usize; 8] {
@@ -87,22 +71,26 @@ impl Grid {
         ]
     }
 
-    /// The groups of neighbouring cells of a kind. None of them is on the border.
-    pub(super) fn groups(&self, is_member: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
-        let mut seen = vec![false; self.cells.len()];
+    /// The groups of neighbouring cells of a set. None of them is on the border.
+    pub(super) fn groups(&self, set: &[usize]) -> Vec<Vec<usize>> {
+        // Whether a cell belongs to the set and to no group yet.
+        let mut is_left = vec![false; self.cells.len()];
+        for &at in set {
+            is_left[at] = true;
+        }
         let mut groups = Vec::new();
-        for start in 0..self.cells.len() {
-            if seen[start] || !is_member(start) {
+        for &start in set {
+            if !is_left[start] {
                 continue;
             }
-            seen[start] = true;
+            is_left[start] = false;
             let mut group = vec![start];
             let mut next = 0;
             while let Some(&at) = group.get(next) {
                 next += 1;
                 for near in self.neighbours(at) {
-                    if !seen[near] && is_member(near) {
-                        seen[near] = true;
+                    if is_left[near] {
+                        is_left[near] = false;
                         group.push(near);
                     }
                 }
@@ -150,6 +138,7 @@ impl Grid {
         let mut group = vec![0_u32; self.cells.len()];
         let mut large = vec![true];
         let mut small = Vec::new();
+        let mut members = Vec::new();
         // The first cell of a row of a group has a free one before it.
         for start in (1..self.cells.len()).filter(|&at| !is_free(at) && is_free(at - 1)) {
             if group[start] > 0 {
@@ -157,7 +146,8 @@ impl Grid {
             }
             let number = large.len() as u32;
             group[start] = number;
-            let mut members = vec![start];
+            members.clear();
+            members.push(start);
             let (mut low, mut high) = (column_row(start), column_row(start));
             let mut next = 0;
             let is_large = loop {
@@ -170,19 +160,22 @@ impl Grid {
                     break true;
                 }
                 let near = self.neighbours(at);
-                let near = near.into_iter().filter(|&near| !is_free(near) && group[near] != number);
-                let near: Vec<usize> = near.collect();
-                if near.iter().any(|&near| group[near] > 0 && large[group[near] as usize]) {
+                let is_of_large = |&near: &usize| {
+                    group[near] > 0 && group[near] != number && large[group[near] as usize]
+                };
+                if near.iter().any(|near| !is_free(*near) && is_of_large(near)) {
                     break true;
                 }
                 for near in near {
-                    group[near] = number;
-                    members.push(near);
+                    if !is_free(near) && group[near] != number {
+                        group[near] = number;
+                        members.push(near);
+                    }
                 }
             };
             large.push(is_large);
             if !is_large {
-                small.extend(members);
+                small.extend_from_slice(&members);
             }
         }
         small

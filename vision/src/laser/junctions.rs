@@ -36,7 +36,7 @@ impl WayGraph {
 
     /// Meet points, of which those in one place are one.
     fn meets(&self, params: &ArmParams) -> Vec<LaserJunction> {
-        let degrees: Vec<usize> = (0..self.nodes.len()).map(|node| self.at(node).len()).collect();
+        let degrees = self.degrees();
         // Each meet point is in the group of the first that is joined to it by short ways.
         let mut group: Vec<usize> = (0..self.nodes.len()).collect();
         for way in &self.ways {

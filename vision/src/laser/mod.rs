@@ -6,8 +6,9 @@
 //! * [`plane`]: distances, directions and motions;
 //! * [`scan`]: one sweep of the scanner;
 //! * [`matching`]: where it was taken, by odometry and by the walls of earlier scans;
+//! * [`drift`]: how much the heading of odometry drifts;
 //! * [`grid`]: the local map, of the cells where rays of the last scans have passed and ended;
-//! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall;
+//! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall, and lines of sight;
 //! * [`ends`]: where the ways around the robot go on unseen, and where they end;
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
@@ -20,7 +21,9 @@
 
 mod arm_view;
 pub mod clearances;
+mod counting_sort;
 pub mod distance;
+pub mod drift;
 pub mod ends;
 pub mod grid;
 pub mod junctions;

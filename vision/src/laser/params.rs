@@ -44,6 +44,9 @@ params! {
         /// The number of times that points are matched and the pose is improved; 8 are enough. With 0
         /// odometry alone decides: on the logs, which do not drift, more junctions are right then. Logs.
         rounds: usize = 0,
+        /// If the heading of the odometry of a log drifts by more than this in 10 m, its scans are matched
+        /// nevertheless. Geometry: far fewer scans are off the walls of a local map by a cell with less.
+        max_drift: f64 = 0.02,
         /// Matched walls are at most this far apart in the first round. Geometry: a quarter of a corridor.
         first_gate: f64 = 0.6,
         /// Matched walls are at most this far apart in the last round. Geometry.

@@ -31,14 +31,15 @@ pub(super) struct RayCounts {
 }
 
 impl RayCounts {
-    /// Counts around a point, in a square of this many cells a side.
-    pub(super) fn around(point: [f64; 2], side: usize, cell: f64) -> Self {
-        // Whole cells from the origin of the frame.
-        let corner = |at: f64| ((at / cell).floor() - (side / 2) as f64) * cell;
+    /// Counts around a point, in a square of this many cells a side. The corners of cells lie `shift` cells from
+    /// the origin of the frame.
+    pub(super) fn around(point: [f64; 2], side: usize, cell: f64, shift: [f64; 2]) -> Self {
+        let half = (side / 2) as f64;
+        let corner = |axis: usize| ((point[axis] / cell).floor() - half + shift[axis]) * cell;
         Self {
             side,
             cell,
-            origin: point.map(corner),
+            origin: [0, 1].map(corner),
             hits: vec![0; side * side],
             passes: vec![0; side * side],
         }
@@ -94,24 +95,36 @@ impl RayCounts {
         // The window without its border.
         let [west, south] = cell_at(self.place(point)).map(|at| (at - half + 1).max(1) as usize);
         let inner = side.saturating_sub(2);
-        let row = |row: usize, from: usize, to: usize| row * self.side + from..row * self.side + to;
-        let is_known = |at: usize| self.hits[at] | self.passes[at] > 0;
-        let mut rows: Vec<usize> = (south..(south + inner).min(self.side - 1)).collect();
-        let last = (west + inner).min(self.side - 1);
-        rows.retain(|&at| row(at, west, last).any(is_known));
-        let (bottom, top) = rows.first().zip(rows.last()).map_or((south, south), |(a, b)| (*a, *b));
-        let known = |column: &usize| (bottom..=top).any(|row| is_known(row * self.side + column));
-        let left = (west..last).find(known).unwrap_or(west);
-        let right = (west..last).rfind(known).unwrap_or(west);
+        let width = (west + inner).min(self.side - 1) - west;
+        let mut all = Vec::with_capacity(inner * width);
+        let mut is_known_column = vec![false; width];
+        let mut known_rows: Option<[usize; 2]> = None;
+        for row in 0..(south + inner).min(self.side - 1) - south {
+            let first = (south + row) * self.side + west;
+            let begin = all.len();
+            all.extend((first..first + width).map(|index| self.cell(index, params)));
+            let mut is_known_row = false;
+            for (is_known, &cell) in is_known_column.iter_mut().zip(&all[begin..]) {
+                *is_known |= cell != Cell::Unknown;
+                is_known_row |= cell != Cell::Unknown;
+            }
+            if is_known_row {
+                known_rows = Some([known_rows.map_or(row, |[bottom, _]| bottom), row]);
+            }
+        }
+        let [bottom, top] = known_rows.unwrap_or_default();
+        let left = is_known_column.iter().position(|&known| known).unwrap_or_default();
+        let right = is_known_column.iter().rposition(|&known| known).unwrap_or_default();
         let columns = right + 3 - left;
         let mut cells = vec![Cell::Unknown; columns];
-        for at in bottom..=top {
+        for row in bottom..=top {
             cells.push(Cell::Unknown);
-            cells.extend(row(at, left, right + 1).map(|index| self.cell(index, params)));
+            let first = row * width;
+            cells.extend_from_slice(&all[first + left..=first + right]);
             cells.push(Cell::Unknown);
         }
         cells.extend(vec![Cell::Unknown; columns]);
-        let corner = [left, bottom].map(|at| at as f64 - 1.0);
+        let corner = [west + left, south + bottom].map(|at| at as f64 - 1.0);
         let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis] * self.cell);
         Grid { columns, cell: self.cell, origin, cells }
     }
@@ -144,12 +157,13 @@ fn cell_at(place: [f64; 2]) -> [i64; 2] {
 
 /// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.
 fn cells(from: [f64; 2], to: [f64; 2], density: f64) -> impl Iterator<Item = [i64; 2]> {
-    let step = [0, 1].map(|axis| to[axis] - from[axis]);
-    let steps = (density * step[0].abs().max(step[1].abs())).ceil().max(1.0);
+    let [from, to] = [from, to].map(|place| place.map(|at| at.clamp(-1e9, 1e9)));
+    let off = [0, 1].map(|axis| to[axis] - from[axis]);
+    let steps = (density * off[0].abs().max(off[1].abs())).ceil().max(1.0);
+    let step = off.map(|off| off / steps);
     let mut last = None;
     (0..=steps as u32).filter_map(move |number| {
-        let part = f64::from(number) / steps;
-        let at = cell_at([0, 1].map(|axis| from[axis] + part * step[axis]));
+        let at = [0, 1].map(|axis| floor(from[axis] + f64::from(number) * step[axis]));
         (last.replace(at) != Some(at)).then_some(at)
     })
 }

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
+    clearances::Clearances,
     grid::Grid,
     junctions::LaserJunction,
     matching::ScanMatcher,
@@ -23,7 +24,10 @@ use super::{
 pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
-    counts: Option<RayCounts>,
+    /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
+    counts: Vec<RayCounts>,
+    /// The number of views so far.
+    views: usize,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
     /// Where they were taken, in the same order.
@@ -43,6 +47,8 @@ pub struct LaserView {
     pub to_odometry: Motion,
     /// The local map.
     pub grid: Grid,
+    /// The distances on it.
+    pub clearances: Clearances,
     /// The middle lines of its ways; `None` if the robot has no way.
     pub skeleton: Option<Skeleton>,
     /// Those that count.
@@ -55,6 +61,9 @@ pub struct LaserView {
 
 /// Odometry beyond this is wrong, in metres; cells near it would have no place.
 const FARTHEST: f64 = 1e7;
+/// Corners of cells, in cells from the origin. If scans are matched, successive views take them in turn: matched
+/// walls move a little, and what is seen must not depend on how they lie in the cells.
+const CORNERS: [[f64; 2]; 2] = [[0.0, 0.0], [0.5, 0.5]];
 /// The counts reach this many times as far as a window of the local map.
 const MARGIN: usize = 3;
 
@@ -66,7 +75,8 @@ impl LaserSensor {
         Self {
             params,
             matcher,
-            counts: None,
+            counts: Vec::new(),
+            views: 0,
             scans: VecDeque::new(),
             viewpoints: VecDeque::new(),
             way: 0.0,
@@ -95,15 +105,18 @@ impl LaserSensor {
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, &robot, &params), robot.position, side);
         self.viewpoints.push_back(Viewpoint::new(scan, &robot));
-        let counts = self.counts.as_ref()?;
+        let counts = self.counts.get(self.views % self.counts.len().max(1))?;
+        self.views += 1;
         let mut grid = counts.window(robot.position, side, &params);
         grid.clean(&params);
-        let skeleton = Skeleton::new(&grid, robot.position, &self.params);
-        let ways = skeleton.as_ref().map(|skeleton| WayGraph::new(skeleton, &grid));
+        let clearances = Clearances::new(&grid);
+        let skeleton = Skeleton::new(&grid, &clearances, robot.position, &self.params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
         let ways = ways.unwrap_or_default();
         let judge = ArmJudge {
             robot: robot.position,
             grid: &grid,
+            clearances: &clearances,
             viewpoints: self.viewpoints.make_contiguous(),
             params: &self.params.arm,
         };
@@ -115,15 +128,25 @@ impl LaserSensor {
             junctions.clone()
         };
         let to_odometry = self.matcher.correction().inverse();
-        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions, possible_junctions })
+        Some(LaserView {
+            robot,
+            to_odometry,
+            grid,
+            clearances,
+            skeleton,
+            graph,
+            junctions,
+            possible_junctions,
+        })
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
     fn add(&mut self, rays: Rays, robot: [f64; 2], side: usize) {
-        let moved = self.counts.as_ref().is_none_or(|counts| !counts.covers(robot, side));
+        let covers = |counts: &RayCounts| counts.covers(robot, side);
+        let moved = self.counts.is_empty() || !self.counts.iter().all(covers);
         let forgotten = self.way - self.params.map.memory;
         while let Some((_, old)) = self.scans.front().filter(|(way, _)| *way < forgotten) {
-            if let Some(counts) = self.counts.as_mut().filter(|_| !moved) {
+            for counts in self.counts.iter_mut().filter(|_| !moved) {
                 counts.remove(old);
             }
             self.scans.pop_front();
@@ -131,21 +154,26 @@ impl LaserSensor {
         }
         self.scans.push_back((self.way, rays));
         if moved {
-            let mut counts = RayCounts::around(robot, MARGIN * side, self.params.map.cell);
-            for (_, rays) in &self.scans {
-                counts.add(rays);
-            }
-            self.counts = Some(counts);
-        } else if let (Some(counts), Some((_, rays))) = (&mut self.counts, self.scans.back()) {
-            counts.add(rays);
+            let corners =
+                if self.params.matching.rounds > 0 { &CORNERS[..] } else { &CORNERS[..1] };
+            let around = |&corner: &[f64; 2]| {
+                let cell = self.params.map.cell;
+                let mut counts = RayCounts::around(robot, MARGIN * side, cell, corner);
+                self.scans.iter().for_each(|(_, rays)| counts.add(rays));
+                counts
+            };
+            self.counts = corners.iter().map(around).collect();
+        } else if let Some((_, rays)) = self.scans.back() {
+            self.counts.iter_mut().for_each(|counts| counts.add(rays));
         }
     }
 }
 
 /// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
 fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
-    let motion = Motion::from_robot(robot);
-    let place = |point: [f64; 2]| motion.point(point);
+    let (sine, cosine) = robot.heading.sin_cos();
+    let [east, north] = robot.position;
+    let place = |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
     let mut rays = Rays { from: place(scan.mount().position), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan
         .readings()
@@ -157,10 +185,9 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
     let point = |bearing: f64, range: f64| place(scan.point(bearing, range));
-    let end = |index: usize| {
-        let &(bearing, range) = readings.get(index)?;
-        Some(point(bearing, range?))
-    };
+    let ends: Vec<Option<[f64; 2]>> =
+        readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
+    let end = |index: usize| *ends.get(index)?;
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
         if range > farthest {

@@ -4,6 +4,7 @@
 
 use super::{
     clearances::Clearances,
+    counting_sort::sorted_by_key,
     ends::{End, ends, way_lengths},
     grid::{Cell, Grid},
     params::LaserParams,
@@ -16,8 +17,6 @@ pub struct Skeleton {
     pub cells: Vec<bool>,
     /// Where ways end.
     pub ends: Vec<End>,
-    /// The distances of all cells.
-    pub clearances: Clearances,
 }
 
 /// The robot stands at most this far from a place that is wide enough for it, in metres.
@@ -26,8 +25,12 @@ const BESIDE: f64 = 1.5;
 impl Skeleton {
     /// The skeleton of the ways from a robot at a point; `None` if there is none.
     #[must_use]
-    pub fn new(grid: &Grid, robot: [f64; 2], params: &LaserParams) -> Option<Self> {
-        let clearances = Clearances::new(grid);
+    pub fn new(
+        grid: &Grid,
+        clearances: &Clearances,
+        robot: [f64; 2],
+        params: &LaserParams,
+    ) -> Option<Self> {
         let radius = params.map.min_width / 2.0 / grid.cell;
         let is_way = |at: usize| {
             grid.cells[at] == Cell::Free && f64::from(clearances.wall[at]) >= radius * radius
@@ -35,9 +38,10 @@ impl Skeleton {
         let mut cells: Vec<bool> = (0..grid.cells.len()).map(is_way).collect();
         let start = nearest(&cells, grid, robot, BESIDE)?;
         let lengths = way_lengths(&mut cells, grid, start);
-        let ends = ends(&cells, &lengths, &clearances, grid, params);
-        thin(&mut cells, &clearances, &ends, grid);
-        Some(Self { cells, ends, clearances })
+        let ways: Vec<usize> = (0..cells.len()).filter(|&at| cells[at]).collect();
+        let ends = ends(&ways, &lengths, clearances, grid, params);
+        thin(&mut cells, &ways, clearances, &ends, grid);
+        Some(Self { cells, ends })
     }
 }
 
@@ -61,18 +65,13 @@ fn nearest(set: &[bool], grid: &Grid, point: [f64; 2], within: f64) -> Option<us
 }
 
 /// Removes cells whose removal does not change the topology, those nearest to a wall or to the unknown first.
-fn thin(cells: &mut [bool], clearances: &Clearances, ends: &[End], grid: &Grid) {
-    let mut is_end = vec![false; cells.len()];
-    for end in ends {
-        is_end[end.cell] = true;
-    }
-    let all = (0..cells.len()).filter(|&at| cells[at] && !is_end[at]);
-    let mut left: Vec<(u32, usize)> = all.map(|at| (clearances.border[at], at)).collect();
-    left.sort_unstable();
+fn thin(cells: &mut [bool], ways: &[usize], clearances: &Clearances, ends: &[End], grid: &Grid) {
+    let is_end = |at: usize| ends.iter().any(|end| end.cell == at);
+    let mut left = sorted_by_key(ways, |at| clearances.border[at]);
     loop {
         let before = left.len();
-        left.retain(|&(_, at)| {
-            let keep = !is_simple(cells, at, grid);
+        left.retain(|&at| {
+            let keep = !is_simple(cells, at, grid) || is_end(at);
             cells[at] = keep;
             keep
         });
@@ -82,13 +81,37 @@ fn thin(cells: &mut [bool], clearances: &Clearances, ends: &[End], grid: &Grid) 
     }
 }
 
-/// Whether the removal of a cell changes no topology: Yokoi's connectivity number of its neighbourhood is
-/// one.
+/// Whether the removal of a cell changes no topology.
 fn is_simple(cells: &[bool], at: usize, grid: &Grid) -> bool {
-    let empty = grid.neighbours(at).map(|near| !cells[near]);
-    let number = |direct: usize| {
-        let all = empty[direct] && empty[(direct + 1) % 8] && empty[(direct + 2) % 8];
-        i32::from(empty[direct]) - i32::from(all)
-    };
-    [1, 3, 5, 7].into_iter().map(number).sum::<i32>() == 1
+    let near = grid.neighbours(at);
+    let around =
+        (0..8).fold(0, |around, number| around | usize::from(cells[near[number]]) << number);
+    IS_SIMPLE[around]
 }
+
+/// Whether a cell may be removed, by which of its eight neighbours there are: Yokoi's connectivity number of the
+/// neighbourhood is one.
+const IS_SIMPLE: [bool; 256] = {
+    let mut is_simple = [false; 256];
+    let mut around = 0;
+    while around < 256 {
+        let mut number = 0;
+        let mut direct = 1;
+        while direct < 8 {
+            let empty = [direct, (direct + 1) % 8, (direct + 2) % 8];
+            let mut all = true;
+            let mut next = 0;
+            while next < 3 {
+                all &= around >> empty[next] & 1 == 0;
+                next += 1;
+            }
+            if around >> direct & 1 == 0 && !all {
+                number += 1;
+            }
+            direct += 2;
+        }
+        is_simple[around] = number == 1;
+        around += 1;
+    }
+    is_simple
+};

@@ -3,6 +3,7 @@
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
+    clearances::Clearances,
     grid::Grid,
     plane::{Motion, direction, distance},
     scan::Scan,
@@ -31,11 +32,16 @@ impl Viewpoint {
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
-    pub(super) fn turn_to(&self, point: [f64; 2], grid: &Grid) -> Option<f64> {
+    pub(super) fn turn_to(
+        &self,
+        point: [f64; 2],
+        grid: &Grid,
+        clearances: &Clearances,
+    ) -> Option<f64> {
         let towards = direction(self.point, point);
         let turn = wrapped(towards - self.middle).abs() - self.half;
         let range = distance(self.point, point);
-        let is_free = || grid.sight(self.point, towards, range).0 >= range - grid.cell;
+        let is_free = || clearances.sight(grid, self.point, towards, range).0 >= range - grid.cell;
         (turn > 0.0 && is_free()).then_some(turn)
     }
 }
@@ -49,6 +55,11 @@ mod tests {
         grid::Cell,
         scan::{ScanGeometry, ScannerPose},
     };
+
+    /// How far a point lies beyond the edge of a sector on a map.
+    fn turn_to(viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid) -> Option<f64> {
+        viewpoint.turn_to(point, grid, &Clearances::new(grid))
+    }
 
     /// The viewpoint of a robot that looks east from the middle of a free square of 10 m.
     fn viewpoint(readings: usize) -> (Viewpoint, Grid) {
@@ -68,19 +79,19 @@ mod tests {
     #[test]
     fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
         let (viewpoint, mut grid) = viewpoint(181);
-        assert_eq!(viewpoint.turn_to([6.05, 6.05], &grid), None, "ahead");
-        let turn = viewpoint.turn_to([4.05, 6.05], &grid).unwrap();
+        assert_eq!(turn_to(&viewpoint, [6.05, 6.05], &grid), None, "ahead");
+        let turn = turn_to(&viewpoint, [4.05, 6.05], &grid).unwrap();
         assert!((turn - FRAC_PI_4).abs() < 1e-9, "{turn}");
         let wall = grid.index([4.55, 5.55]).unwrap();
         grid.cells[wall] = Cell::Occupied;
-        assert_eq!(viewpoint.turn_to([4.05, 6.05], &grid), None, "behind a wall");
+        assert_eq!(turn_to(&viewpoint, [4.05, 6.05], &grid), None, "behind a wall");
     }
 
     #[test]
     fn nothing_is_beyond_a_sector_that_goes_all_around() {
         let (viewpoint, grid) = viewpoint(361);
         for point in [[4.0, 6.0], [4.0, 5.0], [4.0, 4.0]] {
-            assert_eq!(viewpoint.turn_to(point, &grid), None);
+            assert_eq!(turn_to(&viewpoint, point, &grid), None);
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{
     arm_view::ArmView,
+    clearances::Clearances,
     ends::{End, WayEnd},
     grid::Grid,
     params::ArmParams,
@@ -72,6 +73,8 @@ pub(super) struct ArmJudge<'a> {
     pub robot: [f64; 2],
     /// The local map.
     pub grid: &'a Grid,
+    /// The distances on it.
+    pub clearances: &'a Clearances,
     /// Where its scans were taken.
     pub viewpoints: &'a [Viewpoint],
     /// The limits.
@@ -87,13 +90,13 @@ fn length(line: &[([f64; 2], f64)]) -> f64 {
 impl WayGraph {
     /// The graph of a skeleton.
     #[must_use]
-    pub fn new(skeleton: &Skeleton, grid: &Grid) -> Self {
-        let clearance = |at: usize| f64::from(skeleton.clearances.wall[at]).sqrt() * grid.cell;
+    pub fn new(skeleton: &Skeleton, grid: &Grid, clearances: &Clearances) -> Self {
+        let clearance = |at: usize| f64::from(clearances.wall[at]).sqrt() * grid.cell;
         let on_line = |at: usize| (grid.point(at), clearance(at));
         let mut nodes = Vec::new();
         let mut node_at = BTreeMap::new();
         for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
-            if skeleton.links(at, grid).len() != 2 {
+            if skeleton.links(at, grid).count() != 2 {
                 node_at.insert(at, nodes.len());
                 let end = skeleton.ends.iter().find(|end| end.cell == at).copied();
                 nodes.push(WayNode { point: grid.point(at), clearance: clearance(at), end });
@@ -105,8 +108,8 @@ impl WayGraph {
                 let (mut before, mut at) = (start, first);
                 let mut line = vec![on_line(start), on_line(first)];
                 while !node_at.contains_key(&at) {
-                    let links = skeleton.links(at, grid);
-                    let Some(next) = links.into_iter().find(|&next| next != before) else { break };
+                    let mut links = skeleton.links(at, grid);
+                    let Some(next) = links.find(|&next| next != before) else { break };
                     line.push(on_line(next));
                     (before, at) = (at, next);
                 }
@@ -130,11 +133,21 @@ impl WayGraph {
         all.filter(|&(end, _)| end == node).map(|(_, index)| index).collect()
     }
 
+    /// The number of ways at each node.
+    pub(super) fn degrees(&self) -> Vec<usize> {
+        let mut degrees = vec![0; self.nodes.len()];
+        for node in self.ways.iter().flat_map(|way| way.nodes) {
+            degrees[node] += 1;
+        }
+        degrees
+    }
+
     /// The graph with those arms only that count, and whether any of the others is in doubt. The shortest is
     /// removed first, because others become longer by it.
     #[must_use]
     pub(super) fn pruned(mut self, judge: &ArmJudge<'_>, counted: CountedArms) -> (Self, bool) {
         let mut ways: Vec<usize> = (0..self.ways.len()).collect();
+        let mut degrees = self.degrees();
         // Whether arms count, by their meet point and their end. Most are the same in the next round.
         let mut known = BTreeMap::new();
         let mut any_in_doubt = false;
@@ -143,7 +156,7 @@ impl WayGraph {
             ways.iter_mut().enumerate().for_each(|(index, way)| *way = index);
             ways.sort_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
             let shortest = ways.iter().find(|&&way| {
-                let Some([meet, leaf]) = self.arm(way) else { return false };
+                let Some([meet, leaf]) = self.arm(way, &degrees) else { return false };
                 let status = *known
                     .entry([meet, leaf])
                     .or_insert_with(|| self.arm_status(way, [meet, leaf], judge));
@@ -155,15 +168,18 @@ impl WayGraph {
             });
             let Some(&shortest) = shortest else { return (self, any_in_doubt) };
             for node in self.ways.swap_remove(shortest).nodes {
-                self.join_at(node);
+                degrees[node] -= 1;
+                if degrees[node] == 2 && self.join_at(node) {
+                    degrees[node] = 0;
+                }
             }
         }
     }
 
     /// The meet point and the end of a way that has both.
-    fn arm(&self, way: usize) -> Option<[usize; 2]> {
+    fn arm(&self, way: usize, degrees: &[usize]) -> Option<[usize; 2]> {
         let [one, other] = self.ways[way].nodes;
-        match (self.at(one).len(), self.at(other).len()) {
+        match (degrees[one], degrees[other]) {
             (3.., 1) => Some([one, other]),
             (1, 3..) => Some([other, one]),
             _ => None,
@@ -172,9 +188,9 @@ impl WayGraph {
 
     /// Whether a way from a meet point to an end is an arm, and no alcove.
     fn arm_status(&self, way: usize, [meet, leaf]: [usize; 2], judge: &ArmJudge<'_>) -> ArmStatus {
-        let ArmJudge { robot, grid, viewpoints, params } = *judge;
-        let way = self.ways[way].clone().from_node(meet);
-        let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
+        let ArmJudge { robot, grid, clearances, viewpoints, params } = *judge;
+        let way = &self.ways[way];
+        let (meet_node, leaf, meet) = (meet, &self.nodes[leaf], &self.nodes[meet]);
         let Some(end) = leaf.end else { return ArmStatus::Arm };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
@@ -187,8 +203,10 @@ impl WayGraph {
         if has_robot || is_long {
             return ArmStatus::Arm;
         }
+        let way = way.clone().from_node(meet_node);
+        let map = (grid, clearances);
         let ArmView::Near { depth, walled } =
-            ArmView::new(&way.line, (meet.point, meet.clearance), grid, params.sight)
+            ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight)
         else {
             return ArmStatus::Arm;
         };
@@ -216,7 +234,7 @@ impl WayGraph {
             && widest <= params.max_width
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
         let is_unseen = || {
-            let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid);
+            let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid, clearances);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
         if is_arm {
@@ -232,11 +250,11 @@ impl WayGraph {
         }
     }
 
-    /// Makes one way of two that end at a node.
-    fn join_at(&mut self, node: usize) {
-        let [one, other] = self.at(node)[..] else { return };
+    /// Makes one way of two that end at a node, unless they are both ends of a loop. Returns whether it did.
+    fn join_at(&mut self, node: usize) -> bool {
+        let [one, other] = self.at(node)[..] else { return false };
         if one == other {
-            return;
+            return false;
         }
         let second = self.ways[other].clone().from_node(node);
         let first = &mut self.ways[one];
@@ -245,6 +263,7 @@ impl WayGraph {
         first.nodes[1] = second.nodes[1];
         first.length += second.length;
         self.ways.swap_remove(other);
+        true
     }
 }
 
@@ -275,13 +294,13 @@ impl Way {
 impl Skeleton {
     /// The cells to which a cell of the skeleton is linked. A diagonal neighbour beside a direct one is
     /// linked through it.
-    fn links(&self, at: usize, grid: &Grid) -> Vec<usize> {
+    fn links(&self, at: usize, grid: &Grid) -> impl Iterator<Item = usize> + use<> {
         let around = grid.neighbours(at);
         let on = around.map(|near| self.cells[near]);
-        let is_link = |&number: &usize| {
+        let is_link = move |&number: &usize| {
             let beside = on[(number + 1) % 8] || on[(number + 7) % 8];
             on[number] && (number % 2 == 1 || !beside)
         };
-        (0..8).filter(is_link).map(|number| around[number]).collect()
+        (0..8).filter(is_link).map(move |number| around[number])
     }
 }

@@ -1,10 +1,10 @@
 //! Random buildings for laser scanners: corridors at any angle and of different widths, junctions with up to
 //! five doors, bends, dead ends, alcoves and round lobbies.
 //!
-//! Corridors join neighbours in a square, triangular or hexagonal lattice whose points are moved a little.
-//! Every corridor is longer than the 10 m that make an arm of a junction.
+//! Corridors join neighbours in a lattice whose points are moved a little. Every corridor is longer than the 10 m
+//! that make an arm of a junction.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -35,8 +35,22 @@ pub struct CorridorArm {
     pub width: f64,
 }
 
+/// The kind of a random building.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BuildingKind {
+    /// Square, triangular and hexagonal lattices.
+    #[default]
+    Mixed,
+    /// Square lattices with long corridors and many loops.
+    Long,
+    /// Square lattices with diagonals: corridors that bend by 45 degrees, and fork.
+    Diagonal,
+}
+
 /// Least and greatest distance of neighbouring points, in metres.
 const SPACING: [f64; 2] = [16.0, 22.0];
+/// The same in a building with long corridors.
+const LONG_SPACING: [f64; 2] = [28.0, 45.0];
 /// Least and greatest number of corridors.
 const CORRIDORS: [usize; 2] = [6, 14];
 /// The greatest number of doors.
@@ -56,25 +70,33 @@ struct Lattice {
 }
 
 impl CorridorWorld {
-    /// The random building of a seed. It has a junction with at least three doors.
+    /// The random building of a kind and a seed. It has a junction with at least three doors.
     #[must_use]
-    pub fn random(seed: u64) -> Self {
+    pub fn random(kind: BuildingKind, seed: u64) -> Self {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
         loop {
-            let world = Self::drawn(&mut chance);
+            let world = Self::drawn(kind, &mut chance);
             if (0..world.places.len()).any(|place| world.arms(place).len() >= 3) {
                 return world;
             }
         }
     }
 
-    fn drawn(chance: &mut Xoshiro256PlusPlus) -> Self {
-        let lattice = match chance.random_range(0..3) {
-            0 => Lattice::square(),
-            1 => Lattice::triangular(|_, _| true),
-            _ => Lattice::triangular(|x, y| (x + 2 * y) % 3 != 0),
+    fn drawn(kind: BuildingKind, chance: &mut Xoshiro256PlusPlus) -> Self {
+        let lattice = match kind {
+            BuildingKind::Mixed => match chance.random_range(0..3) {
+                0 => Lattice::square(),
+                1 => Lattice::triangular(|_, _| true),
+                _ => Lattice::triangular(|x, y| (x + 2 * y) % 3 != 0),
+            },
+            BuildingKind::Long => Lattice::square(),
+            BuildingKind::Diagonal => Lattice::with_diagonals(),
         };
-        let spacing = chance.random_range(SPACING[0]..SPACING[1]);
+        let [least, most] = match kind {
+            BuildingKind::Long => LONG_SPACING,
+            BuildingKind::Mixed | BuildingKind::Diagonal => SPACING,
+        };
+        let spacing = chance.random_range(least..most);
         let (sine, cosine) = chance.random_range(0.0..TAU).sin_cos();
         let mut place = |point: [f64; 2]| {
             let moved = point.map(|part| part + lattice.moved * chance.random_range(-1.0..=1.0));
@@ -131,9 +153,24 @@ impl CorridorWorld {
 }
 
 impl Lattice {
+    /// Points of the square lattice.
     fn square() -> Self {
         let points = (0..12).map(|number| [f64::from(number % 4), f64::from(number / 4)]);
         Self::near(points.collect(), 0.12)
+    }
+
+    /// The same, and one diagonal of each square may be a corridor, too.
+    fn with_diagonals() -> Self {
+        let square = Self::square();
+        let is_even = |[x, y]: [f64; 2]| (x + y) as u32 % 2 == 0;
+        let diagonals =
+            (0..square.points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
+        let diagonals = diagonals.filter(|pair| {
+            let [one, other] = pair.map(|point| square.points[point]);
+            is_even(one) && (distance(one, other) - SQRT_2).abs() < 0.01
+        });
+        let pairs = square.pairs.iter().copied().chain(diagonals).collect();
+        Self { pairs, ..square }
     }
 
     /// Points of the triangular lattice; those that leave out every third are corners of hexagons.
@@ -247,13 +284,25 @@ mod tests {
 
     use super::*;
 
+    fn mixed(seed: u64) -> CorridorWorld {
+        CorridorWorld::random(BuildingKind::Mixed, seed)
+    }
+
     fn worlds() -> impl Iterator<Item = CorridorWorld> {
-        (0..300).map(CorridorWorld::random)
+        (0..300).map(mixed)
+    }
+
+    /// Buildings of the other kinds.
+    fn others() -> impl Iterator<Item = CorridorWorld> {
+        let kinds = [BuildingKind::Long, BuildingKind::Diagonal];
+        kinds
+            .into_iter()
+            .flat_map(|kind| (0..100).map(move |seed| CorridorWorld::random(kind, seed)))
     }
 
     #[test]
     fn corridors_are_longer_than_the_shortest_arm_and_apart_from_each_other() {
-        for world in worlds() {
+        for world in worlds().chain(others()) {
             let floor = world.plan.floor();
             for (number, link) in world.links.iter().enumerate() {
                 let corridor = world.plan.corridors[number];
@@ -295,6 +344,25 @@ mod tests {
     }
 
     #[test]
+    fn corridors_are_long_or_bend_by_half_a_right_angle() {
+        let worlds = |kind| (0..100).map(move |seed| CorridorWorld::random(kind, seed));
+        for world in worlds(BuildingKind::Long) {
+            let corridors = &world.plan.corridors[..world.links.len()];
+            assert!(corridors.iter().all(|corridor| corridor.length() > 20.0));
+        }
+        let is_slanted = |world: &CorridorWorld| {
+            (0..world.places.len()).any(|place| {
+                let arms = world.arms(place);
+                let bend = |two: &[CorridorArm]| {
+                    wrapped(two[0].direction - two[1].direction).abs().to_degrees()
+                };
+                arms.len() == 2 && (125.0..145.0).contains(&bend(&arms))
+            })
+        };
+        assert!(worlds(BuildingKind::Diagonal).filter(is_slanted).count() > 30);
+    }
+
+    #[test]
     fn an_alcove_is_too_short_to_be_an_arm() {
         for world in worlds() {
             for alcove in &world.plan.corridors[world.links.len()..] {
@@ -305,7 +373,7 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_building() {
-        assert_eq!(CorridorWorld::random(3), CorridorWorld::random(3));
-        assert_ne!(CorridorWorld::random(3), CorridorWorld::random(4));
+        assert_eq!(mixed(3), mixed(3));
+        assert_ne!(mixed(3), mixed(4));
     }
 }

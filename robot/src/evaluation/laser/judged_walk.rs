@@ -11,12 +11,11 @@ use toposlam_vision::laser::{
     junctions::LaserJunction,
     params::LaserParams,
     plane::{Motion, distance},
-    sensor::LaserSensor,
 };
 
 use super::{
     super::parallel::made_in_turn,
-    corridor_world::CorridorWorld,
+    corridor_world::{BuildingKind, CorridorWorld},
     walk::{LaserWalk, PassedPlace, WalkStep, clockwise},
 };
 use crate::{
@@ -30,6 +29,8 @@ use crate::{
 pub struct WalkSampler {
     /// Random seed.
     pub seed: u64,
+    /// The kind of the buildings.
+    pub buildings: BuildingKind,
     /// The number of places that a walk passes.
     pub places: usize,
     /// The greatest drift of the heading of the odometry, in radians a metre.
@@ -150,13 +151,12 @@ impl WalkSampler {
     /// The walk with this number; `None` if the watch stops.
     fn walk(&self, number: u64, watch: &dyn Watch) -> Option<JudgedWalk> {
         let seed = self.walk_seed(number);
-        let world = CorridorWorld::random(seed);
+        let world = CorridorWorld::random(self.buildings, seed);
         let walk = LaserWalk::random(&world, self.places, self.drift, seed);
         let params = self.scanner_of(number);
         let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
         let scanner = LaserScanner::new(building, &params, seed);
         let mut events = LaserEvents::new(self.sensing);
-        let mut sensor = LaserSensor::new(self.sensing);
         let (mut views, mut corridor_views) = (Vec::new(), [0; 2]);
         for (number, step) in walk.steps.iter().enumerate() {
             if watch.stop() {
@@ -164,8 +164,7 @@ impl WalkSampler {
             }
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
             let source = EventSource { time: number as u64, ..EventSource::default() };
-            events.see(source, &scan, &step.odometry);
-            let Some(view) = sensor.see(&scan, &step.odometry) else { continue };
+            let Some(view) = events.see(source, &scan, &step.odometry) else { continue };
             match self.judge_view(&world, step, &view.junctions) {
                 Some(SeenFrom::Junction(verdict)) => views.push(verdict),
                 Some(SeenFrom::Corridor(is_wrong)) => {

@@ -2,7 +2,10 @@
 //! common.
 
 use super::{
-    super::report::{Rate, ReportSubject, TargetStatus},
+    super::{
+        report::{Rate, ReportSubject, TargetStatus},
+        traversals::{JudgedTraversal, TraversalOutcome},
+    },
     judged_walk::{JudgedLaserVisit, JudgedWalk, JunctionVerdict, LaserVerdict},
     scanned_run::ScannedRun,
 };
@@ -37,11 +40,11 @@ const UNDECIDED: f64 = 0.05;
 const INVENTED: f64 = 0.01;
 
 impl LaserReport {
-    /// The figures of these walks and whole runs.
+    /// The figures of these walks, whole runs and traversals.
     #[must_use]
-    pub fn of(walks: &[JudgedWalk], runs: &[ScannedRun]) -> Self {
-        let rates = rates(walks).into_iter().chain(of_runs(runs)).collect();
-        Self { rates, groups: groups(walks) }
+    pub fn of(walks: &[JudgedWalk], runs: &[ScannedRun], traversals: &[JudgedTraversal]) -> Self {
+        let rates = rates(walks).into_iter().chain(of_runs(runs)).chain(of_traversals(traversals));
+        Self { rates: rates.collect(), groups: groups(walks) }
     }
 
     /// Whether all targets are met.
@@ -125,6 +128,20 @@ fn of_runs(runs: &[ScannedRun]) -> [Rate; 2] {
     [
         rate("wrong", LaserVerdict::is_wrong),
         rate("undecided", |verdict| verdict == LaserVerdict::Undecided),
+    ]
+}
+
+fn of_traversals(traversals: &[JudgedTraversal]) -> [Rate; 2] {
+    let rate = |what, is: fn(&TraversalOutcome) -> bool| Rate {
+        subject: ReportSubject::Traversal,
+        what,
+        seen: traversals.iter().filter(|traversal| is(&traversal.outcome)).count(),
+        cases: traversals.len(),
+        limit: None,
+    };
+    [
+        rate("wrong", |outcome| matches!(outcome, TraversalOutcome::Wrong(_))),
+        rate("gave up", |outcome| matches!(outcome, TraversalOutcome::GaveUp(_))),
     ]
 }
 

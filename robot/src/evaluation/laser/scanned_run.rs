@@ -1,7 +1,7 @@
 //! A whole run by laser: a robot maps a random building by its scans alone. Corners are no vertices.
 //!
-//! At each junction it decides by the views up to there how many doors there are. A pilot drives it along the
-//! corridors, and a detector of its own reports the marker.
+//! At each junction it looks around, and decides by the views up to there how many doors there are. A pilot drives it
+//! along the corridors, and a detector of its own reports the marker.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -192,6 +192,7 @@ impl World for ScannedWorld<'_> {
         for &place in &self.smoothed.chains[dart.at()][1..] {
             self.driver.drive_near(self.world.places[place]);
         }
+        self.driver.look_around();
         self.sense()?;
         self.check_doors()
     }
@@ -217,7 +218,7 @@ impl WalkSampler {
     /// Makes the whole run with this number by the folding explorer; `None` if the watch stops.
     fn run(&self, number: u64, watch: &dyn Watch) -> Option<ScannedRun> {
         let seed = self.run_seed(number);
-        let world = CorridorWorld::random(seed);
+        let world = CorridorWorld::random(self.buildings, seed);
         let smoothed = SmoothedWorld::of(&world)?;
         let params = self.scanner_of(number);
         let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
@@ -231,6 +232,7 @@ impl WalkSampler {
         let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
         driver.begin_at([0, 1].map(|axis| start[axis] + share * off[axis]));
         driver.drive_near(start);
+        driver.look_around();
         let mut scanned = ScannedWorld {
             world: &world,
             smoothed: &smoothed,
@@ -272,12 +274,12 @@ impl WalkSampler {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::corridor_world::BuildingKind, *};
 
     #[test]
     fn the_graph_of_a_building_has_its_junctions_and_dead_ends() {
         for seed in 0..200 {
-            let world = CorridorWorld::random(seed);
+            let world = CorridorWorld::random(BuildingKind::Mixed, seed);
             let smoothed = SmoothedWorld::of(&world).unwrap();
             let graph = &smoothed.graph;
             let degrees = |degree: usize| {

@@ -169,6 +169,16 @@ impl WalkDriver {
         self.at = point;
     }
 
+    /// Turns around once where it is.
+    pub(super) fn look_around(&mut self) {
+        let Some(heading) = self.heading else { return };
+        let turns = (TAU / TURN).ceil();
+        for part in 1..=turns as u32 {
+            let heading = wrapped(heading + TAU * f64::from(part) / turns);
+            self.push(Pose { position: self.at, heading }, self.way);
+        }
+    }
+
     /// Adds a step, with odometry that drifts.
     fn push(&mut self, pose: Pose, way: f64) {
         let Some(&last) = self.steps.last() else {
@@ -205,10 +215,10 @@ pub fn clockwise(from: f64, to: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::corridor_world::BuildingKind, *};
 
     fn walk(seed: u64, drift: f64) -> (CorridorWorld, LaserWalk) {
-        let world = CorridorWorld::random(seed);
+        let world = CorridorWorld::random(BuildingKind::Mixed, seed);
         let walk = LaserWalk::random(&world, 12, drift, seed);
         (world, walk)
     }

@@ -1,0 +1,67 @@
+//! How much the heading of the odometry drifts: measured by the walls that successive scans show.
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::{matching::ScanMatcher, params::LaserParams, plane::distance, scan::Scan};
+
+/// Measures the drift of the heading of odometry.
+#[derive(Clone, Debug)]
+pub struct DriftMeter {
+    params: LaserParams,
+    matcher: ScanMatcher,
+    /// The length of the robot's way, in metres.
+    way: f64,
+    /// Where the last scan was taken that was used.
+    last: Option<Odometry>,
+    /// Where the present stretch of the way began, and the correction of the heading there, in radians.
+    begun: Option<(f64, f64)>,
+    /// By how much the correction has changed on each stretch of the way, in radians.
+    changes: Vec<f64>,
+}
+
+/// The rounds of matching with which drift is measured and corrected.
+pub const ROUNDS: usize = 8;
+/// Drift is measured on stretches of the way of this length, in metres.
+const STRETCH: f64 = 10.0;
+/// Fewer stretches do not show a drift.
+const LEAST: usize = 3;
+
+impl DriftMeter {
+    /// A meter that has seen nothing yet.
+    #[must_use]
+    pub fn new(mut params: LaserParams) -> Self {
+        params.matching.rounds = ROUNDS;
+        let matcher = ScanMatcher::new(params.matching);
+        Self { params, matcher, way: 0.0, last: None, begun: None, changes: Vec::new() }
+    }
+
+    /// Takes the next scan, and the odometry at its time.
+    pub fn see(&mut self, scan: &Scan, odometry: &Odometry) {
+        let params = self.params.map;
+        if let Some(last) = self.last {
+            let driven = distance(last.position, odometry.position);
+            let turned = wrapped(odometry.heading - last.heading).abs();
+            // Neither is what is not a number.
+            if !(driven >= params.every || turned >= params.every_turn) {
+                return;
+            }
+            self.way += driven;
+        }
+        self.last = Some(*odometry);
+        self.matcher.see(scan, odometry, self.way, self.way - params.memory);
+        let correction = self.matcher.correction().turn;
+        let (begun, before) = *self.begun.get_or_insert((self.way, correction));
+        if self.way - begun >= STRETCH {
+            self.changes.push(wrapped(correction - before).abs() * STRETCH / (self.way - begun));
+            self.begun = Some((self.way, correction));
+        }
+    }
+
+    /// The median drift in 10 m of the way, in radians; `None` if the way is too short.
+    #[must_use]
+    pub fn finish(mut self) -> Option<f64> {
+        self.changes.retain(|change| change.is_finite());
+        self.changes.sort_by(f64::total_cmp);
+        (self.changes.len() >= LEAST).then(|| self.changes[self.changes.len() / 2])
+    }
+}
