@@ -319,7 +319,7 @@ fn a_time_out_and_too_many_moves_are_not_known() {
 #[cfg(unix)]
 #[test]
 fn two_lines_for_one_percept_are_a_failure() {
-    let folder = folder("explorer_lines");
+    let folder = folder("explorer_extra_lines");
     let twice = |name: &str, one: &str, other: &str| {
         let text = format!("while read line; do printf '%s\\n%s\\n' '{one}' '{other}'; done\n");
         script(&folder, name, &text)
