@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::Watch,
 };
 
-use crate::{Cluster, ClusterError, ThreadUse, job::Job};
+use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
 
 /// The result of a check.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ impl Job for CheckJob {
     fn group(&self, _: Vec<()>) {}
 }
 
-impl Cluster {
+impl ClusterProcess {
     /// Checks an algorithm, as [`LazySweep::resume`]; `None` with all choices. In process 0, `units` has those
     /// that were finished before, and records others. If the watch stops process 0, its result has what is
     /// known by then.

@@ -17,8 +17,8 @@ use toposlam_model::enumerate::Watch;
 use crate::{
     ConnectError, Hosts, Setting,
     connect::Connector,
-    dataflow::{self, Event, TimelyWorker},
-    job::{Job, Message},
+    dataflow::{self, JobEvent, TimelyWorker},
+    job::{Job, JobMessage},
     loss,
 };
 
@@ -64,14 +64,14 @@ pub(crate) struct JobEnd<G> {
 }
 
 /// One of some processes that share work. All of them do the same calls in the same order.
-pub struct Cluster {
+pub struct ClusterProcess {
     process: usize,
     processes: usize,
     commands: mpsc::Sender<Command>,
     guards: Option<WorkerGuards<()>>,
 }
 
-impl Cluster {
+impl ClusterProcess {
     /// Connects to the other processes, and waits for them. `settings` must be the same in all of them.
     /// `waiting` is called once with the names of those that are not there soon. `lost` is called with the
     /// name of a process to which the connection is lost; it should end this process.
@@ -136,13 +136,13 @@ impl Cluster {
         let mut is_complete = false;
         let mut seconds = 0.0;
         receive(&received, watch, &mut |event| match event {
-            Event::Done(task, output) => {
+            JobEvent::Done(task, output) => {
                 seconds = begun.elapsed().as_secs_f64();
                 left -= 1;
                 done(task, output);
             }
-            Event::End(end) => ends.push(end),
-            Event::Complete => is_complete = true,
+            JobEvent::End(end) => ends.push(end),
+            JobEvent::Complete => is_complete = true,
         })?;
         let expected_ends = if self.is_first() { self.processes } else { 0 };
         if !is_complete || left > 0 || ends.len() != expected_ends {
@@ -163,7 +163,7 @@ impl Cluster {
     }
 
     /// The value that process 0 gives, in all processes.
-    pub(crate) fn share<T: Message>(
+    pub(crate) fn share<T: JobMessage>(
         &self,
         value: Option<T>,
         watch: &dyn Watch,
@@ -202,7 +202,7 @@ fn receive<T>(
     }
 }
 
-impl Drop for Cluster {
+impl Drop for ClusterProcess {
     /// Without [`close`](Self::close), the work is not done. The process ends, and nobody waits for the others.
     /// The connections must break: if the worker ended by itself, the others would wait for this process.
     fn drop(&mut self) {

@@ -49,7 +49,7 @@ use timely::{
     scheduling::SyncActivator,
 };
 
-use crate::job::{Job, Message};
+use crate::job::{Job, JobMessage};
 
 /// The rounds of the loop.
 type Round = u64;
@@ -58,7 +58,7 @@ type Round = u64;
 type Nothing<'o> = OutputBuilderSession<'o, Round, CapacityContainerBuilder<Vec<()>>>;
 
 /// What a process is told of a job.
-pub(crate) enum Event<J: Job> {
+pub(crate) enum JobEvent<J: Job> {
     /// In process 0: a task is done.
     Done(usize, J::Output),
     /// In process 0: what a process has at the end.
@@ -127,7 +127,7 @@ pub(crate) fn run<J: Job>(
     worker: &mut TimelyWorker,
     job: Arc<J>,
     tasks: Vec<usize>,
-    events: &Sender<Event<J>>,
+    events: &Sender<JobEvent<J>>,
 ) {
     let probe = worker.dataflow::<Round, _, _>(|scope| {
         let times = ThreadTimes::default();
@@ -139,11 +139,11 @@ pub(crate) fn run<J: Job>(
     });
     finish(worker, &probe);
     // Without a receiver, nobody needs it any more.
-    let _ = events.send(Event::Complete);
+    let _ = events.send(JobEvent::Complete);
 }
 
 /// Sends a value of worker 0 to all.
-pub(crate) fn share<T: Message>(worker: &mut TimelyWorker, value: Option<T>, values: Sender<T>) {
+pub(crate) fn share<T: JobMessage>(worker: &mut TimelyWorker, value: Option<T>, values: Sender<T>) {
     let probe = worker.dataflow::<Round, _, _>(|scope| {
         let all = 0..scope.peers() as u64;
         let copies = value
@@ -255,7 +255,7 @@ impl<J: Job> Pool<J> {
 fn dispatch<J: Job>(
     reports: StreamVec<'_, Round, Report<J::Output>>,
     tasks: Vec<usize>,
-    events: Sender<Event<J>>,
+    events: Sender<JobEvent<J>>,
 ) -> StreamVec<'_, Round, Assignment> {
     let mut tasks = tasks.into_iter();
     reports.unary(Exchange::new(|_: &Report<J::Output>| 0), "dispatch", |_, _| {
@@ -264,7 +264,7 @@ fn dispatch<J: Job>(
                 let mut session = output.session(&capability);
                 for Report { process, done, wanted } in reports.drain(..) {
                     if let Some((task, output)) = done {
-                        let _ = events.send(Event::Done(task, output));
+                        let _ = events.send(JobEvent::Done(task, output));
                     }
                     let tasks: Vec<_> = tasks.by_ref().take(wanted).collect();
                     if !tasks.is_empty() {
@@ -302,14 +302,14 @@ fn group<J: Job>(
 /// Process 0 gets what each process has.
 fn end<J: Job>(
     ends: StreamVec<'_, Round, ProcessEnd<J::Group>>,
-    events: Sender<Event<J>>,
+    events: Sender<JobEvent<J>>,
 ) -> Handle<Round> {
     let route = Exchange::new(|_: &ProcessEnd<J::Group>| 0);
     let collected: StreamVec<'_, Round, ()> = ends.unary(route, "end", |_, _| {
         move |input, _: &mut Nothing<'_>| {
             input.for_each(|_, ends| {
                 for end in ends.drain(..) {
-                    let _ = events.send(Event::End(end));
+                    let _ = events.send(JobEvent::End(end));
                 }
             });
         }

@@ -3,20 +3,20 @@
 use serde::{Serialize, de::DeserializeOwned};
 
 /// What processes send to each other.
-pub(crate) trait Message:
+pub(crate) trait JobMessage:
     Clone + Serialize + DeserializeOwned + Send + Sync + 'static
 {
 }
-impl<T: Clone + Serialize + DeserializeOwned + Send + Sync + 'static> Message for T {}
+impl<T: Clone + Serialize + DeserializeOwned + Send + Sync + 'static> JobMessage for T {}
 
 /// Work that is divided into tasks, which are numbered from 0. The jobs of all processes are equal.
 pub(crate) trait Job: Send + Sync + 'static {
     /// What a task reports to process 0.
-    type Output: Message;
+    type Output: JobMessage;
     /// What a task finds under a key.
-    type Record: Message;
+    type Record: JobMessage;
     /// What becomes of all records of some keys.
-    type Group: Message;
+    type Group: JobMessage;
 
     /// Does a task.
     fn work(&self, task: usize) -> (Self::Output, Vec<Self::Record>);

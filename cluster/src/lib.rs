@@ -1,12 +1,12 @@
 //! Exhaustive checks and searches on several machines.
 //!
 //! The machines run the same command. The processes connect to each other over TCP, and [timely dataflow] moves
-//! what they exchange. [`Cluster`] is one process of them.
+//! what they exchange. [`ClusterProcess`] is one process of them.
 //!
 //! # Data
 //!
-//! * Each process lists the tasks of the work by itself: units of a [check](Cluster::check), parts of the worlds of
-//!   a [search](Cluster::search). The lists are equal.
+//! * Each process lists the tasks of the work by itself: units of a [check](ClusterProcess::check), parts of the worlds of
+//!   a [search](ClusterProcess::search). The lists are equal.
 //! * Process 0 gives each task to the process that asks next, so no process waits while there are tasks. A process
 //!   has at most two tasks for each of its threads: one that runs and one that is next.
 //! * The result of a task goes to process 0, which adds it up and may record it.
@@ -28,7 +28,7 @@ mod loss;
 mod search;
 
 pub use check::ClusterCheck;
-pub use cluster::{Cluster, ClusterError, ThreadUse};
+pub use cluster::{ClusterError, ClusterProcess, ThreadUse};
 pub use connect::{ConnectError, Setting};
 pub use hosts::{Hosts, HostsError};
 pub use search::ClusterSearch;

@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::Watch,
 };
 
-use crate::{Cluster, ClusterError, ThreadUse, job::Job};
+use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
 
 /// The result of a search.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl Job for SearchJob {
     }
 }
 
-impl Cluster {
+impl ClusterProcess {
     /// Makes a search, as [`AmbiguitySearch::run`], and keeps all pairs or only the smallest.
     ///
     /// # Errors

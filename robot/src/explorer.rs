@@ -63,9 +63,9 @@ pub struct RobotExplorer<R, S, O = ()> {
     observer: O,
     place: Option<Place>,
     /// The number of doors taken: the number of the last move.
-    moves: u64,
+    last_move: u64,
     /// The number of moves that ended at a junction or before an obstacle.
-    ended_moves: u64,
+    moves: u64,
     door: Option<Door>,
     obstacles: Obstacles,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
@@ -117,8 +117,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             metres: 0.0,
             hallway: None,
             measured: Measured::default(),
+            last_move: 0,
             moves: 0,
-            ended_moves: 0,
             door: None,
             last: None,
             events: 0,
@@ -143,7 +143,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// robot got lost is not counted.
     #[must_use]
     pub fn moves(&self) -> u64 {
-        self.ended_moves
+        self.moves
     }
 
     /// Whether the robot stands before an obstacle.
@@ -187,7 +187,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             }
             Err(error) => RunEnding::GaveUp(error.to_string()),
         };
-        self.emit(EventKind::End(RunEnd { moves: self.ended_moves, ending }));
+        self.emit(EventKind::End(RunEnd { moves: self.moves, ending }));
         (run, mapped)
     }
 
@@ -203,13 +203,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             }
         }
         let is_at_marker = self.allowance.is_at_marker();
-        ExplorerError::Budget { moves: self.moves, limit, is_at_marker }
+        ExplorerError::Budget { moves: self.last_move, limit, is_at_marker }
     }
 
     /// What the run has spent.
     fn spent(&self) -> Spent {
         let seconds = self.robot.odometry().time;
-        Spent { moves: self.moves, seconds, metres: self.metres }
+        Spent { moves: self.last_move, seconds, metres: self.metres }
     }
 
     fn mapping_event(&mut self, journey: &Journey, event: MappingEvent) {
@@ -246,7 +246,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// Drives a path to its end.
     fn drive(&mut self, mut path: PathExecution) -> Result<Standing, ExplorerError> {
         loop {
-            let (moves, door) = (self.moves, self.door);
+            let (moves, door) = (self.last_move, self.door);
             if self.observer.stop() {
                 return Err(ExplorerError::Stopped { moves });
             }
@@ -282,7 +282,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     fn robot_error(&self, error: RobotError) -> ExplorerError {
         match error {
-            RobotError::Stopped => ExplorerError::Stopped { moves: self.moves },
+            RobotError::Stopped => ExplorerError::Stopped { moves: self.last_move },
             error => error.into(),
         }
     }
@@ -298,7 +298,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 Err(unusable) => last = unusable,
             }
         }
-        let (moves, door, cause) = (self.moves, self.door, last.to_string());
+        let (moves, door, cause) = (self.last_move, self.door, last.to_string());
         Err(ExplorerError::NoPicture { moves, door, pictures: RETAKES, cause })
     }
 
@@ -344,13 +344,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     fn arrive(&mut self, standing: Standing) {
-        self.stand(standing, Arrival::new(self.moves, &standing));
+        self.stand(standing, Arrival::new(self.last_move, &standing));
     }
 
     /// A robot that was lost has come to a junction. How many moves lead there is not known.
     fn arrive_from_nowhere(&mut self, standing: Standing) {
         self.hallway = None;
-        self.stand(standing, Arrival { number: None, ..Arrival::new(self.moves, &standing) });
+        self.stand(standing, Arrival { number: None, ..Arrival::new(self.last_move, &standing) });
     }
 
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
@@ -380,7 +380,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             None => Place::Junction(self.standing()?),
         };
         if let Some(limit) = self.allowance.forbids(door, self.spent()) {
-            return Err(ExplorerError::Budget { moves: self.moves, limit, is_at_marker: false });
+            return Err(ExplorerError::Budget {
+                moves: self.last_move,
+                limit,
+                is_at_marker: false,
+            });
         }
         self.allowance.leave(door, self.spent());
         match (&mut self.hallway, &from) {
@@ -390,11 +394,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
             // A way that an obstacle ended is not measured.
             (hallway, _) => *hallway = None,
         }
-        self.moves += 1;
+        self.last_move += 1;
         self.door = Some(door);
         // Until the robot arrives, it does not know where it is.
         self.place = None;
-        let number = u32::try_from(self.moves).ok();
+        let number = u32::try_from(self.last_move).ok();
         self.emit(EventKind::Door { number, door });
         let driven = match &from {
             Place::Junction(from) => self.drive(PathExecution::new(&[door], from)),
@@ -402,16 +406,16 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         };
         match driven {
             Ok(standing) => {
-                self.ended_moves += 1;
+                self.moves += 1;
                 self.arrive(standing);
             }
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
                 let back = wrapped(self.robot.odometry().odometry.heading + PI);
                 self.place = Some(Place::Obstacle { back });
-                self.ended_moves += 1;
+                self.moves += 1;
                 self.allow_for(DEAD_END);
                 (self.hallway, self.measured) = (None, Measured::default());
-                let number = Some(u32::try_from(self.moves).unwrap_or(u32::MAX));
+                let number = Some(u32::try_from(self.last_move).unwrap_or(u32::MAX));
                 let Percept { degree, sighting } = DEAD_END;
                 let (sighting, form, entry) = (Some(sighting), None, Some(back));
                 self.emit(EventKind::Arrival(Arrival { number, degree, sighting, form, entry }));

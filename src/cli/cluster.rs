@@ -10,7 +10,7 @@ mod absent;
 mod session;
 
 #[cfg(not(feature = "cluster"))]
-pub(super) use absent::ClusterSession;
+pub(super) use absent::NoCluster as ClusterSession;
 #[cfg(feature = "cluster")]
 pub(super) use session::ClusterSession;
 

@@ -180,7 +180,7 @@ fn judged(
     let ending = run.outcome();
     let stopped =
         matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })));
-    (!stopped).then(|| JudgedRun {
+    (!stopped).then_some(JudgedRun {
         case,
         ending,
         is_cut_off: run.is_cut_off,

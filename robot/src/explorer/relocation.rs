@@ -36,7 +36,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     fn wait_for_sight(&mut self) -> Result<(), ExplorerError> {
         for _ in 0..PATIENCE {
             if self.observer.stop() {
-                return Err(ExplorerError::Stopped { moves: self.moves });
+                return Err(ExplorerError::Stopped { moves: self.last_move });
             }
             match self.frame() {
                 Ok((frame, scene)) => {
@@ -103,13 +103,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     pub(super) fn find_junction(&mut self) -> Result<Standing, ExplorerError> {
         self.wait_for_sight()?;
         let heading = self.robot.odometry().odometry.heading;
-        const COUNT: usize = DIRECTIONS.len() * TRIES;
         let mut directions = DIRECTIONS.repeat(TRIES).into_iter();
         loop {
             let is_last = directions.len() == 1;
             let tries = directions.len();
             let relative = directions.next().unwrap_or_default();
-            let left = if tries < COUNT { self.leave_by_door(tries)? } else { None };
+            let left =
+                if tries < DIRECTIONS.len() * TRIES { self.leave_by_door(tries)? } else { None };
             let direction = left.unwrap_or_else(|| wrapped(heading + relative));
             match self.drive(PathExecution::onwards_to_junction(direction)) {
                 Ok(standing) => {

@@ -13,9 +13,9 @@ use crate::cli::CliError;
 
 /// There is none.
 #[derive(Debug)]
-pub(in crate::cli) enum ClusterSession {}
+pub(in crate::cli) enum NoCluster {}
 
-impl ClusterSession {
+impl NoCluster {
     pub(super) fn connect(
         _: &Path,
         _: usize,

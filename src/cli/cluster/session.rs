@@ -3,7 +3,7 @@
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use toposlam_cluster::{Cluster, ClusterError, ConnectError, Hosts, ThreadUse};
+use toposlam_cluster::{ClusterError, ClusterProcess, ConnectError, Hosts, ThreadUse};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
     check::{FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm},
@@ -23,7 +23,7 @@ use crate::cli::{
 
 /// A process of a cluster.
 pub(in crate::cli) struct ClusterSession {
-    cluster: Cluster,
+    cluster: ClusterProcess,
     /// What each thread of each process did in the last work; only process 0 knows it.
     threads: Vec<ThreadUse>,
 }
@@ -80,7 +80,8 @@ impl ClusterSession {
             ));
             output::exit_between_files(3);
         };
-        let cluster = Cluster::connect(&hosts, process, &settings, &progress, &waiting, lost)?;
+        let cluster =
+            ClusterProcess::connect(&hosts, process, &settings, &progress, &waiting, lost)?;
         Ok(Self { cluster, threads: Vec::new() })
     }
 

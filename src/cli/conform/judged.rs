@@ -121,7 +121,7 @@ impl ConformArguments {
         // Whoever drives may turn back between junctions. The algorithms do not.
         let events = match driver {
             RunDriver::Anyone => gathered.events.without_excursions(),
-            _ => gathered.events.clone(),
+            RunDriver::Method(_) => gathered.events.clone(),
         };
         let judgement = judge(events, &question, quirks, &progress);
         let search = question.search;
