@@ -8,7 +8,8 @@ From toposlam Require Import Spec Program Algorithm1 Folding Certificate Folding
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
-  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect CertificateNeeded CertificateAttained.
+  Returns MovableCost MovableMapper ShortTours Lollipop ExplorerCorrect GivenActionsCorrect CertificateNeeded
+  CertificateAttained.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
@@ -625,7 +626,7 @@ Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> b
     (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
   always M (folding_explorer allowed patience bound seen) pose Q ->
   always_guided M (guided_explorer allowed patience bound seen) pose Q.
-Proof. exact: GivenActions.always_guided_actions. Qed.
+Proof. exact: GivenActionsCorrect.always_guided_actions. Qed.
 
 (** * Maps that can be checked *)
 
