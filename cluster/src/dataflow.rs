@@ -76,30 +76,37 @@ pub(crate) struct ProcessEnd<G> {
     pub(crate) group: G,
 }
 
-/// A process has done a task, and can do others.
+/// A process has done tasks, and can do others.
 #[derive(Clone, Serialize, Deserialize)]
 struct Report<O> {
     process: usize,
-    done: Option<(usize, O)>,
-    /// The number of tasks that it wants.
+    done: Vec<(usize, O)>,
+    /// The number of assignments that it wants.
     wanted: usize,
 }
 
-/// Tasks for a process.
+/// Tasks for a thread of a process.
 #[derive(Clone, Serialize, Deserialize)]
 struct Assignment {
     process: usize,
     tasks: Vec<usize>,
 }
 
-/// A task that a thread has done.
+/// An assignment that a thread has done.
 struct Finished<J: Job> {
-    task: usize,
-    output: J::Output,
+    done: Vec<(usize, J::Output)>,
     records: Vec<J::Record>,
     thread: usize,
     time: Duration,
 }
+
+/// An assignment has this share of the tasks that are left for a thread. At the end it has one task. A larger number
+/// makes more messages, a smaller one makes threads end later than others: guided self-scheduling
+/// (C. D. Polychronopoulos and D. J. Kuck, 1987).
+const ASSIGNMENTS_TO_COME: usize = 32;
+
+/// The assignments of a thread at a time: one that it does, and one that is next.
+const ASSIGNMENTS_AT_A_TIME: usize = 2;
 
 /// The reports of tasks, and what they found.
 type Done<'s, J> =
@@ -134,7 +141,7 @@ pub(crate) fn run<J: Job>(
         times.borrow_mut().resize(rayon::current_num_threads(), (0, 0.0));
         let (handle, assignments) = scope.feedback(1);
         let (reports, records) = work(scope, assignments, Arc::clone(&job), Rc::clone(&times));
-        dispatch(reports, tasks, events.clone()).connect_loop(handle);
+        dispatch(scope.peers(), reports, tasks, events.clone()).connect_loop(handle);
         end(group(scope.index(), records, job, times), events.clone())
     });
     finish(worker, &probe);
@@ -198,26 +205,24 @@ fn work<'s, J: Job>(
         move |_| {
             let (mut reports, mut records) = (reports_output.activate(), records_output.activate());
             if let Some(held) = held.as_ref().filter(|_| !std::mem::replace(&mut has_begun, true)) {
-                // One task for each thread runs, and one waits.
-                let wanted = 2 * rayon::current_num_threads();
-                reports.session(&held[0]).give(Report { process, done: None, wanted });
+                let wanted = ASSIGNMENTS_AT_A_TIME * rayon::current_num_threads();
+                reports.session(&held[0]).give(Report { process, done: Vec::new(), wanted });
             }
             input.for_each(|capability, assigned| {
                 held = [0, 1].iter().map(|&output| capability.retain_least(output)).collect();
-                for task in assigned.drain(..).flat_map(|assignment| assignment.tasks) {
+                for Assignment { tasks, .. } in assigned.drain(..) {
                     running += 1;
-                    pool.spawn(task, sender.clone());
+                    pool.spawn(tasks, sender.clone());
                 }
             });
             if let Some(held) = &held {
-                for Finished { task, output, records: found, thread, time } in finished.try_iter() {
+                for Finished { done, records: found, thread, time } in finished.try_iter() {
                     running -= 1;
                     if let Some((tasks, seconds)) = times.borrow_mut().get_mut(thread) {
-                        *tasks += 1;
+                        *tasks += done.len() as u64;
                         *seconds += time.as_secs_f64();
                     }
-                    let report = Report { process, done: Some((task, output)), wanted: 1 };
-                    reports.session(&held[0]).give(report);
+                    reports.session(&held[0]).give(Report { process, done, wanted: 1 });
                     records.session(&held[1]).give_iterator(found.into_iter());
                 }
             }
@@ -237,15 +242,21 @@ struct Pool<J> {
 }
 
 impl<J: Job> Pool<J> {
-    fn spawn(&self, task: usize, finished: Sender<Finished<J>>) {
+    fn spawn(&self, tasks: Vec<usize>, finished: Sender<Finished<J>>) {
         let (job, wake) = (Arc::clone(&self.job), Arc::clone(&self.wake));
         rayon::spawn_fifo(move || {
             let begun = Instant::now();
-            let (output, records) = job.work(task);
+            let mut all = Vec::new();
+            let mut done_task = |task| {
+                let (output, records) = job.work(task);
+                all.extend(records);
+                (task, output)
+            };
+            let done = tasks.into_iter().map(&mut done_task).collect();
             let time = begun.elapsed();
             let thread = rayon::current_thread_index().unwrap_or_default();
             // Without a worker, nobody needs it any more.
-            let _ = finished.send(Finished { task, output, records, thread, time });
+            let _ = finished.send(Finished { done, records: all, thread, time });
             let _ = wake.activate();
         });
     }
@@ -253,22 +264,28 @@ impl<J: Job> Pool<J> {
 
 /// Process 0 gives tasks to those that want some.
 fn dispatch<J: Job>(
+    processes: usize,
     reports: StreamVec<'_, Round, Report<J::Output>>,
     tasks: Vec<usize>,
     events: Sender<JobEvent<J>>,
 ) -> StreamVec<'_, Round, Assignment> {
     let mut tasks = tasks.into_iter();
+    // Of all processes, as if each had as many threads as this one.
+    let assignments = ASSIGNMENTS_AT_A_TIME * rayon::current_num_threads() * processes;
     reports.unary(Exchange::new(|_: &Report<J::Output>| 0), "dispatch", |_, _| {
         move |input, output| {
             input.for_each(|capability, reports| {
                 let mut session = output.session(&capability);
                 for Report { process, done, wanted } in reports.drain(..) {
-                    if let Some((task, output)) = done {
+                    for (task, output) in done {
                         let _ = events.send(JobEvent::Done(task, output));
                     }
-                    let tasks: Vec<_> = tasks.by_ref().take(wanted).collect();
-                    if !tasks.is_empty() {
-                        session.give(Assignment { process, tasks });
+                    for _ in 0..wanted {
+                        let count = 1 + tasks.len() / (ASSIGNMENTS_TO_COME * assignments);
+                        let tasks: Vec<_> = tasks.by_ref().take(count).collect();
+                        if !tasks.is_empty() {
+                            session.give(Assignment { process, tasks });
+                        }
                     }
                 }
             });

@@ -7,8 +7,8 @@
 //!
 //! * Each process lists the tasks of the work by itself: units of a [check](ClusterProcess::check), parts of the worlds of
 //!   a [search](ClusterProcess::search). The lists are equal.
-//! * Process 0 gives each task to the process that asks next, so no process waits while there are tasks. A process
-//!   has at most two tasks for each of its threads: one that runs and one that is next.
+//! * Process 0 assigns tasks to the process that asks next, so no process waits while there are tasks: many at first, one
+//!   at the end. A process has at most two assignments for each of its threads: one that runs and one that is next.
 //! * The result of a task goes to process 0, which adds it up and may record it.
 //! * What a task finds under a key goes to the process of this key. When no task is left, each process groups what
 //!   it has, and process 0 collects the groups.

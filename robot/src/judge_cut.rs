@@ -177,7 +177,9 @@ mod tests {
             for (dart, opposite) in graph.edges().filter(|&(dart, _)| dart != edge) {
                 let ends = [dart, opposite].map(|dart| graph.vertex(dart).at());
                 let either = ends.iter().any(|&end| near[end]);
-                ends.iter().for_each(|&end| near[end] |= either);
+                for end in ends {
+                    near[end] |= either;
+                }
             }
         }
         !near[graph.vertex(graph.opposite(edge)).at()]
