@@ -181,6 +181,9 @@ fn every_option_that_writes_a_file_is_in_the_list() {
             "evaluate laser" => {
                 known.insert("--scanner".to_owned());
             }
+            "check" | "counterexample" => {
+                known.insert("--hosts".to_owned());
+            }
             "info" => {
                 known.insert("--mapping".to_owned());
             }
