@@ -1,4 +1,4 @@
-(** No robot can tell bisimilar starts apart: its percepts and its answer are the same in both. Section
+(** No robot can distinguish bisimilar starts: its percepts and its answer are the same in both. Section
     2.2 of the paper. *)
 
 From mathcomp Require Import all_ssreflect.

@@ -1,4 +1,4 @@
-(** The poses of indistinguishable starts form classes that no walk tells apart. All classes have the same
+(** The poses of indistinguishable starts form classes that no walk distinguishes. All classes have the same
     size, which divides the degree of the marked vertex. So starts that an undirected marker cannot tell
     apart have equally many edges and vertices. Beyond Section 2.2. *)
 
@@ -111,7 +111,7 @@ apply: eq_card => r; rewrite !inE; apply: andb_idl => /alikeP /alike_marked same
 by move: q_marked; rewrite !inE same_vertex_sym same same_vertex_sym.
 Qed.
 
-(** ** Two starts that an undirected marker cannot tell apart *)
+(** ** Two starts that an undirected marker cannot distinguish *)
 
 Lemma count_both_ways (T U : finType) (R : T -> U -> bool) (A : pred T) (B : pred U) k l :
   (forall x y, R x y -> A x = B y) ->

@@ -1,4 +1,4 @@
-(** No robot maps both of two worlds that it cannot tell apart: without a marker the cycles of 3 and 4
+(** No robot maps both of two worlds that it cannot distinguish: without a marker the cycles of 3 and 4
     edges, with an undirected one the two worlds of Figure 1. Section 2.2. *)
 
 From mathcomp Require Import all_ssreflect.

@@ -1,4 +1,4 @@
-(** Worlds with loops or parallel edges that other markers cannot tell apart. *)
+(** Worlds with loops or parallel edges that other markers cannot distinguish. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Markers Walks Bisimulation Parts Figures Handling.

@@ -175,7 +175,7 @@ Definition isomorphic_starts (V W : start) :=
 Definition alike (M : marker) (V W : start) (p : V) (q : W) :=
   forall doors, percepts M p doors = percepts M q doors.
 
-(** Two starts that no robot can tell apart. *)
+(** Two starts that no robot can distinguish. *)
 Definition indistinguishable (M : marker) (V W : start) := alike M (facing V) (facing W).
 
 (** The certificate for that: a relation of poses that contains the starts, whose related poses have equal

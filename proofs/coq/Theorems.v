@@ -101,7 +101,7 @@ Proof. exact: Separates.indistinguishable_directional. Qed.
 
 (** If one robot maps two indistinguishable starts, and knows where it began, then they are isomorphic,
     facing to facing. Paper: 2.2. *)
-Theorem mapped_starts_are_told_apart (robot : strategy start) (M : marker) (V W : start) :
+Theorem mapped_indistinguishable_iso (robot : strategy start) (M : marker) (V W : start) :
   maps_start M robot V -> maps_start M robot W -> indistinguishable M V W -> isomorphic_starts V W.
 Proof.
 by move=> maps_V maps_W /Bisimulation.bisimilar_iff_indistinguishable same;
@@ -588,7 +588,7 @@ Qed.
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
     darts it explores and hypotheses it tests, by any ways through the map and its trail, and whenever its tests
     become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
-    As many actions suffice as 2 m (m + 1). Paper: beyond 2.3. *)
+    2 m (m + 1) actions suffice. Paper: beyond 2.3. *)
 Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
   2 * edges W * (edges W + 1) <= bound ->
   always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)

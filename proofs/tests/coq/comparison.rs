@@ -358,7 +358,7 @@ fn both_do_the_same_with_random_choices_in_random_starts() {
 /// of the movable marker where it looks for it in another order. If a rejected hypothesis is not the one that
 /// is removed, only other than the default choices show it.
 #[test]
-fn another_algorithm_is_told_apart() {
+fn another_algorithm_is_detected() {
     let Some(compiled) = compiled() else { return };
     let multigraphs = starts(Class::Multigraph, 3);
     let directional = |start| Case::with_all_choices(Mapping::Directional, start);

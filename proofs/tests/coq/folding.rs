@@ -212,7 +212,7 @@ fn what_a_flawed_explorer_does_is_not_allowed() {
 
 /// If the proved explorer draws fewer conclusions, the running one does what is not allowed.
 #[test]
-fn another_folding_explorer_is_told_apart() {
+fn another_folding_explorer_is_detected() {
     let Some(compiled) = compiled() else { return };
     let cases = cases(&runs(starts(Class::Multigraph, 4)));
     let own = "\n    || has (fun p => same (from_dart (trail K) p) (to_dart (trail K) p)) (passages (trail K))";
