@@ -1,10 +1,13 @@
 //! Deterministic topological SLAM that can be trusted.
 //!
-//! This package contains the command line and what it draws and writes: pictures of worlds and runs
-//! ([`picture`]), pages for a browser ([`page`]), the trace of the paper ([`paper`]), the record of a
-//! simulated run ([`journal`]), the story of a mapping run ([`story`]) and the conformance report of a log
+//! This package contains the command line, one verb a file in `cli/`, and what it draws and writes: pictures of
+//! worlds and runs ([`picture`]), pages for a browser ([`page`]), the trace of the paper ([`paper`]), the record of
+//! a simulated run ([`journal`]), the story of a mapping run ([`story`]) and the conformance report of a log
 //! ([`report`]). The specification is [`model`].
 
+#![warn(clippy::print_stderr, reason = "--quiet is obeyed in `cli/terminal.rs`")]
+
+mod cli;
 pub mod journal;
 pub mod moment;
 pub mod page;
@@ -14,4 +17,5 @@ pub mod report;
 pub mod story;
 pub mod text;
 
+pub use cli::run;
 pub use toposlam_model as model;

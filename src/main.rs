@@ -1,11 +1,7 @@
-//! The command line `toposlam`: one verb a file, in `cli/`.
-
-#![warn(clippy::print_stderr, reason = "--quiet is obeyed in `cli/terminal.rs`")]
-
-mod cli;
+//! The program `toposlam`.
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    toposlam::run()
 }

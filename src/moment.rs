@@ -59,7 +59,7 @@ pub fn grouped(number: u128) -> String {
     out
 }
 
-/// The year, month and day of the Gregorian calendar, so many days after 1970-01-01.
+/// The year, month and day of the Gregorian calendar, a number of days after 1970-01-01.
 fn date(days: u64) -> [u64; 3] {
     let is_leap = |year: u64| {
         year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))

@@ -267,6 +267,30 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
     assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default));
 }
 
+/// Stops when it has been asked a number of times.
+struct Impatient {
+    questions_left: AtomicUsize,
+}
+
+impl Watch for Impatient {
+    fn stop(&self) -> bool {
+        let left = self.questions_left.load(Ordering::Relaxed);
+        self.questions_left.store(left.saturating_sub(1), Ordering::Relaxed);
+        left == 0
+    }
+}
+
+/// Its one run stands for all starts, of which there are far too many.
+#[test]
+fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
+    let sweep = LazySweep::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();
+    let new = || Walker { marker: Directional, moves: 0, most: 0, map: chain(1) };
+    let found = sweep.run(new, &Impatient { questions_left: 1000.into() });
+    assert!(found.tally.interrupted);
+    assert!((1..=2000).contains(&found.tally.starts));
+    assert_eq!(found.tally.failed(), found.tally.starts);
+}
+
 /// All probes together, each branch once, are the whole tree.
 #[test]
 fn all_probes_together_are_the_whole_tree() {

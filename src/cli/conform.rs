@@ -21,7 +21,6 @@ use std::{
 };
 
 use clap::ValueEnum;
-use toposlam::{page, report::LogReport};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
@@ -35,6 +34,7 @@ use super::{
     laser_options::LaserOptions, mapping_marker::AlgorithmOption, open_log::LogOptions,
     outcome::SeveralInputs, output,
 };
+use crate::{page, report::LogReport};
 use ci_cases::{ci_case, required_case, unread_case};
 use judged::Judged;
 use robot_marker::RobotMarker;

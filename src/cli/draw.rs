@@ -7,12 +7,10 @@ use std::{
 };
 
 use clap::ValueEnum;
-
-use toposlam::picture::{WorldPicture, png, svg};
-
 use toposlam_model::{format::dot, marker::Marker};
 
 use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output};
+use crate::picture::{WorldPicture, png, svg};
 
 /// Draw a world: the clockwise order of the doors at each vertex, and the start
 #[derive(clap::Args)]

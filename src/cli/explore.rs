@@ -11,10 +11,6 @@ use std::{
     slice,
 };
 
-use toposlam::{
-    picture::{self, WorldPicture},
-    story::{Story, StoryDetail, head},
-};
 use toposlam_model::{
     check::{
         Algorithm, Algorithm1, Flaw, Folding, MappingAlgorithm, MovableMarker, RunState, judge,
@@ -33,6 +29,10 @@ use super::{
     mapping_marker::{AlgorithmOption, MappingMarker},
     output,
     text::print_paragraph,
+};
+use crate::{
+    picture::{self, WorldPicture},
+    story::{Story, StoryDetail, head},
 };
 use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;

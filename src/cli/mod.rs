@@ -199,8 +199,9 @@ fn without_ros() -> CliError {
     CliError::at("--ros", cause)
 }
 
-/// Runs the verb on the command line.
-pub(crate) fn run() -> ExitCode {
+/// Runs the verb on the command line, and returns the exit code of the program.
+#[must_use]
+pub fn run() -> ExitCode {
     let arguments = parse();
     arguments.terminal.apply();
     let mut out = ReportOutput::new(io::stdout().lock());

@@ -6,15 +6,15 @@ use std::{
 };
 
 use serde::Serialize;
-use toposlam::paper::{
-    CITATIONS, Citation, PaperTrace, Status, TABLE, TracedRequirement, requirements,
-};
 
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
     text::{print_hanging, print_indented},
+};
+use crate::paper::{
+    CITATIONS, Citation, PaperTrace, Status, TABLE, TracedRequirement, requirements,
 };
 
 /// List every requirement of the paper: where it is implemented and tested, and what is open

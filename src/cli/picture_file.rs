@@ -3,10 +3,10 @@
 use std::{ffi::OsStr, io::Cursor, path::Path};
 
 use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
-use toposlam::picture::with_legend;
 use toposlam_vision::{annotate::StageLegend, image_file::ImageFile, sensing::WrongSize};
 
 use super::{CliError, input, output};
+use crate::picture::with_legend;
 
 /// Reads an image of an expected size. The size is checked before the image is decoded.
 pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, CliError> {

@@ -8,7 +8,6 @@ use std::{
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam::page::play_page;
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
@@ -22,6 +21,7 @@ use super::{
     progress::{Progress, must_stop},
     text::{counted, vertices},
 };
+use crate::page::play_page;
 
 /// Write a page on which you are the robot: map a world from its percepts
 ///

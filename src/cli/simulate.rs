@@ -16,11 +16,6 @@ use std::{
     time::Instant,
 };
 
-use toposlam::{
-    journal::Journal,
-    page, picture,
-    story::{Story, StoryDetail},
-};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
@@ -47,6 +42,11 @@ use super::{
     run_options::RunOptions,
     story_lines::StoryLines,
     text::capital,
+};
+use crate::{
+    journal::Journal,
+    page, picture,
+    story::{Story, StoryDetail},
 };
 use result::SimulationResult;
 use run_capture::{Pictures, RunCapture};

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use textwrap::core::display_width;
 
-pub(crate) use toposlam::{
+pub(crate) use crate::{
     moment::{grouped, moment, since_start},
     text::{WIDTH, counted, print_hanging, print_indented, print_paragraph, vertices, wrapped},
 };

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use toposlam::page::{WalkPage, page};
 use toposlam_model::{
     ambiguity::{Comparison, state_count},
     embedded_graph::Dart,
@@ -14,6 +13,7 @@ use super::{
     CliError, output,
     text::{grouped, sentence},
 };
+use crate::page::{WalkPage, page};
 
 /// Checks that a page can be written to a path, before long work begins.
 pub(crate) fn check_place(path: &Path) -> Result<(), CliError> {

@@ -26,13 +26,15 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 41] = [
+const OUTPUTS: [OutputOption; 43] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
     output("check", "--failed", &[("w.toml", "check --explorer cat --from IN --failed OUT")]),
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
+    output("merge", "--junit", &[("s.jsonl", "merge IN --junit OUT")]),
+    output("merge", "--sarif", &[("s.jsonl", "merge IN --sarif OUT")]),
     output("explore", "--map", &[("w.toml", "explore IN --map OUT")]),
     output("explore", "--svg", &[("w.svg", "explore IN --svg OUT")]),
     output(
@@ -201,6 +203,8 @@ struct Inputs {
     log: PathBuf,
     calibration: PathBuf,
     image: PathBuf,
+    /// The lines of a shard of a check.
+    shard: PathBuf,
 }
 
 impl Inputs {
@@ -208,6 +212,9 @@ impl Inputs {
         let folder = folder("no_output_replaces_an_input");
         let file = |name: &str| folder.join(name);
         let (world, log, image) = (file("world.toml"), file("run.mcap"), file("image.png"));
+        let shard = file("shard.jsonl");
+        fs::write(&shard, stdout_of(["check", "--edges", "2", "--shard", "1/2", "--json"]))
+            .unwrap();
         fs::copy("worlds/shape-8.toml", &world).unwrap();
         let path = |path: &Path| path.to_str().unwrap().to_owned();
         stdout_of(["simulate", &path(&world), "--by-scene", "--log", &path(&log)]);
@@ -215,7 +222,7 @@ impl Inputs {
         let calibration = file("camera.toml");
         stdout_of(["calibrate", &path(&image), "--out", &path(&calibration)]);
         fs::create_dir(file("empty")).unwrap();
-        Self { folder, world, log, calibration, image }
+        Self { folder, world, log, calibration, image, shard }
     }
 
     /// The content of an input with this name.
@@ -225,6 +232,7 @@ impl Inputs {
             b'l' => &self.log,
             b'i' => &self.image,
             b'c' => &self.calibration,
+            b's' => &self.shard,
             _ => return b"# a mapping\n".to_vec(),
         };
         fs::read(source).unwrap()
@@ -281,7 +289,10 @@ fn no_output_replaces_an_input() {
         }
     }
     let written: Vec<_> = super::names_in(&inputs.folder);
-    assert_eq!(written, ["camera.toml", "case", "empty", "image.png", "run.mcap", "world.toml"]);
+    assert_eq!(
+        written,
+        ["camera.toml", "case", "empty", "image.png", "run.mcap", "shard.jsonl", "world.toml"]
+    );
 }
 
 #[test]

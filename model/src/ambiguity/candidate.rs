@@ -76,7 +76,7 @@ impl AmbiguityCandidate {
         Self(bytes.into_boxed_slice())
     }
 
-    /// The most bytes of a candidate with so many states and edges.
+    /// The most bytes of a candidate with these numbers of states and edges.
     pub(super) fn most_bytes(states: usize, edges: usize) -> usize {
         // The degree, the kind of sighting and its number; and three classes.
         let class = if states > 1 << u8::BITS { 2 } else { 1 };

@@ -114,7 +114,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// Why they cannot: the [`relation`](Self::relation) if it has at most so many pairs, otherwise the
+    /// Why they cannot: the [`relation`](Self::relation) if it has at most `most_pairs` pairs, otherwise the
     /// classes of states; `None` if they can.
     ///
     /// # Errors
@@ -210,7 +210,7 @@ enum Look {
     Enough,
 }
 
-/// After so many pairs the watch is asked whether to stop.
+/// The number of pairs after which the watch is asked whether to stop.
 const BETWEEN_QUESTIONS: usize = 256;
 
 /// Pairs of states that robots that do the same can reach, breadth-first; those of a length in the

@@ -288,7 +288,7 @@ pub struct MistakeCheck {
 
 /// How a run ended.
 enum Ending {
-    /// With so many moves.
+    /// With the right map, after this number of moves.
     Right(u64),
     Reported,
     TooLarge,

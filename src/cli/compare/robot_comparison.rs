@@ -6,7 +6,6 @@ use std::{
 };
 
 use serde_json::{Map, Value, json};
-use toposlam::page::MOST_PAIRS;
 use toposlam_model::{
     ambiguity::{Bisimulation, Comparison, PlacedRobot, Relation, StateClasses, Walk, state_count},
     embedded_graph::Dart,
@@ -17,9 +16,12 @@ use toposlam_model::{
 };
 
 use super::{CliError, walk_page};
-use crate::cli::{
-    json::action_json,
-    text::{counted, grouped, print_columns, print_hanging, print_paragraph},
+use crate::{
+    cli::{
+        json::action_json,
+        text::{counted, grouped, print_columns, print_hanging, print_paragraph},
+    },
+    page::MOST_PAIRS,
 };
 
 /// How many starts in B, pairs of states, and classes of states are printed.

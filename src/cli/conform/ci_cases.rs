@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use toposlam::report::{DivergenceReport, LogReport};
-
 use super::{outcome, report_lines};
-use crate::cli::{Outcome, ci_report::CiCase};
+use crate::{
+    cli::{Outcome, ci_report::CiCase},
+    report::{DivergenceReport, LogReport},
+};
 
 /// The result of a log, for CI systems.
 pub(super) fn ci_case(path: &Path, report: &LogReport) -> CiCase {

@@ -1,9 +1,5 @@
 //! What a log proves about its world: its folded trail, and the doors that were never followed.
 
-use toposlam::{
-    picture::{OpenGraph, open_svg},
-    report::FoldedReport,
-};
 use toposlam_model::{
     embedded_graph::Dart,
     folding::{FoldedTrail, SmallestWorld},
@@ -12,7 +8,11 @@ use toposlam_model::{
 use toposlam_robot::conform::Judgement;
 
 use super::{Judged, LISTED, known_world::Known};
-use crate::cli::text::{counted, vertices};
+use crate::{
+    cli::text::{counted, vertices},
+    picture::{OpenGraph, open_svg},
+    report::FoldedReport,
+};
 
 /// The largest folded trail that is drawn, in vertices.
 const DRAWN: usize = 400;

@@ -2,7 +2,6 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use toposlam::picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png};
 use toposlam_robot::{
     conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction},
     log::{
@@ -13,7 +12,10 @@ use toposlam_robot::{
 };
 
 use super::{CliError, Judged, robot_marker::AddedMarker};
-use crate::cli::{output, text::counted};
+use crate::{
+    cli::{output, text::counted},
+    picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png},
+};
 
 /// Writes the picture of a run as SVG or PNG.
 pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliError> {

@@ -3,10 +3,12 @@
 use std::{env, fmt::Write as _, io, path::Path};
 
 use sha2::{Digest, Sha256};
-use toposlam::report::{ReportOrigin, SourceFile};
 
 use super::CliError;
-use crate::cli::{input, text::quoted, version};
+use crate::{
+    cli::{input, text::quoted, version},
+    report::{ReportOrigin, SourceFile},
+};
 
 /// This version, and the command line of this process.
 pub(super) fn origin() -> ReportOrigin {

@@ -3,7 +3,6 @@
 
 use serde::Serialize;
 use serde_json::Value;
-use toposlam::picture::{self, WorldPicture};
 use toposlam_model::{
     ambiguity::{Twin, Twins, twins},
     embedded_graph::{Dart, EmbeddedGraph},
@@ -17,7 +16,10 @@ use toposlam_model::{
 use toposlam_robot::conform::Judgement;
 
 use super::known_world::Known;
-use crate::cli::text::{counted, vertices};
+use crate::{
+    cli::text::{counted, vertices},
+    picture::{self, WorldPicture},
+};
 
 /// Another world that explains a log, and that no walk distinguishes from the first one.
 pub(super) struct OtherWorld {

@@ -2,10 +2,6 @@
 
 use std::path::Path;
 
-use toposlam::{
-    picture::{self, WorldPicture},
-    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
-};
 use toposlam_model::{
     embedded_graph::Dart,
     folding::{SearchLimit, SmallestWorld},
@@ -24,7 +20,11 @@ use toposlam_robot::{
 };
 
 use super::{Judged, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
-use crate::cli::text::{counted, grouped, moment, vertices};
+use crate::{
+    cli::text::{counted, grouped, moment, vertices},
+    picture::{self, WorldPicture},
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
+};
 
 /// A scanner with a field of view of fewer degrees does not see what is behind the robot.
 const ALL_AROUND: f64 = 270.0;

@@ -3,14 +3,16 @@
 use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
-use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_model::{folding::SearchLimit, percept::Sighting};
 use toposlam_robot::conform::{CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents};
 
 use super::{CliError, Judged, fact_fields::FactFields};
-use crate::cli::{
-    json::print_line,
-    text::{counted, print_command, print_hanging, since_start},
+use crate::{
+    cli::{
+        json::print_line,
+        text::{counted, print_command, print_hanging, since_start},
+    },
+    report::{CoveredCase, DivergenceReport, LogReport},
 };
 
 /// The number of steps shown before a divergence.

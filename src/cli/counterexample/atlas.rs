@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use toposlam::picture::{WorldPicture, svg};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, KeptPairs, SearchError},
     enumerate::Class,
@@ -16,10 +15,13 @@ use super::{
     memory::{self, MemoryLimit},
     pairs::{self, WorldPairs},
 };
-use crate::cli::{
-    CliError, Outcome, output,
-    progress::Progress,
-    text::{counted, sentence},
+use crate::{
+    cli::{
+        CliError, Outcome, output,
+        progress::Progress,
+        text::{counted, sentence},
+    },
+    picture::{WorldPicture, svg},
 };
 
 /// The number of edges up to which the atlas searches a class. All searches take about a minute.

@@ -7,7 +7,6 @@ use std::{
     time::Duration,
 };
 
-use toposlam::story::{Story, StoryDetail};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -35,13 +34,16 @@ use toposlam_vision::{
 };
 
 use super::{CliError, DriveArguments, Outcome, result::DriveResult};
-use crate::cli::{
-    input, output,
-    progress::Progress,
-    robot_sensor::{SensorChoice, needs_camera},
-    story_lines::StoryLines,
-    text::quoted,
-    version,
+use crate::{
+    cli::{
+        input, output,
+        progress::Progress,
+        robot_sensor::{SensorChoice, needs_camera},
+        story_lines::StoryLines,
+        text::quoted,
+        version,
+    },
+    story::{Story, StoryDetail},
 };
 
 impl DriveArguments {

@@ -127,7 +127,7 @@ impl ExploreResult<'_> {
         Ok(())
     }
 
-    /// Prints the result with the names of at most so many vertices.
+    /// Prints the result with the names of at most `listed` vertices.
     pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), CliError> {
         writeln!(out)?;
         match &self.result {

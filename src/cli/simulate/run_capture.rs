@@ -3,7 +3,6 @@
 use std::{path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
-use toposlam::journal::{FrameEntry, Journal, JunctionCall};
 use toposlam_model::{
     driving::algorithm2::PathState,
     embedded_graph::Dart,
@@ -20,7 +19,10 @@ use toposlam_robot::{
 use toposlam_vision::{annotate, camera::Camera};
 
 use super::{CliError, Story};
-use crate::cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines};
+use crate::{
+    cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines},
+    journal::{FrameEntry, Journal, JunctionCall},
+};
 
 /// Observes a simulated run, and keeps what its page and its picture show.
 pub(super) struct RunCapture<'o> {

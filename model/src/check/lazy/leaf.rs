@@ -6,8 +6,9 @@ use super::{
     LazyTally, LazyWorld, StepExplorer, search::LazyRunEnd, tally::EnumeratedStart, world::FACING,
 };
 use crate::{
-    check::{Flaw, judge_map},
+    check::{Flaw, judge_map, sweep::go_on},
     embedded_graph::EmbeddedGraph,
+    enumerate::Watch,
     folding::MarkerTree,
     isomorphism::Candidate,
     marker::{Directional, Marker},
@@ -31,21 +32,24 @@ impl<'m> LeafJudge<'m> {
         Self { tally, candidate, certificates, most_moves }
     }
 
-    /// Judges each start that agrees with the record.
+    /// Judges each start that agrees with the record. Breaks if the watch stops.
     pub(super) fn judge<E: StepExplorer>(
         &mut self,
         world: &LazyWorld<E::Marker>,
         explorer: &E,
         end: &LazyRunEnd,
-    ) {
-        let _ = world.draft.for_each_completion(&mut |graph| {
+        watch: &dyn Watch,
+    ) -> ControlFlow<()> {
+        // An explorer that stops early leaves many starts to judge at once.
+        let is_decided = world.draft.edges_left() == 0;
+        world.draft.for_each_completion(&mut |graph| {
             let judged = match end {
                 LazyRunEnd::Failed(flaw) => Err(flaw.clone()),
                 LazyRunEnd::Done | LazyRunEnd::Cut => self.judge_run(world, explorer, graph),
             };
             self.count(graph, world.robot().moves, judged.is_ok());
-            ControlFlow::Continue(())
-        });
+            if is_decided { ControlFlow::Continue(()) } else { go_on(watch) }
+        })
     }
 
     /// Judges a run in one of these starts, as [`judge_start`](crate::check::judge_start).

@@ -20,7 +20,7 @@ pub(super) enum LazyRunEnd {
     Done,
     /// The explorer failed.
     Failed(Flaw),
-    /// The run was cut after a step: so many edges are decided.
+    /// The run was cut after a step: enough edges are decided.
     Cut,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct RunSearch<'w, E: StepExplorer> {
     pub(super) explorer: E,
     /// The state before each step in which something was decided. Memory is kept.
     saved: Vec<Saved<E>>,
-    /// Cut a run after a step if at most so many edges are not decided.
+    /// The number of undecided edges at which a run is cut, after a step.
     cut_at: Option<usize>,
     max_darts: usize,
     watch: &'w dyn Watch,
@@ -130,7 +130,7 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
     }
 }
 
-/// The beginnings of all runs, up to the step after which at most so many edges are not decided.
+/// The beginnings of all runs, up to the step after which at most `cut_at` edges are undecided.
 pub(super) fn beginnings<E: StepExplorer>(
     explorer: E,
     draft: Draft,

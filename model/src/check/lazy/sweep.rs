@@ -1,6 +1,6 @@
 //! The lazy check of a class and a size, in units that can be run in any order and on any machine.
 
-use std::{ops::ControlFlow, sync::atomic::AtomicU64};
+use std::{collections::BTreeMap, sync::atomic::AtomicU64};
 
 use serde::{Deserialize, Serialize};
 
@@ -135,12 +135,6 @@ impl LazySweep {
     ) -> LazyCheck {
         let all: Vec<_> = self.units(&new, watch).into_iter().enumerate().collect();
         let most_moves = AtomicU64::new(0);
-        // Some runs from all over the tree, so that few others can be the worst one.
-        for (index, unit) in all.iter().step_by(all.len().div_ceil(SAMPLE).max(1)) {
-            if units.finished(*index).is_none() {
-                self.check_unit(unit, new(), &most_moves, watch);
-            }
-        }
         let check = |(index, unit): &(usize, Unit)| {
             units.finished(*index).unwrap_or_else(|| {
                 let tally = self.check_unit(unit, new(), &most_moves, watch);
@@ -150,6 +144,11 @@ impl LazySweep {
                 tally
             })
         };
+        // Some runs from all over the tree come first, so that few others can be the worst one.
+        let sample = all.iter().step_by(all.len().div_ceil(SAMPLE).max(1));
+        let sample: BTreeMap<_, _> = sample.map(|unit| (unit.0, check(unit))).collect();
+        let check =
+            |unit: &(usize, Unit)| sample.get(&unit.0).cloned().unwrap_or_else(|| check(unit));
         let merge = |mut sum: LazyTally, other: LazyTally| {
             sum.merge(other);
             sum
@@ -216,10 +215,8 @@ impl LazySweep {
     ) -> (LazyTally, f64) {
         let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
         let mut search = RunSearch::new(explorer, self.draft.clone(), prefix, None, watch);
-        let ended = search.for_each_end(&mut |world, explorer, end| {
-            judge.judge(world, explorer, &end);
-            ControlFlow::Continue(())
-        });
+        let ended = search
+            .for_each_end(&mut |world, explorer, end| judge.judge(world, explorer, &end, watch));
         let (moves_made, interrupted) = (search.world.moves_made, ended.is_break());
         (LazyTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
     }

@@ -9,7 +9,7 @@ pub(super) struct Hypotheses {
     /// One bit for each pair of darts of the map. A refuted hypothesis stays refuted, because a trail
     /// only grows.
     refuted: Vec<u64>,
-    /// For each dart of the map, a hypothesis about its far end that was alive after so many moves.
+    /// For each dart of the map, a hypothesis about its far end, and the number of moves after which it was alive.
     witness: Vec<Option<Witness>>,
 }
 

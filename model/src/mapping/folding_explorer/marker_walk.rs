@@ -9,8 +9,8 @@ use crate::{
     percept::{Door, Percept},
 };
 
-/// The robot gives up the search for the marker after so many moves, and so many more for each dart that it
-/// knows: perhaps it is cut off from the marker.
+/// The moves after which the robot gives up the search for the marker, and those that are added for each dart
+/// that it knows: perhaps it is cut off from the marker.
 const LEAST_SEARCH: u64 = 400;
 const MOVES_A_DART: u64 = 20;
 

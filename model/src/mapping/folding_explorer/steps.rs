@@ -5,8 +5,8 @@ use std::cmp::Reverse;
 use super::{FoldingExploration, FoldingStep, HypothesisTest, Pending};
 use crate::embedded_graph::Dart;
 
-/// The most moves of a test that is made before an open dart of the map is taken, if that is so many moves
-/// away. The figures are the best that were tried.
+/// The most moves of a test that the robot prefers to the nearest open dart of the map. The figures are the best
+/// that were tried.
 fn worthwhile(moves_to_open: usize) -> usize {
     8 * moves_to_open + 2
 }

@@ -16,7 +16,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use toposlam::picture::{self, WorldPicture};
 use toposlam_model::{
     check::WorstStart,
     enumerate::{Each, Enumeration},
@@ -24,7 +23,10 @@ use toposlam_model::{
 };
 
 use super::{CheckArguments, write_worst};
-use crate::cli::{CliError, Outcome, input, output, progress::Progress};
+use crate::{
+    cli::{CliError, Outcome, input, output, progress::Progress},
+    picture::{self, WorldPicture},
+};
 use process::ExplorerCommand;
 use report::{ExplorerReport, ExplorerSize, failed_world};
 use run::RunLimits;
