@@ -33,8 +33,8 @@ const OUTPUTS: [OutputOption; 43] = [
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
-    output("merge", "--junit", &[("s.jsonl", "merge IN --junit OUT")]),
-    output("merge", "--sarif", &[("s.jsonl", "merge IN --sarif OUT")]),
+    output("merge", "--junit", &[("s.xml", "merge IN --junit OUT")]),
+    output("merge", "--sarif", &[("s.sarif", "merge IN --sarif OUT")]),
     output("explore", "--map", &[("w.toml", "explore IN --map OUT")]),
     output("explore", "--svg", &[("w.svg", "explore IN --svg OUT")]),
     output(
