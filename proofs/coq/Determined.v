@@ -14,9 +14,9 @@ Qed.
 
 (** A robot that maps every world goes on until no dart is open. *)
 Lemma mapped_complete (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
-  complete (doors_taken robot directional W n) (history robot directional W n).
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  complete (doors_taken robot directional W n) (history robot (moving directional W) n).
 Proof.
 move=> maps_all W n answer answered k i; rewrite history_walk; set doors := doors_taken _ _ _ _.
 rewrite -/(sees W doors) => lt _; case: (@followed_decidable W doors k i lt) => // open.
@@ -29,9 +29,9 @@ by exists f.
 Qed.
 
 Lemma correct_iff_complete (robot : strategy start) :
-  (forall W, maps_start directional robot W) <->
+  (forall W, maps_start (moving directional) robot W) <->
   (forall W, exists n map,
-     let past := history robot directional W n in
+     let past := history robot (moving directional W) n in
      let doors := doors_taken robot directional W n in
      [/\ robot past = Answer map, sees map doors = past & complete doors past]).
 Proof.

@@ -286,7 +286,7 @@ End Known.
 (** It goes to a dart of the map and over its edge. *)
 Lemma go_over_spec K place spots q w e :
   believes K place spots q -> e < size (known_map K) -> doors_by K w e != None ->
-  always directional (go_over K w e) q
+  always (moving directional W) (go_over K w e) q
     (fun after r k => exists spots',
        [/\ believes after.1 place spots' r, kept K after.1, after.2 = perceive directional r,
            r = opposite (place e)
@@ -306,7 +306,7 @@ Qed.
 Lemma go_through_spec K place spots q way x :
   believes K place spots q -> x.1 < size (trail K) ->
   doors_through (trail K) (folding K) (here K) way x != None ->
-  always directional (go_through K way x) q
+  always (moving directional W) (go_through K way x) q
     (fun after r k => exists spots',
        [/\ believes after.1 place spots' r, kept K after.1, after.2 = perceive directional r,
            r = opposite (image spots x) & k = (size way).+1 /\ made after.1 = made K + k]).
@@ -334,7 +334,7 @@ Proof. by move=> [m f r] [m' f' r']; split; [rewrite m' | rewrite f' | rewrite r
 Lemma try_spec K place spots q pose seen darts :
   believes K place spots q -> pose < size (known_map K) ->
   leads (known_map K) (vertex (known_map K) pose) darts 0 -> seen = perceive directional q ->
-  always directional (try K pose seen darts) q
+  always (moving directional W) (try K pose seen darts) q
     (fun ended r k => exists spots',
        [/\ believes ended.1 place spots' r, kept K ended.1, k <= size darts, made ended.1 = made K + k
          & size (strayed ended.1) = size (strayed K) + k /\
@@ -367,7 +367,7 @@ have be' : believes K' place (rcons spots q') q'.
   - by rewrite /unzip1 map_rcons taken_rcons -/unzip1 -(be_strayed be) -(be_pose be) degE.
   - by rewrite /unzip1 map_rcons walk_rcons -/unzip1 -(be_pose be).
   by rewrite size_rcons addn1 ltnS (be_made be).
-apply: always_weaken (IH K' _ q' d' _ be' d'_lt path (erefl _)).
+apply: alwaysW (IH K' _ q' d' _ be' d'_lt path (erefl _)).
 move=> [K'' came] r k [spots' [be'' kept' k_le madeE [strayedE result]]]; exists spots'; split=> //.
 - by rewrite madeE /= addnAC -addnA addn1 addnS.
 split; first by rewrite strayedE /= size_rcons addnS.

@@ -14,7 +14,7 @@ Unset Printing Implicit Defensive.
 Fixpoint doors_taken A (robot : strategy A) (M : marker) (W : start) (decisions : nat) : seq door :=
   if decisions is earlier.+1 then
     let doors := doors_taken robot M W earlier in
-    if robot (history robot M W earlier) is Leave i then rcons doors i else doors
+    if robot (history robot (moving M W) earlier) is Act i then rcons doors i else doors
   else [::].
 
 (** Whether a walk goes over the edge of a dart, in either direction. *)

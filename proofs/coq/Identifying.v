@@ -8,7 +8,7 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 Lemma identifying_suffices M near beyond :
-  exists robot : strategy start, forall W : start, identifies M near beyond W -> maps_start M robot W.
+  exists robot : strategy start, forall W : start, identifies M near beyond W -> maps_start (moving M) robot W.
 Proof.
 exists (simulating near beyond mapper) => W identifies_W.
 have [map [n answered] iso] := mapper_maps W; exists map => //.

@@ -174,7 +174,8 @@ exact: connect_root.
 Qed.
 
 Lemma lollipop_cost (robot : strategy start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional lollipop n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional lollipop) n) = Answer answer ->
   (2 * chain.+1 + 1) * loops <= size (doors_taken robot directional lollipop n).
 Proof.
 move=> maps_all answered.

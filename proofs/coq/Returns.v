@@ -335,14 +335,16 @@ End Counting.
 
 (** The walk of a robot that maps every world determines its world. *)
 Lemma robot_determined (robot : strategy start) (W : start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   let doors := doors_taken robot directional W n in
   forall V : start, sees V doors = sees W doors -> isomorphic_starts V W.
 Proof. by move=> maps_all answered doors V; apply: mapped_alike answered. Qed.
 
 (** With all edges: the marked vertex is near, and all returns may be far. *)
 Lemma returns_needed (robot : strategy start) (W : start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof.
 move=> maps_all answered; have determined := robot_determined maps_all answered.
@@ -447,7 +449,8 @@ Qed.
 End Cost.
 
 Lemma far_cycles_cost (robot : strategy start) (W : start) n answer (far : pred W) depth :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   (forall d, far (opposite d) = far d) ->
   (forall ds d, same_vertex (walk (facing W) ds) d -> far d -> depth <= size ds) ->
   (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).

@@ -36,7 +36,7 @@ Definition longest B := forall path, allowed S path -> size path <= B.
 (** Lines 8 to 17, for a robot that came to [t]. *)
 Lemma try_all_spec (t : W) n turned H :
   size H = n -> {subset H <= unexplored S} -> turned < degree t ->
-  always directional (try_all test allowed n S (perceive directional t) turned H) (turn t turned)
+  always (moving directional W) (try_all test allowed n S (perceive directional t) turned H) (turn t turned)
     (fun became r k =>
        (forall B, longest B -> k <= n * (2 * B)) /\
        match became with
@@ -52,14 +52,14 @@ have v_lt := vertex_lt wf h_lt; split.
   rewrite /= to_root_leads ?wf_first ?wf_some //=.
   by apply/allowed_short/to_root_short; rewrite ?wf_first ?wf_some.
 move=> path /andP[path_ok path_allowed]; apply: always_bind.
-apply: always_weaken (validate_spec em test_valid h_lt path_ok turned_lt).
+apply: alwaysW (validate_spec em test_valid h_lt path_ok turned_lt).
 case=> [pose|i] r k [].
   move=> placed pose_lt -> k_le /=; rewrite addn0; split=> // B /(_ path path_allowed) le.
   by rewrite mulSn mul2n -addnn -addnA; apply: leq_trans k_le (leq_trans le (leq_addr _ _)).
 move=> wrong -> i_lt k_le.
 have rest_sub : {subset rem h H <= unexplored S} by move=> g /mem_rem/sub.
 have rest_size : size (rem h H) = n by rewrite size_rem // sizeH.
-apply: always_weaken (IH i _ rest_size rest_sub i_lt) => became r' l [bound came]; split.
+apply: alwaysW (IH i _ rest_size rest_sub i_lt) => became r' l [bound came]; split.
   move=> B longest; have le := longest path path_allowed; have := bound B longest.
   by move=> l_le; rewrite mulSn; apply: leq_add l_le; apply: leq_trans k_le _; rewrite leq_mul2l.
 case: became came {bound} => [g pose|j] [].
@@ -153,7 +153,7 @@ Qed.
 (** Lines 5 to 23: a round explores one more edge, and the map is still a part of the world. *)
 Lemma explore_spec S place pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore test allowed S pose) (place pose)
+  always (moving directional W) (explore test allowed S pose) (place pose)
     (fun after r k =>
        (exists place' : nat -> W,
           [/\ embeds after.1 place', after.2 < size after.1, r = place' after.2
@@ -176,7 +176,7 @@ have inH h : (h \in H) = [&& h != e, raised test S h (perceive directional t) & 
 apply: always_bind.
 have sub : {subset H <= unexplored S} by move=> h; rewrite inH => /and3P[].
 have := try_all_spec em (erefl (size H)) sub (degree_gt0 t).
-apply: always_weaken => became r k [cost came].
+apply: alwaysW => became r k [cost came].
 have sizeH : size H <= (size (unexplored S)).-1.
   rewrite -(size_rem eU); apply: uniq_leq_size => [|h]; first by rewrite !filter_uniq ?iota_uniq.
   by rewrite inH (mem_rem_uniq _ (filter_uniq _ (iota_uniq _ _))) inE => /and3P[he _ hU]; rewrite he.

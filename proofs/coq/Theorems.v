@@ -1,10 +1,10 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    [MovableMarker.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
     terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions Markers
-  Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
+  Markers.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
@@ -15,6 +15,7 @@ Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, e
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
+Import MovableMarker(handling_action, handling, can_handle, movable).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -42,15 +43,15 @@ Qed.
 (** Two starts are indistinguishable, i.e. every door sequence gives the same percepts, exactly if there
     is a bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
 Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
-  bisimilar M V W <-> indistinguishable M V W.
+  bisimilar (moving M) V W <-> indistinguishable M V W.
 Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
 
-(** In bisimilar starts every robot has the same history, whatever its strategy, and so gives the same
-    answer. Paper: 2.2. *)
-Theorem bisimilar_same_history A (robot : strategy A) (M : marker) (V W : start) :
-  bisimilar M V W ->
-  (forall decisions, history robot M V decisions = history robot M W decisions) /\
-  (forall answer, answers robot M V answer <-> answers robot M W answer).
+(** In bisimilar starts every robot has the same history, whatever its actions and its strategy, and so gives the
+    same answer. Paper: 2.2. *)
+Theorem bisimilar_same_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
+  bisimilar I V W ->
+  (forall decisions, history robot (I V) decisions = history robot (I W) decisions) /\
+  (forall answer, answers robot (I V) answer <-> answers robot (I W) answer).
 Proof. (* paper: world.interface *)
 by move=> same; split; [apply: Bisimulation.bisimilar_same_history
                        | apply: Bisimulation.bisimilar_same_answers].
@@ -58,7 +59,7 @@ Qed.
 
 (** Without a marker, no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
 Theorem no_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
+  ~ (maps (moving no_marker) robot cycle_3 /\ maps (moving no_marker) robot cycle_4).
 Proof. (* paper: marker.none-insufficient, marker.none-cycles *)
 exact: Impossible.no_marker_impossible.
 Qed.
@@ -67,7 +68,7 @@ Qed.
     with one undirected marker at the hub. Paper: 2.2; Figure 1. *)
 Theorem figure_1_indistinguishable :
   [/\ simple figure_1a, simple figure_1b, ~ isomorphic figure_1a figure_1b
-    & bisimilar undirected figure_1a figure_1b].
+    & bisimilar (moving undirected) figure_1a figure_1b].
 Proof. (* paper: fig1.different, fig1.step *)
 have [simple_a simple_b] := Figures.figure_1_simple.
 split=> //; [exact: Figures.figure_1_not_isomorphic | exact: Figures.figure_1_bisimilar].
@@ -78,7 +79,7 @@ Qed.
     Paper: 2.2. *)
 Theorem smaller_pair_indistinguishable :
   [/\ simple smallest_a, simple smallest_b, ~ isomorphic smallest_a smallest_b
-    & bisimilar undirected smallest_a smallest_b].
+    & bisimilar (moving undirected) smallest_a smallest_b].
 Proof.
 have [simple_a simple_b] := Figures.smallest_simple.
 split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
@@ -87,8 +88,8 @@ Qed.
 (** With one undirected marker that stays at the start vertex, no robot maps both worlds of Figure 1, nor
     both of the smaller pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
-  ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
+  ~ (maps (moving undirected) robot figure_1a /\ maps (moving undirected) robot figure_1b) /\
+  ~ (maps (moving undirected) robot smallest_a /\ maps (moving undirected) robot smallest_b).
 Proof. (* paper: marker.undirected-insufficient *)
 exact: Impossible.undirected_marker_impossible.
 Qed.
@@ -102,7 +103,7 @@ Proof. exact: Separates.indistinguishable_directional. Qed.
 (** If one robot maps two indistinguishable starts, and knows where it began, then they are isomorphic,
     facing to facing. Paper: 2.2. *)
 Theorem mapped_indistinguishable_iso (robot : strategy start) (M : marker) (V W : start) :
-  maps_start M robot V -> maps_start M robot W -> indistinguishable M V W -> isomorphic_starts V W.
+  maps_start (moving M) robot V -> maps_start (moving M) robot W -> indistinguishable M V W -> isomorphic_starts V W.
 Proof.
 by move=> maps_V maps_W /Bisimulation.bisimilar_iff_indistinguishable same;
    apply: Impossible.bisimilar_maps_start same maps_V maps_W.
@@ -111,13 +112,13 @@ Qed.
 (** * Programs *)
 
 (** If a property always holds for a program, it holds for the robot that runs the program with the
-    default choices: the robot answers, and until then takes only doors that exist. Paper: 2.1. *)
-Theorem obeying_always A (p : percept -> program A) (M : marker) (W : start) (Q : A -> W -> nat -> Prop) :
-  always M (p (perceive M (facing W))) (facing W) Q ->
+    default choices: the robot answers, and until then does only what is possible. Paper: 2.1. *)
+Theorem obeying_always E (I : environment E) A (p : percept -> program_of E A) (Q : A -> state I -> nat -> Prop) :
+  always I (p (sense (first_state I))) (first_state I) Q ->
   let robot := obeying p in
   exists answer n,
-    [/\ robot (history robot M W n) = Answer answer, Q answer (situation robot M W n).2 n
-      & forall j i, robot (history robot M W j) = Leave i -> i < degree (situation robot M W j).2].
+    [/\ robot (history robot I n) = Answer answer, Q answer (situation robot I n).2 n
+      & forall j e, robot (history robot I j) = Act e -> possible (situation robot I j).2 e].
 Proof. exact: Obeying.obeying_always. Qed.
 
 (** * Algorithm 1 *)
@@ -149,12 +150,12 @@ Qed.
     they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
 Theorem map_embeds_after_round (test : hypothesis_test) :
   valid test -> embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore test any_path S pose) (place pose)
+  always (moving directional W) (explore test any_path S pose) (place pose)
     (fun after there _ => exists place' : nat -> W,
        [/\ embeds after.1 place', after.2 < size after.1 & there = place' after.2]).
 Proof. (* paper: alg1.4, alg1.located *)
 move=> ok known lt some; have short T path : size path < known_vertices T -> any_path T path by [].
-apply: Always.always_weaken (Rounds.explore_spec ok short known lt some).
+apply: Always.alwaysW (Rounds.explore_spec ok short known lt some).
 by move=> after r k [[place' [known' lt' -> _]] _]; exists place'.
 Qed.
 
@@ -175,31 +176,31 @@ Let once := Validation.validate_spec known test_valid h_known path_leads turned_
 (** A confirmed hypothesis is true: the robot came in by the dart of the hypothesis, and it is then where
     it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
        place h = t /\ place believed = pose).
 Proof. (* paper: alg1.validation, alg1.17 *)
-apply: Always.always_weaken once.
+apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k // [placed _ -> _] _ [<-].
 Qed.
 
 (** A true hypothesis is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended _ _ => exists believed, ended = Confirmed believed).
 Proof. (* paper: alg1.16 *)
-move=> true_h; apply: Always.always_weaken once.
+move=> true_h; apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k; [exists believed | case].
 Qed.
 
 (** After a rejected hypothesis the robot is where it was, turned by a door that it knows. Paper: 2.3;
     Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall turned', ended = Rejected turned' -> pose = turn t turned').
 Proof. (* paper: alg1.14, alg1.15 *)
-apply: Always.always_weaken once.
+apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k // [_ -> _ _] _ [<-].
 Qed.
 
@@ -210,7 +211,7 @@ End Validation.
 Theorem hypotheses_decided (test : hypothesis_test) (S : partial_map) (W : start) (place : nat -> W) (t : W)
     (H : seq nat) :
   valid test -> embeds S place -> {subset H <= unexplored S} ->
-  always directional (try_all test any_path (size H) S (perceive directional t) 0 H) t
+  always (moving directional W) (try_all test any_path (size H) S (perceive directional t) 0 H) t
     (fun became pose _ =>
        match became with
        | Loop h believed => [/\ h \in H, place h = t & place believed = pose]
@@ -219,7 +220,7 @@ Theorem hypotheses_decided (test : hypothesis_test) (S : partial_map) (W : start
 Proof. (* paper: alg1.8, alg1.9 *)
 move=> ok known sub; have short T path : size path < known_vertices T -> any_path T path by [].
 have := Rounds.try_all_spec ok short known (erefl (size H)) sub (Walks.degree_gt0 t).
-by apply: Always.always_weaken => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
+by apply: Always.alwaysW => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
 Qed.
 
 (** In every world, from every start, Algorithm 1 ends, with any choice of an edge at line 5, of a
@@ -228,11 +229,11 @@ Qed.
     As many rounds suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
 Theorem algorithm1_correct (test : hypothesis_test) (W : start) (bound : nat) :
   valid test -> edges W <= bound ->
-  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => right_answer answer pose).
 Proof. (* paper: alg1.isomorphic, alg1.located, alg1.terminates, alg1.every-world *)
 move=> ok enough; have short S path : size path < known_vertices S -> any_path S path by [].
-by apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [].
+by apply: Always.alwaysW (Correct.algorithm1_spec ok short enough) => answer pose k [].
 Qed.
 
 (** With paths that have fewer edges than there are known vertices, such as shortest paths, Algorithm 1
@@ -242,11 +243,11 @@ Theorem algorithm1_cost (test : hypothesis_test) (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
   valid test -> m <= bound ->
-  always directional (algorithm1 test short_paths bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test short_paths bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= m * n + 2 * m ^ 2 * (n - 1)).
 Proof. (* paper: cost.bound *)
 move=> m n ok enough; have short S path : size path < known_vertices S -> short_paths S path by [].
-apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [_].
+apply: Always.alwaysW (Correct.algorithm1_spec ok short enough) => answer pose k [_].
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
@@ -254,14 +255,14 @@ Qed.
     2.3; Algorithm 1. *)
 Theorem algorithm1_never_wrong (test : hypothesis_test) (W : start) (bound : nat) :
   valid test ->
-  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
 Proof. by move=> ok; apply: (Correct.algorithm1_any ok) => S path. Qed.
 
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
-  exists robot : strategy start, forall W : start, maps_start directional robot W.
+  exists robot : strategy start, forall W : start, maps_start (moving directional) robot W.
 Proof. (* paper: marker.directional-sufficient *)
 by exists Mapper.mapper; apply: Mapper.mapper_maps.
 Qed.
@@ -272,11 +273,11 @@ Theorem directional_marker_locates :
   exists robot : strategy located, forall W : start, exists map decisions,
     let m := edges W in
     let n := vertices W in
-    let pose := (situation robot directional W decisions).2 in
-    [/\ robot (history robot directional W decisions) = Answer map,
+    let pose := (situation robot (moving directional W) decisions).2 in
+    [/\ robot (history robot (moving directional W) decisions) = Answer map,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (history robot directional W j) = Leave i ->
-          i < degree (situation robot directional W j).2
+        forall j i, robot (history robot (moving directional W) j) = Act i ->
+          i < degree (situation robot (moving directional W) j).2
       & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
 Proof.
 exists Mapper.locating_mapper => W; have := Mapper.locating_mapper_maps W.
@@ -304,11 +305,9 @@ Qed.
     believes to be, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
 Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
-  let begin := Some (facing W) in
-  MovableMarker.always_handling
-    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin
-    (fun answer pose lying => lying = None /\ right_answer answer pose).
+  let begin := first_state (handling W) in
+  always (handling W) (movable any_path bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ right_answer answer s.1).
 Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
@@ -317,45 +316,41 @@ Qed.
 (** With any limit on rounds, also with one that is too low, it answers nothing or rightly. Paper: 2.3. *)
 Theorem movable_marker_never_wrong (W : start) (bound : nat) :
   simple W ->
-  let begin := Some (facing W) in
-  MovableMarker.always_handling
-    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin
-    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+  let begin := first_state (handling W) in
+  always (handling W) (movable any_path bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ (answer = None \/ right_answer answer s.1)).
 Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_any short simple_W).
 Qed.
 
-(** With paths that have fewer edges than there are known vertices, it makes at most
-    1 + m ((n + 4) (n - 1) + 4 m + 8) decisions: moves, pick-ups and drops. Paper: 2.3. *)
+(** With paths that have fewer edges than there are known vertices, it does at most
+    1 + m ((n + 4) (n - 1) + 4 m + 8) actions: moves, pick-ups and drops. Paper: 2.3. *)
 Theorem movable_marker_cost (W : start) (bound : nat) :
   simple W ->
   let m := edges W in
   let n := vertices W in
-  let begin := Some (facing W) in
-  within (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))
-    (MovableMarker.movable short_paths bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin.
+  let begin := first_state (handling W) in
+  always (handling W) (movable short_paths bound (sense begin)) begin
+    (fun _ _ actions => actions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)).
 Proof.
 move=> simple_W m n begin; have short S path : size path < known_vertices S -> short_paths S path by [].
 rewrite -addnA [4 * m + 8]addnC addnA subn1.
-exact: (MovableCost.movable_within short simple_W (fun S path => id)).
+exact: (MovableCost.movable_cost short simple_W (fun S path => id)).
 Qed.
 
 (** So one robot maps every world without loops and parallel edges with one movable marker, within this bound.
-    It knows where it is in its map, carries the marker in the end, and takes only doors that exist. Paper: 1
-    and 2.3. *)
+    It knows where it is in its map, carries the marker in the end, takes only doors that exist, picks up the
+    marker only where it lies, and drops it only if it carries it. Paper: 1 and 2.3. *)
 Theorem movable_marker_locates :
-  exists robot : handling_strategy located, forall W : start, simple W ->
+  exists robot : strategy_of handling_action located, forall W : start, simple W ->
   exists map decisions,
     let m := edges W in
     let n := vertices W in
-    let: (pose, lying) := (handling_situation robot W decisions).2 in
-    [/\ robot (handling_history robot W decisions) = Report map, lying = None,
+    let: (pose, lying) := (situation robot (handling W) decisions).2 in
+    [/\ robot (history robot (handling W) decisions) = Answer map, lying = None,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (handling_history robot W j) = Act (MovableMarker.LeaveBy i) ->
-          i < degree (handling_situation robot W j).2.1
+        forall j e, robot (history robot (handling W) j) = Act e -> can_handle (situation robot (handling W) j).2 e
       & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
 Proof.
 exists MovableMapper.movable_mapper => W /MovableMapper.movable_mapper_maps.
@@ -372,10 +367,10 @@ Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robo
   exists robot' : strategy A,
     (forall (W : start) (bound : nat),
        identifies M near beyond W -> (forall d : W, degree d <= bound) ->
-       forall n answer, robot (history robot directional W n) = Answer answer ->
-       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer) /\
+       forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' (moving M W) n') = Answer answer) /\
     (forall (W : start) j i,
-       robot' (history robot' M W j) = Leave i -> i < degree (situation robot' M W j).2).
+       robot' (history robot' (moving M W) j) = Act i -> i < degree (situation robot' (moving M W) j).2).
 Proof.
 exists (Simulation.simulating near beyond robot); split=> [W bound identifies_W small n answer|W j i].
   exact: Simulation.simulating_answers.
@@ -384,7 +379,7 @@ Qed.
 
 (** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
 Theorem directed_edge_suffices :
-  exists robot : strategy start, forall W : start, maps_start directed_edge robot W.
+  exists robot : strategy start, forall W : start, maps_start (moving directed_edge) robot W.
 Proof.
 have [robot maps_W] := Identifying.identifying_suffices directed_edge predT (fun seen => seen.2 == PassedAlong).
 by exists robot => W; apply/maps_W/Identifying.directed_edge_identifies.
@@ -393,7 +388,7 @@ Qed.
 (** One robot maps every world without loops and parallel edges with two markers that look different, at both
     ends of an edge. Paper: beyond 2.3. *)
 Theorem two_distinct_suffices_in_simple_worlds :
-  exists robot : strategy start, forall W : start, simple W -> maps_start two_distinct robot W.
+  exists robot : strategy start, forall W : start, simple W -> maps_start (moving two_distinct) robot W.
 Proof.
 have [robot maps_W] :=
   Identifying.identifying_suffices two_distinct (fun seen => seen.2 == First) (fun seen => seen.2 == Second).
@@ -404,7 +399,7 @@ Qed.
     beyond 2.2. *)
 Theorem undirected_marker_at_dead_end_suffices :
   exists robot : strategy start, forall W : start,
-    degree (facing W) = 1 -> maps_start undirected robot W.
+    degree (facing W) = 1 -> maps_start (moving undirected) robot W.
 Proof.
 have [robot maps_W] := Identifying.identifying_suffices undirected (fun seen => seen == (1, Lying)) predT.
 by exists robot => W dead_end; apply/maps_W/Identifying.dead_end_identifies.
@@ -419,8 +414,8 @@ Proof. exact: Coprime.coprime_degree_determines. Qed.
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
     with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem undirected_edge_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar undirected_edge edge_a edge_b
-    & ~ (maps undirected_edge robot edge_a /\ maps undirected_edge robot edge_b)].
+  [/\ simple edge_a, simple edge_b, bisimilar (moving undirected_edge) edge_a edge_b
+    & ~ (maps (moving undirected_edge) robot edge_a /\ maps (moving undirected_edge) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_undirected_edge.
 by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
@@ -428,8 +423,8 @@ Qed.
 
 (** Nor do two markers that look alike at both ends of an edge, in the same two worlds. Paper: beyond 2.2. *)
 Theorem two_identical_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar two_identical edge_a edge_b
-    & ~ (maps two_identical robot edge_a /\ maps two_identical robot edge_b)].
+  [/\ simple edge_a, simple edge_b, bisimilar (moving two_identical) edge_a edge_b
+    & ~ (maps (moving two_identical) robot edge_a /\ maps (moving two_identical) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_two_identical.
 by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
@@ -439,8 +434,8 @@ Qed.
     in worlds with loops: no robot maps both worlds of three parallel edges, in the plane and on the torus,
     nor both of two loops. Paper: beyond 2.2. *)
 Theorem two_distinct_impossible (robot : strategy embedded_graph) :
-  ~ (maps two_distinct robot theta_plane /\ maps two_distinct robot theta_torus) /\
-  ~ (maps two_distinct robot two_loops_plane /\ maps two_distinct robot two_loops_torus).
+  ~ (maps (moving two_distinct) robot theta_plane /\ maps (moving two_distinct) robot theta_torus) /\
+  ~ (maps (moving two_distinct) robot two_loops_plane /\ maps (moving two_distinct) robot two_loops_torus).
 Proof.
 split; apply: Impossible.bisimilar_impossible robot.
 - exact: Multigraphs.theta_two_distinct.
@@ -452,20 +447,26 @@ Qed.
 (** Two markers that look different and are not adjacent do not suffice, not even in worlds without loops and
     parallel edges: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem two_distant_impossible (robot : strategy embedded_graph) :
-  [/\ simple paths_a, simple paths_b, bisimilar two_distant paths_a paths_b
-    & ~ (maps two_distant robot paths_a /\ maps two_distant robot paths_b)].
+  [/\ simple paths_a, simple paths_b, bisimilar (moving two_distant) paths_a paths_b
+    & ~ (maps (moving two_distant) robot paths_a /\ maps (moving two_distant) robot paths_b)].
 Proof.
 have [simple_a simple_b] := Multigraphs.paths_simple; have same := Multigraphs.paths_two_distant.
 by split=> //; apply: Impossible.bisimilar_impossible same Multigraphs.paths_not_isomorphic robot.
 Qed.
 
-(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: no robot that
-    can pick it up and drop it maps both worlds of three parallel edges, nor both of two loops. Paper: beyond
-    2.3. *)
-Theorem movable_marker_impossible (robot : handling_strategy embedded_graph) :
-  ~ (handling_maps robot theta_plane /\ handling_maps robot theta_torus) /\
-  ~ (handling_maps robot two_loops_plane /\ handling_maps robot two_loops_torus).
-Proof. by split; [apply: Multigraphs.theta_handling | apply: Multigraphs.loops_handling]. Qed.
+(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: for robots that
+    can pick it up and drop it, both worlds of three parallel edges are bisimilar, and both of two loops, and no
+    robot maps both. Paper: beyond 2.3. *)
+Theorem movable_marker_impossible (robot : strategy_of handling_action embedded_graph) :
+  [/\ bisimilar handling theta_plane theta_torus,
+      ~ (maps handling robot theta_plane /\ maps handling robot theta_torus),
+      bisimilar handling two_loops_plane two_loops_torus
+    & ~ (maps handling robot two_loops_plane /\ maps handling robot two_loops_torus)].
+Proof.
+split; [exact: Multigraphs.theta_handling | | exact: Multigraphs.loops_handling |].
+  exact: Impossible.bisimilar_impossible Multigraphs.theta_handling Multigraphs.theta_not_isomorphic robot.
+exact: Impossible.bisimilar_impossible Multigraphs.loops_handling Multigraphs.loops_not_isomorphic robot.
+Qed.
 
 (** * Folding *)
 
@@ -510,31 +511,31 @@ Proof. exact: Unfolding.open_folding_ambiguous. Qed.
 (** A robot maps every start exactly if in each it answers, when its folded trail is complete, with a start
     that has its percepts. Paper: beyond 2.3. *)
 Theorem correct_iff_complete (robot : strategy start) :
-  (forall W, maps_start directional robot W) <->
+  (forall W, maps_start (moving directional) robot W) <->
   (forall W, exists n map,
-     let past := history robot directional W n in
+     let past := history robot (moving directional W) n in
      let doors := doors_taken robot directional W n in
      [/\ robot past = Answer map, sees map doors = past & complete doors past]).
 Proof. exact: Determined.correct_iff_complete. Qed.
 
 (** A robot that maps every world has gone over every edge before it answers. Paper: beyond 2.3. *)
 Theorem every_edge_is_traversed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   forall d : W, traverses (facing W) (doors_taken robot directional W n) d.
 Proof. exact: Moves.every_edge_is_traversed. Qed.
 
 (** So it makes at least as many moves as the world has edges. Paper: beyond 2.3. *)
 Theorem at_least_m_moves (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   edges W <= size (doors_taken robot directional W n).
 Proof. exact: Moves.at_least_m_moves. Qed.
 
 (** And it comes back to the marked vertex at least m - n + 1 times. Paper: beyond 2.3. *)
 Theorem returns_needed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
 
@@ -542,8 +543,8 @@ Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
     makes at least 2 depth + 1 moves for each of them, except as many as there are vertices that cannot be
     reached without them. Paper: beyond 2.3. *)
 Theorem far_cycles_cost (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   forall (far : pred W) (depth : nat),
   (forall d, far (opposite d) = far d) ->
   (forall doors d, same_vertex (walk (facing W) doors) d -> far d -> depth <= size doors) ->
@@ -555,8 +556,8 @@ Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycl
     (2 k + 3) l moves. Paper: beyond 2.3. *)
 Theorem lower_bound (k l : nat) :
   exists W : start, [/\ edges W = k + 1 + l, vertices W = k + 2
-    & forall robot : strategy start, (forall V, maps_start directional robot V) ->
-      forall n answer, robot (history robot directional W n) = Answer answer ->
+    & forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
+      forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
       (2 * k + 3) * l <= size (doors_taken robot directional W n)].
 Proof.
 exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
@@ -577,8 +578,8 @@ Proof. exact: CertificateAttained.certificate_shortest. Qed.
 
 (** So a robot that maps every world makes at least as many moves in each. Paper: beyond 2.3. *)
 Theorem certificate_needed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   certificate_length W <= size (doors_taken robot directional W n).
 Proof.
 move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed.
@@ -591,21 +592,23 @@ Qed.
     2 m (m + 1) actions suffice. Paper: beyond 2.3. *)
 Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
   2 * edges W * (edges W + 1) <= bound ->
-  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer any_length patience bound (perceive directional (facing W)))
+    (facing W)
     (fun answer pose _ => right_answer answer pose).
 Proof.
 move=> enough; have short k l : k <= l -> any_length k l by [].
-apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+apply: Always.alwaysW (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
 by move=> answer pose k [[//|[_]]]; rewrite ltnNge enough.
 Qed.
 
 (** With any limit on actions, also with one that is too low, it answers nothing or rightly. Paper: beyond 2.3. *)
 Theorem folding_explorer_never_wrong (W : start) (patience : partial_map -> nat) (bound : nat) :
-  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer any_length patience bound (perceive directional (facing W)))
+    (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
 Proof.
 have short k l : k <= l -> any_length k l by [].
-apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+apply: Always.alwaysW (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
 by move=> answer pose k [[right|[none _]] _]; [right | left].
 Qed.
 
@@ -615,7 +618,8 @@ Qed.
 Theorem folding_explorer_cost (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
-  always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer no_longer usual_patience bound (perceive directional (facing W)))
+    (facing W)
     (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
 Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
 
@@ -624,7 +628,7 @@ Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
     beyond 2.3. *)
 Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
     (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
-  always M (folding_explorer allowed patience bound seen) pose Q ->
+  always (moving M W) (folding_explorer allowed patience bound seen) pose Q ->
   always_guided M (guided_explorer allowed patience bound seen) pose Q.
 Proof. exact: GivenActionsCorrect.always_guided_actions. Qed.
 
