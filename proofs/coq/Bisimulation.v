@@ -10,7 +10,7 @@ Unset Printing Implicit Defensive.
 
 (** * Bisimilar is indistinguishable *)
 
-Lemma bisimilar_iff_indistinguishable M V W : bisimilar (moving M) V W <-> indistinguishable M V W.
+Lemma bisimilarP M V W : bisimilar (moving M) V W <-> indistinguishable M V W.
 Proof.
 split=> [[R [start_R R_step]] doors | same].
   have {}R_step (p : V) (q : W) : R p q -> perceive M p = perceive M q /\ forall i, R (traverse p i) (traverse q i).
@@ -43,7 +43,7 @@ Lemma historyS (I : environment E) n :
     else history robot I n.
 Proof. by rewrite /history /=; case: (situation _ _ n) => past s /=; case: (robot past). Qed.
 
-Lemma bisimilar_same_history (I : start -> environment E) V W :
+Lemma bisimilar_history (I : start -> environment E) V W :
   bisimilar I V W -> forall n, history robot (I V) n = history robot (I W) n.
 Proof.
 move=> [R [start_R R_step]] n.
@@ -55,16 +55,16 @@ have [_ next] := R_step _ _ st; case: (robot past) => //= e.
 by have [-> _] := R_step _ _ (next e).
 Qed.
 
-Lemma bisimilar_same_answers (I : start -> environment E) V W :
+Lemma bisimilar_answers (I : start -> environment E) V W :
   bisimilar I V W -> forall a, answers robot (I V) a <-> answers robot (I W) a.
 Proof.
-by move=> /bisimilar_same_history same a; split=> -[n answered]; exists n; rewrite -answered same.
+by move=> /bisimilar_history same a; split=> -[n answered]; exists n; rewrite -answered same.
 Qed.
 
 Variable I : environment E.
 
 (** A robot that has answered stays where it is. *)
-Lemma answered_stays a n k : robot (history robot I n) = Answer a -> history robot I (n + k) = history robot I n.
+Lemma history_answered a n k : robot (history robot I n) = Answer a -> history robot I (n + k) = history robot I n.
 Proof.
 by move=> answered; elim: k => [|k IH]; rewrite ?addn0 // addnS historyS IH answered.
 Qed.
@@ -72,7 +72,7 @@ Qed.
 Lemma answers_inj a b : answers robot I a -> answers robot I b -> a = b.
 Proof.
 move=> [n robot_a] [k robot_b].
-have := robot_a; rewrite -(answered_stays k robot_a) addnC (answered_stays n robot_b) robot_b.
+have := robot_a; rewrite -(history_answered k robot_a) addnC (history_answered n robot_b) robot_b.
 by case.
 Qed.
 

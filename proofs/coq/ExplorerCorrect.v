@@ -146,7 +146,7 @@ move=> _ /(_ erefl) differ; have be' : believes (with_refuted K1 e h) place spot
   rewrite inE => /predU1P[[-> ->]|/(be_refuted be)//].
   have low : minn e h < maxn e h by rewrite gtn_min !leq_max; case: (ltngtP e h) he => //; rewrite ?orbT.
   split=> //; first by rewrite mapE gtn_max e_lt h_lt.
-  rewrite /minn /maxn; case: ifP => _ same; apply: differ; rewrite ?same ?opposite_involutive //.
+  rewrite /minn /maxn; case: ifP => _ same; apply: differ; rewrite ?same ?oppositeK //.
 have lt := refuted_le be'; have [actionsE costE] := actions_left_refuted e h left lt.
 exists left; split=> //.
 - by rewrite /edges_left /= mapE.
@@ -183,13 +183,13 @@ case: a => [e p|e h|e|e w|e h t] /=.
   have be' : believes (with_far K e (to_dart (trail K) p)) place spots q.
     case: (be) => *; split=> //= [e' x|]; last by rewrite far_end_none.
     rewrite inE => /predU1P[[-> ->]|/(be_far be)//].
-    by rewrite edgeE (same_image be from_lt at_lt same) atE.
+    by rewrite edgeE (eq_image be from_lt at_lt same) atE.
   have [actionsE costE] := actions_left_far e (to_dart (trail K) p) left (far_ends_le be').
   split=> //; split=> //; rewrite ?addn0 //; [by rewrite -actionsE | by rewrite -costE leq_addr |].
   by move=> _; left; rewrite -costE leq_add2l leq_addr.
 - case far_e: far_end => [x|//] /and3P[eU hU /eqP same]; have [e_lt x_lt xE] := far_endP be far_e.
   have h_lt := known_lt h hU; have [at_lt atE] := be_in_trail be h_lt.
-  have placed : place h = opposite (place e) by rewrite -atE -(same_image be x_lt at_lt same).
+  have placed : place h = opposite (place e) by rewrite -atE -(eq_image be x_lt at_lt same).
   have [be' sizeU] := with_loop_believes be eU hU placed; exists place, spots, left.-1; split=> //.
   have [|count' left_gt0] := edge_progress count known _ (size_known (be_map be')).
     by rewrite sizeU /= size_with_edge // -addnS -addnS.

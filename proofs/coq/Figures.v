@@ -80,16 +80,16 @@ Definition file_dart := seq_sub names.
 Definition file_opposite (d : file_dart) : file_dart := SeqSub (flip_names (ssvalP d)).
 Definition file_clockwise (d : file_dart) : file_dart := SeqSub (around_names (ssvalP d)).
 
-Lemma file_involutive : involutive file_opposite.
+Lemma file_oppositeK : involutive file_opposite.
 Proof. by move=> d; apply: val_inj; case: d => -[]. Qed.
 
-Lemma file_moves d : file_opposite d != d.
+Lemma file_opposite_neq d : file_opposite d != d.
 Proof.
 case/and3P: file_sound => _ /allP ok _; have /andP[_] := ok _ (ssvalP d).
 by apply: contra => /eqP/(congr1 val) /= /(congr1 snd) /= ->.
 Qed.
 
-Lemma file_injective : injective file_clockwise.
+Lemma file_clockwise_inj : injective file_clockwise.
 Proof.
 move=> [d d_in] [e e_in] /(congr1 val) /= [same_v same_next]; apply: val_inj => /=.
 case: d e same_v same_next {d_in e_in} => [v w] [v' w'] /= <- /(congr1 (prev (neighbours v))).
@@ -113,7 +113,7 @@ by rewrite /step eqxx orbT.
 Qed.
 
 Definition world : embedded_graph :=
-  EmbeddedGraph file_involutive file_moves file_injective file_connected.
+  EmbeddedGraph file_oppositeK file_opposite_neq file_clockwise_inj file_connected.
 
 Implicit Types d e : world.
 
@@ -125,7 +125,7 @@ Proof. by elim: i => //= i <-. Qed.
 Lemma iter_around i x : iter i around x = (x.1, iter i (next (neighbours x.1)) x.2).
 Proof. by elim: i => [|i IH] /=; [case: x | rewrite IH]. Qed.
 
-Lemma next_reaches (T : eqType) (s : seq T) x y :
+Lemma iter_next (T : eqType) (s : seq T) x y :
   uniq s -> x \in s -> y \in s -> exists i, y = iter i (next s) x.
 Proof.
 move=> s_uniq /rot_to[k t rot_s] y_s.
@@ -140,7 +140,7 @@ Proof.
 apply/same_vertexP/eqP => [[i ->] | same_v].
   by rewrite val_turn iter_around.
 have d_in := ssvalP d; have e_in := ssvalP e; rewrite !mem_names -same_v in d_in e_in.
-have [i e_i] := next_reaches (uniq_neighbours _) d_in e_in.
+have [i e_i] := iter_next (uniq_neighbours _) d_in e_in.
 by exists i; apply: val_inj; rewrite val_turn iter_around -e_i same_v -surjective_pairing.
 Qed.
 

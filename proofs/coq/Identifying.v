@@ -23,7 +23,7 @@ Variable W : start.
 Lemma directed_edge_identifies : identifies directed_edge predT (fun seen => seen.2 == PassedAlong) W.
 Proof.
 move=> p d _ /=; rewrite /directed_edge; case: (opposite d =P facing W) => [back|_].
-  by rewrite -back [d == _]eq_sym (negPf (opposite_moves d)).
+  by rewrite -back [d == _]eq_sym (negPf (opposite_neq d)).
 by rewrite (inj_eq (@opposite_inj W)); case: (d =P facing W).
 Qed.
 

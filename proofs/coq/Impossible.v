@@ -12,7 +12,7 @@ Unset Printing Implicit Defensive.
 Lemma bisimilar_maps E (I : start -> environment E) (robot : strategy_of E embedded_graph) V W :
   bisimilar I V W -> maps I robot V -> maps I robot W -> isomorphic V W.
 Proof.
-move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
 by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_inj answers_map answers_map').
 Qed.
 
@@ -20,7 +20,7 @@ Qed.
 Lemma bisimilar_maps_start E (I : start -> environment E) (robot : strategy_of E start) V W :
   bisimilar I V W -> maps_start I robot V -> maps_start I robot W -> isomorphic_starts V W.
 Proof.
-move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
 apply: isomorphic_starts_trans (isomorphic_starts_sym map_V) _.
 by rewrite (answers_inj answers_map answers_map').
 Qed.

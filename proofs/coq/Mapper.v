@@ -38,11 +38,11 @@ case: past' moved => // seen past' moved ended.
 exact: leq_ltn_trans (finish_le ended) (finish_le moved).
 Qed.
 
-Lemma same_rounds test allowed b b' S pose past : size past < b -> size past < b' ->
+Lemma eq_rounds test allowed b b' S pose past : size past < b -> size past < b' ->
   obey (rounds test allowed b S pose) past = obey (rounds test allowed b' S pose) past.
 Proof.
 elim: b b' S pose past => // b IH [//|b'] S pose past le le'.
-rewrite !another_round; case: (unexplored S) => // _ _; rewrite !obey_bind.
+rewrite !roundsS; case: (unexplored S) => // _ _; rewrite !obey_bind.
 case explored: finish => [//|[after later]]; have lt := explore_moves explored.
 by apply: IH; apply: leq_trans lt _.
 Qed.
@@ -70,7 +70,7 @@ have {cost_le} moves_le := cost_le (fun S path => id).
 have at_first : situation robot (moving directional W) 0 = ([:: first], facing W) by [].
 have [//|later later_le|answer r k [[T [p [map [-> _ drawn_map _]]]] _]|] :=
   obedient (report := drawing 0) (robot := robot) _ at_first spec.
-- rewrite /robot /= (@same_rounds _ _ _ bound) //.
+- rewrite /robot /= (@eq_rounds _ _ _ bound) //.
   by rewrite /bound !ltnS (leq_trans later_le) // (leq_trans moves_le) // leq_addl.
 - by exists map; rewrite /= drawn_map.
 move=> answer [n [answered [right cost_n] doors]]; move: right => [T [p [map [answerE _ drawn_map iso]]]].

@@ -38,7 +38,7 @@ Lemma choose_path_spec pose d (s : state (handling W)) : pose < size S -> d < si
   always (handling W) (choose_path allowed S pose (vertex S d)) s
     (fun path t _ => leads S (vertex S pose) path (vertex S d) /\ t = s).
 Proof.
-move=> pose_lt d_lt; have root := vertex_idem wf pose_lt; have root_lt := vertex_lt wf pose_lt.
+move=> pose_lt d_lt; have root := vertex_vertex wf pose_lt; have root_lt := vertex_lt wf pose_lt.
 split; first by rewrite /= from_root_leads //=; apply/allowed_short/from_root_short.
 by move=> path /andP[].
 Qed.
@@ -62,8 +62,8 @@ by rewrite /traverse (turn_door_to em).
 Qed.
 
 (** And back by door 0. *)
-Lemma opposite_back e : traverse (opposite (place e)) 0 = place e.
-Proof. exact: opposite_involutive. Qed.
+Lemma traverse_opposite0 e : traverse (opposite (place e)) 0 = place e.
+Proof. exact: oppositeK. Qed.
 
 (** The map has no parallel edges. *)
 Lemma no_parallel_known d e : d < size S -> e < size S -> vertex S d = vertex S e ->
@@ -154,7 +154,7 @@ Proof. by move: eU; rewrite mem_unexplored => /andP[]. Qed.
 (** Where the edge leads. *)
 Let t : W := opposite (place e).
 
-Lemma end_is_elsewhere : ~~ same_vertex (place e) t.
+Lemma end_elsewhere : ~~ same_vertex (place e) t.
 Proof. by have [no_loop _] := simple_W; apply: no_loop. Qed.
 
 (** If the unknown end is at a known vertex, then the dart there is known, and unexplored. *)
@@ -173,7 +173,7 @@ move: h_link; rewrite mem_filter => /andP[/eqP same hU].
 rewrite mem_sort mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
 - by rewrite (em_doors em) ?vertex_lt // (degree_vertex em) // (em_doors em) //
     (same_vertex_degree here).
-- apply: contra end_is_elsewhere => /eqP de; apply: same_vertex_trans here.
+- apply: contra end_elsewhere => /eqP de; apply: same_vertex_trans here.
   by rewrite (same_vertex_known em) // de.
 apply/hasP=> -[f _ /andP[/eqP fe]]; case ff': (other S f) => [f'|//] /eqP f'd.
 have [f'_lt _ _] := wf_other wf ff'.
@@ -186,7 +186,7 @@ Qed.
 Lemma candidates_known n : {in candidates S e n, forall v, v < size S /\ vertex S v = v}.
 Proof.
 move=> v; rewrite mem_sort mem_filter mem_undup => /andP[_ /mapP[d]].
-by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_idem.
+by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_vertex.
 Qed.
 
 Lemma no_dart_there : enough_candidates t [::] -> forall d, d < size S -> place d <> t.
@@ -207,8 +207,8 @@ Proof.
 rewrite /validate_place; have := candidates_enough; have := @candidates_known (degree t).
 case: (candidates _ _ _) => [_ none|c C]; first by split=> //; apply: no_dart_there.
 move: (c :: C) => {c}C known_C enough; do 2!split=> //=; first exact: degree_gt0.
-have well : missed_well t e C by split=> //; apply: end_is_elsewhere.
-rewrite opposite_back.
+have well : missed_well t e C by split=> //; apply: end_elsewhere.
+rewrite traverse_opposite0.
 apply: always_then (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] s k //.
 case=> -[p_lt _ none] ->.
 apply: always_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e ->] /=.
@@ -225,7 +225,7 @@ Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S
     (fun found s _ => found = Some h /\ s = (place e, Some spot)).
 Proof.
 move=> size_l p_lt links_p here h_in placed.
-have back : opposite (place h) = place e by rewrite placed /t opposite_involutive.
+have back : opposite (place h) = place e by rewrite placed /t oppositeK.
 elim: n p links size_l p_lt links_p h_in => [|n IH] p links /=.
   by rewrite leqn0 => /nilP-> _ _.
 case: links => // g0 links0; set links := g0 :: links0 => size_l p_lt links_p h_in.
@@ -236,7 +236,7 @@ have [open_g /= ->] := leave_by p_lt g_lt (esym g_p); split=> //; case: ifP => s
   apply: no_parallel_known => //; first by rewrite g_p.
   by rewrite back; apply: same_vertex_trans seen _; rewrite same_vertex_sym.
 split; first exact: degree_gt0.
-rewrite opposite_back; apply: IH => //.
+rewrite traverse_opposite0; apply: IH => //.
 - by rewrite size_rem // -subn1 leq_subLR.
 - by move=> f /mem_rem/links_p[f_lt ->].
 have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
@@ -288,7 +288,7 @@ Lemma explore_edge_spec S (place : nat -> W) pose :
        [/\ after = Some (S', pose'), embeds S' place', pose' < size S', s = (place' pose', None)
          & (size S + size (unexplored S')).+2 = size S' + size (unexplored S)]).
 Proof.
-move=> em pose_lt some_left; split=> [|e /= eU]; first exact: nearest_in.
+move=> em pose_lt some_left; split=> [|e /= eU]; first exact: mem_nearest.
 have := eU; rewrite mem_unexplored => /andP[e_lt _].
 apply: always_then (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e ->] /=.
 have [open_e ->] := leave_by em near_lt e_lt at_e; split=> //.
@@ -328,7 +328,7 @@ by apply: IH => //; arithmetic.
 Qed.
 
 (** With any limit the rounds end with such a map, or without an answer. *)
-Lemma explore_edges_any bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
+Lemma explore_edges_sound bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
   always (handling W) (explore_edges allowed bound S pose) (place pose, None)
     (fun answer s _ => (answer = None /\ s.2 = None) \/ explored_well answer s).
 Proof.
@@ -361,20 +361,20 @@ case=> S [p [place [-> em explored p_lt ->]]]; split=> //.
 by have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
 Qed.
 
-Lemma movable_marker_answers_right bound : edges W <= bound ->
+Lemma movable_marker_correct bound : edges W <= bound ->
   always (handling W) (movable allowed bound (sense begin)) begin
     (fun answer s _ => s.2 = None /\ right_answer answer s.1).
 Proof. by move/movable_spec; apply: alwaysW => answer s _; apply: explored_well_right. Qed.
 
 (** With any limit on rounds, it answers nothing or rightly. *)
-Lemma movable_marker_any bound :
+Lemma movable_marker_sound bound :
   always (handling W) (movable allowed bound (sense begin)) begin
     (fun answer s _ => s.2 = None /\ (answer = None \/ right_answer answer s.1)).
 Proof.
 split; first exact: same_vertex_refl.
 have some_known : 0 < size (with_vertex [::] (degree (facing W))) by rewrite size_with_vertex degree_gt0.
 rewrite /= same_vertex_refl.
-apply: alwaysW (explore_edges_any bound (embeds_at_start W) some_known) => answer s _.
+apply: alwaysW (explore_edges_sound bound (embeds_at_start W) some_known) => answer s _.
 by case=> [[-> ->]|/explored_well_right[-> right]]; split=> //; [left | right].
 Qed.
 

@@ -225,7 +225,7 @@ Lemma movable_cost bound :
   always (handling W) (movable allowed bound (sense (first_state (handling W)))) (first_state (handling W))
     (fun _ _ actions => actions <= 1 + edges W * round_cost).
 Proof.
-have spec := movable_marker_any allowed_short simple_W bound.
+have spec := movable_marker_sound allowed_short simple_W bound.
 by apply: alwaysW (always_within spec (movable_within bound)) => a s k [].
 Qed.
 

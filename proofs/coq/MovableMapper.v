@@ -28,26 +28,26 @@ case went: (finish (travel _ _ _ _) past) => [//|[near past']] ended.
 by apply: leq_trans (finish_le went); apply: finish_do_lt ended.
 Qed.
 
-Lemma another_edge allowed bound S pose :
+Lemma explore_edgesS allowed bound S pose :
   explore_edges allowed bound.+1 S pose =
   if unexplored S is [::] then Return (Some (S, pose))
   else let* after := explore_edge allowed S pose in
        if after is Some (S', pose') then explore_edges allowed bound S' pose' else Return None.
 Proof. by []. Qed.
 
-Lemma same_edges allowed b b' S pose past : size past < b -> size past < b' ->
+Lemma eq_explore_edges allowed b b' S pose past : size past < b -> size past < b' ->
   obey (explore_edges allowed b S pose) past = obey (explore_edges allowed b' S pose) past.
 Proof.
 elim: b b' S pose past => // b IH [//|b'] S pose past le le'.
-rewrite !another_edge; case: (unexplored S) => // _ _.
+rewrite !explore_edgesS; case: (unexplored S) => // _ _.
 rewrite !obey_bind; case explored: finish => [//|[[[S' pose']|] later]] //.
 by have lt := explore_edge_moves explored; apply: IH; apply: leq_trans lt _.
 Qed.
 
-Lemma same_movable b b' first past : size past < b -> size past < b' ->
+Lemma eq_movable b b' first past : size past < b -> size past < b' ->
   obey (movable short_paths b first) past = obey (movable short_paths b' first) past.
 Proof.
-by case: past => // seen past lt lt'; apply: same_edges; apply: leq_trans (leqnSn _) _.
+by case: past => // seen past lt lt'; apply: eq_explore_edges; apply: leq_trans (leqnSn _) _.
 Qed.
 
 (** * The strategy does what the program does *)
@@ -64,14 +64,14 @@ Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> short_paths S path by [].
 pose K := 1 + edges W * round_cost W; pose bound := edges W + K.+1.
 pose first := sense (first_state (handling W)).
-have right := movable_marker_answers_right short simple_W (leq_addr K.+1 (edges W)).
+have right := movable_marker_correct short simple_W (leq_addr K.+1 (edges W)).
 have {right} spec := always_within right (movable_within short simple_W (fun S path => id) bound).
 have [_ [_ [_ heard_le]]] := always_heard spec.
 have at_first : situation movable_mapper (handling W) 0 = ([:: first], first_state (handling W)) by [].
 have [//|later later_le|answer s k [[_ [T [p [map [-> _ drawn_map _]]]]] _]|] :=
   obedient (report := drawing Drop) (robot := movable_mapper) _ at_first spec.
 - rewrite -[LHS]/(drawing Drop (obey (movable short_paths (size later).+1 first) later)).
-  rewrite (@same_movable _ bound) //.
+  rewrite (@eq_movable _ bound) //.
   by rewrite /bound addnS ltnS (leq_trans later_le) // (leq_trans heard_le) ?leq_addl.
 - by exists map; rewrite /= drawn_map.
 move=> answer [n [answered [[lying [T [p [map [answerE _ drawn_map iso]]]]] n_le] only]]; exists map, n.

@@ -36,7 +36,7 @@ exact: leq_trans IH (leqnSn n).
 Qed.
 
 (** In a start where the walk has the same percepts, the robot does the same. *)
-Lemma same_walk (V W : start) n :
+Lemma eq_doors_taken (V W : start) n :
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
   doors_taken robot M V n = doors_taken robot M W n.
 Proof.
@@ -48,21 +48,21 @@ case decided: (robot (percepts M (facing W) dW)) => [i|a].
 by move=> same; have -> := IH same; rewrite same decided.
 Qed.
 
-Lemma same_walk_history (V W : start) n :
+Lemma eq_history (V W : start) n :
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
   history robot (moving M V) n = history robot (moving M W) n.
-Proof. by move=> same; rewrite !history_walk (same_walk same). Qed.
+Proof. by move=> same; rewrite !history_walk (eq_doors_taken same). Qed.
 
 End Robot.
 
 (** If the walk of a robot that maps two starts has the same percepts in both, they are isomorphic. *)
-Lemma mapped_alike (robot : strategy start) M (V W : start) n answer :
+Lemma mapped_iso (robot : strategy start) M (V W : start) n answer :
   maps_start (moving M) robot V -> maps_start (moving M) robot W ->
   robot (history robot (moving M W) n) = Answer answer ->
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
   isomorphic_starts V W.
 Proof.
-move=> [map map_V iso_V] [map' map_W iso_W] answered /same_walk_history same.
+move=> [map map_V iso_V] [map' map_W iso_W] answered /eq_history same.
 have iso_a : isomorphic_starts answer V.
   by rewrite -(answers_inj map_V (ex_intro _ n (etrans (congr1 _ same) answered))).
 have iso_b : isomorphic_starts answer W.
@@ -79,7 +79,7 @@ Lemma every_edge_is_traversed (robot : strategy start) :
 Proof.
 move=> maps_all W n answer answered d; apply: contraT => avoids.
 have [f [iso _]] : isomorphic_starts (subdivided d) W.
-  by apply: mapped_alike answered _ => //; apply: subdivided_percepts.
+  by apply: mapped_iso answered _ => //; apply: subdivided_percepts.
 by case: (@subdivided_not_isomorphic W d); exists f.
 Qed.
 

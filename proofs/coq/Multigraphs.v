@@ -20,10 +20,10 @@ Definition across (d : bool * bool) : bool * bool := (~~ d.1, ~~ d.2).
 Lemma next_of_4_inj : injective next_of_4.
 Proof. by move=> [[] []] [[] []]. Qed.
 
-Lemma together_involutive : involutive together. Proof. by move=> [[] []]. Qed.
-Lemma together_moves d : together d != d. Proof. by case: d => [[] []]. Qed.
-Lemma across_involutive : involutive across. Proof. by move=> [[] []]. Qed.
-Lemma across_moves d : across d != d. Proof. by case: d => [[] []]. Qed.
+Lemma togetherK : involutive together. Proof. by move=> [[] []]. Qed.
+Lemma together_neq d : together d != d. Proof. by case: d => [[] []]. Qed.
+Lemma acrossK : involutive across. Proof. by move=> [[] []]. Qed.
+Lemma across_neq d : across d != d. Proof. by case: d => [[] []]. Qed.
 
 Lemma loops_connected (opp : bool * bool -> bool * bool) d e :
   connect (fun x y => (y == opp x) || (y == next_of_4 x)) d e.
@@ -35,10 +35,10 @@ Qed.
 
 (** In the world files they are two-loops-plane and two-loops-torus; the facing dart is on a loop. *)
 Definition two_loops_plane : start :=
-  @Start (@EmbeddedGraph [finType of bool * bool] _ _ together_involutive together_moves next_of_4_inj
+  @Start (@EmbeddedGraph [finType of bool * bool] _ _ togetherK together_neq next_of_4_inj
     (loops_connected together)) (false, false).
 Definition two_loops_torus : start :=
-  @Start (@EmbeddedGraph [finType of bool * bool] _ _ across_involutive across_moves next_of_4_inj
+  @Start (@EmbeddedGraph [finType of bool * bool] _ _ acrossK across_neq next_of_4_inj
     (loops_connected across)) (false, false).
 
 (** All darts are at one vertex. *)
@@ -75,7 +75,7 @@ Proof. by case: i => [[|[|[|i]]] lt] //; apply: val_inj; rewrite /next_of_3 /= !
 Lemma next_of_3_inj : injective next_of_3.
 Proof. exact: (can_inj (g := fun i => next_of_3 (next_of_3 i)) next_of_3K). Qed.
 
-Lemma next_of_3_moves i : next_of_3 i != i.
+Lemma next_of_3_neq i : next_of_3 i != i.
 Proof. by case: i => [[|[|[|i]]] lt] //; rewrite -val_eqE /= inordK. Qed.
 
 (** Darts are pairs of an end and an edge. At both ends of the edges their order is the same on the torus, and
@@ -85,9 +85,9 @@ Definition around_torus (d : bool * 'I_3) : bool * 'I_3 := (d.1, next_of_3 d.2).
 Definition around_plane (d : bool * 'I_3) : bool * 'I_3 :=
   (d.1, if d.1 then next_of_3 (next_of_3 d.2) else next_of_3 d.2).
 
-Lemma other_end_involutive : involutive other_end.
+Lemma other_endK : involutive other_end.
 Proof. by move=> [[] i]. Qed.
-Lemma other_end_moves d : other_end d != d.
+Lemma other_end_neq d : other_end d != d.
 Proof. by case: d => [[] i]. Qed.
 
 Lemma around_torusK d : around_torus (around_torus (around_torus d)) = d.
@@ -121,7 +121,7 @@ Lemma dipole_connected cw d e : injective cw -> cw = around_torus \/ cw = around
   connect (fun x y => (y == other_end x) || (y == cw x)) d e.
 Proof.
 move=> cw_inj kind; move: d e; apply: (all_connected (root := (false, ord0))) => // [|[b i]].
-  exact: other_end_involutive.
+  exact: other_endK.
 have [k <-] := turn_to b ord0 i kind; apply: connect_trans (connect_iter_cw _ _ _ k).
 case: b; last exact: connect0.
 exact: (connect_opp other_end cw (false, ord0)).
@@ -129,10 +129,10 @@ Qed.
 
 (** In the world files they are theta-plane and theta-torus. *)
 Definition theta_plane : start :=
-  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_end_involutive other_end_moves around_plane_inj
+  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_endK other_end_neq around_plane_inj
     (fun d e => dipole_connected d e around_plane_inj (or_intror erefl))) (false, ord0).
 Definition theta_torus : start :=
-  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_end_involutive other_end_moves around_torus_inj
+  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_endK other_end_neq around_torus_inj
     (fun d e => dipole_connected d e around_torus_inj (or_introl erefl))) (false, ord0).
 
 Lemma plane_turn1 (p : theta_plane) k : (iter k around_plane p).1 = p.1.
@@ -182,7 +182,7 @@ move=> [f iso]; have := isomorphism_walk iso ((false, ord0) : theta_plane) [:: 1
 have -> : walk ((false, ord0) : theta_plane) [:: 1; 1] = (false, ord0).
   by rewrite /= /traverse /= /other_end /around_plane /= next_of_3K.
 case: (f _) => b i; rewrite /= /traverse /= /other_end /around_torus /= negbK => -[] same.
-by have := next_of_3_moves i; rewrite {1}same next_of_3K eqxx.
+by have := next_of_3_neq i; rewrite {1}same next_of_3K eqxx.
 Qed.
 
 (** * Two markers that are not adjacent *)

@@ -46,7 +46,7 @@ Lemma try_all_spec (t : W) n turned H :
 Proof.
 elim: n turned H => [|n IH] turned H /=; first by move/size0nil=> -> _ lt /=; split.
 case: H => // h0 H0; set H := h0 :: H0 => sizeH sub turned_lt; split.
-  exact: nearest_in.
+  exact: mem_nearest.
 move=> h inH; have := sub h inH; rewrite mem_unexplored => /andP[h_lt _].
 have v_lt := vertex_lt wf h_lt; split.
   rewrite /= to_root_leads ?wf_first ?wf_some //=.
@@ -74,11 +74,11 @@ Lemma unexplored_opposite e d : e \in unexplored S -> d < size S ->
 Proof.
 rewrite !mem_unexplored => /andP[e_lt /eqP e_free] d_lt placed; rewrite d_lt /=.
 apply/andP; split; last first.
-  by apply/eqP=> de; have := opposite_moves (place e); rewrite -placed de eqxx.
+  by apply/eqP=> de; have := opposite_neq (place e); rewrite -placed de eqxx.
 case dd': (other S d) => [d'|//].
 have [d'_lt _ back] := wf_other wf dd'.
 have /(em_inj em d'_lt e_lt) d'e : place d' = place e.
-  by rewrite (em_other em dd') placed opposite_involutive.
+  by rewrite (em_other em dd') placed oppositeK.
 by rewrite d'e e_free in back.
 Qed.
 
@@ -98,7 +98,7 @@ split; rewrite ?size_with_edge //; first exact: well_formed_with_edge.
 - by move=> d lt; rewrite doors_with_edge; apply: em_doors em d lt.
 - by move=> d lt; rewrite vertex_with_edge; apply: em_turn em d lt.
 - move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
-    by case=> <-; rewrite placed opposite_involutive.
+    by case=> <-; rewrite placed oppositeK.
   by case: eqP => [->|_]; [case=> <- | apply: em_other em d d'].
 Qed.
 
@@ -119,7 +119,7 @@ have parts d : d < size T -> d < size S \/ size S <= d < size S + degree t.
   by rewrite szT => lt; case: (ltnP d (size S)); [left | right].
 have old_new d i : d < size S -> place d <> turn t i.
   move=> lt placed; have [d' [d'_lt _]] := turn_known em (inverse_door (degree t) i) lt.
-  by rewrite placed turn_inverse_door => /new; apply.
+  by rewrite placed inverse_doorK => /new; apply.
 split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (degree_gt0 t)).
 - by rewrite (wf_some wf); apply: em_facing em.
 - move=> d d' /parts[lt|/andP[ge lt]] /parts[lt'|/andP[ge' lt']].
@@ -142,7 +142,7 @@ split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (
   have [-> _ _] := new_with_vertex range; case/andP: range => ge _.
   by rewrite ltnn subnn ltnNge ge.
 - move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
-    by case=> <-; rewrite ltnn subnn e_lt /t opposite_involutive.
+    by case=> <-; rewrite ltnn subnn e_lt /t oppositeK.
   case: eqP => [->|_]; first by case=> <-; rewrite ltnn subnn e_lt.
   move=> dd'; have /parts[lt|range] := other_known dd'; last first.
     by have [_ _] := new_with_vertex range; rewrite -/T dd'.
@@ -160,9 +160,9 @@ Lemma explore_spec S place pose :
             & (size S + size (unexplored after.1)).+2 = size after.1 + size (unexplored S)]) /\
        forall B, longest S B -> k <= B + 1 + (size (unexplored S)).-1 * (2 * B)).
 Proof.
-move=> em pose_lt some; have wf := em_wf em; split; first exact: nearest_in.
+move=> em pose_lt some; have wf := em_wf em; split; first exact: mem_nearest.
 move=> e /= eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
-have root_lt := vertex_lt wf pose_lt; have root := vertex_idem wf pose_lt; split.
+have root_lt := vertex_lt wf pose_lt; have root := vertex_vertex wf pose_lt; split.
   by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
 move=> path /andP[path_ok path_allowed].
 have [lt at_e walked open_doors] := walk_known em pose_lt path_ok.
@@ -194,7 +194,7 @@ case: became came {cost} => [h pose'|i] [].
 move=> -> i_lt none /=.
 have new d : d < size S -> place d <> t.
   move=> d_lt placed; have /andP[dU de] := unexplored_opposite em eU d_lt placed.
-  by case: (none d) => //; rewrite inH de dU -placed -(expected_is_perceived em) // raises_expected.
+  by case: (none d) => //; rewrite inH de dU -placed -(expectedE em) // raises_expected.
 split=> //; eexists; split; first exact: embeds_with_vertex.
 - by rewrite /= size_with_place ?degree_gt0 // ltn_add2l.
 - by rewrite /= ltnNge leq_addr /= addKn.

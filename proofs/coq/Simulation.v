@@ -70,7 +70,7 @@ Proof.
 case: p => [past turned k|past here j|past here j found] /=.
 - move/eqP->; case: (robot past) => // d [<-]; split; last exact: fits_arrive.
   by rewrite ltn_pmod ?degree_gt0.
-- case/andP=> /eqP hereE j_lt [<-]; rewrite /traverse /= opposite_involutive degree_turn hereE eqxx.
+- case/andP=> /eqP hereE j_lt [<-]; rewrite /traverse /= oppositeK degree_turn hereE eqxx.
   by rewrite -hereE j_lt; case: j j_lt => [|j] /(leq_trans _) ->.
 case/andP=> /eqP hereE j_lt [<-]; rewrite degree_gt0 /traverse /=; split=> //.
 by case: found; [|case: ifP]; rewrite /= hereE ?eqxx // => ->.
@@ -127,7 +127,7 @@ have {go} : follows n.+1 (TurnBack past (perceive M p) i (turn p i == facing W))
   have -> : (turn p i == facing W) = beyond (perceive M (opposite (turn p i))).
     by rewrite -(M_identifies (same_vertex_turn p i)) at_p.
   by case: i {le two i_lt none} go => [|i] go; apply: (go _ erefl).
-move/follows_next/(_ erefl); rewrite /= {1}/traverse /= opposite_involutive.
+move/follows_next/(_ erefl); rewrite /= {1}/traverse /= oppositeK.
 have pointing : turn p i = facing W -> perceive directional p = (degree p, Pointing i).
   move=> facing_i; rewrite /perceive /directional -facing_i same_vertex_turn.
   by rewrite findex_turn.
@@ -170,7 +170,7 @@ have leaves : decide (Ready past t (degree pose)) = Act ((i + degree pose - t) %
   by rewrite /= decided.
 have := follows_next follows' leaves.
 have -> : traverse (turn pose t) ((i + degree pose - t) %% degree pose) = traverse pose i.
-  rewrite /traverse -turn_add -(turn_mod pose (t + _)) modnDmr.
+  rewrite /traverse -turnD -(turn_mod pose (t + _)) modnDmr.
   by rewrite subnKC ?(leq_trans (ltnW t_lt)) ?leq_addl // modnDr turn_mod.
 move=> /simulate_arrive[n'' n''_le ready'']; exists n'' => //.
 by rewrite mulSn; arithmetic.

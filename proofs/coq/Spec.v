@@ -17,9 +17,9 @@ Record embedded_graph := EmbeddedGraph {
   dart :> finType;
   opposite : dart -> dart;
   clockwise : dart -> dart;
-  opposite_involutive : involutive opposite;
-  opposite_moves : forall d, opposite d != d;
-  clockwise_injective : injective clockwise;
+  oppositeK : involutive opposite;
+  opposite_neq : forall d, opposite d != d;
+  clockwise_inj : injective clockwise;
   connected : forall d e,
     connect (fun x y => (y == opposite x) || (y == clockwise x)) d e
 }.

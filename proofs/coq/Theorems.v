@@ -32,29 +32,29 @@ Qed.
 
 (** The way back along a path ends at the vertex where it began, and the robot is then turned by the first
     door of the path. Paper: 2.3; Algorithm 1, line 15. *)
-Theorem retrace (G : embedded_graph) (pose : G) (doors : seq door) :
+Theorem way_backK (G : embedded_graph) (pose : G) (doors : seq door) :
   walk (walk pose doors) (way_back (taken pose doors)) = turn pose (head 0 doors).
 Proof. (* paper: alg1.15 *)
-exact: Walks.retrace_walk.
+exact: Walks.way_backK.
 Qed.
 
 (** * Markers that do not suffice, and one that does *)
 
 (** Two starts are indistinguishable, i.e. every door sequence gives the same percepts, exactly if there
     is a bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
-Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
+Theorem bisimilarP (M : marker) (V W : start) :
   bisimilar (moving M) V W <-> indistinguishable M V W.
-Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
+Proof. exact: Bisimulation.bisimilarP. Qed.
 
 (** In bisimilar starts every robot has the same history, whatever its actions and its strategy, and so gives the
     same answer. Paper: 2.2. *)
-Theorem bisimilar_same_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
+Theorem bisimilar_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
   bisimilar I V W ->
   (forall decisions, history robot (I V) decisions = history robot (I W) decisions) /\
   (forall answer, answers robot (I V) answer <-> answers robot (I W) answer).
 Proof. (* paper: world.interface *)
-by move=> same; split; [apply: Bisimulation.bisimilar_same_history
-                       | apply: Bisimulation.bisimilar_same_answers].
+by move=> same; split; [apply: Bisimulation.bisimilar_history
+                       | apply: Bisimulation.bisimilar_answers].
 Qed.
 
 (** Without a marker, no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
@@ -96,16 +96,16 @@ Qed.
 
 (** With a directional marker, two starts are indistinguishable exactly if they are isomorphic, facing to
     facing. Paper: 2.3. *)
-Theorem directional_marker_separates (V W : start) :
+Theorem indistinguishable_directionalP (V W : start) :
   indistinguishable directional V W <-> isomorphic_starts V W.
-Proof. exact: Separates.indistinguishable_directional. Qed.
+Proof. exact: Separates.indistinguishable_directionalP. Qed.
 
 (** If one robot maps two indistinguishable starts, and knows where it began, then they are isomorphic,
     facing to facing. Paper: 2.2. *)
 Theorem mapped_indistinguishable_iso (robot : strategy start) (M : marker) (V W : start) :
   maps_start (moving M) robot V -> maps_start (moving M) robot W -> indistinguishable M V W -> isomorphic_starts V W.
 Proof.
-by move=> maps_V maps_W /Bisimulation.bisimilar_iff_indistinguishable same;
+by move=> maps_V maps_W /Bisimulation.bisimilarP same;
    apply: Impossible.bisimilar_maps_start same maps_V maps_W.
 Qed.
 
@@ -141,14 +141,14 @@ Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
 
 (** When Algorithm 1 first reaches line 4, the known map is a part of the world, and the robot is where it
     believes to be. Paper: 2.3; Algorithm 1, lines 1 to 3. *)
-Theorem map_embeds_at_first : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
+Theorem embeds_at_start : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
 Proof. (* paper: alg1.2, alg1.3 *)
 exact: Correct.embeds_at_start.
 Qed.
 
 (** If, at line 4, the known map is a part of the world and the robot is where it believes to be, then so
     they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
-Theorem map_embeds_after_round (test : hypothesis_test) :
+Theorem embeds_explore (test : hypothesis_test) :
   valid test -> embeds S place -> pose < size S -> unexplored S != [::] ->
   always (moving directional W) (explore test any_path S pose) (place pose)
     (fun after there _ => exists place' : nat -> W,
@@ -253,11 +253,11 @@ Qed.
 
 (** With any limit on rounds, also with one that is too low, Algorithm 1 answers nothing or rightly. Paper:
     2.3; Algorithm 1. *)
-Theorem algorithm1_never_wrong (test : hypothesis_test) (W : start) (bound : nat) :
+Theorem algorithm1_sound (test : hypothesis_test) (W : start) (bound : nat) :
   valid test ->
   always (moving directional W) (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
-Proof. by move=> ok; apply: (Correct.algorithm1_any ok) => S path. Qed.
+Proof. by move=> ok; apply: (Correct.algorithm1_sound ok) => S path. Qed.
 
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
@@ -289,7 +289,7 @@ Qed.
 (** In two starts that are indistinguishable with one undirected marker, all classes of poses that
     perceive the same for ever have the same size, in both worlds, and this size divides the degree of the
     marked vertex. Paper: beyond 2.2. *)
-Theorem class_sizes (V W : start) :
+Theorem card_class_dvd (V W : start) :
   indistinguishable undirected V W ->
   exists size, size %| degree (facing V) /\
     forall X Y, (X = V \/ X = W) -> (Y = V \/ Y = W) ->
@@ -303,25 +303,25 @@ Qed.
 (** With one marker that can be picked up and dropped, the mapping algorithm of Dudek, Jenkin, Milios and
     Wilkes maps every world without loops and parallel edges, with any choices; the robot is then where it
     believes to be, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
-Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
+Theorem movable_marker_correct (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
   let begin := first_state (handling W) in
   always (handling W) (movable any_path bound (sense begin)) begin
     (fun answer s _ => s.2 = None /\ right_answer answer s.1).
 Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
-exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
+exact: (MovableCorrect.movable_marker_correct short simple_W enough).
 Qed.
 
 (** With any limit on rounds, also with one that is too low, it answers nothing or rightly. Paper: 2.3. *)
-Theorem movable_marker_never_wrong (W : start) (bound : nat) :
+Theorem movable_marker_sound (W : start) (bound : nat) :
   simple W ->
   let begin := first_state (handling W) in
   always (handling W) (movable any_path bound (sense begin)) begin
     (fun answer s _ => s.2 = None /\ (answer = None \/ right_answer answer s.1)).
 Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
-exact: (MovableCorrect.movable_marker_any short simple_W).
+exact: (MovableCorrect.movable_marker_sound short simple_W).
 Qed.
 
 (** With paths that have fewer edges than there are known vertices, it does at most
@@ -387,7 +387,7 @@ Qed.
 
 (** One robot maps every world without loops and parallel edges with two markers that look different, at both
     ends of an edge. Paper: beyond 2.3. *)
-Theorem two_distinct_suffices_in_simple_worlds :
+Theorem two_distinct_suffices_simple :
   exists robot : strategy start, forall W : start, simple W -> maps_start (moving two_distinct) robot W.
 Proof.
 have [robot maps_W] :=
@@ -397,7 +397,7 @@ Qed.
 
 (** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
     beyond 2.2. *)
-Theorem undirected_marker_at_dead_end_suffices :
+Theorem undirected_dead_end_suffices :
   exists robot : strategy start, forall W : start,
     degree (facing W) = 1 -> maps_start (moving undirected) robot W.
 Proof.
@@ -473,7 +473,7 @@ Qed.
 (** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
     so that opposites and clockwise successors are kept, and only the facing dart maps to the facing dart,
     then both starts are isomorphic. Paper: beyond 2.3. *)
-Theorem complete_trail_is_the_world (V W : start) (f : V -> W) :
+Theorem covering_isomorphic (V W : start) (f : V -> W) :
   (forall d, f (opposite d) = opposite (f d)) ->
   (forall d, f (clockwise d) = clockwise (f d)) ->
   (forall d, f d = facing W <-> d = facing V) ->
@@ -488,7 +488,7 @@ Theorem folding_sound (W : start) (doors : seq door) :
   (forall x y, folded doors seen x y -> dart_of W doors x = dart_of W doors y) /\
   (forall visit i j, visit < size seen -> i < degree_seen seen visit -> j < degree_seen seen visit ->
      dart_of W doors (visit, i) = dart_of W doors (visit, j) -> i = j).
-Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_injective]. Qed.
+Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_inj]. Qed.
 
 (** If no dart of the folded trail is open, all starts with the percepts of the walk are isomorphic, facing
     to facing. Paper: beyond 2.3. *)
@@ -602,7 +602,7 @@ by move=> answer pose k [[//|[_]]]; rewrite ltnNge enough.
 Qed.
 
 (** With any limit on actions, also with one that is too low, it answers nothing or rightly. Paper: beyond 2.3. *)
-Theorem folding_explorer_never_wrong (W : start) (patience : partial_map -> nat) (bound : nat) :
+Theorem folding_explorer_sound (W : start) (patience : partial_map -> nat) (bound : nat) :
   always (moving directional W) (folding_explorer any_length patience bound (perceive directional (facing W)))
     (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
@@ -626,7 +626,7 @@ Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
 (** The explorer that is compared with the running one, whose actions are given from outside, is the folding
     explorer: what always holds for the folding explorer holds for it, as long as the actions are allowed. Paper:
     beyond 2.3. *)
-Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
+Theorem always_guided_explorer (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
     (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
   always (moving M W) (folding_explorer allowed patience bound seen) pose Q ->
   always_guided M (guided_explorer allowed patience bound seen) pose Q.
@@ -644,11 +644,11 @@ Theorem tour_checks_the_map (map : start) (tour : seq door) :
 Proof. exact: Tours.tour_checks_the_map. Qed.
 
 (** Every map has such a walk, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
-Theorem map_has_a_tour (map : start) :
+Theorem tour_exists (map : start) :
   let m := edges map in
   let n := vertices map in
   exists2 tour, complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1).
-Proof. exact: ShortTours.map_has_a_short_tour. Qed.
+Proof. exact: ShortTours.tour_exists. Qed.
 
 (** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
     then the map is right, wherever the walks began. Paper: beyond 2.3. *)
@@ -662,7 +662,7 @@ Proof. exact: Tours.k_false_percepts. Qed.
 
 (** One such walk can confirm a wrong map if one of its percepts is false: in a chain of three vertices it has
     the percepts that a chain of two predicts. Paper: beyond 2.3. *)
-Theorem one_false_percept_deceives :
+Theorem one_false_percept :
   [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
     & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
 Proof. exact: Tours.one_false_percept. Qed.

@@ -37,7 +37,7 @@ Lemma went_back i j d : went i j d -> went j i (opposite d).
 Proof.
 case/orP=> /andP[/eqP ij /eqP ->]; rewrite /went.
   by rewrite -(pose_next ij) ij !eqxx orbT.
-by rewrite (pose_next ij) opposite_involutive ij !eqxx.
+by rewrite (pose_next ij) oppositeK ij !eqxx.
 Qed.
 
 Lemma went_at i j d : went i j d -> same_vertex (pose_at i) d.
@@ -155,9 +155,9 @@ have /same_vertexP[k cE] : same_vertex (dart (i : nat, a)) (dart (i : nat, c)).
   rewrite !dart_ofE; apply: same_vertex_trans _ (same_vertex_turn _ _).
   by rewrite same_vertex_sym same_vertex_turn.
 apply: Linked (_ : folded _ _ _ (i : nat, a + k)) _.
-  by apply: folded_around; rewrite cE !dart_ofE turn_add.
+  by apply: folded_around; rewrite cE !dart_ofE turnD.
 apply: Linked (folded_shift k ab) _; apply: folded_around.
-by rewrite -cd cE same !dart_ofE /= turn_add.
+by rewrite -cd cE same !dart_ofE /= turnD.
 Qed.
 
 (** The trail's edges are those that the walk goes over. *)
@@ -169,7 +169,7 @@ case/orP=> /andP[/eqP ij /eqP->].
   have lt : i < size doors by have := ltn_ord j; rewrite ij ltnS.
   by exists (nth 0 doors i), 0; rewrite !dart_ofE -(pose_next ij) ij; split=> //; apply: Onward.
 have lt : j < size doors by have := ltn_ord i; rewrite ij ltnS.
-exists 0, (nth 0 doors j); rewrite !dart_ofE (pose_next ij) opposite_involutive ij.
+exists 0, (nth 0 doors j); rewrite !dart_ofE (pose_next ij) oppositeK ij.
 by split=> //; apply: Backward.
 Qed.
 
@@ -243,7 +243,7 @@ have -> : [pick k | one i k] = [pick k | one j k].
 by case: pickP => // /(_ j); rewrite one_refl.
 Qed.
 
-Lemma first_idem i : first_visit (first_visit i) = first_visit i.
+Lemma first_first i : first_visit (first_visit i) = first_visit i.
 Proof. exact/esym/first_eq/one_first. Qed.
 
 (** Where a dart of a vertex leads, if the walk has gone over its edge. *)
@@ -269,7 +269,7 @@ Qed.
 
 Lemma link_at i d j : link i d = Some j -> first_visit j = j /\ same_vertex (pose_at j) (opposite d).
 Proof.
-move=> /link_some[k [l [_ /went_back/went_at l_d ->]]]; split; first exact: first_idem.
+move=> /link_some[k [l [_ /went_back/went_at l_d ->]]]; split; first exact: first_first.
 by apply: same_vertex_trans l_d; rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
 
@@ -329,31 +329,31 @@ Definition unfolded_opposite (z : unfolded_dart) : unfolded_dart :=
 Definition unfolded_clockwise (z : unfolded_dart) : unfolded_dart :=
   pack (is_dart_clockwise (valP z)).
 
-Lemma unfolded_involutive : involutive unfolded_opposite.
+Lemma unfolded_oppositeK : involutive unfolded_opposite.
 Proof.
 case=> [[[i d] dead_end] ok]; apply: val_inj => /=; case/and3P: ok => /= /eqP first _.
 case: dead_end => /= [/eqP->//|_].
 case linked: (link i d) => [j|] //=.
-by rewrite (link_back first linked) opposite_involutive.
+by rewrite (link_back first linked) oppositeK.
 Qed.
 
-Lemma unfolded_moves z : unfolded_opposite z != z.
+Lemma unfolded_opposite_neq z : unfolded_opposite z != z.
 Proof.
 apply/eqP=> /(congr1 val); case: z => [[[i d] []] ok] //=.
-by case: (link i d) => [j [_ /eqP]|//]; rewrite (negPf (opposite_moves d)).
+by case: (link i d) => [j [_ /eqP]|//]; rewrite (negPf (opposite_neq d)).
 Qed.
 
-Lemma unfolded_injective : injective unfolded_clockwise.
+Lemma unfolded_clockwise_inj : injective unfolded_clockwise.
 Proof.
 move=> [[[i d] b] ok] [[[i' d'] b'] ok'] /(congr1 val) /= same; apply: val_inj => /=.
-by case: b b' same {ok ok'} => -[] //= [-> /(@clockwise_injective W)->].
+by case: b b' same {ok ok'} => -[] //= [-> /(@clockwise_inj W)->].
 Qed.
 
 Definition root_visit : visit := ord0.
 
 Lemma facing_is_dart : is_dart (first_visit root_visit, facing W, false).
 Proof.
-apply/and3P; split=> //=; first by rewrite first_idem.
+apply/and3P; split=> //=; first by rewrite first_first.
 have -> : facing W = pose_at root_visit by rewrite /pose_at take0.
 by rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
@@ -363,7 +363,7 @@ Definition unfolded_facing : unfolded_dart := pack facing_is_dart.
 (** The dart of a visit. *)
 Lemma visit_is_dart (i : visit) d : same_vertex (pose_at i) d -> is_dart (first_visit i, d, false).
 Proof.
-move=> near; apply/and3P; split=> //=; first by rewrite first_idem.
+move=> near; apply/and3P; split=> //=; first by rewrite first_first.
 by apply: same_vertex_trans near; rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
 
@@ -383,7 +383,7 @@ Qed.
 
 Lemma unfolded_connected x y : connect step x y.
 Proof.
-apply: (all_connected (root := unfolded_facing)); [exact: unfolded_involutive | exact: unfolded_injective |].
+apply: (all_connected (root := unfolded_facing)); [exact: unfolded_oppositeK | exact: unfolded_clockwise_inj |].
 have visited k : forall i : visit, i = k :> nat ->
     forall d (near : same_vertex (pose_at i) d), connect step unfolded_facing (at_visit near).
   elim: k => [|k IH] i ik d near.
@@ -408,7 +408,7 @@ rewrite -[exist _ _ _]/(pack ok) same; exact: connect_opp.
 Qed.
 
 Definition unfolded_graph : embedded_graph :=
-  @EmbeddedGraph [finType of unfolded_dart] _ _ unfolded_involutive unfolded_moves unfolded_injective
+  @EmbeddedGraph [finType of unfolded_dart] _ _ unfolded_oppositeK unfolded_opposite_neq unfolded_clockwise_inj
     unfolded_connected.
 
 Definition unfolded : start := @Start unfolded_graph unfolded_facing.
@@ -541,7 +541,7 @@ Lemma unfolded_simple : simple W -> simple unfolded.
 Proof.
 move=> [no_loop no_parallel]; split=> [x|x y near far].
   apply/negP=> near; case dead: (val x).2.
-    by have /eqP := near_dead_end near dead; rewrite (negPf (unfolded_moves x)).
+    by have /eqP := near_dead_end near dead; rewrite (negPf (unfolded_opposite_neq x)).
   have plain : ~~ (val x).2 by rewrite dead.
   have [_ plain' same] := near_dart near plain.
   by move: same; rewrite below_opposite // (negPf (no_loop _)).
@@ -549,7 +549,7 @@ case dead: (val x).2; first by rewrite (near_dead_end near dead).
 have plain : ~~ (val x).2 by rewrite dead.
 have [same_first plain_y same] := near_dart near plain.
 case end_x: (val (opposite x)).2.
-  by apply: (inv_inj (@opposite_involutive unfolded)); rewrite (near_dead_end far end_x).
+  by apply: (inv_inj (@oppositeK unfolded)); rewrite (near_dead_end far end_x).
 have plain_ox : ~~ (val (opposite x)).2 by rewrite end_x.
 have [_ plain_oy] := near_dart far plain_ox; rewrite !below_opposite // => /(no_parallel _ _ same) same_below.
 apply: val_inj; move: same_first plain plain_y same_below; rewrite /below.
@@ -593,7 +593,7 @@ by split=> //; apply: subdivided_degree.
 Qed.
 
 (** It is decidable whether a dart is open. *)
-Lemma followed_decidable (W : start) doors k i : k < size (sees W doors) ->
+Lemma followed_orN (W : start) doors k i : k < size (sees W doors) ->
   followed doors (sees W doors) (k, i) \/ ~ followed doors (sees W doors) (k, i).
 Proof.
 rewrite size_sees => lt; have := followedP W (Ordinal lt : 'I_(size doors).+1) i.

@@ -18,7 +18,7 @@ Let wf := em_wf em.
 Lemma traverse_turned (q : W) turned i : turned <= degree q ->
   traverse (turn q turned) ((i + degree q - turned) %% degree q) = traverse q i.
 Proof.
-move=> le; rewrite /traverse -turn_add -(turn_mod q (turned + _)) modnDmr.
+move=> le; rewrite /traverse -turnD -(turn_mod q (turned + _)) modnDmr.
 by rewrite subnKC ?(leq_trans le) ?leq_addl // modnDr turn_mod.
 Qed.
 
@@ -30,7 +30,7 @@ move=> lt; have [bounds out] := wf_bounds wf lt; have gt0 := doors_gt0 em lt.
 have near : vertex S d <= turned_to S d i < vertex S d + doors S d by rewrite leq_addr ltn_add2l ltn_pmod.
 have e_lt : turned_to S d i < size S by case/andP: near => _ e_lt; apply: leq_trans e_lt out.
 have [same _] := wf_same wf lt near; split=> //.
-rewrite (em_turn em e_lt) same (em_turn em lt) -turn_add addKn.
+rewrite (em_turn em e_lt) same (em_turn em lt) -turnD addKn.
 by rewrite -(degree_vertex em) // turn_mod.
 Qed.
 
@@ -48,7 +48,7 @@ Proof.
 move=> qE turned_lt; case: before qE => [qE _|i before qE /(_ isT)[-> i_lt]].
   by rewrite qE in turned_lt *; exists turned.
 apply: always_moves_bind; first by rewrite qE; apply: way_back_passable.
-rewrite -[turn q 0]/q qE retrace_walk; exists i; split=> //.
+rewrite -[turn q 0]/q qE way_backK; exists i; split=> //.
 by rewrite addn0 /= size_rev size_map size_taken.
 Qed.
 
@@ -68,7 +68,7 @@ Lemma follow_spec darts (t q : W) pose (matched : bool) turned before :
 Proof.
 elim: darts q pose matched turned before => [|d darts IH] q pose matched turned before lt /=.
   move=> /eqP at_start qE turned_lt back if_true; case: matched if_true => [_|false_pose] at_end /=.
-    have placed := sighting_tells_pose em lt at_start (at_end erefl isT).
+    have placed := expected_inj em lt at_start (at_end erefl isT).
     by have [ok ->] := turned_to_known turned lt; rewrite placed.
   apply: alwaysW (reject_spec qE turned_lt back) => _ r k [i [-> -> i_lt ->]].
   by split=> // /false_pose.
@@ -91,7 +91,7 @@ have was_there : place d' = q' -> place pose = q.
   by rewrite -(traverse_known em lt dd' same) => /traverse_inj.
 set matched' := matched && _.
 have if_true' : place d' = q' -> matched'.
-  move=> placed; rewrite /matched' (if_true (was_there placed)) -placed -(expected_is_perceived em) //.
+  move=> placed; rewrite /matched' (if_true (was_there placed)) -placed -(expectedE em) //.
   exact: matches_expected.
 have at_end : darts = [::] -> matched' -> perceive directional q' = expected S d'.
   by rewrite /matched' => -> /andP[_]; apply: matches_at_end.
@@ -115,7 +115,7 @@ Lemma validate_spec (t : W) h path turned :
 Proof.
 move=> lt leads_there turned_lt; rewrite -[2 * _]addn0.
 apply: (@follow_spec path t t h _ turned [::]) => // [<-|->].
-  by rewrite -(expected_is_perceived em) // matches_expected.
+  by rewrite -(expectedE em) // matches_expected.
 exact: matches_at_end.
 Qed.
 
