@@ -387,11 +387,11 @@ rewrite -sum_tree sum_edges -sum_edges1 -big_split /= addnC [RHS](bigID (@in_tre
 by congr (_ + _); apply: eq_bigr => e _; rewrite addnC.
 Qed.
 
-Lemma certificate_shortest doors : complete doors (sees W doors) -> certificate_length W <= size doors.
+Lemma certificate_shortest doors : complete doors (sees W doors) -> certificate_moves W <= size doors.
 Proof. by move=> whole; apply: certificate_needed => V same; apply: complete_folding_determines same whole. Qed.
 
 Lemma certificate_attained :
-  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W.
 Proof.
 pose save v := 2 * hanging_above v - distance v.
 have [v [saveE most]] : exists v, distance v + save v = 2 * hanging_above v /\ forall v', save v' <= save v.
@@ -407,7 +407,7 @@ pose doors := doors_of (facing W) s; have whole : complete doors (sees W doors).
   - by rewrite -covers_opposite ups.
   by have /orP[/sub d_in|/sub d_in] := outside_covered v out_d; rewrite /covers d_in ?orbT.
 exists doors => //; apply/eqP; rewrite eqn_leq certificate_shortest // andbT.
-rewrite size_doors_of s_size size_tour /certificate_length -size_outside addnK.
+rewrite size_doors_of s_size size_tour /certificate_moves -size_outside addnK.
 set saved := \max_(_ in _ | _) _; have saved_le : saved <= save v by apply/bigmax_leqP=> h _; apply: most.
 have few := uncovered_few v; set b := \sum_(_ | _) _.
 rewrite -/(save v) in saveE saved_le *; clearbody saved b; arithmetic.

@@ -315,7 +315,7 @@ apply/imsetP; exists h => //; rewrite -root_d; apply/eqP.
 by rewrite /f (root_connect sym).
 Qed.
 
-Lemma certificate_needed : certificate_length W <= n.
+Lemma certificate_needed : certificate_moves W <= n.
 Proof.
 have all_moves : n = \sum_(0 <= k < n) paid k + \sum_(0 <= k < n) hanging_edge (out k).
   rewrite -big_split /= -[LHS]subn0 -[LHS]muln1 -sum_nat_const_nat; apply: eq_bigr => k _.
@@ -332,7 +332,7 @@ have edges_sum : edges W + \sum_(d : W) distance d = \sum_(d : W | froot opposit
 have vertices_sum : 2 * sum_d = \sum_(d : W | froot clockwise d == d) 2 * core d +
     \sum_(d : W | froot clockwise d == d) 2 * hanging_above d.
   by rewrite /sum_d big_distrr -big_split /=; apply: eq_bigr => d _; rewrite -mulnDr core_above.
-rewrite /certificate_length edges_sum sum_above -/sum_d vertices_sum.
+rewrite /certificate_moves edges_sum sum_above -/sum_d vertices_sum.
 set saved := \max_(_ in _ | _) _.
 have saves : 2 * hanging_above (pos n) - distance (pos n) <= saved.
   have [none|] := posnP (hanging_above (pos n)); first by rewrite none.

@@ -75,6 +75,14 @@ Definition followed (x : trail_dart) : Prop := exists y z, folded x y /\ one_edg
 Definition complete : Prop :=
   forall visit i, visit < size seen -> i < degree_seen visit -> followed (visit, i).
 
+(** A dart of the vertex of another, as far as the folded trail shows. *)
+Definition at_vertex_of (x y : trail_dart) : Prop := exists i, folded (x.1, i) y.
+
+(** No edge of the folded trail is a loop, and no two are parallel. *)
+Definition simple_trail : Prop :=
+  (forall x y, one_edge x y -> ~ at_vertex_of x y) /\
+  (forall x y x' y', one_edge x y -> one_edge x' y' -> at_vertex_of x x' -> at_vertex_of y y' -> folded x x').
+
 End Trail.
 
 (** The percepts of a walk in a start with a directional marker. *)

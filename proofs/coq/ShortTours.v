@@ -262,8 +262,8 @@ End Rounds.
 
 (** * The walk *)
 
-Lemma tour_exists (T : start) :
-  exists2 tour, complete tour (sees T tour) & size tour <= 2 * edges T * (2 * vertices T - 1).
+Definition tour_of_map (T : start) :
+  {tour : seq door | complete tour (sees T tour) & size tour <= 2 * edges T * (2 * vertices T - 1)}.
 Proof.
 pose tour := rounds 0 (enum T); exists tour; last first.
   by rewrite -card_darts cardE; apply: size_rounds.

@@ -414,58 +414,59 @@ Proof. exact: Coprime.coprime_degree_determines. Qed.
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
     with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem undirected_edge_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar (moving undirected_edge) edge_a edge_b
+  [/\ simple edge_a, simple edge_b, ~ isomorphic edge_a edge_b, bisimilar (moving undirected_edge) edge_a edge_b
     & ~ (maps (moving undirected_edge) robot edge_a /\ maps (moving undirected_edge) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_undirected_edge.
-by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+have differ := Figures.edge_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** Nor do two markers that look alike at both ends of an edge, in the same two worlds. Paper: beyond 2.2. *)
 Theorem two_identical_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar (moving two_identical) edge_a edge_b
+  [/\ simple edge_a, simple edge_b, ~ isomorphic edge_a edge_b, bisimilar (moving two_identical) edge_a edge_b
     & ~ (maps (moving two_identical) robot edge_a /\ maps (moving two_identical) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_two_identical.
-by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+have differ := Figures.edge_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** Two markers that look different at both ends of an edge do not suffice in worlds with parallel edges, nor
-    in worlds with loops: no robot maps both worlds of three parallel edges, in the plane and on the torus,
-    nor both of two loops. Paper: beyond 2.2. *)
+    in worlds with loops: the two worlds of three parallel edges, in the plane and on the torus, are not isomorphic
+    but bisimilar, and so are two of two loops. No robot maps both of a pair. Paper: beyond 2.2. *)
 Theorem two_distinct_impossible (robot : strategy embedded_graph) :
-  ~ (maps (moving two_distinct) robot theta_plane /\ maps (moving two_distinct) robot theta_torus) /\
-  ~ (maps (moving two_distinct) robot two_loops_plane /\ maps (moving two_distinct) robot two_loops_torus).
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar (moving two_distinct) theta_plane theta_torus
+    & ~ (maps (moving two_distinct) robot theta_plane /\ maps (moving two_distinct) robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar (moving two_distinct) two_loops_plane two_loops_torus
+    & ~ (maps (moving two_distinct) robot two_loops_plane /\ maps (moving two_distinct) robot two_loops_torus)].
 Proof.
-split; apply: Impossible.bisimilar_impossible robot.
-- exact: Multigraphs.theta_two_distinct.
-- exact: Multigraphs.theta_not_isomorphic.
-- exact: Multigraphs.loops_two_distinct.
-exact: Multigraphs.loops_not_isomorphic.
+have differ := Multigraphs.theta_not_isomorphic; have same := Multigraphs.theta_two_distinct.
+have differ' := Multigraphs.loops_not_isomorphic; have same' := Multigraphs.loops_two_distinct.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
 Qed.
 
 (** Two markers that look different and are not adjacent do not suffice, not even in worlds without loops and
     parallel edges: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem two_distant_impossible (robot : strategy embedded_graph) :
-  [/\ simple paths_a, simple paths_b, bisimilar (moving two_distant) paths_a paths_b
+  [/\ simple paths_a, simple paths_b, ~ isomorphic paths_a paths_b, bisimilar (moving two_distant) paths_a paths_b
     & ~ (maps (moving two_distant) robot paths_a /\ maps (moving two_distant) robot paths_b)].
 Proof.
 have [simple_a simple_b] := Multigraphs.paths_simple; have same := Multigraphs.paths_two_distant.
-by split=> //; apply: Impossible.bisimilar_impossible same Multigraphs.paths_not_isomorphic robot.
+have differ := Multigraphs.paths_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
-(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: for robots that
-    can pick it up and drop it, both worlds of three parallel edges are bisimilar, and both of two loops, and no
-    robot maps both. Paper: beyond 2.3. *)
+(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: the same pairs are
+    bisimilar for robots that can pick it up and drop it, and no robot maps both of a pair. Paper: beyond 2.3. *)
 Theorem movable_marker_impossible (robot : strategy_of handling_action embedded_graph) :
-  [/\ bisimilar handling theta_plane theta_torus,
-      ~ (maps handling robot theta_plane /\ maps handling robot theta_torus),
-      bisimilar handling two_loops_plane two_loops_torus
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar handling theta_plane theta_torus
+    & ~ (maps handling robot theta_plane /\ maps handling robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar handling two_loops_plane two_loops_torus
     & ~ (maps handling robot two_loops_plane /\ maps handling robot two_loops_torus)].
 Proof.
-split; [exact: Multigraphs.theta_handling | | exact: Multigraphs.loops_handling |].
-  exact: Impossible.bisimilar_impossible Multigraphs.theta_handling Multigraphs.theta_not_isomorphic robot.
-exact: Impossible.bisimilar_impossible Multigraphs.loops_handling Multigraphs.loops_not_isomorphic robot.
+have differ := Multigraphs.theta_not_isomorphic; have same := Multigraphs.theta_handling.
+have differ' := Multigraphs.loops_not_isomorphic; have same' := Multigraphs.loops_handling.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
 Qed.
 
 (** * Folding *)
@@ -480,33 +481,60 @@ Theorem covering_isomorphic (V W : start) (f : V -> W) :
   isomorphic_starts V W.
 Proof. exact: Covering.covering_isomorphic. Qed.
 
-(** The folded trail of a walk maps into every start with the percepts of this walk: darts of the trail that
-    are folded stand for one dart of the start, and different darts of a visit stand for different ones.
-    Paper: beyond 2.3. *)
+(** The folded trail of a walk maps, locally one to one, into every start with the percepts of this walk: darts of
+    the trail that are folded stand for one dart of the start; those at both ends of an edge for opposite darts; the
+    next one around a visit for the next one clockwise; the one that the marker points to for the facing dart; and
+    the darts of a visit for all darts of a vertex, different ones for different ones. Paper: beyond 2.3. *)
 Theorem folding_sound (W : start) (doors : seq door) :
   let seen := sees W doors in
-  (forall x y, folded doors seen x y -> dart_of W doors x = dart_of W doors y) /\
-  (forall visit i j, visit < size seen -> i < degree_seen seen visit -> j < degree_seen seen visit ->
-     dart_of W doors (visit, i) = dart_of W doors (visit, j) -> i = j).
-Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_inj]. Qed.
+  let dart := dart_of W doors in
+  [/\ forall x y, folded doors seen x y -> dart x = dart y,
+      forall x y, one_edge doors x y -> dart y = opposite (dart x),
+      forall visit i, dart (visit, i.+1) = clockwise (dart (visit, i)),
+      forall visit i, sighting_seen seen visit = Pointing i -> dart (visit, i) = facing W
+    & forall visit, visit < size seen ->
+        (forall i, degree (dart (visit, i)) = degree_seen seen visit) /\
+        (forall i j, i < degree_seen seen visit -> j < degree_seen seen visit ->
+           dart (visit, i) = dart (visit, j) -> i = j)].
+Proof.
+split=> // [x y|x y|visit i|visit visit_lt].
+- exact: Trail.folding_sound.
+- exact: Trail.one_edge_dart.
+- exact: Trail.dart_of_pointing.
+by split=> [i|i j i_lt j_lt]; [apply: Trail.degree_dart_of | apply: Trail.visit_inj].
+Qed.
 
-(** If no dart of the folded trail is open, all starts with the percepts of the walk are isomorphic, facing
-    to facing. Paper: beyond 2.3. *)
+(** If no dart of the folded trail is open, every start with the percepts of the walk is isomorphic to it, facing to
+    facing: each dart of the start is one of the trail, and darts of the trail that stand for one dart are folded.
+    So all these starts are isomorphic. Paper: beyond 2.3. *)
 Theorem complete_folding_determines (V W : start) (doors : seq door) :
-  sees V doors = sees W doors -> complete doors (sees W doors) -> isomorphic_starts V W.
-Proof. exact: Trail.complete_folding_determines. Qed.
+  let seen := sees W doors in
+  sees V doors = seen -> complete doors seen ->
+  [/\ forall d : V, exists2 x, x.1 < size seen & dart_of V doors x = d,
+      forall x y, x.1 < size seen -> y.1 < size seen -> dart_of V doors x = dart_of V doors y -> folded doors seen x y
+    & isomorphic_starts V W].
+Proof.
+rewrite /= => same; rewrite -same => whole; split; first exact: Trail.complete_folding_onto.
+  exact: Unfolding.complete_folding_inj.
+by apply: (Trail.complete_folding_determines same); rewrite -same.
+Qed.
 
 (** If a dart of the folded trail is open, two worlds that are not isomorphic have the percepts of the walk.
-    They are simple if the robot's world is, and their degrees are at most its greatest degree, or 2. Paper:
+    They are simple if the folded trail is, and their degrees are at most its greatest degree, or 2. Paper:
     beyond 2.3. *)
 Theorem open_folding_ambiguous (W : start) (doors : seq door) (visit : nat) (i : door) :
-  visit < size (sees W doors) -> ~ followed doors (sees W doors) (visit, i) ->
+  let seen := sees W doors in
+  visit < size seen -> ~ followed doors seen (visit, i) ->
   exists V V' : start,
-    [/\ sees V doors = sees W doors, sees V' doors = sees W doors, ~ isomorphic V V',
-        simple W -> simple V /\ simple V'
-      & forall bound, 2 <= bound -> (forall d : W, degree d <= bound) ->
+    [/\ sees V doors = seen, sees V' doors = seen, ~ isomorphic V V',
+        simple_trail doors seen -> simple V /\ simple V'
+      & forall bound, 2 <= bound -> (forall visit, visit < size seen -> degree_seen seen visit <= bound) ->
           (forall d : V, degree d <= bound) /\ (forall d : V', degree d <= bound)].
 Proof. exact: Unfolding.open_folding_ambiguous. Qed.
+
+(** In a world without loops and parallel edges every folded trail is simple. Paper: beyond 2.3. *)
+Theorem simple_folding (W : start) (doors : seq door) : simple W -> simple_trail doors (sees W doors).
+Proof. exact: Unfolding.simple_folding. Qed.
 
 (** A robot maps every start exactly if in each it answers, when its folded trail is complete, with a start
     that has its percepts. Paper: beyond 2.3. *)
@@ -553,37 +581,57 @@ Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycl
 
 (** So order m n moves are needed. For any two numbers there is a world of a chain of k + 1 edges, which begins
     at the marker and ends at a vertex with l loops, in which every robot that maps every world makes at least
-    (2 k + 3) l moves. Paper: beyond 2.3. *)
+    (2 k + 3) l moves. If l > k, that is at least half of m n. Paper: beyond 2.3. *)
 Theorem lower_bound (k l : nat) :
   exists W : start, [/\ edges W = k + 1 + l, vertices W = k + 2
     & forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
       forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
-      (2 * k + 3) * l <= size (doors_taken robot directional W n)].
+      let moves := size (doors_taken robot directional W n) in
+      (2 * k + 3) * l <= moves /\ (k < l -> edges W * vertices W <= 2 * moves)].
 Proof.
 exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
 split=> // robot maps_all n answer answered.
-by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+have cost : (2 * k + 3) * l <= size (doors_taken robot directional (Lollipop.lollipop k l) n).
+  by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+split=> // k_lt; apply: leq_trans (_ : 2 * ((2 * k + 3) * l) <= _); last by rewrite leq_mul2l.
+apply: leq_trans (_ : (l + l) * k.+2 <= _); first by rewrite leq_mul2r leq_add2r k_lt orbT.
+by rewrite addnn -mul2n -mulnA leq_mul2l /= mulnC leq_mul2r -addn2 leq_add ?orbT // mul2n -addnn leq_addr.
 Qed.
 
 (** In every world there is a walk with a complete folded trail that has as many moves as the formula of the
     certificate says. Paper: beyond 2.3. *)
 Theorem certificate_attained (W : start) :
-  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W.
 Proof. exact: CertificateAttained.certificate_attained. Qed.
 
 (** No walk with a complete folded trail has fewer moves. Paper: beyond 2.3. *)
 Theorem certificate_shortest (W : start) (doors : seq door) :
-  complete doors (sees W doors) -> certificate_length W <= size doors.
+  complete doors (sees W doors) -> certificate_moves W <= size doors.
 Proof. exact: CertificateAttained.certificate_shortest. Qed.
 
 (** So a robot that maps every world makes at least as many moves in each. Paper: beyond 2.3. *)
 Theorem certificate_needed (robot : strategy start) :
   (forall W, maps_start (moving directional) robot W) ->
   forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
-  certificate_length W <= size (doors_taken robot directional W n).
+  certificate_moves W <= size (doors_taken robot directional W n).
 Proof.
 move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed.
 exact: Returns.robot_determined answered.
+Qed.
+
+(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and it is
+    attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
+Theorem certificate_length (W : start) :
+  [/\ forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
+        forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+        certificate_moves W <= size (doors_taken robot directional W n),
+      forall doors, complete doors (sees W doors) -> certificate_moves W <= size doors
+    & exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W].
+Proof.
+split=> [robot maps_all n answer answered|doors whole|].
+- exact: certificate_needed answered.
+- exact: certificate_shortest.
+exact: certificate_attained.
 Qed.
 
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
@@ -643,12 +691,12 @@ Theorem tour_checks_the_map (map : start) (tour : seq door) :
     percepts directional pose tour = sees map tour <-> pose = facing W /\ isomorphic_starts map W.
 Proof. exact: Tours.tour_checks_the_map. Qed.
 
-(** Every map has such a walk, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
-Theorem tour_exists (map : start) :
+(** From a map alone such a walk can be computed, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
+Theorem tour_of_map (map : start) :
   let m := edges map in
   let n := vertices map in
-  exists2 tour, complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1).
-Proof. exact: ShortTours.tour_exists. Qed.
+  {tour : seq door | complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1)}.
+Proof. exact: ShortTours.tour_of_map. Qed.
 
 (** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
     then the map is right, wherever the walks began. Paper: beyond 2.3. *)

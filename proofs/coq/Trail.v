@@ -63,6 +63,14 @@ rewrite size_sees ltnS => le; rewrite degree_seenE // => i_lt j_lt /turn_eq.
 by rewrite !modn_small.
 Qed.
 
+(** The degree is that which the robot has perceived, and where it saw the marker, the facing dart is the one that
+    the marker points to. *)
+Lemma degree_dart_of k i : k < size seen -> degree (dart_of W doors (k, i)) = degree_seen seen k.
+Proof. by rewrite size_sees ltnS => le; rewrite degree_seenE // /dart_of degree_turn. Qed.
+
+Lemma dart_of_pointing k i : sighting_seen seen k = Pointing i -> dart_of W doors (k, i) = facing W.
+Proof. by case/sighting_seenP. Qed.
+
 (** All darts of the start are reached, if nothing is open. *)
 Lemma followed_opposite x : followed doors seen x ->
   exists2 y, opposite (dart_of W doors x) = dart_of W doors y & y.1 <= size doors.
@@ -72,6 +80,20 @@ by case: yz => k lt //=; apply: ltnW.
 Qed.
 
 End Seen.
+
+(** So a complete folded trail maps onto the start. *)
+Lemma complete_folding_onto (W : start) doors : complete doors (sees W doors) ->
+  forall d : W, exists2 x, x.1 < size (sees W doors) & dart_of W doors x = d.
+Proof.
+move=> none_open d; have [ds <-] := connected_walk (facing W) d; rewrite size_sees.
+elim/last_ind: ds => [|ds i [[k a] /= k_le kE]]; first by exists (0, 0); rewrite // /dart_of take0.
+rewrite walk_rcons -kE /traverse -[turn _ i]/(turn (turn _ a) i) -turnD.
+set g := degree_seen (sees W doors) k; have k_lt : k < size (sees W doors) by rewrite size_sees.
+have gE : g = degree (walk (facing W) (take k doors)) by apply: degree_seenE.
+have [|y yE y_le] := @followed_opposite W doors (k, (a + i) %% g).
+  by apply: none_open; rewrite //= -/g ltn_mod gE degree_gt0.
+by exists y; rewrite ?ltnS // -yE /dart_of /= gE turn_mod.
+Qed.
 
 Section Two.
 
