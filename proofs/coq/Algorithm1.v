@@ -272,13 +272,13 @@ Definition is_drawn :=
     & [forall d, forall e,
         connect (fun x y => (y == drawn_opposite x) || (y == drawn_clockwise x)) d e]].
 
-Lemma drawn_involutive : is_drawn -> involutive drawn_opposite.
+Lemma drawn_oppositeK : is_drawn -> involutive drawn_opposite.
 Proof. by case/and4P=> /forallP H _ _ _ d; apply/eqP. Qed.
 
-Lemma drawn_moves : is_drawn -> forall d, drawn_opposite d != d.
+Lemma drawn_opposite_neq : is_drawn -> forall d, drawn_opposite d != d.
 Proof. by case/and4P=> _ /forallP. Qed.
 
-Lemma drawn_injective : is_drawn -> injective drawn_clockwise.
+Lemma drawn_clockwise_inj : is_drawn -> injective drawn_clockwise.
 Proof. by case/and4P=> _ _ /injectiveP. Qed.
 
 Lemma drawn_connected : is_drawn -> forall d e,
@@ -286,7 +286,7 @@ Lemma drawn_connected : is_drawn -> forall d e,
 Proof. by case/and4P=> _ _ _ /forallP H d; apply/forallP. Qed.
 
 Definition drawn_graph (ok : is_drawn) : embedded_graph :=
-  EmbeddedGraph (drawn_involutive ok) (drawn_moves ok) (drawn_injective ok) (drawn_connected ok).
+  EmbeddedGraph (drawn_oppositeK ok) (drawn_opposite_neq ok) (drawn_clockwise_inj ok) (drawn_connected ok).
 
 (** The world that a map describes, if it describes one, and the robot where it believes to be. *)
 Definition drawn (pose : nat) : option located :=

@@ -10,13 +10,16 @@ Unset Printing Implicit Defensive.
 
 (** * Bisimilar is indistinguishable *)
 
-Lemma bisimilar_iff_indistinguishable M V W : bisimilar M V W <-> indistinguishable M V W.
+Lemma bisimilarP M V W : bisimilar (moving M) V W <-> indistinguishable M V W.
 Proof.
 split=> [[R [start_R R_step]] doors | same].
+  have {}R_step (p : V) (q : W) : R p q -> perceive M p = perceive M q /\ forall i, R (traverse p i) (traverse q i).
+    exact: R_step.
+  have {}start_R : R (facing V : V) (facing W : W) by [].
   elim: doors (facing V) (facing W) start_R => [|i doors IH] p q /R_step[pq next] /=; rewrite pq //.
   by rewrite (IH _ _ (next i)).
 exists (fun p q => forall doors, percepts M p doors = percepts M q doors); split=> // p q pq.
-split=> [|i doors]; first by rewrite /perceive; have [-> ->] := pq [::].
+split=> [|i doors]; first by rewrite /= /perceive; have [-> ->] := pq [::].
 by have [_ _ ->] := pq (i :: doors).
 Qed.
 
@@ -31,44 +34,45 @@ Proof. by move=> UV VW doors; rewrite UV. Qed.
 
 Section Runs.
 
-Variables (A : Type) (robot : strategy A) (M : marker).
+Variables (E A : Type) (robot : strategy_of E A).
 
-Lemma historyS W n :
-  history robot M W n.+1 =
-    if robot (history robot M W n) is Leave i then
-      rcons (history robot M W n) (perceive M (traverse (situation robot M W n).2 i))
-    else history robot M W n.
-Proof. by rewrite /history /=; case: (situation _ _ _ n) => past pose /=; case: (robot past). Qed.
+Lemma historyS (I : environment E) n :
+  history robot I n.+1 =
+    if robot (history robot I n) is Act e then
+      rcons (history robot I n) (sense (next_state (situation robot I n).2 e))
+    else history robot I n.
+Proof. by rewrite /history /=; case: (situation _ _ n) => past s /=; case: (robot past). Qed.
 
-Lemma bisimilar_same_history V W :
-  bisimilar M V W -> forall n, history robot M V n = history robot M W n.
+Lemma bisimilar_history (I : start -> environment E) V W :
+  bisimilar I V W -> forall n, history robot (I V) n = history robot (I W) n.
 Proof.
 move=> [R [start_R R_step]] n.
-suff [] : history robot M V n = history robot M W n /\
-          R (situation robot M V n).2 (situation robot M W n).2 by [].
+suff [] : history robot (I V) n = history robot (I W) n /\
+          R (situation robot (I V) n).2 (situation robot (I W) n).2 by [].
 rewrite /history; elim: n => [|n] /=; first by have [-> _] := R_step _ _ start_R.
-case: (situation _ _ V n) (situation _ _ W n) => [past p] [past' q] /= [<- pq].
-have [_ next] := R_step _ _ pq; case: (robot past) => //= i.
-by have [-> _] := R_step _ _ (next i).
+case: (situation _ (I V) n) (situation _ (I W) n) => [past s] [past' t] /= [<- st].
+have [_ next] := R_step _ _ st; case: (robot past) => //= e.
+by have [-> _] := R_step _ _ (next e).
 Qed.
 
-Lemma bisimilar_same_answers V W :
-  bisimilar M V W -> forall a, answers robot M V a <-> answers robot M W a.
+Lemma bisimilar_answers (I : start -> environment E) V W :
+  bisimilar I V W -> forall a, answers robot (I V) a <-> answers robot (I W) a.
 Proof.
-by move=> /bisimilar_same_history same a; split=> -[n answered]; exists n; rewrite -answered same.
+by move=> /bisimilar_history same a; split=> -[n answered]; exists n; rewrite -answered same.
 Qed.
+
+Variable I : environment E.
 
 (** A robot that has answered stays where it is. *)
-Lemma answered_stays W a n k :
-  robot (history robot M W n) = Answer a -> history robot M W (n + k) = history robot M W n.
+Lemma history_answered a n k : robot (history robot I n) = Answer a -> history robot I (n + k) = history robot I n.
 Proof.
 by move=> answered; elim: k => [|k IH]; rewrite ?addn0 // addnS historyS IH answered.
 Qed.
 
-Lemma answers_unique W a b : answers robot M W a -> answers robot M W b -> a = b.
+Lemma answers_inj a b : answers robot I a -> answers robot I b -> a = b.
 Proof.
 move=> [n robot_a] [k robot_b].
-have := robot_a; rewrite -(answered_stays k robot_a) addnC (answered_stays n robot_b) robot_b.
+have := robot_a; rewrite -(history_answered k robot_a) addnC (history_answered n robot_b) robot_b.
 by case.
 Qed.
 

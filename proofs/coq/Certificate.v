@@ -33,7 +33,7 @@ Definition hanging_above (d : W) : nat := #|[set e in hanging | ~~ near_without 
 (** The sum of distance u + distance v + 1 over all edges uv, without 2 distance v for each vertex v, which is what
     the edges of a breadth-first tree contribute; twice the number of hanging edges; and what the last way
     saves, which leads to a hanging leaf and not back. *)
-Definition certificate_length : nat :=
+Definition certificate_moves : nat :=
   edges W + \sum_(d : W) distance d - 2 * (\sum_(d : W | froot clockwise d == d) distance d)
   + 2 * #|hanging| - \max_(leaf in hanging | degree leaf == 1) (2 * hanging_above leaf - distance leaf).
 

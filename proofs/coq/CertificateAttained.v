@@ -53,7 +53,7 @@ have it : i + t = i' %[mod degree (pos k)].
   by rewrite modnMDl.
 have kt := turned t kl; rewrite /= in kt.
 apply: Linked (around k_le (esym it)) (Linked kt (around l_le _)).
-by apply: turn_eq; rewrite turn_add -same_ij -turn_add -same_dart -(turn_mod _ (i + t)) it turn_mod.
+by apply: turn_eq; rewrite turnD -same_ij -turnD -same_dart -(turn_mod _ (i + t)) it turn_mod.
 Qed.
 
 (** The edge of one dart of the trail is that of another, as far as the folded trail shows. *)
@@ -94,7 +94,7 @@ case=> [k0|m' k0 lt tree_e link|m' k0 lt tree_e link]; first by left.
 - right; exists m', k0.+1, (nth 0 doors k0), 0; split=> //; [exact: pos_next | exact: Onward].
 right; exists m', k0, 0, (nth 0 doors k0); split=> //; last exact: Backward.
   by rewrite -[turn _ 0]/(pos k0.+1) pos_next // in_tree_opposite.
-by rewrite -[turn _ 0]/(pos k0.+1) pos_next // opposite_involutive.
+by rewrite -[turn _ 0]/(pos k0.+1) pos_next // oppositeK.
 Qed.
 
 (** From a visit that is joined, the trail leads up the tree, to a visit that is joined. *)
@@ -115,7 +115,7 @@ have k'_e : same_vertex (pos k') (opposite (turn (pos k) i)) by rewrite -turn_i'
 have away' : ~~ marked (pos k') by have /andP[] := down_e; rewrite (marked_same k'_e).
 have upE' : up (pos k') = opposite (turn (pos k) i) by rewrite (up_same k'_e away'); have /andP[_ /eqP] := down_e.
 have [m2 [l [m2_lt link_l [j [j' [turn_j turn_j' cross]]]]]] := IH m' k' m'_lt link_k' away'.
-rewrite upE' ?opposite_involutive in turn_j turn_j'.
+rewrite upE' ?oppositeK in turn_j turn_j'.
 have same_kl : same (k, i) (l, j').
   have back : one_edge doors (k', i') (k, i) by case: edge => t lt; [apply: Backward | apply: Onward].
   apply: across_same (across_edge back) cross _; apply: (around (linked_le link_k')).
@@ -171,7 +171,7 @@ case/orP=> /eqP outE.
   by apply: linked_same link_k link_t _; rewrite // -outE.
 exists (t.+1, 0), (t, nth 0 doors t); split; last exact: Backward.
 apply: linked_same link_k link_t' _ => //.
-by rewrite -[turn (pos t.+1) 0]/(pos t.+1) pos_next // outE opposite_involutive.
+by rewrite -[turn (pos t.+1) 0]/(pos t.+1) pos_next // outE oppositeK.
 Qed.
 
 End Linked.
@@ -295,7 +295,7 @@ case/existsP=> e /andP[out_e h_in]; rewrite /covers; have [rootE|rootE] := edge_
   rewrite orbC (in_tour e) ?rootE // mem_cat [way e]way_back_by mem_rev.
   by rewrite (map_f _ (h_in : h \in back_by (distance e) e)).
 rewrite (in_tour (opposite e)) ?in_tree_opposite // ?edge_root_opposite ?rootE //.
-by rewrite mem_cat inE opposite_involutive h_in !orbT.
+by rewrite mem_cat inE oppositeK h_in !orbT.
 Qed.
 
 (** An edge of the tree that no round goes over hangs. *)
@@ -313,10 +313,10 @@ have tree_e : in_tree e.
 have down_e : leads_up (opposite e).
   case/orP: tree_e => // /andP[_]; rewrite up_eE eq_sym (negPf eh) //.
 apply: IH => //.
-  rewrite (leads_up_distance down_e) opposite_involutive -(distance_same he).
+  rewrite (leads_up_distance down_e) oppositeK -(distance_same he).
   by move: bound; rewrite addnS addSn.
 apply: contra none => /existsP[f /andP[out_f in_f]]; apply/existsP; exists f; rewrite out_f /=.
-by have := back_closed erefl in_f; rewrite opposite_involutive up_eE => ->.
+by have := back_closed erefl in_f; rewrite oppositeK up_eE => ->.
 Qed.
 
 Lemma crossing_covered (p : W) s h : valid p s ->
@@ -354,14 +354,14 @@ Lemma sum_tree :
   \sum_(e : W | (froot opposite e == e) && in_tree e) (distance e + distance (opposite e) + 1) =
   2 * \sum_(d : W | froot clockwise d == d) distance d.
 Proof.
-have sym := fconnect_sym (@clockwise_injective W); pose ups : {set W} := [set h | leads_up h].
+have sym := fconnect_sym (@clockwise_inj W); pose ups : {set W} := [set h | leads_up h].
 have -> : \sum_(e : W | (froot opposite e == e) && in_tree e) (distance e + distance (opposite e) + 1) =
     \sum_(h in ups) 2 * distance h.
   rewrite [RHS]big_mkcond sum_edges big_mkcondr; apply: eq_bigr => e _; rewrite !inE /in_tree.
   case up_e: (leads_up e).
     by rewrite (negPf (leads_up_once up_e)) addn0 /= (leads_up_distance up_e); arithmetic.
   case up_e': (leads_up (opposite e)) => //.
-  by rewrite (leads_up_distance up_e') opposite_involutive /=; arithmetic.
+  by rewrite (leads_up_distance up_e') oppositeK /=; arithmetic.
 pose f (h : W) := froot clockwise h.
 have same_f h : same_vertex (f h) h by rewrite same_vertex_sym; apply: connect_root.
 have f_inj : {in ups &, injective f}.
@@ -387,11 +387,11 @@ rewrite -sum_tree sum_edges -sum_edges1 -big_split /= addnC [RHS](bigID (@in_tre
 by congr (_ + _); apply: eq_bigr => e _; rewrite addnC.
 Qed.
 
-Lemma certificate_shortest doors : complete doors (sees W doors) -> certificate_length W <= size doors.
+Lemma certificate_shortest doors : complete doors (sees W doors) -> certificate_moves W <= size doors.
 Proof. by move=> whole; apply: certificate_needed => V same; apply: complete_folding_determines same whole. Qed.
 
 Lemma certificate_attained :
-  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W.
 Proof.
 pose save v := 2 * hanging_above v - distance v.
 have [v [saveE most]] : exists v, distance v + save v = 2 * hanging_above v /\ forall v', save v' <= save v.
@@ -407,7 +407,7 @@ pose doors := doors_of (facing W) s; have whole : complete doors (sees W doors).
   - by rewrite -covers_opposite ups.
   by have /orP[/sub d_in|/sub d_in] := outside_covered v out_d; rewrite /covers d_in ?orbT.
 exists doors => //; apply/eqP; rewrite eqn_leq certificate_shortest // andbT.
-rewrite size_doors_of s_size size_tour /certificate_length -size_outside addnK.
+rewrite size_doors_of s_size size_tour /certificate_moves -size_outside addnK.
 set saved := \max_(_ in _ | _) _; have saved_le : saved <= save v by apply/bigmax_leqP=> h _; apply: most.
 have few := uncovered_few v; set b := \sum_(_ | _) _.
 rewrite -/(save v) in saveE saved_le *; clearbody saved b; arithmetic.

@@ -26,7 +26,7 @@ Variable W : start.
 Lemma edge_root (d : W) : froot opposite d = d \/ froot opposite d = opposite d.
 Proof.
 have /iter_findex <- : fconnect opposite d (froot opposite d) by apply: connect_root.
-elim: (findex _ _ _) => [|k /= [->|->]]; [by left | by right | left; exact: opposite_involutive].
+elim: (findex _ _ _) => [|k /= [->|->]]; [by left | by right | left; exact: oppositeK].
 Qed.
 
 Lemma edge_root_opposite (d : W) : froot opposite (opposite d) = froot opposite d.
@@ -41,8 +41,8 @@ Lemma sum_edges (g : W -> nat) :
 Proof.
 rewrite (bigID (fun d => froot opposite d == d)) big_split /=; congr (_ + _).
 rewrite (reindex_inj (@opposite_inj W)); apply: eq_bigl => d; rewrite edge_root_opposite.
-case: (edge_root d) => ->; rewrite ?eqxx; first by rewrite eq_sym opposite_moves.
-by rewrite (negPf (opposite_moves d)).
+case: (edge_root d) => ->; rewrite ?eqxx; first by rewrite eq_sym opposite_neq.
+by rewrite (negPf (opposite_neq d)).
 Qed.
 
 Lemma sum_edges1 : \sum_(d : W | froot opposite d == d) 1 = edges W.
@@ -71,7 +71,7 @@ Proof. by rewrite /core distance_facing. Qed.
 Lemma core_hanging x : hanging_edge x -> core (opposite x) = core x.
 Proof.
 case/orP=> hangs; rewrite /core; first by rewrite (distance_hanging hangs) (above_hanging hangs) subSS.
-by rewrite (distance_hanging hangs) (above_hanging hangs) subSS opposite_involutive.
+by rewrite (distance_hanging hangs) (above_hanging hangs) subSS oppositeK.
 Qed.
 
 Lemma core_step x : core (opposite x) <= core x + ~~ hanging_edge x.
@@ -84,7 +84,7 @@ Qed.
 Definition weight x := core x + core (opposite x) + ~~ hanging_edge x.
 
 Lemma weight_opposite x : weight (opposite x) = weight x.
-Proof. by rewrite /weight hanging_edge_opposite opposite_involutive (addnC (core (opposite x))). Qed.
+Proof. by rewrite /weight hanging_edge_opposite oppositeK (addnC (core (opposite x))). Qed.
 
 Definition heavy t : pred W := fun x => t < weight x.
 
@@ -101,7 +101,7 @@ have [w_le core_le] : weight y <= 2 * core y /\ core (opposite y) <= core y.
   by split=> //=; arithmetic.
 have near : near_without (heavy t) (opposite y).
   by apply: IH; [rewrite kE | apply: leq_trans light; rewrite leq_mul2l].
-have := near_opposite _ near; rewrite opposite_involutive; apply.
+have := near_opposite _ near; rewrite oppositeK; apply.
 by rewrite /heavy weight_opposite -leqNgt; apply: leq_trans light.
 Qed.
 
@@ -135,7 +135,7 @@ case/andP; elim: j => [|j IH]; first by rewrite leqn0 => /eqP-> _; rewrite big_g
 rewrite leq_eqVlt => /predU1P[-> _|]; first by rewrite big_geq // addn0.
 rewrite ltnS => ij j_lt; have [up down] := IH ij (ltnW j_lt); rewrite big_nat_recr //= pos_next //.
 have step := core_step (out j); have step' := core_step (opposite (out j)).
-rewrite hanging_edge_opposite opposite_involutive in step'; rewrite core_out -/(paid j) in step step'.
+rewrite hanging_edge_opposite oppositeK in step'; rewrite core_out -/(paid j) in step step'.
 by split; arithmetic.
 Qed.
 
@@ -226,7 +226,7 @@ rewrite leq_eqVlt => /predU1P[->|]; first by rewrite eqxx.
 rewrite ltnS => ij j_lt differ; rewrite big_nat_recr //=; have [//|other] := boolP (edge_of h (out j)).
   by rewrite /crosses => ->; rewrite addn1.
 rewrite ltn_addr // IH ?(ltnW j_lt) //; apply: contra differ => /eqP->; apply/eqP.
-rewrite /near pos_next // near_edge ?edge_of_sym //; apply: near_same; exact: same_vertex_turn.
+rewrite /near pos_next // near_edge ?edge_of_oppositer //; apply: near_same; exact: same_vertex_turn.
 Qed.
 
 Lemma traversedP (p : W) ds d : traverses p ds d ->
@@ -234,7 +234,7 @@ Lemma traversedP (p : W) ds d : traverses p ds d ->
 Proof.
 elim: ds p => //= i ds IH p /or3P[/eqP pE|/eqP pE|/IH[k lt at_k]]; last by exists k.+1.
   by exists 0; rewrite //= pE /edge_of eqxx.
-by exists 0; rewrite //= /edge_of -pE /traverse opposite_involutive eqxx orbT.
+by exists 0; rewrite //= /edge_of -pE /traverse oppositeK eqxx orbT.
 Qed.
 
 Lemma hanging_crossed h : h \in hanging W -> 1 + near h n <= \sum_(0 <= k < n) crosses h k.
@@ -245,7 +245,7 @@ have [k lt at_k] : exists2 k, k < n & edge_of h (out k).
   have [f [iso _]] : isomorphic_starts (subdivided h) W by apply/determined/subdivided_percepts.
   by case: (@subdivided_not_isomorphic W h); exists f.
 have [j j_le far_j] : exists2 j, j <= n & ~~ near h j.
-  case/orP: at_k => /eqP outE; last by exists k.+1; rewrite // /near pos_next // outE opposite_involutive.
+  case/orP: at_k => /eqP outE; last by exists k.+1; rewrite // /near pos_next // outE oppositeK.
   have same : near_without (edge_of h) (pos k) = near_without (edge_of h) (out k).
     exact/near_same/same_vertex_turn.
   by exists k; [apply: ltnW | rewrite /near same outE].
@@ -261,9 +261,9 @@ rewrite -card_sum; have [hangs|none] := boolP (hanging_edge x).
   apply: (@leq_trans #|[set h]|); last by rewrite cards1.
   apply/subset_leq_card/subsetP=> g; rewrite !inE => /andP[g_hangs].
   case/orP=> /eqP xE; rewrite /h xE; first by rewrite g_hangs.
-  by rewrite (negPf (hanging_once g_hangs)) opposite_involutive.
+  by rewrite (negPf (hanging_once g_hangs)) oppositeK.
 rewrite leqn0 cards_eq0; apply/eqP/setP=> g; rewrite !inE; apply: contraNF none => /andP[g_hangs].
-by case/orP=> /eqP->; rewrite /hanging_edge ?opposite_involutive g_hangs ?orbT.
+by case/orP=> /eqP->; rewrite /hanging_edge ?oppositeK g_hangs ?orbT.
 Qed.
 
 Lemma hanging_needed :
@@ -285,7 +285,7 @@ Lemma sum_above :
   \sum_(d : W | froot opposite d == d) (hanging_above d + hanging_above (opposite d) + hanging_edge d) =
   \sum_(d : W | froot clockwise d == d) 2 * hanging_above d.
 Proof.
-have sym := fconnect_sym (@clockwise_injective W).
+have sym := fconnect_sym (@clockwise_inj W).
 have -> : \sum_(d : W | froot opposite d == d) (hanging_above d + hanging_above (opposite d) + hanging_edge d) =
     \sum_(h in hanging W) 2 * hanging_above h.
   rewrite [RHS]big_mkcond sum_edges; apply: eq_bigr => d _.
@@ -293,7 +293,7 @@ have -> : \sum_(d : W | froot opposite d == d) (hanging_above d + hanging_above 
     rewrite (negPf (hanging_once hangs)) /hanging_edge hangs (above_hanging hangs) addn0 mul2n -addnn.
     by rewrite -addnA addn1.
   case: (boolP (opposite d \in _)) => [hangs|not_hangs'].
-    rewrite /hanging_edge hangs orbT (above_hanging hangs) opposite_involutive add0n mul2n -addnn.
+    rewrite /hanging_edge hangs orbT (above_hanging hangs) oppositeK add0n mul2n -addnn.
     by rewrite addnC addnA add1n.
   have none : ~~ hanging_edge d by rewrite /hanging_edge negb_or not_hangs.
   by rewrite (negPf none) !above_edge0 // hanging_edge_opposite.
@@ -315,7 +315,7 @@ apply/imsetP; exists h => //; rewrite -root_d; apply/eqP.
 by rewrite /f (root_connect sym).
 Qed.
 
-Lemma certificate_needed : certificate_length W <= n.
+Lemma certificate_needed : certificate_moves W <= n.
 Proof.
 have all_moves : n = \sum_(0 <= k < n) paid k + \sum_(0 <= k < n) hanging_edge (out k).
   rewrite -big_split /= -[LHS]subn0 -[LHS]muln1 -sum_nat_const_nat; apply: eq_bigr => k _.
@@ -332,7 +332,7 @@ have edges_sum : edges W + \sum_(d : W) distance d = \sum_(d : W | froot opposit
 have vertices_sum : 2 * sum_d = \sum_(d : W | froot clockwise d == d) 2 * core d +
     \sum_(d : W | froot clockwise d == d) 2 * hanging_above d.
   by rewrite /sum_d big_distrr -big_split /=; apply: eq_bigr => d _; rewrite -mulnDr core_above.
-rewrite /certificate_length edges_sum sum_above -/sum_d vertices_sum.
+rewrite /certificate_moves edges_sum sum_above -/sum_d vertices_sum.
 set saved := \max_(_ in _ | _) _.
 have saves : 2 * hanging_above (pos n) - distance (pos n) <= saved.
   have [none|] := posnP (hanging_above (pos n)); first by rewrite none.

@@ -23,7 +23,7 @@ Notation marked x := (same_vertex (facing W) x).
 Definition up x : W :=
   odflt x [pick y | same_vertex (froot clockwise x) y && (distance y == (distance (opposite y)).+1)].
 
-Let sym := fconnect_sym (@clockwise_injective W).
+Let sym := fconnect_sym (@clockwise_inj W).
 
 Lemma up_same x y : same_vertex x y -> ~~ marked x -> up x = up y.
 Proof.
@@ -46,14 +46,14 @@ Definition leads_up x := ~~ marked x && (up x == x).
 Definition in_tree x := leads_up x || leads_up (opposite x).
 
 Lemma in_tree_opposite x : in_tree (opposite x) = in_tree x.
-Proof. by rewrite /in_tree opposite_involutive orbC. Qed.
+Proof. by rewrite /in_tree oppositeK orbC. Qed.
 
 Lemma leads_up_distance x : leads_up x -> distance x = (distance (opposite x)).+1.
 Proof. by case/andP=> away /eqP upE; have [_] := upP away; rewrite upE. Qed.
 
 Lemma leads_up_once x : leads_up x -> ~~ leads_up (opposite x).
 Proof.
-move/leads_up_distance=> dE; apply/negP=> /leads_up_distance; rewrite opposite_involutive dE.
+move/leads_up_distance=> dE; apply/negP=> /leads_up_distance; rewrite oppositeK dE.
 by move/eqP; rewrite -addn2 -{1}[distance _]addn0 eqn_add2l.
 Qed.
 
@@ -71,7 +71,7 @@ Lemma hanging_leads_up h : h \in hanging W -> leads_up h.
 Proof.
 move=> h_hangs; have /hangingP[away all] := h_hangs; rewrite /leads_up away /=.
 have [near dE] := upP away; apply: contraT => other; have := distance_hanging (all _ near other).
-rewrite opposite_involutive dE => /eqP; rewrite -addn2 -{1}[distance _]addn0 eqn_add2l //.
+rewrite oppositeK dE => /eqP; rewrite -addn2 -{1}[distance _]addn0 eqn_add2l //.
 Qed.
 
 (** * Walks as sequences of darts *)
@@ -150,7 +150,7 @@ Lemma anchored_excursion b p s s' e : in_tree e -> same_vertex (end_of p s) e ->
   anchored b p (s ++ s') -> anchored b p (s ++ e :: opposite e :: s').
 Proof.
 move=> tree_e; elim: s b p => [|f s IH] b p /=.
-  move=> near ok; rewrite tree_e in_tree_opposite tree_e opposite_involutive (anchored_same _ _ near) in ok *.
+  move=> near ok; rewrite tree_e in_tree_opposite tree_e oppositeK (anchored_same _ _ near) in ok *.
   by apply: anchored_le ok; apply/implyP=> ->.
 by move=> near; case: ifP => _; [apply: IH | case/andP=> -> /=; apply: IH].
 Qed.
@@ -158,14 +158,14 @@ Qed.
 Lemma valid_excursion p s s' e : same_vertex (end_of p s) e ->
   valid p (s ++ s') -> valid p (s ++ e :: opposite e :: s').
 Proof.
-move=> near; rewrite !valid_cat => /andP[-> /=]; rewrite near same_vertex_refl opposite_involutive /=.
+move=> near; rewrite !valid_cat => /andP[-> /=]; rewrite near same_vertex_refl oppositeK /=.
 by rewrite (valid_same _ near).
 Qed.
 
 Definition covers s e := (e \in s) || (opposite e \in s).
 
 Lemma covers_opposite s e : covers s (opposite e) = covers s e.
-Proof. by rewrite /covers opposite_involutive orbC. Qed.
+Proof. by rewrite /covers oppositeK orbC. Qed.
 
 Definition uncovered s : {set W} := [set h | leads_up h && ~~ covers s h].
 
@@ -176,7 +176,7 @@ Proof.
 move=> ok /orP[]/splitPr s_split; case: s_split ok => s1 s2; rewrite valid_cat /= => /and3P[_ near _].
   by exists s1, (e :: s2).
 exists (rcons s1 (opposite e)), s2; rewrite cat_rcons; split=> //.
-by rewrite /end_of map_rcons last_rcons opposite_involutive same_vertex_refl.
+by rewrite /end_of map_rcons last_rcons oppositeK same_vertex_refl.
 Qed.
 
 Lemma excursions s : valid (facing W) s -> anchored false (facing W) s ->
@@ -201,12 +201,12 @@ have [s1 [s2 [sE near]]] : exists s1 s2, s = s1 ++ s2 /\ same_vertex (end_of (fa
 pose s' := s1 ++ e :: opposite e :: s2.
 have tree_e : in_tree e by rewrite in_tree_opposite /in_tree up_h.
 have in_s' g : (g \in s') = [|| g \in s, g == e | g == h].
-  rewrite /s' sE !mem_cat !inE /e opposite_involutive.
+  rewrite /s' sE !mem_cat !inE /e oppositeK.
   by case: (g \in s1); case: (g \in s2); case: (g == opposite h); case: (g == h).
 have covers' g : covers s' g = [|| covers s g, g == h | g == opposite h].
   have -> : (g == opposite h) = (g == e) by [].
   have to_e : (opposite g == e) = (g == h) by rewrite /e (inj_eq (@opposite_inj W)).
-  have to_h : (opposite g == h) = (g == e) by rewrite (inv_eq (@opposite_involutive W)).
+  have to_h : (opposite g == h) = (g == e) by rewrite (inv_eq (@oppositeK W)).
   rewrite /covers !in_s' to_e to_h.
   by case: (g \in s); case: (opposite g \in s); case: (g == e); case: (g == h).
 have un' : uncovered s' = uncovered s :\ h.
@@ -263,7 +263,7 @@ Proof.
 elim: k x => [|k IH] x dE; first by split=> //; apply: distance0.
 have [near up_up d_next] := next_of dE; have [ok at_end all_tree] := IH _ d_next => /=.
 rewrite -cats1 valid_cat ok all_cat all_tree /= at_end in_tree_opposite /in_tree up_up; split=> //.
-by rewrite /end_of cats1 map_rcons last_rcons opposite_involutive same_vertex_sym.
+by rewrite /end_of cats1 map_rcons last_rcons oppositeK same_vertex_sym.
 Qed.
 
 (** If the way back has the edge above a vertex, it goes on from the next one. *)

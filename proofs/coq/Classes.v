@@ -27,7 +27,7 @@ Qed.
 
 Lemma indistinguishable_alike p : indistinguishable M V W -> exists q, alike M p q.
 Proof.
-move=> same; have [doors <-] := walk_anywhere (facing V) p.
+move=> same; have [doors <-] := connected_walk (facing V) p.
 by exists (walk (facing W) doors); apply: alike_walk.
 Qed.
 
@@ -64,7 +64,7 @@ End Alike.
 
 Arguments class M {V} W p.
 
-Lemma alikeb_equivalence M (W : start) : equivalence_rel (@alikeb M W W).
+Lemma alikeb_equiv M (W : start) : equivalence_rel (@alikeb M W W).
 Proof.
 move=> p q r; split=> [|/alikeP pq]; first exact/alikeP.
 by apply/alikeP/alikeP => [pr | qr] doors; [rewrite -pq | rewrite pq].
@@ -79,10 +79,10 @@ Qed.
 (** * All classes have one size *)
 
 (** A walk maps a class into a class, and is injective. *)
-Lemma classes_same_size M (V W : start) (p p' : V) : #|class M W p| = #|class M W p'|.
+Lemma card_class M (V W : start) (p p' : V) : #|class M W p| = #|class M W p'|.
 Proof.
 suff leq (r r' : V) : #|class M W r| <= #|class M W r'| by apply/eqP; rewrite eqn_leq !leq.
-have [doors <-] := walk_anywhere r r'.
+have [doors <-] := connected_walk r r'.
 rewrite -(card_image (@walk_inj W doors)); apply/subset_leq_card/subsetP => _ /imageP[q /alikeP rq ->].
 exact/alikeP/alike_walk.
 Qed.
@@ -99,14 +99,14 @@ move=> /alike_perceive [_]; rewrite /undirected.
 by case: (same_vertex p _); case: (same_vertex q _).
 Qed.
 
-Lemma class_size_divides (W : start) (p : W) : #|class undirected W p| %| degree (facing W).
+Lemma card_class_dvd_degree (W : start) (p : W) : #|class undirected W p| %| degree (facing W).
 Proof.
 pose marked := [set q : W | same_vertex (facing W) q].
 have -> : degree (facing W) = #|marked| by rewrite cardsE.
 have parts : partition (equivalence_partition (@alikeb undirected W W) marked) marked.
-  by apply: equivalence_partitionP => q r s _ _ _; apply: alikeb_equivalence.
+  by apply: equivalence_partitionP => q r s _ _ _; apply: alikeb_equiv.
 rewrite (@card_uniform_partition _ #|class undirected W p| _ _ _ parts); first exact: dvdn_mull.
-move=> _ /imsetP[q q_marked ->]; rewrite (classes_same_size undirected W p q) cardsE.
+move=> _ /imsetP[q q_marked ->]; rewrite (card_class undirected W p q) cardsE.
 apply: eq_card => r; rewrite !inE; apply: andb_idl => /alikeP /alike_marked same.
 by move: q_marked; rewrite !inE same_vertex_sym same same_vertex_sym.
 Qed.
@@ -134,11 +134,11 @@ Lemma card_class_across M (V W : start) (p : V) (q : W) :
   indistinguishable M V W -> #|class M W p| = #|class M W q|.
 Proof.
 move=> /(indistinguishable_alike p)[r /eq_class pr].
-by rewrite (eq_card (pr _)) (classes_same_size M W r q).
+by rewrite (eq_card (pr _)) (card_class M W r q).
 Qed.
 
 (** A vertex has as many darts as its degree. *)
-Lemma vertices_by_degree (G : embedded_graph) bound :
+Lemma verticesE (G : embedded_graph) bound :
   (forall d : G, degree d < bound) ->
   vertices G = \sum_(i < bound) #|[pred d : G | degree d == i]| %/ i.
 Proof.
@@ -147,7 +147,7 @@ rewrite (partition_big (fun d : G => Ordinal (small d)) predT) //=; apply: eq_bi
 rewrite sum1_card; case: (posnP i) => [i0 | i_gt0].
   rewrite i0 divn0; apply: eq_card0 => d; rewrite unfold_in /= -val_eqE /= i0.
   by rewrite -leqn0 leqNgt degree_gt0 andbF.
-rewrite -(@fcard_order_set _ _ (@clockwise_injective G) i [pred d : G | degree d == i]).
+rewrite -(@fcard_order_set _ _ (@clockwise_inj G) i [pred d : G | degree d == i]).
 - by rewrite mulnK //; apply: eq_card => d; rewrite unfold_in -val_eqE /= !inE andbT.
 - by apply/subsetP.
 by move=> d e /eqP<-; rewrite !inE (degree_turn d 1).
@@ -186,9 +186,9 @@ Lemma indistinguishable_classes :
     forall p : V, #|class undirected W p| = size & forall q : W, #|class undirected V q| = size].
 Proof.
 exists k; split=> [|p|q|p|q].
-- exact: class_size_divides.
-- exact: classes_same_size.
-- by rewrite same_size; apply: classes_same_size.
+- exact: card_class_dvd_degree.
+- exact: card_class.
+- by rewrite same_size; apply: card_class.
 - by rewrite same_size; apply: card_class_across.
 exact: card_class_across (indistinguishable_sym same).
 Qed.
@@ -208,7 +208,7 @@ Proof. by congr _./2; exact: (indistinguishable_card predT). Qed.
 Corollary indistinguishable_vertices : vertices V = vertices W.
 Proof.
 pose bound := (maxn #|V| #|W|).+1.
-rewrite !(@vertices_by_degree _ bound) => [|q|p]; rewrite ?ltnS ?leq_max ?max_card ?orbT //.
+rewrite !(@verticesE _ bound) => [|q|p]; rewrite ?ltnS ?leq_max ?max_card ?orbT //.
 by apply: eq_bigr => i _; congr (_ %/ _); exact: (indistinguishable_card (fun seen => seen.1 == i)).
 Qed.
 

@@ -10,14 +10,14 @@ Unset Printing Implicit Defensive.
 (** Edges have two ends. *)
 Lemma order_opposite (G : embedded_graph) (d : G) : order opposite d = 2.
 Proof.
-have cycle_d : fcycle opposite [:: d; opposite d] by rewrite /= opposite_involutive !eqxx.
-have uniq_d : uniq [:: d; opposite d] by rewrite /= inE eq_sym opposite_moves.
+have cycle_d : fcycle opposite [:: d; opposite d] by rewrite /= oppositeK !eqxx.
+have uniq_d : uniq [:: d; opposite d] by rewrite /= inE eq_sym opposite_neq.
 by rewrite (order_cycle cycle_d uniq_d) ?mem_head.
 Qed.
 
 Lemma card_edge_orbits (G : embedded_graph) : fcard (@opposite G) G * 2 = #|G|.
 Proof.
-apply: (fcard_order_set (inv_inj (@opposite_involutive G))) => //.
+apply: (fcard_order_set (inv_inj (@oppositeK G))) => //.
 by apply/subsetP=> d _; rewrite inE order_opposite.
 Qed.
 
@@ -56,10 +56,10 @@ have known d : d \in firsts -> d < size S /\ vertex S d = d.
 pose roots := [seq froot clockwise (place d) | d <- firsts].
 have : uniq roots.
   rewrite map_inj_in_uniq ?filter_uniq ?iota_uniq // => d e /known[d_lt dv] /known[e_lt ev].
-  move/eqP; rewrite root_connect; last exact: fconnect_sym (@clockwise_injective W).
+  move/eqP; rewrite root_connect; last exact: fconnect_sym (@clockwise_inj W).
   by rewrite -/(same_vertex _ _) (same_vertex_known em) // dv ev => /eqP.
 move/card_uniqP; rewrite size_map => <-; apply: subset_leq_card; apply/subsetP=> _ /mapP[d _ ->].
-by rewrite inE andbT; apply: roots_root; apply: fconnect_sym (@clockwise_injective W).
+by rewrite inE andbT; apply: roots_root; apply: fconnect_sym (@clockwise_inj W).
 Qed.
 
 Hypothesis explored : unexplored S = [::].
@@ -117,18 +117,18 @@ rewrite /f /drawn_clockwise insubdK // (em_turn em e_lt) same addKn -(degree_ver
 by rewrite [in RHS](em_turn em lt).
 Qed.
 
-Lemma f_bijective : bijective f.
+Lemma f_bij : bijective f.
 Proof.
 apply: inj_card_bij f_inj _; by rewrite card_ord size_complete card_darts.
 Qed.
 
-Lemma map_is_drawn : is_drawn S.
+Lemma explored_is_drawn : is_drawn S.
 Proof.
 apply/and4P; split.
-- by apply/forallP=> d; apply/eqP/f_inj; rewrite !f_opposite opposite_involutive.
+- by apply/forallP=> d; apply/eqP/f_inj; rewrite !f_opposite oppositeK.
 - apply/forallP=> d; apply/eqP=> /(congr1 f); rewrite f_opposite => /eqP.
-  by rewrite (negPf (opposite_moves _)).
-- by apply/injectiveP=> d e /(congr1 f); rewrite !f_clockwise => /(@clockwise_injective W)/f_inj.
+  by rewrite (negPf (opposite_neq _)).
+- by apply/injectiveP=> d e /(congr1 f); rewrite !f_clockwise => /(@clockwise_inj W)/f_inj.
 apply/forallP=> d; apply/forallP=> e.
 have /connectP[s path_s fe] := connected (f d) (f e).
 elim: s d path_s fe => [|r s IH] d /=; first by move=> _ /f_inj->; apply: connect0.
@@ -146,11 +146,11 @@ Lemma drawn_isomorphic pose : pose < size S ->
   exists2 L : located, drawn S pose = Some L
   & exists f : L -> W, [/\ isomorphism f, f (facing L) = facing W & f (robot L) = place pose].
 Proof.
-move=> lt; rewrite /drawn; case: {-}_ / idP => [ok|]; last by rewrite map_is_drawn.
+move=> lt; rewrite /drawn; case: {-}_ / idP => [ok|]; last by rewrite explored_is_drawn.
 case: {-}_ / idP => [begun|]; last by rewrite (wf_some wf).
 eexists; first by [].
 exists f; split; rewrite /= /f ?insubdK //; last exact: em_facing em.
-split; [exact: f_bijective | exact: f_opposite | exact: f_clockwise].
+split; [exact: f_bij | exact: f_opposite | exact: f_clockwise].
 Qed.
 
 End Embedded.

@@ -15,12 +15,12 @@ by have := alike_walk [:: 1; 0] IH; rewrite !walk_clockwise.
 Qed.
 
 (** All classes have one size, and the number of darts is a multiple of it. *)
-Lemma class_size_divides_darts M (W : start) (p : W) : #|class M W p| %| #|W|.
+Lemma card_class_dvd_darts M (W : start) (p : W) : #|class M W p| %| #|W|.
 Proof.
 have parts : partition (equivalence_partition (@alikeb M W W) setT) setT.
-  by apply: equivalence_partitionP => q r s _ _ _; apply: alikeb_equivalence.
+  by apply: equivalence_partitionP => q r s _ _ _; apply: alikeb_equiv.
 rewrite -cardsT (@card_uniform_partition _ #|class M W p| _ _ _ parts); first exact: dvdn_mull.
-move=> _ /imsetP[q _ ->]; rewrite (classes_same_size M W p q) cardsE.
+move=> _ /imsetP[q _ ->]; rewrite (card_class M W p q) cardsE.
 by apply: eq_card => r; rewrite [LHS]unfold_in in_setT.
 Qed.
 
@@ -31,7 +31,7 @@ move=> coprime_W same.
 have [size [size_degree V_V W_W V_W W_V]] := indistinguishable_classes same.
 have size1 : size = 1.
   apply/eqP; rewrite -dvdn1 -(eqP coprime_W) dvdn_gcd -(indistinguishable_degree same) size_degree.
-  by rewrite -(W_W (facing W)) class_size_divides_darts.
+  by rewrite -(W_W (facing W)) card_class_dvd_darts.
 have partner (p : V) : exists q : W, alikeb undirected p q.
   by have [q /alikeP pq] := indistinguishable_alike p same; exists q.
 pose f (p : V) : W := xchoose (partner p).

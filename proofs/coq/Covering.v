@@ -22,10 +22,10 @@ elim: s d e path_s last_s => [|r s IH] d e /=.
   move=> _ at_d same; have /f_facing-> := esym at_d.
   by apply/esym/f_facing; rewrite -same.
 case/andP=> step path_s last_s same; case/orP: step => /eqP rE.
-  apply: (inv_inj (@opposite_involutive V)); apply: IH; first by rewrite f_opposite -rE.
+  apply: (inv_inj (@oppositeK V)); apply: IH; first by rewrite f_opposite -rE.
     by rewrite f_opposite -rE.
   by rewrite !f_opposite same.
-apply: (@clockwise_injective V); apply: IH; first by rewrite f_clockwise -rE.
+apply: (@clockwise_inj V); apply: IH; first by rewrite f_clockwise -rE.
   by rewrite f_clockwise -rE.
 by rewrite !f_clockwise same.
 Qed.

@@ -41,7 +41,7 @@ Lemma turn_door_to d e : d < size S -> e < size S -> vertex S d = vertex S e ->
 Proof.
 move=> d_lt e_lt same; have [/andP[le_d lt_d] _] := wf_bounds wf d_lt.
 have [/andP[le_e lt_e] _] := wf_bounds wf e_lt.
-rewrite /door_to (em_turn em d_lt) (em_turn em e_lt) -same -turn_add; rewrite -same in le_e.
+rewrite /door_to (em_turn em d_lt) (em_turn em e_lt) -same -turnD; rewrite -same in le_e.
 rewrite -(turn_mod _ (e - _)) -(turn_mod _ (_ + _)) degree_vertex //; congr (turn _ _).
 rewrite modnDmr -[RHS]modnDr; congr (_ %% _).
 have le : d <= e + doors S d by rewrite (leq_trans (ltnW lt_d)) // leq_add2r.
@@ -58,7 +58,7 @@ have near : vertex S d <= e < vertex S d + doors S d.
   by rewrite leq_addr ltn_add2l ltn_pmod ?doors_gt0.
 have e_lt : e < size S by case/andP: near => _ e_lt; apply: leq_trans e_lt out.
 have [same _] := wf_same wf lt near; exists e; split=> //.
-rewrite (em_turn em e_lt) same (em_turn em lt) -turn_add addKn.
+rewrite (em_turn em e_lt) same (em_turn em lt) -turnD addKn.
 by rewrite -degree_vertex // turn_mod.
 Qed.
 
@@ -73,7 +73,7 @@ by exists (door_to S d e); rewrite turn_door_to.
 Qed.
 
 (** The percepts in the world are those expected in the map. *)
-Lemma expected_is_perceived d : d < size S -> expected S d = perceive directional (place d).
+Lemma expectedE d : d < size S -> expected S d = perceive directional (place d).
 Proof.
 move=> lt; have S_gt0 := wf_some wf.
 rewrite /expected /perceive /directional (em_doors em lt) -(em_facing em) same_vertex_known //.
@@ -103,10 +103,10 @@ rewrite (traverse_known lt dd' same) -(em_doors em lt) door_to_lt //; exact: IH.
 Qed.
 
 (** A robot that has the expected sighting at the marked vertex of the map is where it believes to be. *)
-Lemma sighting_tells_pose pose (q : W) : pose < size S -> vertex S pose = 0 ->
+Lemma expected_inj pose (q : W) : pose < size S -> vertex S pose = 0 ->
   perceive directional q = expected S pose -> place pose = q.
 Proof.
-move=> lt at_start; rewrite expected_is_perceived // /perceive /directional => -[_].
+move=> lt at_start; rewrite expectedE // /perceive /directional => -[_].
 have at_marker : same_vertex (place pose) (facing W).
   by rewrite -(em_facing em) same_vertex_known ?(wf_some wf) // (wf_first wf) at_start.
 rewrite at_marker; case: ifP => // near [same].

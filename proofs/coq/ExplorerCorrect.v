@@ -146,7 +146,7 @@ move=> _ /(_ erefl) differ; have be' : believes (with_refuted K1 e h) place spot
   rewrite inE => /predU1P[[-> ->]|/(be_refuted be)//].
   have low : minn e h < maxn e h by rewrite gtn_min !leq_max; case: (ltngtP e h) he => //; rewrite ?orbT.
   split=> //; first by rewrite mapE gtn_max e_lt h_lt.
-  rewrite /minn /maxn; case: ifP => _ same; apply: differ; rewrite ?same ?opposite_involutive //.
+  rewrite /minn /maxn; case: ifP => _ same; apply: differ; rewrite ?same ?oppositeK //.
 have lt := refuted_le be'; have [actionsE costE] := actions_left_refuted e h left lt.
 exists left; split=> //.
 - by rewrite /edges_left /= mapE.
@@ -165,7 +165,7 @@ Proof. by move=> *; arithmetic. Qed.
 
 Lemma perform_spec K place spots q left a :
   believes K place spots q -> edges_left K left -> allowed_action allowed patience K a ->
-  always directional (perform K a) q
+  always (moving directional W) (perform K a) q
     (fun K' r k => exists place' spots' left', believes K' place' spots' r /\ progress K left K' left' k).
 Proof.
 move=> be count; have em := be_map be; have known := size_known em.
@@ -183,13 +183,13 @@ case: a => [e p|e h|e|e w|e h t] /=.
   have be' : believes (with_far K e (to_dart (trail K) p)) place spots q.
     case: (be) => *; split=> //= [e' x|]; last by rewrite far_end_none.
     rewrite inE => /predU1P[[-> ->]|/(be_far be)//].
-    by rewrite edgeE (same_image be from_lt at_lt same) atE.
+    by rewrite edgeE (eq_image be from_lt at_lt same) atE.
   have [actionsE costE] := actions_left_far e (to_dart (trail K) p) left (far_ends_le be').
   split=> //; split=> //; rewrite ?addn0 //; [by rewrite -actionsE | by rewrite -costE leq_addr |].
   by move=> _; left; rewrite -costE leq_add2l leq_addr.
 - case far_e: far_end => [x|//] /and3P[eU hU /eqP same]; have [e_lt x_lt xE] := far_endP be far_e.
   have h_lt := known_lt h hU; have [at_lt atE] := be_in_trail be h_lt.
-  have placed : place h = opposite (place e) by rewrite -atE -(same_image be x_lt at_lt same).
+  have placed : place h = opposite (place e) by rewrite -atE -(eq_image be x_lt at_lt same).
   have [be' sizeU] := with_loop_believes be eU hU placed; exists place, spots, left.-1; split=> //.
   have [|count' left_gt0] := edge_progress count known _ (size_known (be_map be')).
     by rewrite sizeU /= size_with_edge // -addnS -addnS.
@@ -204,7 +204,7 @@ case: a => [e p|e h|e|e w|e h t] /=.
   split; rewrite ?addn0 //; [by rewrite -actionsE | by rewrite -costE leq_addr |].
   by move=> _; left; rewrite -costE leq_add2l leq_addr.
 - case/and3P=> eU /eqP none way_ok; have e_lt := known_lt e eU; have /andP[leads_there _] := way_ok.
-  apply: always_bind; apply: always_weaken (go_over_spec be e_lt leads_there) => -[K1 seen] r k /=.
+  apply: always_bind; apply: alwaysW (go_over_spec be e_lt leads_there) => -[K1 seen] r k /=.
   move=> [spots' [be1 [mapE farE refutedE] _ rE [kE madeE strayedE]]]; rewrite addn0.
   exists place, spots', left; set x := here K1.
   have be' : believes (with_far K1 e x) place spots' r.
@@ -225,10 +225,10 @@ case far_e: far_end => [x|//] /and5P[eU hU he fresh]; have [e_lt x_lt xE] := far
 have h_lt := known_lt h hU; case: t => [w path|way y entry path] /=.
   case/andP=> way_ok path_ok; have /andP[leads_there _] := way_ok.
   have /andP[path_leads _] := path_ok.
-  apply: always_bind; apply: always_weaken (go_over_spec be e_lt leads_there) => -[K1 seen] r k /=.
+  apply: always_bind; apply: alwaysW (go_over_spec be e_lt leads_there) => -[K1 seen] r k /=.
   move=> [spots1 [be1 kept1 seenE rE [kE madeE strayedE]]]; have [mapE _ _] := kept1.
   apply: always_bind; rewrite -mapE in h_lt path_leads.
-  apply: always_weaken (try_spec be1 h_lt path_leads seenE) => -[K2 came] r2 k2 /=.
+  apply: alwaysW (try_spec be1 h_lt path_leads seenE) => -[K2 came] r2 k2 /=.
   move=> [spots2 [be2 kept2 k2_le made2 [strayed2 result]]].
   have confirmed pose : came = Some pose ->
       [/\ place h = opposite (place e), pose < size (known_map K) & place pose = r2].
@@ -244,10 +244,10 @@ have h_lt := known_lt h hU; case: t => [w path|way y entry path] /=.
   exact: strict_cost (way_le w e short e_lt way_ok) (path_le h path short h_lt path_ok) k2_le short'.
 case/and5P=> early entry_lt leads_there y_lt /and4P[way_ok path_ok predicted proves].
 have /andP[path_leads _] := path_ok.
-apply: always_bind; apply: always_weaken (go_through_spec be y_lt leads_there) => -[K1 seen] r k /=.
+apply: always_bind; apply: alwaysW (go_through_spec be y_lt leads_there) => -[K1 seen] r k /=.
 move=> [spots1 [be1 kept1 seenE rE [kE madeE]]]; have [mapE _ _] := kept1.
 apply: always_bind; rewrite -mapE in entry_lt path_leads.
-apply: always_weaken (try_spec be1 entry_lt path_leads seenE) => -[K2 came] r2 k2 /=.
+apply: alwaysW (try_spec be1 entry_lt path_leads seenE) => -[K2 came] r2 k2 /=.
 move=> [spots2 [be2 kept2 k2_le made2 [strayed2 result]]].
 have confirmed pose : came = Some pose ->
     [/\ place h = opposite (place e), pose < size (known_map K) & place pose = r2].
@@ -309,7 +309,7 @@ Definition cost all := all + 4 * early + 2 * (n + 1).
 
 Lemma explorer_actions_spec all bound K place spots q left :
   believes K place spots q -> edges_left K left ->
-  always directional (explorer_actions allowed patience bound K) q
+  always (moving directional W) (explorer_actions allowed patience bound K) q
     (fun answer r k =>
        (right_answer answer r \/ answer = None /\ bound < actions_left K left) /\
        (only_short -> soon_strict -> cost_left K left <= all ->
@@ -332,9 +332,9 @@ elim: bound K place spots q left => [|bound IH] K place spots q left be count;
   by move=> _ _ _; rewrite addn0; apply: leq_trans; rewrite leq_addl.
 have some : unexplored (known_map K) != [::] by rewrite UE.
 split; first exact: default_allowed be some.
-move=> a a_ok; apply: always_bind; apply: always_weaken (perform_spec be count a_ok) => K' r k.
+move=> a a_ok; apply: always_bind; apply: alwaysW (perform_spec be count a_ok) => K' r k.
 move=> [place' [spots' [left' [be' [count' less madeE cost_less paid]]]]].
-apply: always_weaken (IH K' place' spots' r left' be' count') => answer r' k' [right cost'].
+apply: alwaysW (IH K' place' spots' r left' be' count') => answer r' k' [right cost'].
 split.
   case: right => [right|[none few]]; [by left | right; split=> //].
   exact: leq_ltn_trans few less.
@@ -348,7 +348,7 @@ Qed.
 (** * From the start *)
 
 Lemma folding_explorer_spec bound :
-  always directional (folding_explorer allowed patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer allowed patience bound (perceive directional (facing W))) (facing W)
     (fun answer r k =>
        (right_answer answer r \/ answer = None /\ bound < 2 * m * (m + 1)) /\
        (only_short -> soon_strict -> k <= cost (6 * n * m * m + 2 * n * m + 2 * m))).
@@ -374,7 +374,7 @@ have actionsE : actions_left K m = 2 * m * (m + 1).
 have costE : cost_left K m = 6 * n * m * m + 2 * n * m + 2 * m.
   by rewrite /cost_left /= !subn0 pairsE; arithmetic.
 have := explorer_actions_spec (6 * n * m * m + 2 * n * m + 2 * m) bound be count.
-rewrite actionsE costE; apply: always_weaken => answer r k [right cost_k]; split=> // short patience_le.
+rewrite actionsE costE; apply: alwaysW => answer r k [right cost_k]; split=> // short patience_le.
 apply: cost_k short patience_le (leqnn _) _.
 rewrite -[size (strayed K)]/0 -[made K]/0 add0n addn0 /cost; apply: leq_trans (leq_addr _ _) (leq_addr _ _).
 Qed.
@@ -383,12 +383,13 @@ End Explorer.
 
 (** With the patience of the running explorer. *)
 Lemma folding_explorer_cost (W : start) bound :
-  always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer no_longer usual_patience bound (perceive directional (facing W)))
+    (facing W)
     (fun _ _ k => k <= 6 * vertices W * edges W ^ 2 + 18 * vertices W * edges W + 2 * edges W + 2 * vertices W + 802).
 Proof.
 have short k l : k <= l -> no_longer k l by [].
 pose early := 4 * vertices W * edges W + 200.
-apply: always_weaken (folding_explorer_spec usual_patience short W early bound) => answer r k [_ cost_k].
+apply: alwaysW (folding_explorer_spec usual_patience short W early bound) => answer r k [_ cost_k].
 apply: leq_trans (cost_k _ _) _ => // [S place em|].
   rewrite /usual_patience /early leq_add2r; have known := size_known em; have placed := known_vertices_le em.
   have -> : 4 * vertices W * edges W = 2 * vertices W * (2 * edges W) by arithmetic.

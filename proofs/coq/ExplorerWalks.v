@@ -76,14 +76,14 @@ have near : vertex S d <= e < vertex S d + doors S d.
   by rewrite leq_addr ltn_add2l ltn_pmod ?(doors_gt0 em).
 have e_lt : e < size S by case/andP: near => _ e_lt; apply: leq_trans e_lt out.
 have [same _] := wf_same wf lt near; split=> //.
-rewrite (em_turn em e_lt) same (em_turn em lt) -turn_add addKn.
+rewrite (em_turn em e_lt) same (em_turn em lt) -turnD addKn.
 by rewrite -(degree_vertex em) // turn_mod.
 Qed.
 
 Lemma pose_at_base_right :
   pose_at_base K < size S /\ walk q (way_back (strayed K)) = place (pose_at_base K).
 Proof.
-have := retrace_walk (place (base K)) (unzip1 (strayed K)); rewrite -(be_strayed be) -(be_pose be) => ->.
+have := way_backK (place (base K)) (unzip1 (strayed K)); rewrite -(be_strayed be) -(be_pose be) => ->.
 have base_lt := be_base be; rewrite /pose_at_base; case: (strayed K) => [|step others] //=.
 by have [lt _ ->] := turned_right step.1 base_lt.
 Qed.
@@ -140,14 +140,14 @@ Qed.
 Lemma default_way e : e < size S -> doors_by K (way_home K e) e != None.
 Proof.
 move=> e_lt; rewrite /way_home /= -/S; have [lt _] := pose_at_base_right.
-have root_lt := vertex_lt wf lt; have root := vertex_idem wf lt.
+have root_lt := vertex_lt wf lt; have root := vertex_vertex wf lt.
 by rewrite from_root_leads.
 Qed.
 
 Lemma way_home_moves e : e < size S -> way_moves K (way_home K e) < size (strayed K) + vertices W.
 Proof.
 move=> e_lt; rewrite /= ltn_add2l; have [lt _] := pose_at_base_right.
-have root_lt := vertex_lt wf lt; have root := vertex_idem wf lt.
+have root_lt := vertex_lt wf lt; have root := vertex_vertex wf lt.
 apply: leq_trans (known_vertices_le em); exact: from_root_short.
 Qed.
 
@@ -165,7 +165,7 @@ Qed.
 
 (** ** Conclusions *)
 
-Lemma same_image x y : x.1 < size (trail K) -> y.1 < size (trail K) -> stands_for K x = stands_for K y ->
+Lemma eq_image x y : x.1 < size (trail K) -> y.1 < size (trail K) -> stands_for K x = stands_for K y ->
   image spots x = image spots y.
 Proof.
 move=> x_lt y_lt same; have right := be_classes be.
@@ -181,7 +181,7 @@ move: contra; rewrite /contradicts folded_f => /orP[/negP|/hasP[p /(mem_passages
   have [from_lt to_lt edgeE] := passage_ends (be_explains be) ok.
   have [_ fromE _] := standing_for_right (be_explains be) right from_lt.
   have [_ toE _] := standing_for_right (be_explains be) right to_lt.
-  have := opposite_moves (image spots (from_dart (trail K) p)).
+  have := opposite_neq (image spots (from_dart (trail K) p)).
   by rewrite -edgeE -toE -own fromE eqxx.
 apply; rewrite map_inj_in_uniq ?filter_uniq ?iota_uniq //.
 move=> d e; rewrite !mem_filter !mem_iota => /andP[/eqP d_first d_lt] /andP[/eqP e_first e_lt] same_root.
@@ -201,7 +201,7 @@ move=> h_lt entry_lt far_lt x_lt /hasP[p /(mem_passages (be_explains be)) ok /an
 have [from_lt to_lt edgeE] := passage_ends (be_explains be) ok.
 have [entry_at entryE] := be_in_trail be entry_lt; have [h_at hE] := be_in_trail be h_lt.
 have x_to : image spots x = image spots (to_dart (trail K) p).
-  by rewrite edgeE (same_image from_lt entry_at same) entryE enters opposite_involutive.
+  by rewrite edgeE (eq_image from_lt entry_at same) entryE enters oppositeK.
 have [f folded_f right] := fold_with_right (be_explains be) (be_classes be) x_lt to_lt x_to.
 move: proves; rewrite folded_f => /eqP same_f.
 have [_ <- _] := standing_for_right (be_explains be) right far_lt; rewrite same_f.
@@ -230,7 +230,7 @@ Lemma with_loop_believes e h : e \in unexplored S -> h \in unexplored S -> place
   size (unexplored S) = (size (unexplored (known_map (with_loop K e h)))).+2.
 Proof.
 move=> eU hU placed; have he : h != e.
-  by apply/eqP=> same; have := opposite_moves (place e); rewrite -placed same eqxx.
+  by apply/eqP=> same; have := opposite_neq (place e); rewrite -placed same eqxx.
 have := eU; rewrite mem_unexplored => /andP[e_lt _]; have := hU; rewrite mem_unexplored => /andP[h_lt _].
 split; last exact: size_unexplored_with_edge.
 have sz : size (with_edge S e h) = size S := size_with_edge e_lt h_lt.
@@ -240,7 +240,7 @@ Qed.
 Lemma refuted_right e h : e < size S -> h < size S -> is_refuted K e h -> place h <> opposite (place e).
 Proof.
 move=> e_lt h_lt /(be_refuted be)[_ _ differ] same; apply: differ; rewrite /minn /maxn.
-by case: ifP => _; rewrite same ?opposite_involutive.
+by case: ifP => _; rewrite same ?oppositeK.
 Qed.
 
 Lemma with_place_believes e x : e \in unexplored S -> far_end K e = Some x ->
@@ -270,7 +270,7 @@ split; rewrite /= -?/S ?degE ?sz ?old //; try by case: be.
     by rewrite old //; apply: (be_in_trail be).
   have lt' : d - size S < degree t by rewrite ltn_subLR.
   rewrite (nth_map 0) ?size_iota // nth_iota // add0n /=; split=> //.
-  by rewrite /place' ltnNge ge /= -[opposite (place e)]/t -xE /image /= turn_add.
+  by rewrite /place' ltnNge ge /= -[opposite (place e)]/t -xE /image /= turnD.
 - move=> e' x' /(be_far be)[e'_lt x'_lt ->]; rewrite old //.
   by split=> //; apply: leq_trans e'_lt (leq_addr _ _).
 - move=> i j /(be_refuted be)[ij j_lt differ]; rewrite !old //; last exact: ltn_trans ij j_lt.
@@ -286,7 +286,7 @@ End Known.
 (** It goes to a dart of the map and over its edge. *)
 Lemma go_over_spec K place spots q w e :
   believes K place spots q -> e < size (known_map K) -> doors_by K w e != None ->
-  always directional (go_over K w e) q
+  always (moving directional W) (go_over K w e) q
     (fun after r k => exists spots',
        [/\ believes after.1 place spots' r, kept K after.1, after.2 = perceive directional r,
            r = opposite (place e)
@@ -306,7 +306,7 @@ Qed.
 Lemma go_through_spec K place spots q way x :
   believes K place spots q -> x.1 < size (trail K) ->
   doors_through (trail K) (folding K) (here K) way x != None ->
-  always directional (go_through K way x) q
+  always (moving directional W) (go_through K way x) q
     (fun after r k => exists spots',
        [/\ believes after.1 place spots' r, kept K after.1, after.2 = perceive directional r,
            r = opposite (image spots x) & k = (size way).+1 /\ made after.1 = made K + k]).
@@ -334,7 +334,7 @@ Proof. by move=> [m f r] [m' f' r']; split; [rewrite m' | rewrite f' | rewrite r
 Lemma try_spec K place spots q pose seen darts :
   believes K place spots q -> pose < size (known_map K) ->
   leads (known_map K) (vertex (known_map K) pose) darts 0 -> seen = perceive directional q ->
-  always directional (try K pose seen darts) q
+  always (moving directional W) (try K pose seen darts) q
     (fun ended r k => exists spots',
        [/\ believes ended.1 place spots' r, kept K ended.1, k <= size darts, made ended.1 = made K + k
          & size (strayed ended.1) = size (strayed K) + k /\
@@ -346,13 +346,13 @@ Proof.
 elim: darts K spots q pose seen => [|d darts IH] K spots q pose seen be lt path seenE; have em := be_map be.
   rewrite /=; case: eqP => [fits|unlike] /=; exists spots; rewrite !addn0; split=> //; split=> //.
     have at_q : place pose = q.
-      by apply: (sighting_tells_pose em lt); [apply/eqP | rewrite -seenE].
+      by apply: (expected_inj em lt); [apply/eqP | rewrite -seenE].
     by split.
-  by move=> at_q; apply: unlike; rewrite (expected_is_perceived em) // at_q.
+  by move=> at_q; apply: unlike; rewrite (expectedE em) // at_q.
 move: path => /=; case/andP=> /eqP same; case dd': (other _ d) => [d'|//] /= path.
 case: eqP => [fits|unlike] /=; last first.
   exists spots; rewrite !addn0; split=> //; split=> // at_q.
-  by apply: unlike; rewrite (expected_is_perceived em) // at_q.
+  by apply: unlike; rewrite (expectedE em) // at_q.
 have [d'_lt _ _] := wf_other (em_wf em) dd'; set i := door_to _ pose d.
 have degE : seen.1 = degree q by rewrite seenE.
 have i_lt : i < degree q.
@@ -362,12 +362,12 @@ split=> //; have [here_lt hereE] := be_here be.
 set q' := traverse q i; set K' := arrived _ _ _ _ _ _.
 have be' : believes K' place (rcons spots q') q'.
   apply: (arrived_believes be) => //.
-  - by rewrite /q' /traverse -hereE /image /= turn_add.
+  - by rewrite /q' /traverse -hereE /image /= turnD.
   - exact: be_base be.
   - by rewrite /unzip1 map_rcons taken_rcons -/unzip1 -(be_strayed be) -(be_pose be) degE.
   - by rewrite /unzip1 map_rcons walk_rcons -/unzip1 -(be_pose be).
   by rewrite size_rcons addn1 ltnS (be_made be).
-apply: always_weaken (IH K' _ q' d' _ be' d'_lt path (erefl _)).
+apply: alwaysW (IH K' _ q' d' _ be' d'_lt path (erefl _)).
 move=> [K'' came] r k [spots' [be'' kept' k_le madeE [strayedE result]]]; exists spots'; split=> //.
 - by rewrite madeE /= addnAC -addnA addn1 addnS.
 split; first by rewrite strayedE /= size_rcons addnS.
@@ -385,7 +385,7 @@ Arguments default_way {W K place spots q} be {e}.
 Arguments way_home_moves {W K place spots q} be {e}.
 Arguments default_path {allowed} allowed_short {W K place spots q} be {h}.
 Arguments path_moves {W K place spots q} be {h}.
-Arguments same_image {W K place spots q} be {x y}.
+Arguments eq_image {W K place spots q} be {x y}.
 Arguments confirms_right {W K place spots q} be {far h x entry}.
 Arguments predicts_right {W K place spots q} be {far h x entry}.
 Arguments with_loop_believes {W K place spots q} be {e h}.

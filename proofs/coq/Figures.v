@@ -80,16 +80,16 @@ Definition file_dart := seq_sub names.
 Definition file_opposite (d : file_dart) : file_dart := SeqSub (flip_names (ssvalP d)).
 Definition file_clockwise (d : file_dart) : file_dart := SeqSub (around_names (ssvalP d)).
 
-Lemma file_involutive : involutive file_opposite.
+Lemma file_oppositeK : involutive file_opposite.
 Proof. by move=> d; apply: val_inj; case: d => -[]. Qed.
 
-Lemma file_moves d : file_opposite d != d.
+Lemma file_opposite_neq d : file_opposite d != d.
 Proof.
 case/and3P: file_sound => _ /allP ok _; have /andP[_] := ok _ (ssvalP d).
 by apply: contra => /eqP/(congr1 val) /= /(congr1 snd) /= ->.
 Qed.
 
-Lemma file_injective : injective file_clockwise.
+Lemma file_clockwise_inj : injective file_clockwise.
 Proof.
 move=> [d d_in] [e e_in] /(congr1 val) /= [same_v same_next]; apply: val_inj => /=.
 case: d e same_v same_next {d_in e_in} => [v w] [v' w'] /= <- /(congr1 (prev (neighbours v))).
@@ -113,7 +113,7 @@ by rewrite /step eqxx orbT.
 Qed.
 
 Definition world : embedded_graph :=
-  EmbeddedGraph file_involutive file_moves file_injective file_connected.
+  EmbeddedGraph file_oppositeK file_opposite_neq file_clockwise_inj file_connected.
 
 Implicit Types d e : world.
 
@@ -125,7 +125,7 @@ Proof. by elim: i => //= i <-. Qed.
 Lemma iter_around i x : iter i around x = (x.1, iter i (next (neighbours x.1)) x.2).
 Proof. by elim: i => [|i IH] /=; [case: x | rewrite IH]. Qed.
 
-Lemma next_reaches (T : eqType) (s : seq T) x y :
+Lemma iter_next (T : eqType) (s : seq T) x y :
   uniq s -> x \in s -> y \in s -> exists i, y = iter i (next s) x.
 Proof.
 move=> s_uniq /rot_to[k t rot_s] y_s.
@@ -140,7 +140,7 @@ Proof.
 apply/same_vertexP/eqP => [[i ->] | same_v].
   by rewrite val_turn iter_around.
 have d_in := ssvalP d; have e_in := ssvalP e; rewrite !mem_names -same_v in d_in e_in.
-have [i e_i] := next_reaches (uniq_neighbours _) d_in e_in.
+have [i e_i] := iter_next (uniq_neighbours _) d_in e_in.
 by exists i; apply: val_inj; rewrite val_turn iter_around -e_i same_v -surjective_pairing.
 Qed.
 
@@ -203,7 +203,7 @@ Definition same_mark (both : name * name) := (both.1.1 == d1.1) == (both.2.1 == 
 
 Let closed_bisimilar M found :
   closed found -> (forall (p : V) (q : W), (val p, val q) \in found -> perceive M p = perceive M q) ->
-  bisimilar M V W.
+  bisimilar (moving M) V W.
 Proof.
 case/andP=> start_found /allP found_closed same.
 exists (fun p q => (val p, val q) \in found); split=> // p q pq; split=> [|i]; first exact: same.
@@ -213,7 +213,7 @@ by have /andP[] := found_closed _ pq.
 Qed.
 
 Lemma no_marker_bisimilar rounds :
-  let found := pairs rounds in closed found && all same_degree found -> bisimilar no_marker V W.
+  let found := pairs rounds in closed found && all same_degree found -> bisimilar (moving no_marker) V W.
 Proof.
 move=> found /andP[found_closed /allP degrees]; apply: closed_bisimilar found_closed _ => p q pq.
 by rewrite /perceive !world_degree (eqP (degrees _ pq)).
@@ -221,7 +221,7 @@ Qed.
 
 Lemma undirected_bisimilar rounds :
   let found := pairs rounds in closed found && all (fun both => same_degree both && same_mark both) found ->
-  bisimilar undirected V W.
+  bisimilar (moving undirected) V W.
 Proof.
 move=> found /andP[found_closed /allP same]; apply: closed_bisimilar found_closed _ => p q pq.
 have /andP[/eqP degrees /eqP marks] := same _ pq.
@@ -234,7 +234,7 @@ Lemma marker_bisimilar M (sighted : world_file -> name -> name -> sighting) roun
      M (start_at ok d_in) p = sighted file d (val p)) ->
   let found := pairs rounds in
   let same both := same_degree both && (sighted file1 d1 both.1 == sighted file2 d2 both.2) in
-  closed found && all same found -> bisimilar M V W.
+  closed found && all same found -> bisimilar (moving M) V W.
 Proof.
 move=> M_sighted found same /andP[found_closed /allP all_same].
 apply: closed_bisimilar found_closed _ => p q pq; have /andP[/eqP degrees /eqP sightings] := all_same _ pq.
@@ -272,7 +272,7 @@ Definition cycle_4 : start := start_at cycle_4_sound (erefl : (0, 1) \in names c
 Lemma cycles_not_isomorphic : ~ isomorphic cycle_3 cycle_4.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Lemma cycles_bisimilar : bisimilar no_marker cycle_3 cycle_4.
+Lemma cycles_bisimilar : bisimilar (moving no_marker) cycle_3 cycle_4.
 Proof. by apply: (@no_marker_bisimilar _ _ _ _ _ _ _ _ 12); vm_compute. Qed.
 
 (** * Figure 1 *)
@@ -307,7 +307,7 @@ Definition figure_1b : start := start_at figure_1b_sound (erefl : (0, 1) \in nam
 Lemma figure_1_not_isomorphic : ~ isomorphic figure_1a figure_1b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Lemma figure_1_bisimilar : bisimilar undirected figure_1a figure_1b.
+Lemma figure_1_bisimilar : bisimilar (moving undirected) figure_1a figure_1b.
 Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 12); vm_compute. Qed.
 
 (** * The smallest simple pair *)
@@ -338,7 +338,7 @@ Definition smallest_b : start := start_at smallest_b_sound (erefl : (0, 1) \in n
 Lemma smallest_not_isomorphic : ~ isomorphic smallest_a smallest_b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Lemma smallest_bisimilar : bisimilar undirected smallest_a smallest_b.
+Lemma smallest_bisimilar : bisimilar (moving undirected) smallest_a smallest_b.
 Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 24); vm_compute. Qed.
 
 Lemma figure_1_simple : simple figure_1a /\ simple figure_1b.
@@ -380,13 +380,13 @@ Proof. by split; apply: world_simple. Qed.
 Lemma edge_not_isomorphic : ~ isomorphic edge_a edge_b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 2; 1; 1]); vm_compute. Qed.
 
-Lemma edge_undirected_edge : bisimilar undirected_edge edge_a edge_b.
+Lemma edge_undirected_edge : bisimilar (moving undirected_edge) edge_a edge_b.
 Proof.
 pose sighted (file : world_file) (d x : name) := if (x == d) || (x == flip d) then Passed else Nothing.
 by apply: (@marker_bisimilar _ _ _ _ _ _ _ _ _ sighted 24) => //; vm_compute.
 Qed.
 
-Lemma edge_two_identical : bisimilar two_identical edge_a edge_b.
+Lemma edge_two_identical : bisimilar (moving two_identical) edge_a edge_b.
 Proof.
 pose sighted (file : world_file) (d x : name) :=
   match x.1 == d.1, x.1 == d.2 with

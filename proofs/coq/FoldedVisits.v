@@ -8,8 +8,8 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-Lemma turn_add_comm (G : embedded_graph) (p : G) i j : turn p (i + j) = turn (turn p j) i.
-Proof. by rewrite addnC turn_add. Qed.
+Lemma turnDC (G : embedded_graph) (p : G) i j : turn p (i + j) = turn (turn p j) i.
+Proof. by rewrite addnC turnD. Qed.
 
 Section Visits.
 
@@ -51,7 +51,7 @@ Lemma standing_for_right x : x.1 < size trail ->
 Proof.
 move=> lt; have [r_lt atE] := rc_class right lt; rewrite /standing_for.
 case: (nth _ f x.1) r_lt atE => r i /= r_lt atE; rewrite deg // ltn_mod degree_gt0; split=> //.
-by rewrite /image /= turn_mod atE /image /= -turn_add addnC.
+by rewrite /image /= turn_mod atE /image /= -turnD addnC.
 Qed.
 
 Lemma unite_right x y : x.1 < size trail -> y.1 < size trail -> image x = image y ->
@@ -78,13 +78,13 @@ have -> : agree (perceived trail r) (perceived trail s) a b.
   have at_r : turn (spot r) (findex clockwise (spot r) (facing W)) = facing W.
     by apply: iter_findex; rewrite -/(same_vertex _ _) near_eq.
   have at_s : turn (spot s) (findex clockwise (spot s) (facing W)) = facing W by apply: iter_findex.
-  by rewrite (turn_add _ _ b) at_r (turn_add_comm _ _ a) -same -turn_add_comm turn_add at_s.
+  by rewrite (turnD _ _ b) at_r (turnDC _ _ a) -same -turnDC turnD at_s.
 eexists; first by []; split=> [|k lt]; first by rewrite size_map rc_size.
 have [c_lt atE] := rc_class right lt; rewrite (nth_map (0, 0)) ?(rc_size right) //.
 case: eqP => [cs|//] /=; split=> //; rewrite atE /image cs /= deg // turn_mod.
 have -> : (nth (0, 0) f k).2 + (a + degree (spot r) - b) = a + (degree (spot r) - b) + (nth (0, 0) f k).2.
   by rewrite addnC addnBA // degrees ltnW.
-rewrite turn_add turn_add -same -(turn_add _ b) degrees subnKC; last exact: ltnW.
+rewrite turnD turnD -same -(turnD _ b) degrees subnKC; last exact: ltnW.
 by rewrite turn_degree.
 Qed.
 
@@ -98,7 +98,7 @@ Lemma passage_ends p : is_passage trail p ->
 Proof.
 move=> ok; case/andP: (ok) => _ lt; have [came atE] := ex_came ex ok.
 rewrite /from_dart /to_dart; case: ifP => _; split=> //=.
-by rewrite {2}/image /= atE opposite_involutive.
+by rewrite {2}/image /= atE oppositeK.
 Qed.
 
 Lemma mem_passages p : p \in passages trail -> is_passage trail p.
@@ -157,7 +157,7 @@ have [s_lt <- b_lt] := standing_for_right right y_lt; rewrite /between.
 case: (standing_for _ _ x) (standing_for _ _ y) r_lt s_lt a_lt b_lt => r a [s b] /= r_lt s_lt a_lt b_lt.
 rewrite deg //; case: eqP => // rs [<- <-]; move: b_lt; rewrite -rs => b_lt.
 rewrite /image /= degree_turn ltn_mod degree_gt0; split=> //.
-by rewrite -turn_add -turn_mod modnDmr subnKC ?modnDr ?turn_mod // (leq_trans (ltnW a_lt)) ?leq_addl.
+by rewrite -turnD -turn_mod modnDmr subnKC ?modnDr ?turn_mod // (leq_trans (ltnW a_lt)) ?leq_addl.
 Qed.
 
 Lemma doors_through_right here way x front last : here.1 < size trail -> x.1 < size trail ->

@@ -14,7 +14,7 @@ Unset Printing Implicit Defensive.
 Fixpoint doors_taken A (robot : strategy A) (M : marker) (W : start) (decisions : nat) : seq door :=
   if decisions is earlier.+1 then
     let doors := doors_taken robot M W earlier in
-    if robot (history robot M W earlier) is Leave i then rcons doors i else doors
+    if robot (history robot (moving M W) earlier) is Act i then rcons doors i else doors
   else [::].
 
 (** Whether a walk goes over the edge of a dart, in either direction. *)
@@ -74,6 +74,14 @@ Definition followed (x : trail_dart) : Prop := exists y z, folded x y /\ one_edg
 (** No dart is open. *)
 Definition complete : Prop :=
   forall visit i, visit < size seen -> i < degree_seen visit -> followed (visit, i).
+
+(** A dart of the vertex of another, as far as the folded trail shows. *)
+Definition at_vertex_of (x y : trail_dart) : Prop := exists i, folded (x.1, i) y.
+
+(** No edge of the folded trail is a loop, and no two are parallel. *)
+Definition simple_trail : Prop :=
+  (forall x y, one_edge x y -> ~ at_vertex_of x y) /\
+  (forall x y x' y', one_edge x y -> one_edge x' y' -> at_vertex_of x x' -> at_vertex_of y y' -> folded x x').
 
 End Trail.
 

@@ -11,16 +11,7 @@ Section Guided.
 
 Variables (M : marker) (W : start).
 
-Lemma always_bind_inv A B (p : program A) (next : A -> program B) (pose : W) Q :
-  always M (let* a := p in next a) pose Q ->
-  always M p pose (fun a q k => always M (next a) q (fun b r l => Q b r (k + l))).
-Proof.
-elim: p pose Q => [a|i go IH|T ok default go IH] pose Q //=.
-- by case=> open_i /IH.
-by case=> okd all; split=> // x /all /IH.
-Qed.
-
-Lemma always_guided_weaken g (pose : W) (Q R : option (partial_map * nat) -> W -> nat -> Prop) :
+Lemma always_guidedW g (pose : W) (Q R : option (partial_map * nat) -> W -> nat -> Prop) :
   (forall a q k, Q a q k -> R a q k) -> always_guided M g pose Q -> always_guided M g pose R.
 Proof.
 elim: g pose Q R => [K|||i go IH|K ask IH] pose Q R QR //=; try exact: QR.
@@ -29,7 +20,7 @@ by move=> all a; apply: IH (all a).
 Qed.
 
 Lemma always_guided_by p next (pose : W) Q :
-  always M p pose (fun K q k => always_guided M (next K) q (fun a r l => Q a r (k + l))) ->
+  always (moving M W) p pose (fun K q k => always_guided M (next K) q (fun a r l => Q a r (k + l))) ->
   always_guided M (guided_by p next) pose Q.
 Proof.
 elim: p pose Q => [K|i go IH|T ok default go IH] pose Q //=.
@@ -38,12 +29,12 @@ by case=> okd all; apply/IH/all.
 Qed.
 
 Lemma always_guided_actions allowed patience bound K (pose : W) Q :
-  always M (explorer_actions allowed patience bound K) pose Q ->
+  always (moving M W) (explorer_actions allowed patience bound K) pose Q ->
   always_guided M (guided_actions allowed patience bound K) pose Q.
 Proof.
 elim: bound K pose Q => [|bound IH] K pose Q /=; case: (unexplored _) => //= e U [_ all] a.
 case: ifP => //= a_ok; apply: always_guided_by.
-by apply: always_weaken (always_bind_inv (all a a_ok)) => K' q k; apply: IH.
+by apply: alwaysW (always_bindE (all a a_ok)) => K' q k; apply: IH.
 Qed.
 
 End Guided.

@@ -36,7 +36,7 @@ Qed.
 Lemma near_edge far x : ~~ far x -> ~~ far (opposite x) -> near_without far (opposite x) = near_without far x.
 Proof.
 move=> not_far not_far'; apply/idP/idP; last exact: near_opposite.
-by move/(near_opposite not_far'); rewrite opposite_involutive.
+by move/(near_opposite not_far'); rewrite oppositeK.
 Qed.
 
 Lemma near_ind far (P : W -> Prop) :
@@ -64,11 +64,11 @@ move=> P0 Pcw Popp x; have /connectP[s path_s ->] := connected (facing W) x.
 elim/last_ind: s path_s => [|s y IH] //; rewrite rcons_path last_rcons => /andP[/IH{}IH /orP[]/eqP->]; auto.
 Qed.
 
-Lemma edge_of_opposite x : edge_of (opposite x) =1 edge_of x.
-Proof. by move=> y; rewrite /edge_of opposite_involutive orbC. Qed.
+Lemma edge_of_oppositel x : edge_of (opposite x) =1 edge_of x.
+Proof. by move=> y; rewrite /edge_of oppositeK orbC. Qed.
 
-Lemma edge_of_sym x y : edge_of x (opposite y) = edge_of x y.
-Proof. by rewrite /edge_of (inv_eq (@opposite_involutive W)) (inj_eq (@opposite_inj W)) orbC. Qed.
+Lemma edge_of_oppositer x y : edge_of x (opposite y) = edge_of x y.
+Proof. by rewrite /edge_of (inv_eq (@oppositeK W)) (inj_eq (@opposite_inj W)) orbC. Qed.
 
 End Near.
 
@@ -90,7 +90,7 @@ Qed.
 
 Lemma reached_step k x : reached k x -> reached k.+1 (opposite x).
 Proof.
-by move=> reached_x; apply/existsP; exists (opposite x); rewrite same_vertex_refl opposite_involutive.
+by move=> reached_x; apply/existsP; exists (opposite x); rewrite same_vertex_refl oppositeK.
 Qed.
 
 Lemma reached_walk (doors : seq door) : reached (size doors) (walk (facing W) doors).
@@ -134,7 +134,7 @@ Lemma distance_parent x : 0 < distance x -> exists2 y, same_vertex x y & distanc
 Proof.
 have := reached_distance x; case dE: (distance x) => [|k] //= /existsP[y /andP[xy at_y]] _; exists y => //.
 apply/eqP; rewrite eqSS eqn_leq (distance_le at_y) -ltnS -dE (distance_same xy) andbT.
-by have := distance_step (opposite y); rewrite opposite_involutive.
+by have := distance_step (opposite y); rewrite oppositeK.
 Qed.
 
 (** * Hanging edges *)
@@ -186,9 +186,9 @@ apply: near_ind => [|x _ /andP[{}near apart]|x _ /andP[{}near apart] other].
 have [at_h|apart'] := boolP (same_vertex h (opposite x)); last first.
   by rewrite near_opposite //= /around negb_or apart.
 have [|_] := all (opposite x) at_h.
-  by apply: contra other => /eqP <-; rewrite /edge_of opposite_involutive eqxx orbT.
-rewrite opposite_involutive => /negP[]; apply: near_sub near => y; rewrite /around.
-by case/orP=> /eqP->; rewrite ?opposite_involutive at_h ?orbT.
+  by apply: contra other => /eqP <-; rewrite /edge_of oppositeK eqxx orbT.
+rewrite oppositeK => /negP[]; apply: near_sub near => y; rewrite /around.
+by case/orP=> /eqP->; rewrite ?oppositeK at_h ?orbT.
 Qed.
 
 Lemma hanging_near h : h \in hanging W -> near_without (edge_of h) (opposite h).
@@ -207,13 +207,13 @@ Qed.
 Lemma hanging_once h : h \in hanging W -> opposite h \notin hanging W.
 Proof.
 move=> h_hangs; apply/negP => /hanging_bridge/negP[]; apply: near_sub (hanging_near h_hangs) => x.
-by rewrite edge_of_opposite.
+by rewrite edge_of_oppositel.
 Qed.
 
 Definition hanging_edge x := (x \in hanging W) || (opposite x \in hanging W).
 
 Lemma hanging_edge_opposite x : hanging_edge (opposite x) = hanging_edge x.
-Proof. by rewrite /hanging_edge opposite_involutive orbC. Qed.
+Proof. by rewrite /hanging_edge oppositeK orbC. Qed.
 
 (** ** How many there are between a vertex and the marker *)
 
@@ -225,8 +225,8 @@ Proof.
 rewrite negb_or => /andP[x_not x'_not]; apply: eq_card => h; rewrite !inE; case h_hangs: (h \in _) => //=.
 have other : ~~ edge_of h x.
   apply/norP; split; apply/eqP => xE; first by rewrite xE h_hangs in x_not.
-  by rewrite xE opposite_involutive h_hangs in x'_not.
-by rewrite near_edge // edge_of_sym.
+  by rewrite xE oppositeK h_hangs in x'_not.
+by rewrite near_edge // edge_of_oppositer.
 Qed.
 
 Lemma above_hanging h : h \in hanging W -> hanging_above h = (hanging_above (opposite h)).+1.
@@ -236,7 +236,7 @@ apply: eq_card => g; rewrite !inE; have [->|gh] := eqVneq g h; first by rewrite 
 case g_hangs: (g \in _) => //=; have other : ~~ edge_of g h.
   rewrite /edge_of eq_sym negb_or gh; apply/eqP => hE.
   by have := hanging_once g_hangs; rewrite -hE h_hangs.
-by rewrite near_edge // edge_of_sym.
+by rewrite near_edge // edge_of_oppositer.
 Qed.
 
 Lemma above_facing : hanging_above (facing W) = 0.
@@ -246,7 +246,7 @@ Lemma above_le_step x : hanging_above x <= (hanging_above (opposite x)).+1.
 Proof.
 have [x_hangs|x_not] := boolP (x \in hanging W); first by rewrite above_hanging.
 have [x'_hangs|x'_not] := boolP (opposite x \in hanging W).
-  by rewrite (above_hanging x'_hangs) opposite_involutive -addn2 leq_addr.
+  by rewrite (above_hanging x'_hangs) oppositeK -addn2 leq_addr.
 by rewrite above_edge // /hanging_edge negb_or x_not.
 Qed.
 
@@ -274,10 +274,10 @@ have in_below : forall y, near_without (edge_of h) y \/ below h y.
   - by right; apply: next.
   - have [/orP[]/eqP yE|other] := boolP (edge_of h y); last by left; apply: near_opposite.
       by move: near; rewrite yE (negPf (hanging_bridge h_hangs)).
-    by right; rewrite yE opposite_involutive; apply: connect0.
+    by right; rewrite yE oppositeK; apply: connect0.
   have [/orP[]/eqP yE|other] := boolP (edge_of h y); last by right; apply: over.
     by left; rewrite yE; apply: hanging_near.
-  by right; rewrite yE opposite_involutive; apply: connect0.
+  by right; rewrite yE oppositeK; apply: connect0.
 move=> away; have [near|{away in_below}] := in_below x; first by rewrite near in away.
 elim/hanging_ind: {h} h_hangs x => h h_hangs all x /connectP[s path_s ->].
 have : same_vertex h (last h s) \/
@@ -291,8 +291,8 @@ have : same_vertex h (last h s) \/
     right; exists z; split=> //; last exact: connect0.
     by apply: contra other => /eqP->; rewrite /edge_of eqxx.
   have [/orP[]/eqP zE|other'] := boolP (edge_of (opposite e) z).
-  - by left; rewrite zE opposite_involutive.
-  - by right; exists e; split=> //; rewrite zE !opposite_involutive; apply: connect0.
+  - by left; rewrite zE oppositeK.
+  - by right; exists e; split=> //; rewrite zE !oppositeK; apply: connect0.
   by right; exists e; split=> //; apply: over.
 case=> [at_h|[e [he eh at_x]]]; first by exists h; rewrite // same_vertex_sym.
 by have [_] := all e he eh; apply.
@@ -309,7 +309,7 @@ Qed.
 
 Lemma distance_hanging h : h \in hanging W -> distance h = (distance (opposite h)).+1.
 Proof.
-move=> h_hangs; apply/eqP; rewrite eqn_leq; have := distance_step (opposite h); rewrite opposite_involutive => -> /=.
+move=> h_hangs; apply/eqP; rewrite eqn_leq; have := distance_step (opposite h); rewrite oppositeK => -> /=.
 suff: forall k x, reached k x -> ~~ near_without (edge_of h) x -> distance (opposite h) < k.
   by apply; [apply: reached_distance | apply: hanging_bridge].
 elim=> [|k IH] x /=; first by move=> at_marker; rewrite -(near_same _ at_marker) near_facing.
@@ -318,7 +318,7 @@ have [near|away'] := boolP (near_without (edge_of h) (opposite y)); last exact: 
 have [/orP[]/eqP yE|other] := boolP (edge_of h (opposite y)).
 - by move: near; rewrite yE (negPf (hanging_bridge h_hangs)).
 - by rewrite ltnS -yE; apply: distance_le.
-by have := near_opposite other near; rewrite opposite_involutive (negPf away).
+by have := near_opposite other near; rewrite oppositeK (negPf away).
 Qed.
 
 (** ** Leaves *)
@@ -331,7 +331,7 @@ elim/hanging_ind=> {}h h_hangs all; have [leaf|branch] := eqVneq (clockwise h) h
   exists h => //; rewrite h_hangs /= -dvdn1 -turn_period; exact/eqP.
 have at_h : same_vertex h (clockwise h) := same_vertex_turn h 1.
 have [e_hangs [leaf is_leaf le]] := all _ at_h branch; exists leaf => //; apply: leq_trans le.
-rewrite (above_hanging e_hangs) (distance_hanging e_hangs) opposite_involutive.
+rewrite (above_hanging e_hangs) (distance_hanging e_hangs) oppositeK.
 by rewrite -(above_same at_h) -(distance_same at_h); arithmetic.
 Qed.
 

@@ -8,7 +8,7 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 Lemma identifying_suffices M near beyond :
-  exists robot : strategy start, forall W : start, identifies M near beyond W -> maps_start M robot W.
+  exists robot : strategy start, forall W : start, identifies M near beyond W -> maps_start (moving M) robot W.
 Proof.
 exists (simulating near beyond mapper) => W identifies_W.
 have [map [n answered] iso] := mapper_maps W; exists map => //.
@@ -23,7 +23,7 @@ Variable W : start.
 Lemma directed_edge_identifies : identifies directed_edge predT (fun seen => seen.2 == PassedAlong) W.
 Proof.
 move=> p d _ /=; rewrite /directed_edge; case: (opposite d =P facing W) => [back|_].
-  by rewrite -back [d == _]eq_sym (negPf (opposite_moves d)).
+  by rewrite -back [d == _]eq_sym (negPf (opposite_neq d)).
 by rewrite (inj_eq (@opposite_inj W)); case: (d =P facing W).
 Qed.
 

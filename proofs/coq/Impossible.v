@@ -9,34 +9,34 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** The robot gives the same map in both. *)
-Lemma bisimilar_maps M (robot : strategy embedded_graph) V W :
-  bisimilar M V W -> maps M robot V -> maps M robot W -> isomorphic V W.
+Lemma bisimilar_maps E (I : start -> environment E) (robot : strategy_of E embedded_graph) V W :
+  bisimilar I V W -> maps I robot V -> maps I robot W -> isomorphic V W.
 Proof.
-move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
-by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_unique answers_map answers_map').
+move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_inj answers_map answers_map').
 Qed.
 
 (** And if the map contains the start, it is the same start in both. *)
-Lemma bisimilar_maps_start M (robot : strategy start) V W :
-  bisimilar M V W -> maps_start M robot V -> maps_start M robot W -> isomorphic_starts V W.
+Lemma bisimilar_maps_start E (I : start -> environment E) (robot : strategy_of E start) V W :
+  bisimilar I V W -> maps_start I robot V -> maps_start I robot W -> isomorphic_starts V W.
 Proof.
-move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+move=> /(bisimilar_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
 apply: isomorphic_starts_trans (isomorphic_starts_sym map_V) _.
-by rewrite (answers_unique answers_map answers_map').
+by rewrite (answers_inj answers_map answers_map').
 Qed.
 
-Corollary bisimilar_impossible M V W :
-  bisimilar M V W -> ~ isomorphic V W ->
-  forall robot : strategy embedded_graph, ~ (maps M robot V /\ maps M robot W).
+Corollary bisimilar_impossible E (I : start -> environment E) V W :
+  bisimilar I V W -> ~ isomorphic V W ->
+  forall robot : strategy_of E embedded_graph, ~ (maps I robot V /\ maps I robot W).
 Proof. by move=> VW not_iso robot [/(bisimilar_maps VW) both /both]. Qed.
 
 Lemma no_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
+  ~ (maps (moving no_marker) robot cycle_3 /\ maps (moving no_marker) robot cycle_4).
 Proof. exact: bisimilar_impossible cycles_bisimilar cycles_not_isomorphic robot. Qed.
 
 Lemma undirected_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
-  ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
+  ~ (maps (moving undirected) robot figure_1a /\ maps (moving undirected) robot figure_1b) /\
+  ~ (maps (moving undirected) robot smallest_a /\ maps (moving undirected) robot smallest_b).
 Proof.
 split; first exact: bisimilar_impossible figure_1_bisimilar figure_1_not_isomorphic robot.
 exact: bisimilar_impossible smallest_bisimilar smallest_not_isomorphic robot.

@@ -38,13 +38,13 @@ Proof. by rewrite filter_uniq ?enum_uniq. Qed.
 Lemma place_clockwise d : place (lollipop_clockwise d) = place d.
 Proof. by apply/eqP; rewrite -mem_at_place mem_next mem_at_place. Qed.
 
-Lemma lollipop_involutive : involutive lollipop_opposite.
+Lemma lollipop_oppositeK : involutive lollipop_opposite.
 Proof. by case=> [[i b]|[i b]] /=; rewrite negbK. Qed.
 
-Lemma lollipop_moves d : lollipop_opposite d != d.
+Lemma lollipop_opposite_neq d : lollipop_opposite d != d.
 Proof. by apply/eqP; case: d => [[i []]|[i []]]. Qed.
 
-Lemma lollipop_injective : injective lollipop_clockwise.
+Lemma lollipop_clockwise_inj : injective lollipop_clockwise.
 Proof.
 move=> d e same; have same_place : place d = place e by rewrite -place_clockwise same place_clockwise.
 move: same => /(congr1 (prev (at_place (place d)))).
@@ -55,7 +55,7 @@ Lemma turn_place d e : place d = place e -> exists i, e = iter i lollipop_clockw
 Proof.
 move=> same; have d_in : d \in at_place (place d) by rewrite mem_at_place.
 have e_in : e \in at_place (place d) by rewrite mem_at_place same.
-have [i eE] := Figures.next_reaches (uniq_at_place _) d_in e_in; exists i; rewrite eE.
+have [i eE] := Figures.iter_next (uniq_at_place _) d_in e_in; exists i; rewrite eE.
 have at_j j : place (iter j lollipop_clockwise d) = place d by elim: j => //= j <-; rewrite place_clockwise.
 by elim: i {eE} => //= i ->; rewrite /lollipop_clockwise at_j.
 Qed.
@@ -86,12 +86,12 @@ Qed.
 
 Lemma lollipop_connected d e : connect step d e.
 Proof.
-apply: (all_connected (root := lollipop_facing)) => [||x]; [exact: lollipop_involutive | exact: lollipop_injective |].
+apply: (all_connected (root := lollipop_facing)) => [||x]; [exact: lollipop_oppositeK | exact: lollipop_clockwise_inj |].
 apply: connect_sub (near_all x) => y z /orP[/eqP->|/andP[/eqP-> _]]; [exact: connect_cw | exact: connect_opp].
 Qed.
 
 Definition lollipop : start :=
-  @Start (@EmbeddedGraph [finType of lollipop_dart] _ _ lollipop_involutive lollipop_moves lollipop_injective
+  @Start (@EmbeddedGraph [finType of lollipop_dart] _ _ lollipop_oppositeK lollipop_opposite_neq lollipop_clockwise_inj
     lollipop_connected) lollipop_facing.
 
 Lemma lollipop_same_vertex (d e : lollipop) : same_vertex d e = (place d == place e).
@@ -134,7 +134,7 @@ have two : {subset on_loop <= order_set (@opposite lollipop) 2}.
   by move=> d _; rewrite inE order_opposite.
 have closed_loops : fclosed (@opposite lollipop) on_loop.
   by move=> x y /eqP<-; rewrite -!topredE /= on_loop_opposite.
-have := fcard_order_set (inv_inj (@opposite_involutive lollipop)) (introT subsetP two) closed_loops.
+have := fcard_order_set (inv_inj (@oppositeK lollipop)) (introT subsetP two) closed_loops.
 have -> : #|on_loop| = loops * 2.
   have inl_inj : injective (inl : 'I_loops * bool -> lollipop) by move=> x y [].
   transitivity #|codom (inl : 'I_loops * bool -> lollipop)|; last by rewrite card_codom // card_prod card_ord card_bool.
@@ -156,7 +156,7 @@ Qed.
 
 Lemma lollipop_vertices : vertices lollipop = chain.+2.
 Proof.
-have sym := fconnect_sym (@clockwise_injective lollipop).
+have sym := fconnect_sym (@clockwise_inj lollipop).
 pose roots := [set d : lollipop | froot clockwise d == d].
 have -> : vertices lollipop = #|roots| by rewrite cardsE; apply: eq_card => d; rewrite !inE andbT.
 pose f (d : lollipop) := Ordinal (place_lt d).
@@ -174,7 +174,8 @@ exact: connect_root.
 Qed.
 
 Lemma lollipop_cost (robot : strategy start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional lollipop n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional lollipop) n) = Answer answer ->
   (2 * chain.+1 + 1) * loops <= size (doors_taken robot directional lollipop n).
 Proof.
 move=> maps_all answered.

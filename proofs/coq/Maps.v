@@ -36,7 +36,7 @@ Hypothesis wf : well_formed S.
 Lemma vertex_lt d : d < size S -> vertex S d < size S.
 Proof. by move=> lt; have [/andP[le _] _] := wf_bounds wf lt; apply: leq_ltn_trans le lt. Qed.
 
-Lemma vertex_idem d : d < size S -> vertex S (vertex S d) = vertex S d.
+Lemma vertex_vertex d : d < size S -> vertex S (vertex S d) = vertex S d.
 Proof.
 move=> lt; have [/andP[le lt'] _] := wf_bounds wf lt.
 by have [|-> //] := wf_same wf (e := vertex S d) lt; rewrite leqnn (leq_ltn_trans le).

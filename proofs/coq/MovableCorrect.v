@@ -3,64 +3,17 @@
     (1991). *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
-From toposlam Require Import Correct MovableMarker.
+From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Always Paths Embedding Rounds Complete.
+From toposlam Require Import Maps Correct MovableMarker.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** * The runs of a program, composed of the runs of its parts *)
-
-Section AlwaysHandling.
-
-Variables (W : start) (A B : Type).
-Implicit Types (p : handling_program A) (pose : W) (Q R : A -> W -> marker_place W -> Prop).
-
-Lemma always_handling_weaken p pose lying Q R : (forall a q l, Q a q l -> R a q l) ->
-  always_handling p pose lying Q -> always_handling p pose lying R.
-Proof.
-move=> QR; elim: p pose lying => [a|[i||] go IH|T ok default go IH] pose lying /=.
-- exact: QR.
-- by case=> open_i all; split=> //; apply: IH.
-- by case: lying => // spot [here /IH].
-- by case: lying => // /IH.
-- by case=> okd all; split=> // x /all; apply: IH.
-Qed.
-
-(** What holds for all runs holds for some run. *)
-Lemma some_handling p pose lying : ~ always_handling p pose lying (fun _ _ _ => False).
-Proof.
-elim: p pose lying => [a|[i||] go IH|T ok default go IH] pose lying //=.
-- by case=> _ /IH.
-- by case: lying => [spot [_ /IH]|].
-- by case: lying => [spot [] | /IH].
-- by case=> okd /(_ default okd)/IH.
-Qed.
-
-(** A part of a program whose end is known, and the rest. *)
-Lemma always_handling_bind p (next : A -> handling_program B) pose lying Q
-    (R : B -> W -> marker_place W -> Prop) :
-  always_handling p pose lying Q ->
-  (forall a q l, Q a q l -> always_handling (next a) q l R) ->
-  always_handling (let* a := p in next a) pose lying R.
-Proof.
-move=> pQ QR; suff: always_handling p pose lying (fun a q l => always_handling (next a) q l R).
-  elim: p pose lying {pQ} => [a|[i||] go IH|T ok default go IH] pose lying //=.
-  - by case=> open_i all; split=> //; apply: IH.
-  - by case: lying => // spot [here /IH].
-  - by case: lying => // /IH.
-  - by case=> okd all; split=> // x /all; apply: IH.
-exact: always_handling_weaken QR pQ.
-Qed.
-
-Lemma always_handling_moves doors pose lying : passable pose doors ->
-  always_handling (moves doors) pose lying (fun _ q l => q = walk pose doors /\ l = lying).
-Proof.
-by elim: doors pose => [|i doors IH] pose //= /andP[open_i open_doors]; split=> //; apply: IH.
-Qed.
-
-End AlwaysHandling.
+(** Moves by doors that exist, wherever the marker is. *)
+Lemma handling_moves (W : start) doors (pose : W) lying : passable pose doors ->
+  always (handling W) (moves doors) (pose, lying) (fun _ s _ => s = (walk pose doors, lying)).
+Proof. by elim: doors pose => [|i doors IH] pose //= /andP[open_i open_doors]; split=> //; apply: IH. Qed.
 
 (** * Within the known map *)
 
@@ -81,23 +34,22 @@ Hypothesis em : embeds S place.
 
 Let wf := em_wf em.
 
-Lemma choose_path_spec pose d (q : W) lying : pose < size S -> d < size S ->
-  always_handling (choose_path allowed S pose (vertex S d)) q lying
-    (fun path r l => [/\ leads S (vertex S pose) path (vertex S d), r = q & l = lying]).
+Lemma choose_path_spec pose d (s : state (handling W)) : pose < size S -> d < size S ->
+  always (handling W) (choose_path allowed S pose (vertex S d)) s
+    (fun path t _ => leads S (vertex S pose) path (vertex S d) /\ t = s).
 Proof.
-move=> pose_lt d_lt; have root := vertex_idem wf pose_lt; have root_lt := vertex_lt wf pose_lt.
+move=> pose_lt d_lt; have root := vertex_vertex wf pose_lt; have root_lt := vertex_lt wf pose_lt.
 split; first by rewrite /= from_root_leads //=; apply/allowed_short/from_root_short.
 by move=> path /andP[].
 Qed.
 
 Lemma travel_spec pose d lying : pose < size S -> d < size S ->
-  always_handling (travel allowed S pose (vertex S d)) (place pose) lying
-    (fun p r l => [/\ p < size S, vertex S p = vertex S d, r = place p & l = lying]).
+  always (handling W) (travel allowed S pose (vertex S d)) (place pose, lying)
+    (fun p s _ => [/\ p < size S, vertex S p = vertex S d & s = (place p, lying)]).
 Proof.
-move=> pose_lt d_lt.
-apply: always_handling_bind (choose_path_spec _ _ pose_lt d_lt) _ => path _ _ [path_ok -> ->].
+move=> pose_lt d_lt; apply: always_then (choose_path_spec _ pose_lt d_lt) _ => path _ _ [path_ok ->].
 have [p_lt at_d walked open_doors] := walk_known em pose_lt path_ok.
-by apply: always_handling_bind (always_handling_moves _ open_doors) _ => _ _ _ [-> ->].
+by apply: always_then (handling_moves _ open_doors) _ => _ _ _ ->; rewrite walked.
 Qed.
 
 (** A move over any edge of a known vertex: the door exists, and leads to the other end. *)
@@ -110,8 +62,8 @@ by rewrite /traverse (turn_door_to em).
 Qed.
 
 (** And back by door 0. *)
-Lemma opposite_back e : traverse (opposite (place e)) 0 = place e.
-Proof. exact: opposite_involutive. Qed.
+Lemma traverse_opposite0 e : traverse (opposite (place e)) 0 = place e.
+Proof. exact: oppositeK. Qed.
 
 (** The map has no parallel edges. *)
 Lemma no_parallel_known d e : d < size S -> e < size S -> vertex S d = vertex S e ->
@@ -133,10 +85,9 @@ Definition enough_candidates (C : seq nat) :=
   forall d, d < size S -> same_vertex (place d) spot -> vertex S d \in C.
 
 (** The robot sees the marker, or knows the remaining candidates. *)
-Definition found_well p (r : W) := [/\ p < size S, r = place p & same_vertex (place p) spot].
+Definition found_well p := p < size S /\ same_vertex (place p) spot.
 
-Definition missed_well p C (r : W) :=
-  [/\ p < size S, r = place p, ~~ same_vertex (place p) spot & enough_candidates C].
+Definition missed_well p C := [/\ p < size S, ~~ same_vertex (place p) spot & enough_candidates C].
 
 (** A vertex at which the marker does not lie need not be a candidate. *)
 Lemma enough_without p C : p < size S -> ~~ same_vertex (place p) spot ->
@@ -147,16 +98,16 @@ apply: contra away => /eqP same; apply: same_vertex_trans here.
 by rewrite (same_vertex_known em) // same.
 Qed.
 
-Lemma look_along_spec darts p v C : leads S (vertex S p) darts v -> missed_well p C (place p) ->
-  always_handling (look_along S p darts C) (place p) (Some spot)
-    (fun sought r l => l = Some spot /\
+Lemma look_along_spec darts p v C : leads S (vertex S p) darts v -> missed_well p C ->
+  always (handling W) (look_along S p darts C) (place p, Some spot)
+    (fun sought s _ =>
        match sought with
-       | Found p' => found_well p' r
-       | Missed p' C' => [/\ missed_well p' C' r, subseq C' C & v \notin C']
+       | Found p' => found_well p' /\ s = (place p', Some spot)
+       | Missed p' C' => [/\ missed_well p' C', subseq C' C, v \notin C' & s = (place p', Some spot)]
        end).
 Proof.
-elim: darts p C => [|d darts IH] p C /= path [p_lt _ away enough].
-  split=> //; split; last by rewrite -(eqP path) mem_filter eqxx.
+elim: darts p C => [|d darts IH] p C /= path [p_lt away enough].
+  split=> //; last by rewrite -(eqP path) mem_filter eqxx.
     by split=> //; apply: enough_without.
   exact: filter_subseq.
 case/andP: path => /eqP same; case dd': (other S d) => [d'|//] /= path.
@@ -164,28 +115,28 @@ have [d'_lt _ _] := wf_other wf dd'.
 have [open_d ->] := leave_by p_lt (other_known dd') (esym same).
 rewrite -(em_other em dd'); split=> //; case: ifP => // unseen.
 have away' : ~~ same_vertex (place d') spot by rewrite unseen.
-apply: always_handling_weaken (IH d' _ path _) => [[p'|p' C'] r l [-> well]|]; first by split.
-  by case: well => well sub v_C'; split=> //; split=> //; apply: subseq_trans sub (filter_subseq _ _).
+apply: alwaysW (IH d' _ path _) => [[p'|p' C'] s k //|].
+  by case=> well sub v_C' ->; split=> //; apply: subseq_trans sub (filter_subseq _ _).
 by split=> //; apply: enough_without.
 Qed.
 
 Lemma look_for_marker_spec n p C : size C <= n ->
-  {in C, forall v, v < size S /\ vertex S v = v} -> missed_well p C (place p) ->
-  always_handling (look_for_marker allowed n S p C) (place p) (Some spot)
-    (fun sought r l => l = Some spot /\
+  {in C, forall v, v < size S /\ vertex S v = v} -> missed_well p C ->
+  always (handling W) (look_for_marker allowed n S p C) (place p, Some spot)
+    (fun sought s _ =>
        match sought with
-       | Found p' => found_well p' r
-       | Missed p' _ => missed_well p' [::] r
+       | Found p' => found_well p' /\ s = (place p', Some spot)
+       | Missed p' _ => missed_well p' [::] /\ s = (place p', Some spot)
        end).
 Proof.
 elim: n p C => [|n IH] p C /=; first by rewrite leqn0 => /nilP->.
-case: C => // c C0; set C := c :: C0 => size_C known_C well; have [p_lt _ _ _] := well.
+case: C => // c C0; set C := c :: C0 => size_C known_C well; have [p_lt _ _] := well.
 split; first exact: mem_head.
 move=> v vC; have [v_lt vv] := known_C v vC; rewrite -vv.
-apply: always_handling_bind (choose_path_spec _ _ p_lt v_lt) _ => path _ _ [path_ok -> ->].
-apply: always_handling_bind (look_along_spec path_ok well) _ => -[p'|p' C'] r l [-> ended] //.
-case: ended => well' sub; rewrite vv => v_C'; have [p'_lt rE away enough] := well'; rewrite rE.
-apply: IH => [|w /(mem_subseq sub)/known_C//|]; last by split.
+apply: always_then (choose_path_spec _ p_lt v_lt) _ => path _ _ [path_ok ->].
+apply: always_then (look_along_spec path_ok well) _ => -[p'|p' C'] s k; first by case.
+case=> well' sub; rewrite vv => v_C' ->.
+apply: IH => [|w /(mem_subseq sub)/known_C//|//].
 rewrite -ltnS; apply: leq_trans size_C; have [le eq] := size_subseq_leqif sub.
 by rewrite ltn_neqAle le andbT eq; apply: contra v_C' => /eqP->.
 Qed.
@@ -203,7 +154,7 @@ Proof. by move: eU; rewrite mem_unexplored => /andP[]. Qed.
 (** Where the edge leads. *)
 Let t : W := opposite (place e).
 
-Lemma end_is_elsewhere : ~~ same_vertex (place e) t.
+Lemma end_elsewhere : ~~ same_vertex (place e) t.
 Proof. by have [no_loop _] := simple_W; apply: no_loop. Qed.
 
 (** If the unknown end is at a known vertex, then the dart there is known, and unexplored. *)
@@ -222,7 +173,7 @@ move: h_link; rewrite mem_filter => /andP[/eqP same hU].
 rewrite mem_sort mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
 - by rewrite (em_doors em) ?vertex_lt // (degree_vertex em) // (em_doors em) //
     (same_vertex_degree here).
-- apply: contra end_is_elsewhere => /eqP de; apply: same_vertex_trans here.
+- apply: contra end_elsewhere => /eqP de; apply: same_vertex_trans here.
   by rewrite (same_vertex_known em) // de.
 apply/hasP=> -[f _ /andP[/eqP fe]]; case ff': (other S f) => [f'|//] /eqP f'd.
 have [f'_lt _ _] := wf_other wf ff'.
@@ -235,7 +186,7 @@ Qed.
 Lemma candidates_known n : {in candidates S e n, forall v, v < size S /\ vertex S v = v}.
 Proof.
 move=> v; rewrite mem_sort mem_filter mem_undup => /andP[_ /mapP[d]].
-by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_idem.
+by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_vertex.
 Qed.
 
 Lemma no_dart_there : enough_candidates t [::] -> forall d, d < size S -> place d <> t.
@@ -246,23 +197,23 @@ Qed.
 (** Place validation: a vertex that it reports as new is new; a marker that it finds is at the vertex
     where it was dropped. *)
 Lemma validate_place_spec :
-  always_handling (validate_place allowed S e (degree t)) t None
-    (fun came r l =>
+  always (handling W) (validate_place allowed S e (degree t)) (t, None)
+    (fun came s _ =>
        match came with
-       | NewPlace => [/\ r = t, l = None & forall d, d < size S -> place d <> t]
-       | KnownPlace p => found_well t p r /\ l = Some t
+       | NewPlace => (forall d, d < size S -> place d <> t) /\ s = (t, None)
+       | KnownPlace p => found_well t p /\ s = (place p, Some t)
        end).
 Proof.
 rewrite /validate_place; have := candidates_enough; have := @candidates_known (degree t).
 case: (candidates _ _ _) => [_ none|c C]; first by split=> //; apply: no_dart_there.
-move: (c :: C) => {c}C known_C enough; split; first exact: degree_gt0.
-have well : missed_well t e C (place e) by split=> //; apply: end_is_elsewhere.
-rewrite opposite_back.
-apply: always_handling_bind (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] r l [->] //.
-case=> p_lt -> _ none.
-apply: always_handling_bind (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
-have [open_e ->] := leave_by near_lt e_lt at_e; split=> //; split; first exact: same_vertex_refl.
-by split=> //; apply: no_dart_there.
+move: (c :: C) => {c}C known_C enough; do 2!split=> //=; first exact: degree_gt0.
+have well : missed_well t e C by split=> //; apply: end_elsewhere.
+rewrite traverse_opposite0.
+apply: always_then (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] s k //.
+case=> -[p_lt _ none] ->.
+apply: always_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e ->] /=.
+have [open_e ->] := leave_by near_lt e_lt at_e; rewrite same_vertex_refl; do 3!split=> //.
+exact: no_dart_there.
 Qed.
 
 (** Back-link validation: the marker is behind the dart [h] that is the other end of [e] and, because
@@ -270,11 +221,11 @@ Qed.
 Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S ->
   {in links, forall g, g < size S /\ vertex S g = vertex S p} ->
   same_vertex (place e) spot -> h \in links -> place h = t ->
-  always_handling (try_back_links n S p links) (place p) (Some spot)
-    (fun found r l => [/\ found = Some h, r = place e & l = Some spot]).
+  always (handling W) (try_back_links n S p links) (place p, Some spot)
+    (fun found s _ => found = Some h /\ s = (place e, Some spot)).
 Proof.
 move=> size_l p_lt links_p here h_in placed.
-have back : opposite (place h) = place e by rewrite placed /t opposite_involutive.
+have back : opposite (place h) = place e by rewrite placed /t oppositeK.
 elim: n p links size_l p_lt links_p h_in => [|n IH] p links /=.
   by rewrite leqn0 => /nilP-> _ _.
 case: links => // g0 links0; set links := g0 :: links0 => size_l p_lt links_p h_in.
@@ -285,7 +236,7 @@ have [open_g /= ->] := leave_by p_lt g_lt (esym g_p); split=> //; case: ifP => s
   apply: no_parallel_known => //; first by rewrite g_p.
   by rewrite back; apply: same_vertex_trans seen _; rewrite same_vertex_sym.
 split; first exact: degree_gt0.
-rewrite opposite_back; apply: IH => //.
+rewrite traverse_opposite0; apply: IH => //.
 - by rewrite size_rem // -subn1 leq_subLR.
 - by move=> f /mem_rem/links_p[f_lt ->].
 have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
@@ -293,32 +244,33 @@ by rewrite -hg back here in seen.
 Qed.
 
 (** The right dart is found, the robot is where it believes to be, and carries the marker. *)
-Definition linked_well (link : option (nat * nat)) (r : W) (l : marker_place W) :=
-  exists h p, [/\ link = Some (h, p), h \in unexplored S, h != e, place h = t
-                & [/\ p < size S, r = place p & l = None]].
+Definition linked_well (link : option (nat * nat)) (s : state (handling W)) :=
+  exists h p, [/\ link = Some (h, p), h \in unexplored S, h != e, place h = t & p < size S /\ s = (place p, None)].
 
 Lemma back_links_of p h : h \in back_links S (vertex S p) ->
   [/\ h < size S, vertex S h = vertex S p & h \in unexplored S].
 Proof. by rewrite mem_filter mem_unexplored => /and3P[/eqP-> -> ->]. Qed.
 
 Lemma find_back_link_spec p : p < size S -> same_vertex (place p) t ->
-  always_handling (find_back_link allowed S p e (back_links S (vertex S p))) (place p) None linked_well.
+  always (handling W) (find_back_link allowed S p e (back_links S (vertex S p))) (place p, None)
+    (fun link s _ => linked_well link s).
 Proof.
 move=> p_lt here; have [h h_in [he placed]] := end_known p_lt here.
-apply: always_handling_bind (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
-apply: always_handling_bind (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
+apply: always_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e ->]; split=> //=.
+apply: always_then (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p ->].
 have e_near : same_vertex (place e) (place near) by rewrite (same_vertex_known em) // at_e.
 have links_far : {in back_links S (vertex S p), forall g, g < size S /\ vertex S g = vertex S far}.
   by move=> g /back_links_of[g_lt -> _].
 have tried := try_back_links_spec (leqnn _) far_lt links_far e_near h_in placed.
-apply: always_handling_bind tried _ => _ _ _ [-> -> ->] /=; split=> //.
+apply: always_then tried _ => _ _ _ [-> ->] /=; rewrite e_near; split=> //.
 by have [_ _ hU] := back_links_of h_in; exists h, e.
 Qed.
 
 Lemma validate_back_link_spec p : p < size S -> same_vertex (place p) t ->
-  always_handling (validate_back_link allowed S p e) (place p) (Some t) linked_well.
+  always (handling W) (validate_back_link allowed S p e) (place p, Some t)
+    (fun link s _ => linked_well link s).
 Proof.
-move=> p_lt here; split=> //; have [h h_in [he placed]] := end_known p_lt here.
+move=> p_lt here; split=> //=; rewrite here; have [h h_in [he placed]] := end_known p_lt here.
 have [_ _ hU] := back_links_of h_in.
 move: h_in (find_back_link_spec p_lt here); case: (back_links _ _) => // g [|g' links] //.
 by rewrite inE => /eqP <- _; exists h, p.
@@ -331,98 +283,99 @@ End OneRound.
 (** A round explores one more edge: the map is still a part of the world, and the marker is in hand. *)
 Lemma explore_edge_spec S (place : nat -> W) pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
-  always_handling (explore_edge allowed S pose) (place pose) None
-    (fun after r l => l = None /\ exists S' pose' (place' : nat -> W),
-       [/\ after = Some (S', pose'), embeds S' place', pose' < size S', r = place' pose'
+  always (handling W) (explore_edge allowed S pose) (place pose, None)
+    (fun after s _ => exists S' pose' (place' : nat -> W),
+       [/\ after = Some (S', pose'), embeds S' place', pose' < size S', s = (place' pose', None)
          & (size S + size (unexplored S')).+2 = size S' + size (unexplored S)]).
 Proof.
-move=> em pose_lt some_left; split=> [|e /= eU]; first exact: nearest_in.
+move=> em pose_lt some_left; split=> [|e /= eU]; first exact: mem_nearest.
 have := eU; rewrite mem_unexplored => /andP[e_lt _].
-apply: always_handling_bind (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+apply: always_then (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e ->] /=.
 have [open_e ->] := leave_by em near_lt e_lt at_e; split=> //.
-apply: always_handling_bind (validate_place_spec em eU) _ => -[|p] r l.
-  case=> -> -> new; split=> //; do 3!eexists.
-  split; [by [] | exact: (embeds_with_vertex em eU new) | | |].
+apply: always_then (validate_place_spec em eU) _ => -[|p] s k.
+  case=> new ->; do 3!eexists; split; [by [] | exact: (embeds_with_vertex em eU new) | | |].
   - by rewrite size_with_place ?degree_gt0 // -addn1 leq_add2l degree_gt0.
   - by rewrite /= ltnn subnn.
   exact: unexplored_with_place (degree_gt0 _).
-case=> -[p_lt -> here] ->.
-apply: always_handling_bind (validate_back_link_spec em eU p_lt here) _ => link r' l'.
-case=> h [p' [-> hU he placed [p'_lt -> ->]]]; split=> //; exists (with_edge S e h), p', place.
+case=> -[p_lt here] ->.
+apply: always_then (validate_back_link_spec em eU p_lt here) _ => link s' k'.
+case=> h [p' [-> hU he placed [p'_lt ->]]]; exists (with_edge S e h), p', place.
 have := hU; rewrite mem_unexplored => /andP[h_lt _].
 rewrite !size_with_edge //; split=> //; first exact: embeds_with_edge.
 by rewrite (size_unexplored_with_edge eU hU he) !addnS.
 Qed.
 
 (** The answer is a map in which nothing is unexplored, and the robot is where it believes to be. *)
-Definition explored_well (answer : option (partial_map * nat)) (r : W) (l : marker_place W) :=
-  l = None /\ exists S p (place : nat -> W),
-    [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & r = place p].
+Definition explored_well (answer : option (partial_map * nat)) (s : state (handling W)) :=
+  exists S p (place : nat -> W),
+    [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & s = (place p, None)].
 
 (** As many rounds suffice as there are unexplored edges. *)
 Lemma explore_edges_spec bound S (place : nat -> W) pose :
   embeds S place -> pose < size S -> 2 * edges W + size (unexplored S) <= size S + 2 * bound ->
-  always_handling (explore_edges allowed bound S pose) (place pose) None explored_well.
+  always (handling W) (explore_edges allowed bound S pose) (place pose, None)
+    (fun answer s _ => explored_well answer s).
 Proof.
 elim: bound S place pose => [|bound IH] S place pose em pose_lt enough.
   have none : unexplored S = [::] by have known := size_known em; apply: size0nil; arithmetic.
-  by rewrite /= none; split=> //; exists S, pose, place.
+  by rewrite /= none; exists S, pose, place.
 rewrite /explore_edges -/explore_edges; case UE: (unexplored S) => [|d U].
-  by split=> //; exists S, pose, place.
+  by exists S, pose, place.
 have some_left : unexplored S != [::] by rewrite UE.
-apply: always_handling_bind (explore_edge_spec em pose_lt some_left) _ => after r l [->].
+apply: always_then (explore_edge_spec em pose_lt some_left) _ => after s k.
 case=> S' [pose' [place' [-> em' pose'_lt -> sizes]]].
 by apply: IH => //; arithmetic.
 Qed.
 
 (** With any limit the rounds end with such a map, or without an answer. *)
-Lemma explore_edges_any bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
-  always_handling (explore_edges allowed bound S pose) (place pose) None
-    (fun answer r l => l = None /\ (answer = None \/ explored_well answer r l)).
+Lemma explore_edges_sound bound S (place : nat -> W) pose : embeds S place -> pose < size S ->
+  always (handling W) (explore_edges allowed bound S pose) (place pose, None)
+    (fun answer s _ => (answer = None /\ s.2 = None) \/ explored_well answer s).
 Proof.
 elim: bound S place pose => [|bound IH] S place pose em pose_lt.
-  rewrite /=; case UE: (unexplored S) => [|d U]; split=> //; last by left.
-  by right; split=> //; exists S, pose, place.
+  by rewrite /=; case UE: (unexplored S) => [|d U]; [right; exists S, pose, place | left].
 rewrite /explore_edges -/explore_edges; case UE: (unexplored S) => [|d U].
-  by split=> //; right; split=> //; exists S, pose, place.
+  by right; exists S, pose, place.
 have some_left : unexplored S != [::] by rewrite UE.
-apply: always_handling_bind (explore_edge_spec em pose_lt some_left) _ => after r l [->].
+apply: always_then (explore_edge_spec em pose_lt some_left) _ => after s k.
 by case=> S' [pose' [place' [-> em' pose'_lt -> _]]]; apply: IH.
 Qed.
 
-Let begin := Some (facing W).
+Let begin := first_state (handling W).
 
 (** From the place of the marker, the algorithm ends with a map of the whole world. The robot is where it
     believes to be, with the marker in hand. *)
 Lemma movable_spec bound : edges W <= bound ->
-  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
-    explored_well.
+  always (handling W) (movable allowed bound (sense begin)) begin (fun answer s _ => explored_well answer s).
 Proof.
 move=> enough; split; first exact: same_vertex_refl.
+rewrite /= same_vertex_refl.
 apply: (explore_edges_spec (embeds_at_start W) (pose := 0)); rewrite size_with_vertex ?degree_gt0 //.
 by rewrite unexplored_at_start size_iota; arithmetic.
 Qed.
 
 (** The same for the world that the map describes. *)
-Lemma movable_marker_answers_right bound : edges W <= bound ->
-  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
-    (fun answer pose lying => lying = None /\ right_answer answer pose).
+Lemma explored_well_right answer s : explored_well answer s -> s.2 = None /\ right_answer answer s.1.
 Proof.
-move/movable_spec; apply: always_handling_weaken => answer pose lying [->].
 case=> S [p [place [-> em explored p_lt ->]]]; split=> //.
 by have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
 Qed.
 
+Lemma movable_marker_correct bound : edges W <= bound ->
+  always (handling W) (movable allowed bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ right_answer answer s.1).
+Proof. by move/movable_spec; apply: alwaysW => answer s _; apply: explored_well_right. Qed.
+
 (** With any limit on rounds, it answers nothing or rightly. *)
-Lemma movable_marker_any bound :
-  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
-    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+Lemma movable_marker_sound bound :
+  always (handling W) (movable allowed bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ (answer = None \/ right_answer answer s.1)).
 Proof.
 split; first exact: same_vertex_refl.
 have some_known : 0 < size (with_vertex [::] (degree (facing W))) by rewrite size_with_vertex degree_gt0.
-apply: always_handling_weaken (explore_edges_any bound (embeds_at_start W) some_known).
-move=> answer pose lying [-> [->|[_ [S [p [place [-> em explored p_lt ->]]]]]]]; split=> //; first by left.
-by right; have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
+rewrite /= same_vertex_refl.
+apply: alwaysW (explore_edges_sound bound (embeds_at_start W) some_known) => answer s _.
+by case=> [[-> ->]|/explored_well_right[-> right]]; split=> //; [left | right].
 Qed.
 
 End Correct.

@@ -39,25 +39,36 @@ Definition perceive_lying (lying : marker_place) (pose : W) : percept :=
   (degree pose,
    if lying is Some spot then if same_vertex pose spot then Lying else Nothing else Nothing).
 
-(** For all choices: the program, begun at this pose and with this place of the marker, takes only doors
-    that exist, picks up the marker only where it lies, drops it only if the robot carries it, and ends
-    with an answer, at a pose, with the marker at a place, for which [Q] holds. The default is always
-    allowed, so there always is a choice. *)
-Fixpoint always_handling A (p : handling_program A) (pose : W) (lying : marker_place)
-    (Q : A -> W -> marker_place -> Prop) : Prop :=
-  match p with
-  | Return a => Q a pose lying
-  | Do (LeaveBy i) go =>
-      i < degree pose /\
-      always_handling (go (perceive_lying lying (traverse pose i))) (traverse pose i) lying Q
-  | Do PickUp go =>
-      if lying is Some spot then same_vertex pose spot /\ always_handling (go (perceive_lying None pose)) pose None Q
-      else False
-  | Do Drop go =>
-      if lying is None then always_handling (go (perceive_lying (Some pose) pose)) pose (Some pose) Q else False
-  | Choose T allowed default go =>
-      allowed default /\ forall x, allowed x -> always_handling (go x) pose lying Q
+(** The robot can leave by a door that exists, pick up a marker that lies where it is, and drop one that it
+    carries. *)
+Definition can_handle (s : W * marker_place) (e : handling_action) : bool :=
+  let: (pose, lying) := s in
+  match e, lying with
+  | LeaveBy i, _ => i < degree pose
+  | PickUp, Some spot => same_vertex pose spot
+  | Drop, None => true
+  | _, _ => false
   end.
+
+(** An action that is not possible with the marker changes nothing. *)
+Definition handle (s : W * marker_place) (e : handling_action) : W * marker_place :=
+  let: (pose, lying) := s in
+  match e, lying with
+  | LeaveBy i, _ => (traverse pose i, lying)
+  | PickUp, Some spot => (pose, if same_vertex pose spot then None else lying)
+  | Drop, None => (pose, Some pose)
+  | _, _ => s
+  end.
+
+(** A robot that handles the marker, which lies at the start vertex at first. The state is the robot's pose and the
+    place of the marker. After each action it perceives its place, also if it has not moved. *)
+Definition handling : environment handling_action := {|
+  state := W * marker_place;
+  first_state := (facing W, Some (facing W));
+  possible := can_handle;
+  next_state := handle;
+  sense := fun s => perceive_lying s.2 s.1
+|}.
 
 End Handling.
 

@@ -18,7 +18,7 @@ Section Robot.
 Variables (A : Type) (robot : strategy A) (M : marker).
 
 Lemma situation_walk (W : start) n :
-  situation robot M W n =
+  situation robot (moving M W) n =
   (percepts M (facing W) (doors_taken robot M W n), walk (facing W) (doors_taken robot M W n)).
 Proof.
 elim: n => //= n IH; rewrite /history IH /=; case: (robot _) => // i.
@@ -26,7 +26,7 @@ by rewrite percepts_rcons -walk_rcons.
 Qed.
 
 Lemma history_walk (W : start) n :
-  history robot M W n = percepts M (facing W) (doors_taken robot M W n).
+  history robot (moving M W) n = percepts M (facing W) (doors_taken robot M W n).
 Proof. by rewrite /history situation_walk. Qed.
 
 Lemma size_doors_taken (W : start) n : size (doors_taken robot M W n) <= n.
@@ -36,7 +36,7 @@ exact: leq_trans IH (leqnSn n).
 Qed.
 
 (** In a start where the walk has the same percepts, the robot does the same. *)
-Lemma same_walk (V W : start) n :
+Lemma eq_doors_taken (V W : start) n :
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
   doors_taken robot M V n = doors_taken robot M W n.
 Proof.
@@ -48,37 +48,38 @@ case decided: (robot (percepts M (facing W) dW)) => [i|a].
 by move=> same; have -> := IH same; rewrite same decided.
 Qed.
 
-Lemma same_walk_history (V W : start) n :
+Lemma eq_history (V W : start) n :
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
-  history robot M V n = history robot M W n.
-Proof. by move=> same; rewrite !history_walk (same_walk same). Qed.
+  history robot (moving M V) n = history robot (moving M W) n.
+Proof. by move=> same; rewrite !history_walk (eq_doors_taken same). Qed.
 
 End Robot.
 
 (** If the walk of a robot that maps two starts has the same percepts in both, they are isomorphic. *)
-Lemma mapped_alike (robot : strategy start) M (V W : start) n answer :
-  maps_start M robot V -> maps_start M robot W -> robot (history robot M W n) = Answer answer ->
+Lemma mapped_iso (robot : strategy start) M (V W : start) n answer :
+  maps_start (moving M) robot V -> maps_start (moving M) robot W ->
+  robot (history robot (moving M W) n) = Answer answer ->
   percepts M (facing V) (doors_taken robot M W n) = percepts M (facing W) (doors_taken robot M W n) ->
   isomorphic_starts V W.
 Proof.
-move=> [map map_V iso_V] [map' map_W iso_W] answered /same_walk_history same.
+move=> [map map_V iso_V] [map' map_W iso_W] answered /eq_history same.
 have iso_a : isomorphic_starts answer V.
-  by rewrite -(answers_unique map_V (ex_intro _ n (etrans (congr1 _ same) answered))).
+  by rewrite -(answers_inj map_V (ex_intro _ n (etrans (congr1 _ same) answered))).
 have iso_b : isomorphic_starts answer W.
-  by rewrite -(answers_unique map_W (ex_intro _ n answered)).
+  by rewrite -(answers_inj map_W (ex_intro _ n answered)).
 exact: isomorphic_starts_trans (isomorphic_starts_sym iso_a) iso_b.
 Qed.
 
 (** * Every edge *)
 
 Lemma every_edge_is_traversed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   forall d : W, traverses (facing W) (doors_taken robot directional W n) d.
 Proof.
 move=> maps_all W n answer answered d; apply: contraT => avoids.
 have [f [iso _]] : isomorphic_starts (subdivided d) W.
-  by apply: mapped_alike answered _ => //; apply: subdivided_percepts.
+  by apply: mapped_iso answered _ => //; apply: subdivided_percepts.
 by case: (@subdivided_not_isomorphic W d); exists f.
 Qed.
 
@@ -104,8 +105,8 @@ by rewrite -mem_traversed.
 Qed.
 
 Lemma at_least_m_moves (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   edges W <= size (doors_taken robot directional W n).
 Proof.
 by move=> maps_all W n answer answered; apply/edges_le_moves/every_edge_is_traversed/answered.

@@ -1,7 +1,7 @@
 (** Worlds with loops or parallel edges that other markers cannot distinguish. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Markers Walks Bisimulation Parts Figures Handling.
+From toposlam Require Import Spec Markers Walks Bisimulation Parts Figures.
 From toposlam Require MovableMarker.
 
 Set Implicit Arguments.
@@ -20,10 +20,10 @@ Definition across (d : bool * bool) : bool * bool := (~~ d.1, ~~ d.2).
 Lemma next_of_4_inj : injective next_of_4.
 Proof. by move=> [[] []] [[] []]. Qed.
 
-Lemma together_involutive : involutive together. Proof. by move=> [[] []]. Qed.
-Lemma together_moves d : together d != d. Proof. by case: d => [[] []]. Qed.
-Lemma across_involutive : involutive across. Proof. by move=> [[] []]. Qed.
-Lemma across_moves d : across d != d. Proof. by case: d => [[] []]. Qed.
+Lemma togetherK : involutive together. Proof. by move=> [[] []]. Qed.
+Lemma together_neq d : together d != d. Proof. by case: d => [[] []]. Qed.
+Lemma acrossK : involutive across. Proof. by move=> [[] []]. Qed.
+Lemma across_neq d : across d != d. Proof. by case: d => [[] []]. Qed.
 
 Lemma loops_connected (opp : bool * bool -> bool * bool) d e :
   connect (fun x y => (y == opp x) || (y == next_of_4 x)) d e.
@@ -35,10 +35,10 @@ Qed.
 
 (** In the world files they are two-loops-plane and two-loops-torus; the facing dart is on a loop. *)
 Definition two_loops_plane : start :=
-  @Start (@EmbeddedGraph [finType of bool * bool] _ _ together_involutive together_moves next_of_4_inj
+  @Start (@EmbeddedGraph [finType of bool * bool] _ _ togetherK together_neq next_of_4_inj
     (loops_connected together)) (false, false).
 Definition two_loops_torus : start :=
-  @Start (@EmbeddedGraph [finType of bool * bool] _ _ across_involutive across_moves next_of_4_inj
+  @Start (@EmbeddedGraph [finType of bool * bool] _ _ acrossK across_neq next_of_4_inj
     (loops_connected across)) (false, false).
 
 (** All darts are at one vertex. *)
@@ -59,10 +59,10 @@ move=> [f iso]; have := isomorphism_walk iso ((false, false) : two_loops_plane) 
 by rewrite /=; case: (f _) => [[] []].
 Qed.
 
-Lemma loops_two_distinct : bisimilar two_distinct two_loops_plane two_loops_torus.
+Lemma loops_two_distinct : bisimilar (moving two_distinct) two_loops_plane two_loops_torus.
 Proof.
 have [plane torus] := loops_one_vertex; exists (fun _ _ => True); split=> // p q _; split=> //.
-by rewrite /perceive !one_vertex_degree // /two_distinct /two_looks !plane !torus.
+by rewrite /= /perceive !one_vertex_degree // /two_distinct /two_looks !plane !torus.
 Qed.
 
 (** * Three parallel edges *)
@@ -75,7 +75,7 @@ Proof. by case: i => [[|[|[|i]]] lt] //; apply: val_inj; rewrite /next_of_3 /= !
 Lemma next_of_3_inj : injective next_of_3.
 Proof. exact: (can_inj (g := fun i => next_of_3 (next_of_3 i)) next_of_3K). Qed.
 
-Lemma next_of_3_moves i : next_of_3 i != i.
+Lemma next_of_3_neq i : next_of_3 i != i.
 Proof. by case: i => [[|[|[|i]]] lt] //; rewrite -val_eqE /= inordK. Qed.
 
 (** Darts are pairs of an end and an edge. At both ends of the edges their order is the same on the torus, and
@@ -85,9 +85,9 @@ Definition around_torus (d : bool * 'I_3) : bool * 'I_3 := (d.1, next_of_3 d.2).
 Definition around_plane (d : bool * 'I_3) : bool * 'I_3 :=
   (d.1, if d.1 then next_of_3 (next_of_3 d.2) else next_of_3 d.2).
 
-Lemma other_end_involutive : involutive other_end.
+Lemma other_endK : involutive other_end.
 Proof. by move=> [[] i]. Qed.
-Lemma other_end_moves d : other_end d != d.
+Lemma other_end_neq d : other_end d != d.
 Proof. by case: d => [[] i]. Qed.
 
 Lemma around_torusK d : around_torus (around_torus (around_torus d)) = d.
@@ -121,7 +121,7 @@ Lemma dipole_connected cw d e : injective cw -> cw = around_torus \/ cw = around
   connect (fun x y => (y == other_end x) || (y == cw x)) d e.
 Proof.
 move=> cw_inj kind; move: d e; apply: (all_connected (root := (false, ord0))) => // [|[b i]].
-  exact: other_end_involutive.
+  exact: other_endK.
 have [k <-] := turn_to b ord0 i kind; apply: connect_trans (connect_iter_cw _ _ _ k).
 case: b; last exact: connect0.
 exact: (connect_opp other_end cw (false, ord0)).
@@ -129,10 +129,10 @@ Qed.
 
 (** In the world files they are theta-plane and theta-torus. *)
 Definition theta_plane : start :=
-  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_end_involutive other_end_moves around_plane_inj
+  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_endK other_end_neq around_plane_inj
     (fun d e => dipole_connected d e around_plane_inj (or_intror erefl))) (false, ord0).
 Definition theta_torus : start :=
-  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_end_involutive other_end_moves around_torus_inj
+  @Start (@EmbeddedGraph [finType of bool * 'I_3] _ _ other_endK other_end_neq around_torus_inj
     (fun d e => dipole_connected d e around_torus_inj (or_introl erefl))) (false, ord0).
 
 Lemma plane_turn1 (p : theta_plane) k : (iter k around_plane p).1 = p.1.
@@ -168,10 +168,10 @@ move=> pq; have same (x : bool * 'I_3) : fconnect around_plane p x = fconnect ar
 exact: eq_card same.
 Qed.
 
-Lemma theta_two_distinct : bisimilar two_distinct theta_plane theta_torus.
+Lemma theta_two_distinct : bisimilar (moving two_distinct) theta_plane theta_torus.
 Proof.
 exists (fun p q => p.1 = q.1); split=> // p q pq; split=> [|i]; last exact: theta_traverse.
-rewrite /perceive (theta_degree pq) /two_distinct /two_looks !plane_same_vertex !torus_same_vertex.
+rewrite /= /perceive (theta_degree pq) /two_distinct /two_looks !plane_same_vertex !torus_same_vertex.
 by rewrite pq.
 Qed.
 
@@ -182,7 +182,7 @@ move=> [f iso]; have := isomorphism_walk iso ((false, ord0) : theta_plane) [:: 1
 have -> : walk ((false, ord0) : theta_plane) [:: 1; 1] = (false, ord0).
   by rewrite /= /traverse /= /other_end /around_plane /= next_of_3K.
 case: (f _) => b i; rewrite /= /traverse /= /other_end /around_torus /= negbK => -[] same.
-by have := next_of_3_moves i; rewrite {1}same next_of_3K eqxx.
+by have := next_of_3_neq i; rewrite {1}same next_of_3K eqxx.
 Qed.
 
 (** * Two markers that are not adjacent *)
@@ -215,7 +215,7 @@ Proof. by split; apply: world_simple. Qed.
 Lemma paths_not_isomorphic : ~ isomorphic paths_a paths_b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1; 1]); vm_compute. Qed.
 
-Lemma paths_two_distant : bisimilar two_distant paths_a paths_b.
+Lemma paths_two_distant : bisimilar (moving two_distant) paths_a paths_b.
 Proof.
 pose sighted (file : world_file) (d x : name) :=
   match x.1 == d.1, x.1 == (name_walk file d [:: 0; 1]).1 with
@@ -247,67 +247,29 @@ move=> pq; rewrite /MovableMarker.perceive_lying (R_degree pq).
 by case: l l' => [s|] [t|] //= st; rewrite (R_vertex pq st).
 Qed.
 
-(** In such starts a robot that handles the marker has the same history. *)
-Lemma handling_same_history A (robot : handling_strategy A) n :
-  handling_history robot V n = handling_history robot W n.
+(** Such starts are bisimilar for a robot that handles the marker. *)
+Lemma handling_bisimilar : bisimilar MovableMarker.handling V W.
 Proof.
-suff [] : handling_history robot V n = handling_history robot W n /\
-          (R (handling_situation robot V n).2.1 (handling_situation robot W n).2.1 /\
-           R_place (handling_situation robot V n).2.2 (handling_situation robot W n).2.2) by [].
-rewrite /handling_history; elim: n => [|n] /=; first by rewrite (R_perceive (q := facing W) (l' := Some (facing W))).
-case: (handling_situation _ V n) (handling_situation _ W n) => [past [p l]] [past' [q l']] /= [<- [pq same_l]].
-case: (robot past) => [e|a] //=.
-have next_l : R_place (handle e p l).2 (handle e q l').2.
-  by case: e => //=; case: l l' same_l => [s|] [t|] //= st; rewrite (R_vertex pq st); case: ifP.
-have next_p : R (handle e p l).1 (handle e q l').1 by case: e {next_l} => [i||] //=; apply: R_traverse.
-case: (handle e p l) (handle e q l') next_l next_p => [p' m] [q' m'] /= next_l next_p; split=> //.
-by congr rcons; apply: R_perceive.
+exists (fun s t => R s.1 t.1 /\ R_place s.2 t.2); split=> // -[p l] [q l'] [/= pq same_l].
+split=> [|e]; first exact: R_perceive.
+case: e l l' same_l => [i||] [s|] [t|] //= st; first by split; [apply: R_traverse|].
+- by split; first exact: R_traverse.
+- by rewrite (R_vertex pq st); case: ifP.
 Qed.
 
 End Handling.
 
-Section Reports.
-
-Variables (A : Type) (robot : handling_strategy A) (W : start).
-
-Lemma reported_stays a n k :
-  robot (handling_history robot W n) = Report a -> handling_history robot W (n + k) = handling_history robot W n.
+Lemma loops_handling : bisimilar MovableMarker.handling two_loops_plane two_loops_torus.
 Proof.
-rewrite /handling_history => reported; elim: k => [|k IH]; rewrite ?addn0 // addnS /=.
-by case: (handling_situation _ _ (n + k)) IH => past [p l] /= ->; rewrite reported.
-Qed.
-
-Lemma reports_unique a b : reports robot W a -> reports robot W b -> a = b.
-Proof.
-move=> [n robot_a] [k robot_b]; have := robot_a.
-by rewrite -(reported_stays k robot_a) addnC (reported_stays n robot_b) robot_b; case.
-Qed.
-
-End Reports.
-
-Lemma handling_impossible (V W : start) (robot : handling_strategy embedded_graph) :
-  (forall n, handling_history robot V n = handling_history robot W n) -> ~ isomorphic V W ->
-  ~ (handling_maps robot V /\ handling_maps robot W).
-Proof.
-move=> same differ [[map [n map_V] iso_V] [map' map_W iso_W]]; apply: differ.
-have map_V' : reports robot W map by exists n; rewrite -same.
-by apply: isomorphic_trans (isomorphic_sym iso_V) _; rewrite (reports_unique map_V' map_W).
-Qed.
-
-Lemma loops_handling (robot : handling_strategy embedded_graph) :
-  ~ (handling_maps robot two_loops_plane /\ handling_maps robot two_loops_torus).
-Proof.
-have [plane torus] := loops_one_vertex; apply: handling_impossible loops_not_isomorphic.
-apply: (handling_same_history (R := fun _ _ => True)) => // [p q _|p q s t _ _].
+have [plane torus] := loops_one_vertex.
+apply: (handling_bisimilar (R := fun _ _ => True)) => // [p q _|p q s t _ _].
   by rewrite !one_vertex_degree.
 by rewrite plane torus.
 Qed.
 
-Lemma theta_handling (robot : handling_strategy embedded_graph) :
-  ~ (handling_maps robot theta_plane /\ handling_maps robot theta_torus).
+Lemma theta_handling : bisimilar MovableMarker.handling theta_plane theta_torus.
 Proof.
-apply: handling_impossible theta_not_isomorphic.
-apply: (@handling_same_history theta_plane theta_torus (fun p q => p.1 = q.1)) => // [p q|p q i|p q s t].
+apply: (@handling_bisimilar theta_plane theta_torus (fun p q => p.1 = q.1)) => // [p q|p q i|p q s t].
 - exact: theta_degree.
 - exact: theta_traverse.
 by rewrite plane_same_vertex torus_same_vertex => -> ->.

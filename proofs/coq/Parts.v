@@ -166,5 +166,5 @@ Lemma perceive_turn (V W : start) (p : V) (q : W) i :
   perceive directional (turn p i : V) = perceive directional (turn q i : W).
 Proof.
 case/perceive_directionalP=> degrees same; apply/perceive_directionalP; rewrite !degree_turn.
-by split=> // t; rewrite -!turn_add.
+by split=> // t; rewrite -!turnD.
 Qed.

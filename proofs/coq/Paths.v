@@ -10,7 +10,7 @@ Unset Printing Implicit Defensive.
 
 (** * The nearest dart *)
 
-Lemma nearest_in S tree l : l != [::] -> nearest S tree l \in l.
+Lemma mem_nearest S tree l : l != [::] -> nearest S tree l \in l.
 Proof.
 have in_l darts best : best \in l -> {subset darts <= l} ->
     foldl (fun best d => if size (to_root S tree (vertex S d)) < size (to_root S tree (vertex S best))
@@ -94,10 +94,10 @@ Lemma size_tree t : is_tree t -> size t <= known_vertices S.
 Proof.
 move=> t_tree; rewrite -(size_map (vertex S)) /known_vertices -size_filter.
 apply: uniq_leq_size => [|_ /mapP[d /(tree_bounds t_tree) d_lt ->]]; first exact: tree_uniq.
-by rewrite mem_filter mem_iota (vertex_idem wf_S) // eqxx (vertex_lt wf_S).
+by rewrite mem_filter mem_iota (vertex_vertex wf_S) // eqxx (vertex_lt wf_S).
 Qed.
 
-Lemma known_vertices_size : known_vertices S <= size S.
+Lemma known_vertices_le_size : known_vertices S <= size S.
 Proof. by rewrite /known_vertices -[leqRHS](size_iota 0) count_size. Qed.
 
 (** The effect of [look_around], for any darts of vertices of the tree. *)
@@ -134,7 +134,7 @@ Proof.
 move=> t_tree t_closed i_lt; set v := vertex S _.
 have mem_v: v \in reached t by apply/map_f/mem_nth.
 have lt_v: nth 0 t i < size S by apply: tree_bounds (mem_nth _ _).
-have vertex_v: vertex S v = v := vertex_idem wf_S lt_v.
+have vertex_v: vertex S v = v := vertex_vertex wf_S lt_v.
 have index_v: index v (reached t) = i.
   by rewrite /v -(nth_map _ 0) // index_uniq ?size_map //; apply: tree_uniq.
 have [e|t' [look t'_tree mem_t']] := look_at (darts := iota v (doors S v)) t_tree.
@@ -154,7 +154,7 @@ Proof.
 elim: fuel i t => [|fuel IH] i t t_tree t_closed i_le enough /=.
   rewrite addn0 in enough; split=> //; suff -> : size t = i by [].
   apply/eqP; rewrite eqn_leq i_le (leq_trans _ enough) //.
-  exact: leq_trans (size_tree t_tree) known_vertices_size.
+  exact: leq_trans (size_tree t_tree) known_vertices_le_size.
 case: ltnP => [i_lt|le_i]; last first.
   by split=> //; suff -> : size t = i by []; apply/eqP; rewrite eqn_leq le_i.
 have [t'_tree t'_closed i'_lt] := look_around_tree t_tree t_closed i_lt.

@@ -1,6 +1,6 @@
-(** A robot's program: its moves, one at a time, with open choices. A program depends on the world only
-    through the percepts behind the doors that it takes: it is a tree, and the world decides which branch
-    the robot takes. Definitions only. *)
+(** A robot's program: its actions, one at a time, with open choices. A program depends on the world only
+    through the percepts after its actions: it is a tree, and the world decides which branch the robot takes.
+    Definitions only. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
@@ -47,6 +47,35 @@ Definition choose_among {E} (T : eqType) (xs : seq T) (default : T) : program_of
 Fixpoint do_all E (actions : seq E) : program_of E unit :=
   if actions is e :: others then (do_action e ;; do_all others) else Return tt.
 
+(** * The runs of a program *)
+
+(** For all choices: the program, begun in this state, does only what is possible, and ends with an answer, in a
+    state, after a number of actions, for which [Q] holds. The default is always allowed, so there always is a
+    choice. Termination needs no statement: no program is endless. *)
+Fixpoint always E (I : environment E) A (p : program_of E A) (s : state I) (Q : A -> state I -> nat -> Prop) : Prop :=
+  match p with
+  | Return a => Q a s 0
+  | Do e go =>
+      possible s e /\
+      always (go (sense (next_state s e))) (next_state s e) (fun a s' actions => Q a s' actions.+1)
+  | Choose T allowed default go =>
+      allowed default /\ forall x, allowed x -> always (go x) s Q
+  end.
+
+Arguments always {E} I {A}.
+
+(** The decision of a robot that runs the program with the default choices, after these percepts. *)
+Fixpoint obey E A (p : program_of E A) (past : seq percept) : decision E A :=
+  match p with
+  | Return a => Answer a
+  | Do e go => if past is seen :: later then obey (go seen) later else Act e
+  | Choose T _ default go => obey (go default) past
+  end.
+
+(** Such a robot as a strategy; the program may depend on the percept at the start. *)
+Definition obeying E A (p : percept -> program_of E A) : strategy_of E A :=
+  fun past => obey (p (head (0, Nothing) past)) (behead past).
+
 (** * A robot that only moves *)
 
 (** Its actions are the doors by which it leaves. *)
@@ -56,29 +85,3 @@ Definition move (i : door) : program percept := do_action i.
 
 (** Moves by one door after the other, for any percepts. *)
 Definition moves (doors : seq door) : program unit := do_all doors.
-
-(** For all choices: the program, begun at this pose, takes only doors that exist, and ends with an
-    answer, at a pose, after a number of moves, for which [Q] holds. The default is always allowed, so
-    there always is a choice. Termination needs no statement: no program is endless. *)
-Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> W -> nat -> Prop) : Prop :=
-  match p with
-  | Return a => Q a pose 0
-  | Do i go =>
-      i < degree pose /\
-      always M (go (perceive M (traverse pose i))) (traverse pose i)
-        (fun a pose' moves => Q a pose' moves.+1)
-  | Choose T allowed default go =>
-      allowed default /\ forall x, allowed x -> always M (go x) pose Q
-  end.
-
-(** The decision of a robot that runs the program with the default choices, after these percepts. *)
-Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
-  match p with
-  | Return a => Answer a
-  | Do i go => if past is seen :: later then obey (go seen) later else Leave i
-  | Choose T _ default go => obey (go default) past
-  end.
-
-(** Such a robot as a strategy; the program may depend on the percept at the start. *)
-Definition obeying A (p : percept -> program A) : strategy A :=
-  fun past => if past is first :: later then obey (p first) later else Leave 0.

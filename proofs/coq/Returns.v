@@ -21,22 +21,22 @@ Hypothesis c_opposite : forall d, c (opposite d) = c d.
 Definition cover_opposite (x : W * bool) : W * bool := (opposite x.1, x.2 (+) c x.1).
 Definition cover_clockwise (x : W * bool) : W * bool := (clockwise x.1, x.2).
 
-Lemma cover_involutive : involutive cover_opposite.
+Lemma cover_oppositeK : involutive cover_opposite.
 Proof.
-by case=> d b; rewrite /cover_opposite /= opposite_involutive c_opposite -addbA addbb addbF.
+by case=> d b; rewrite /cover_opposite /= oppositeK c_opposite -addbA addbb addbF.
 Qed.
 
-Lemma cover_moves x : cover_opposite x != x.
-Proof. by case: x => d b; apply/eqP=> -[/eqP]; rewrite (negPf (opposite_moves d)). Qed.
+Lemma cover_opposite_neq x : cover_opposite x != x.
+Proof. by case: x => d b; apply/eqP=> -[/eqP]; rewrite (negPf (opposite_neq d)). Qed.
 
-Lemma cover_injective : injective cover_clockwise.
-Proof. by move=> [d b] [d' b'] [/(@clockwise_injective W)-> ->]. Qed.
+Lemma cover_clockwise_inj : injective cover_clockwise.
+Proof. by move=> [d b] [d' b'] [/(@clockwise_inj W)-> ->]. Qed.
 
 Let step x y := (y == cover_opposite x) || (y == cover_clockwise x).
 Let reach x y := connect step x y.
 
 Lemma cover_back x y : reach x y -> reach y x.
-Proof. exact: (connect_back cover_involutive cover_injective). Qed.
+Proof. exact: (connect_back cover_oppositeK cover_clockwise_inj). Qed.
 
 (** The other sheet looks the same. *)
 Lemma cover_swap x y : reach x y -> reach (x.1, ~~ x.2) (y.1, ~~ y.2).
@@ -59,7 +59,7 @@ Qed.
 
 Lemma cover_connected : reach origin (facing W, true) -> forall x y, reach x y.
 Proof.
-move=> crossed; apply: (all_connected (root := origin)); [exact: cover_involutive | exact: cover_injective |].
+move=> crossed; apply: (all_connected (root := origin)); [exact: cover_oppositeK | exact: cover_clockwise_inj |].
 case=> d b; have [b' to_d] := cover_above d; case: (b =P b') => [->//|/eqP differ].
 have -> : b = ~~ b' by move: differ; case: (b) (b') => -[].
 exact: connect_trans crossed (cover_swap to_d).
@@ -103,8 +103,8 @@ Hypothesis one_piece :
   forall x y, connect (fun x y => (y == cover_opposite c x) || (y == cover_clockwise x)) x y.
 
 Definition cover : start :=
-  @Start (@EmbeddedGraph [finType of W * bool] _ _ (cover_involutive c_opposite) (cover_moves c)
-    (@cover_injective W) one_piece) (facing W, false).
+  @Start (@EmbeddedGraph [finType of W * bool] _ _ (cover_oppositeK c_opposite) (cover_opposite_neq c)
+    (@cover_clockwise_inj W) one_piece) (facing W, false).
 
 (** How often a walk changes the sheet, modulo 2. *)
 Fixpoint crossings (c : W -> bool) (p : W) (doors : seq door) : bool :=
@@ -145,7 +145,7 @@ Qed.
 
 End CoverWorld.
 
-Lemma crossings_add (W : start) (c c' : W -> bool) p doors :
+Lemma crossingsD (W : start) (c c' : W -> bool) p doors :
   crossings (fun d => c d (+) c' d) p doors = crossings c p doors (+) crossings c' p doors.
 Proof. by elim: doors p => //= i doors IH p; rewrite IH addbACA. Qed.
 
@@ -176,7 +176,7 @@ Proof. by rewrite edges_orbits cardsE; apply: eq_card => d; rewrite !inE andbT. 
 Lemma card_vertex_roots : #|vertex_roots|.+1 = vertices W.
 Proof.
 pose roots := [set d : W | froot clockwise d == d].
-have sym := fconnect_sym (@clockwise_injective W).
+have sym := fconnect_sym (@clockwise_inj W).
 have in_roots : froot clockwise (facing W) \in roots by rewrite inE; apply: roots_root.
 have := cardsD1 (froot clockwise (facing W)) roots; rewrite in_roots add1n => <-.
 by rewrite cardsE; apply: eq_card => d; rewrite !inE andbT.
@@ -187,7 +187,7 @@ Let cross (g : {set W}) (d : W) := froot opposite d \in g.
 
 Lemma cross_opposite g d : cross g (opposite d) = cross g d.
 Proof.
-have sym := fconnect_sym (inv_inj (@opposite_involutive W)).
+have sym := fconnect_sym (inv_inj (@oppositeK W)).
 by congr (_ \in g); apply/eqP; rewrite root_connect // sym fconnect1.
 Qed.
 
@@ -216,7 +216,7 @@ Let far_sets : {set {set W}} := powerset [set d in edge_roots | far d].
 Lemma far_set_near g d : g \in far_sets -> ~~ far d -> cross g d = false.
 Proof.
 rewrite powersetE => /subsetP g_far near; apply/negbTE; apply: contra near => /g_far.
-rewrite inE => /andP[_]; have sym := fconnect_sym (inv_inj (@opposite_involutive W)).
+rewrite inE => /andP[_]; have sym := fconnect_sym (inv_inj (@oppositeK W)).
 have /iter_findex <- : fconnect opposite d (froot opposite d) by apply: connect_root.
 by elim: (findex _ _ _) => //= k IH; rewrite far_opposite.
 Qed.
@@ -278,9 +278,9 @@ have [crossed_over|apart] := boolP (connect (fun x y => (y == cover_opposite c x
   have one_piece := cover_connected c_opposite crossed_over.
   have [f [iso _]] : isomorphic_starts (cover c_opposite one_piece) W.
     apply/determined/cover_sees => k lt near.
-    by rewrite crossings_add -!/(crossed _ _) (odd_returns_all g_far h_far same lt near) addbb.
+    by rewrite crossingsD -!/(crossed _ _) (odd_returns_all g_far h_far same lt near) addbb.
   by case: (cover_not_isomorphic (ex_intro _ f iso)).
-have sym := fconnect_sym (@clockwise_injective W).
+have sym := fconnect_sym (@clockwise_inj W).
 have sheet_root d : sheet c (froot clockwise d) = sheet c d.
   have /iter_findex <- : fconnect clockwise d (froot clockwise d) by apply: connect_root.
   by elim: (findex _ _ _) => //= k; rewrite sheet_clockwise.
@@ -335,14 +335,16 @@ End Counting.
 
 (** The walk of a robot that maps every world determines its world. *)
 Lemma robot_determined (robot : strategy start) (W : start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   let doors := doors_taken robot directional W n in
   forall V : start, sees V doors = sees W doors -> isomorphic_starts V W.
-Proof. by move=> maps_all answered doors V; apply: mapped_alike answered. Qed.
+Proof. by move=> maps_all answered doors V; apply: mapped_iso answered. Qed.
 
 (** With all edges: the marked vertex is near, and all returns may be far. *)
 Lemma returns_needed (robot : strategy start) (W : start) n answer :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof.
 move=> maps_all answered; have determined := robot_determined maps_all answered.
@@ -371,7 +373,7 @@ Proof.
 case/same_vertexP=> t ->; case: ds => [|i ds]; first by exists [::]; rewrite //= same_vertex_turn.
 exists (t + i :: ds) => //=; suff -> : traverse (turn (facing W) t) i = traverse (facing W) (t + i).
   exact: same_vertex_refl.
-by rewrite /traverse turn_add.
+by rewrite /traverse turnD.
 Qed.
 
 Section Cost.
@@ -405,7 +407,7 @@ have late : depth <= k - j.
   rewrite -size_end -(size_way_back q).
   apply: (far_from_marker (p := walk (facing W) (take k.+1 doors)) (d := q)).
   - by rewrite same_vertex_sym.
-  - rewrite (walk_between (a := j.+1)) // -/q retrace_walk same_vertex_sym; exact: same_vertex_turn.
+  - rewrite (walk_between (a := j.+1)) // -/q way_backK same_vertex_sym; exact: same_vertex_turn.
   by rewrite /q (take_nth 0 (ltn_ord j)) walk_rcons far_opposite.
 have early a : a <= j -> same_vertex (facing W) (walk (facing W) (take a doors)) -> depth <= j - a.
   move=> a_j at_a; have size_middle : size (drop a (take j doors)) = j - a.
@@ -447,7 +449,8 @@ Qed.
 End Cost.
 
 Lemma far_cycles_cost (robot : strategy start) (W : start) n answer (far : pred W) depth :
-  (forall W, maps_start directional robot W) -> robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  robot (history robot (moving directional W) n) = Answer answer ->
   (forall d, far (opposite d) = far d) ->
   (forall ds d, same_vertex (walk (facing W) ds) d -> far d -> depth <= size ds) ->
   (2 * depth + 1) * (far_edges far - far_vertices far) <= size (doors_taken robot directional W n).

@@ -36,7 +36,7 @@ Definition longest B := forall path, allowed S path -> size path <= B.
 (** Lines 8 to 17, for a robot that came to [t]. *)
 Lemma try_all_spec (t : W) n turned H :
   size H = n -> {subset H <= unexplored S} -> turned < degree t ->
-  always directional (try_all test allowed n S (perceive directional t) turned H) (turn t turned)
+  always (moving directional W) (try_all test allowed n S (perceive directional t) turned H) (turn t turned)
     (fun became r k =>
        (forall B, longest B -> k <= n * (2 * B)) /\
        match became with
@@ -46,20 +46,20 @@ Lemma try_all_spec (t : W) n turned H :
 Proof.
 elim: n turned H => [|n IH] turned H /=; first by move/size0nil=> -> _ lt /=; split.
 case: H => // h0 H0; set H := h0 :: H0 => sizeH sub turned_lt; split.
-  exact: nearest_in.
+  exact: mem_nearest.
 move=> h inH; have := sub h inH; rewrite mem_unexplored => /andP[h_lt _].
 have v_lt := vertex_lt wf h_lt; split.
   rewrite /= to_root_leads ?wf_first ?wf_some //=.
   by apply/allowed_short/to_root_short; rewrite ?wf_first ?wf_some.
 move=> path /andP[path_ok path_allowed]; apply: always_bind.
-apply: always_weaken (validate_spec em test_valid h_lt path_ok turned_lt).
+apply: alwaysW (validate_spec em test_valid h_lt path_ok turned_lt).
 case=> [pose|i] r k [].
   move=> placed pose_lt -> k_le /=; rewrite addn0; split=> // B /(_ path path_allowed) le.
   by rewrite mulSn mul2n -addnn -addnA; apply: leq_trans k_le (leq_trans le (leq_addr _ _)).
 move=> wrong -> i_lt k_le.
 have rest_sub : {subset rem h H <= unexplored S} by move=> g /mem_rem/sub.
 have rest_size : size (rem h H) = n by rewrite size_rem // sizeH.
-apply: always_weaken (IH i _ rest_size rest_sub i_lt) => became r' l [bound came]; split.
+apply: alwaysW (IH i _ rest_size rest_sub i_lt) => became r' l [bound came]; split.
   move=> B longest; have le := longest path path_allowed; have := bound B longest.
   by move=> l_le; rewrite mulSn; apply: leq_add l_le; apply: leq_trans k_le _; rewrite leq_mul2l.
 case: became came {bound} => [g pose|j] [].
@@ -74,11 +74,11 @@ Lemma unexplored_opposite e d : e \in unexplored S -> d < size S ->
 Proof.
 rewrite !mem_unexplored => /andP[e_lt /eqP e_free] d_lt placed; rewrite d_lt /=.
 apply/andP; split; last first.
-  by apply/eqP=> de; have := opposite_moves (place e); rewrite -placed de eqxx.
+  by apply/eqP=> de; have := opposite_neq (place e); rewrite -placed de eqxx.
 case dd': (other S d) => [d'|//].
 have [d'_lt _ back] := wf_other wf dd'.
 have /(em_inj em d'_lt e_lt) d'e : place d' = place e.
-  by rewrite (em_other em dd') placed opposite_involutive.
+  by rewrite (em_other em dd') placed oppositeK.
 by rewrite d'e e_free in back.
 Qed.
 
@@ -98,7 +98,7 @@ split; rewrite ?size_with_edge //; first exact: well_formed_with_edge.
 - by move=> d lt; rewrite doors_with_edge; apply: em_doors em d lt.
 - by move=> d lt; rewrite vertex_with_edge; apply: em_turn em d lt.
 - move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
-    by case=> <-; rewrite placed opposite_involutive.
+    by case=> <-; rewrite placed oppositeK.
   by case: eqP => [->|_]; [case=> <- | apply: em_other em d d'].
 Qed.
 
@@ -119,7 +119,7 @@ have parts d : d < size T -> d < size S \/ size S <= d < size S + degree t.
   by rewrite szT => lt; case: (ltnP d (size S)); [left | right].
 have old_new d i : d < size S -> place d <> turn t i.
   move=> lt placed; have [d' [d'_lt _]] := turn_known em (inverse_door (degree t) i) lt.
-  by rewrite placed turn_inverse_door => /new; apply.
+  by rewrite placed inverse_doorK => /new; apply.
 split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (degree_gt0 t)).
 - by rewrite (wf_some wf); apply: em_facing em.
 - move=> d d' /parts[lt|/andP[ge lt]] /parts[lt'|/andP[ge' lt']].
@@ -142,7 +142,7 @@ split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (
   have [-> _ _] := new_with_vertex range; case/andP: range => ge _.
   by rewrite ltnn subnn ltnNge ge.
 - move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
-    by case=> <-; rewrite ltnn subnn e_lt /t opposite_involutive.
+    by case=> <-; rewrite ltnn subnn e_lt /t oppositeK.
   case: eqP => [->|_]; first by case=> <-; rewrite ltnn subnn e_lt.
   move=> dd'; have /parts[lt|range] := other_known dd'; last first.
     by have [_ _] := new_with_vertex range; rewrite -/T dd'.
@@ -153,16 +153,16 @@ Qed.
 (** Lines 5 to 23: a round explores one more edge, and the map is still a part of the world. *)
 Lemma explore_spec S place pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore test allowed S pose) (place pose)
+  always (moving directional W) (explore test allowed S pose) (place pose)
     (fun after r k =>
        (exists place' : nat -> W,
           [/\ embeds after.1 place', after.2 < size after.1, r = place' after.2
             & (size S + size (unexplored after.1)).+2 = size after.1 + size (unexplored S)]) /\
        forall B, longest S B -> k <= B + 1 + (size (unexplored S)).-1 * (2 * B)).
 Proof.
-move=> em pose_lt some; have wf := em_wf em; split; first exact: nearest_in.
+move=> em pose_lt some; have wf := em_wf em; split; first exact: mem_nearest.
 move=> e /= eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
-have root_lt := vertex_lt wf pose_lt; have root := vertex_idem wf pose_lt; split.
+have root_lt := vertex_lt wf pose_lt; have root := vertex_vertex wf pose_lt; split.
   by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
 move=> path /andP[path_ok path_allowed].
 have [lt at_e walked open_doors] := walk_known em pose_lt path_ok.
@@ -176,7 +176,7 @@ have inH h : (h \in H) = [&& h != e, raised test S h (perceive directional t) & 
 apply: always_bind.
 have sub : {subset H <= unexplored S} by move=> h; rewrite inH => /and3P[].
 have := try_all_spec em (erefl (size H)) sub (degree_gt0 t).
-apply: always_weaken => became r k [cost came].
+apply: alwaysW => became r k [cost came].
 have sizeH : size H <= (size (unexplored S)).-1.
   rewrite -(size_rem eU); apply: uniq_leq_size => [|h]; first by rewrite !filter_uniq ?iota_uniq.
   by rewrite inH (mem_rem_uniq _ (filter_uniq _ (iota_uniq _ _))) inE => /and3P[he _ hU]; rewrite he.
@@ -194,7 +194,7 @@ case: became came {cost} => [h pose'|i] [].
 move=> -> i_lt none /=.
 have new d : d < size S -> place d <> t.
   move=> d_lt placed; have /andP[dU de] := unexplored_opposite em eU d_lt placed.
-  by case: (none d) => //; rewrite inH de dU -placed -(expected_is_perceived em) // raises_expected.
+  by case: (none d) => //; rewrite inH de dU -placed -(expectedE em) // raises_expected.
 split=> //; eexists; split; first exact: embeds_with_vertex.
 - by rewrite /= size_with_place ?degree_gt0 // ltn_add2l.
 - by rewrite /= ltnNge leq_addr /= addKn.

@@ -36,7 +36,7 @@ Qed.
 (** * With a directional marker, only isomorphic starts do *)
 
 (** Only at the facing dart does the marker point along door 0. *)
-Lemma points_back (W : start) (p : W) : directional p = Pointing 0 <-> p = facing W.
+Lemma pointing0P (W : start) (p : W) : directional p = Pointing 0 <-> p = facing W.
 Proof.
 rewrite /directional; split=> [|->]; last by rewrite same_vertex_refl findex0.
 by case: ifP => // _ [] /eqP; rewrite findex_eq0 => /eqP.
@@ -47,7 +47,7 @@ Section Bijection.
 Variables V W : start.
 
 Let reachable (p : V) : exists doors, walk (facing V) doors == p.
-Proof. by have [doors <-] := walk_anywhere (facing V) p; exists doors; apply/eqP. Qed.
+Proof. by have [doors <-] := connected_walk (facing V) p; exists doors; apply/eqP. Qed.
 
 (** The end in [W] of a door sequence that leads to [p] in [V]. *)
 Definition counterpart (p : V) : W := walk (facing W) (xchoose (reachable p)).
@@ -60,31 +60,31 @@ Lemma counterpart_walk doors : counterpart (walk (facing V) doors) = walk (facin
 Proof.
 rewrite /counterpart; set other := xchoose _.
 have V_same : walk (facing V) other = walk (facing V) doors := eqP (xchooseP (reachable _)).
-have [back V_back] := walk_anywhere (walk (facing V) doors) (facing V).
+have [back V_back] := connected_walk (walk (facing V) doors) (facing V).
 have W_back ds : walk (facing V) ds = walk (facing V) doors -> walk (walk (facing W) ds) back = facing W.
-  move=> V_ds; apply/points_back; rewrite -walk_cat.
+  move=> V_ds; apply/pointing0P; rewrite -walk_cat.
   have := congr1 (last (0, Nothing)) (same (ds ++ back)); rewrite !last_percepts => -[_ <-].
-  by apply/points_back; rewrite walk_cat V_ds.
+  by apply/pointing0P; rewrite walk_cat V_ds.
 by apply: (@walk_inj _ back); rewrite /= !W_back.
 Qed.
 
 End Bijection.
 
-Lemma directional_marker_separates V W : indistinguishable directional V W -> isomorphic_starts V W.
+Lemma indistinguishable_directional V W : indistinguishable directional V W -> isomorphic_starts V W.
 Proof.
 move=> VW; have WV := indistinguishable_sym VW; exists (counterpart W); split.
   split=> [|p|p].
-  - exists (counterpart V) => p; have [ds <-] := walk_anywhere (facing _) p;
+  - exists (counterpart V) => p; have [ds <-] := connected_walk (facing _) p;
       by rewrite !counterpart_walk.
-  - have [ds <-] := walk_anywhere (facing _) p.
+  - have [ds <-] := connected_walk (facing _) p.
     by rewrite -[opposite _]walk_opposite -walk_cat !counterpart_walk // walk_cat.
-  have [ds <-] := walk_anywhere (facing _) p.
+  have [ds <-] := connected_walk (facing _) p.
   by rewrite -!walk_clockwise -walk_cat !counterpart_walk // walk_cat.
 exact: (counterpart_walk VW [::]).
 Qed.
 
-Corollary indistinguishable_directional V W : indistinguishable directional V W <-> isomorphic_starts V W.
+Corollary indistinguishable_directionalP V W : indistinguishable directional V W <-> isomorphic_starts V W.
 Proof.
-split; first exact: directional_marker_separates.
+split; first exact: indistinguishable_directional.
 exact: isomorphic_starts_indistinguishable directional_invariant.
 Qed.

@@ -15,7 +15,7 @@ Section Paths.
 Variable T : start.
 
 Notation root := (froot (@clockwise T)).
-Let sym := fconnect_sym (@clockwise_injective T).
+Let sym := fconnect_sym (@clockwise_inj T).
 
 Let same_root (p q : T) : (root p == root q) = same_vertex p q.
 Proof. exact: root_connect. Qed.
@@ -91,9 +91,9 @@ Lemma walk_back (W : start) (e : T) :
   degree (walk (facing W) (way e)) = degree e ->
   walk (turn (walk (facing W) (way e)) (last_door e)) (back e) = turn (facing W) (turned_back e).
 Proof.
-rewrite /back /turned_back => <- degree_e; have := retrace_walk (facing W) (way e).
+rewrite /back /turned_back => <- degree_e; have := way_backK (facing W) (way e).
 case: (way e) degree_e => // i doors; set p := walk _ _ => degree_e /= <-.
-by rewrite /traverse -degree_e turn_inverse_door.
+by rewrite /traverse -degree_e inverse_doorK.
 Qed.
 
 Lemma size_back e : size (back e) < vertices T.
@@ -179,11 +179,11 @@ Lemma turned_at_marker t (q : W) :
   perceive directional (turn (facing T) t : T) = perceive directional q -> q = turn (facing W) t.
 Proof.
 case/perceive_directionalP; rewrite degree_turn => degrees /(_ (inverse_door (degree (facing T)) t)).
-rewrite turn_inverse_door eqxx => /esym/eqP back.
+rewrite inverse_doorK eqxx => /esym/eqP back.
 rewrite -[LHS](turn_degree q) -degrees.
-apply: (@turn_inj _ (inverse_door (degree (facing T)) t)); rewrite -turn_add addnC turn_add back.
+apply: (@turn_inj _ (inverse_door (degree (facing T)) t)); rewrite -turnD addnC turnD back.
 have degree_W : degree (facing W) = degree (facing T) by rewrite -back degree_turn.
-by rewrite -{1}degree_W turn_degree -degree_W turn_inverse_door.
+by rewrite -{1}degree_W turn_degree -degree_W inverse_doorK.
 Qed.
 
 Lemma percepts_turned (X : start) t doors : degree (facing X) = degree (facing T) ->
@@ -193,7 +193,7 @@ Lemma percepts_turned (X : start) t doors : degree (facing X) = degree (facing T
 Proof.
 move=> degree_X; case: doors => [|i doors] /=; first by split.
 have -> : traverse (turn (facing X) t) (inverse_door (degree (facing T)) t + i) = traverse (facing X) i.
-  by rewrite /traverse turn_add -degree_X turn_inverse_door.
+  by rewrite /traverse turnD -degree_X inverse_doorK.
 by split.
 Qed.
 
@@ -255,15 +255,15 @@ Qed.
 Lemma rounds_isomorphic : isomorphic_starts T W.
 Proof.
 apply: (covering_isomorphic f_opposite f_clockwise) => d.
-by rewrite -!points_back; have [_ ->] := f_perceive d.
+by rewrite -!pointing0P; have [_ ->] := f_perceive d.
 Qed.
 
 End Rounds.
 
 (** * The walk *)
 
-Lemma map_has_a_short_tour (T : start) :
-  exists2 tour, complete tour (sees T tour) & size tour <= 2 * edges T * (2 * vertices T - 1).
+Definition tour_of_map (T : start) :
+  {tour : seq door | complete tour (sees T tour) & size tour <= 2 * edges T * (2 * vertices T - 1)}.
 Proof.
 pose tour := rounds 0 (enum T); exists tour; last first.
   by rewrite -card_darts cardE; apply: size_rounds.
@@ -272,7 +272,7 @@ have determined W : sees W tour = sees T tour -> isomorphic_starts T W.
   have start : perceive directional (facing T) = perceive directional (facing W).
     by have := percepts_eq_walk same (leq0n _); rewrite !take0.
   by apply: (same_rounds (t := 0) same start); rewrite mem_enum.
-move=> k i lt _; case: (followed_decidable i lt) => // open.
+move=> k i lt _; case: (followed_orN i lt) => // open.
 have [V [V' [V_T V'_T differ _ _]]] := open_folding_ambiguous lt open; case: differ.
 have [f [f_iso _]] := isomorphic_starts_trans (isomorphic_starts_sym (determined V V_T)) (determined V' V'_T).
 by exists f.

@@ -25,15 +25,15 @@ Inductive plan :=
 Definition arrive past (seen : percept) : plan :=
   if near seen then LookBehind past seen 0 else Ready (rcons past (seen.1, Nothing)) 0 seen.1.
 
-Definition decide (p : plan) : decision A :=
+Definition decide (p : plan) : decision door A :=
   match p with
   | Ready past turned degree =>
       match robot past with
-      | Leave i => Leave ((i + degree - turned) %% degree)
+      | Act i => Act ((i + degree - turned) %% degree)
       | Answer a => Answer a
       end
-  | LookBehind _ _ i => Leave (if i is 0 then 0 else 1)
-  | TurnBack _ _ _ _ => Leave 0
+  | LookBehind _ _ i => Act (if i is 0 then 0 else 1)
+  | TurnBack _ _ _ _ => Act 0
   end.
 
 Definition continue (p : plan) (seen : percept) : plan :=
@@ -64,13 +64,13 @@ Definition fits (p : plan) (pose : W) : bool :=
 Lemma fits_arrive past (pose : W) : fits (arrive past (perceive M pose)) pose.
 Proof. by rewrite /arrive; case: ifP => _ //=; rewrite eqxx degree_gt0. Qed.
 
-Lemma fits_continue p (pose : W) i : fits p pose -> decide p = Leave i ->
+Lemma fits_continue p (pose : W) i : fits p pose -> decide p = Act i ->
   i < degree pose /\ fits (continue p (perceive M (traverse pose i))) (traverse pose i).
 Proof.
 case: p => [past turned k|past here j|past here j found] /=.
 - move/eqP->; case: (robot past) => // d [<-]; split; last exact: fits_arrive.
   by rewrite ltn_pmod ?degree_gt0.
-- case/andP=> /eqP hereE j_lt [<-]; rewrite /traverse /= opposite_involutive degree_turn hereE eqxx.
+- case/andP=> /eqP hereE j_lt [<-]; rewrite /traverse /= oppositeK degree_turn hereE eqxx.
   by rewrite -hereE j_lt; case: j j_lt => [|j] /(leq_trans _) ->.
 case/andP=> /eqP hereE j_lt [<-]; rewrite degree_gt0 /traverse /=; split=> //.
 by case: found; [|case: ifP]; rewrite /= hereE ?eqxx // => ->.
@@ -78,14 +78,14 @@ Qed.
 
 (** Whatever the marker identifies, the robot takes only doors that exist. *)
 Lemma simulating_doors n i :
-  simulating (history simulating M W n) = Leave i -> i < degree (situation simulating M W n).2.
+  simulating (history simulating (moving M W) n) = Act i -> i < degree (situation simulating (moving M W) n).2.
 Proof.
-suff fits_n k : let: (past, pose) := situation simulating M W k in
+suff fits_n k : let: (past, pose) := situation simulating (moving M W) k in
                 past != [::] /\ fits (plan_after past) pose.
-  have := fits_n n; rewrite /history; case: (situation _ _ _ n) => past pose [_ /fits_continue fits_i].
+  have := fits_n n; rewrite /history; case: (situation _ _ n) => past pose [_ /fits_continue fits_i].
   by move=> /fits_i[].
 elim: k => [|k] /=; first by split; last exact: fits_arrive.
-case: (situation _ _ _ k) => past pose [some fits_p].
+case: (situation _ _ k) => past pose [some fits_p].
 case decided: (simulating past) => [j|//]; have [_ fits_j] := fits_continue fits_p decided.
 case: past some decided fits_j {fits_p} => // first later _ _ fits_j; split=> //.
 by rewrite /plan_after rcons_cons -cats1 foldl_cat.
@@ -97,9 +97,9 @@ Hypothesis small : forall d : W, degree d <= bound.
 
 (** The robot follows this plan, at this pose, after a number of moves. *)
 Definition follows n (p : plan) (pose : W) : Prop :=
-  exists2 past, situation simulating M W n = (past, pose) & past != [::] /\ plan_after past = p.
+  exists2 past, situation simulating (moving M W) n = (past, pose) & past != [::] /\ plan_after past = p.
 
-Lemma follows_next n p pose i : follows n p pose -> decide p = Leave i ->
+Lemma follows_next n p pose i : follows n p pose -> decide p = Act i ->
   follows n.+1 (continue p (perceive M (traverse pose i))) (traverse pose i).
 Proof.
 move=> [past at_n [some planned]] leaves; exists (rcons past (perceive M (traverse pose i))).
@@ -127,7 +127,7 @@ have {go} : follows n.+1 (TurnBack past (perceive M p) i (turn p i == facing W))
   have -> : (turn p i == facing W) = beyond (perceive M (opposite (turn p i))).
     by rewrite -(M_identifies (same_vertex_turn p i)) at_p.
   by case: i {le two i_lt none} go => [|i] go; apply: (go _ erefl).
-move/follows_next/(_ erefl); rewrite /= {1}/traverse /= opposite_involutive.
+move/follows_next/(_ erefl); rewrite /= {1}/traverse /= oppositeK.
 have pointing : turn p i = facing W -> perceive directional p = (degree p, Pointing i).
   move=> facing_i; rewrite /perceive /directional -facing_i same_vertex_turn.
   by rewrite findex_turn.
@@ -159,27 +159,27 @@ Qed.
 
 (** For each move of the simulated robot, the robot makes at most this many more. *)
 Lemma simulate n : exists2 n', n' <= n + n.+1 * (2 * bound)
-  & let: (past, pose) := situation robot directional W n in ready n' past pose.
+  & let: (past, pose) := situation robot (moving directional W) n in ready n' past pose.
 Proof.
 elim: n => [|n [n' n'_le]] /=.
   by have [n' n'_le ready'] := simulate_arrive follows_start; exists n' => //; rewrite mul1n.
-case: (situation _ _ _ n) => past pose [t t_lt follows'].
+case: (situation _ _ n) => past pose [t t_lt follows'].
 case decided: (robot past) => [i|a]; last first.
   by exists n'; [arithmetic | exists t].
-have leaves : decide (Ready past t (degree pose)) = Leave ((i + degree pose - t) %% degree pose).
+have leaves : decide (Ready past t (degree pose)) = Act ((i + degree pose - t) %% degree pose).
   by rewrite /= decided.
 have := follows_next follows' leaves.
 have -> : traverse (turn pose t) ((i + degree pose - t) %% degree pose) = traverse pose i.
-  rewrite /traverse -turn_add -(turn_mod pose (t + _)) modnDmr.
+  rewrite /traverse -turnD -(turn_mod pose (t + _)) modnDmr.
   by rewrite subnKC ?(leq_trans (ltnW t_lt)) ?leq_addl // modnDr turn_mod.
 move=> /simulate_arrive[n'' n''_le ready'']; exists n'' => //.
 by rewrite mulSn; arithmetic.
 Qed.
 
-Lemma simulating_answers n a : robot (history robot directional W n) = Answer a ->
-  exists2 n', n' <= n + n.+1 * (2 * bound) & simulating (history simulating M W n') = Answer a.
+Lemma simulating_answers n a : robot (history robot (moving directional W) n) = Answer a ->
+  exists2 n', n' <= n + n.+1 * (2 * bound) & simulating (history simulating (moving M W) n') = Answer a.
 Proof.
-have [n' n'_le] := simulate n; rewrite /history; case: (situation _ _ _ n) => past pose.
+have [n' n'_le] := simulate n; rewrite /history; case: (situation _ _ n) => past pose.
 move=> [t _ [past' at_n' [_ planned]]] answered; exists n' => //.
 by rewrite at_n' /simulating planned /= answered.
 Qed.

@@ -17,9 +17,9 @@ Record embedded_graph := EmbeddedGraph {
   dart :> finType;
   opposite : dart -> dart;
   clockwise : dart -> dart;
-  opposite_involutive : involutive opposite;
-  opposite_moves : forall d, opposite d != d;
-  clockwise_injective : injective clockwise;
+  oppositeK : involutive opposite;
+  opposite_neq : forall d, opposite d != d;
+  clockwise_inj : injective clockwise;
   connected : forall d e,
     connect (fun x y => (y == opposite x) || (y == clockwise x)) d e
 }.
@@ -130,26 +130,46 @@ Fixpoint percepts (M : marker) (W : start) (pose : W) (doors : seq door) : seq p
 
 (** * Robots *)
 
-(** Any deterministic robot: from its percepts so far it decides by which door to leave, or what to
-    answer. *)
-Inductive decision (A : Type) := Leave of door | Answer of A.
+(** What the actions [E] of a robot do: in a state some actions are possible, each leads to a state, and there the
+    robot has a percept. *)
+Record environment (E : Type) := Environment {
+  state : Type;
+  first_state : state;
+  possible : state -> E -> bool;
+  next_state : state -> E -> state;
+  sense : state -> percept
+}.
 
-Arguments Leave {A}.
+(** A robot that only moves, in a world with a marker. The state is its pose, the actions are the doors by which it
+    leaves, and it can leave by a door that exists. *)
+Definition moving (M : marker) (W : start) : environment door := {|
+  state := W;
+  first_state := facing W;
+  possible := fun pose i => i < degree pose;
+  next_state := @traverse W;
+  sense := @perceive M W
+|}.
 
-Definition strategy (A : Type) := seq percept -> decision A.
+(** Any deterministic robot: from its percepts so far it decides what to do, or what to answer. *)
+Inductive decision (E A : Type) := Act of E | Answer of A.
+
+Arguments Act {E A}.
+Arguments Answer {E A}.
+
+Definition strategy_of (E A : Type) := seq percept -> decision E A.
+
+Notation strategy := (strategy_of door).
 
 Section Runs.
 
-Variables (A : Type) (robot : strategy A) (M : marker) (W : start).
+Variables (E A : Type) (robot : strategy_of E A) (I : environment E).
 
-(** The robot's percepts and its pose after a number of decisions. *)
-Fixpoint situation (decisions : nat) : seq percept * W :=
+(** The robot's percepts and its state after a number of decisions. *)
+Fixpoint situation (decisions : nat) : seq percept * state I :=
   if decisions is earlier.+1 then
-    let: (past, pose) := situation earlier in
-    if robot past is Leave i then
-      (rcons past (perceive M (traverse pose i)), traverse pose i)
-    else (past, pose)
-  else ([:: perceive M (facing W)], facing W).
+    let: (past, s) := situation earlier in
+    if robot past is Act e then (rcons past (sense (next_state s e)), next_state s e) else (past, s)
+  else ([:: sense (first_state I)], first_state I).
 
 Definition history decisions := (situation decisions).1.
 
@@ -178,18 +198,17 @@ Definition alike (M : marker) (V W : start) (p : V) (q : W) :=
 (** Two starts that no robot can distinguish. *)
 Definition indistinguishable (M : marker) (V W : start) := alike M (facing V) (facing W).
 
-(** The certificate for that: a relation of poses that contains the starts, whose related poses have equal
-    percepts, and that every door preserves. *)
-Definition bisimilar (M : marker) (V W : start) :=
-  exists R : V -> W -> Prop,
-    R (facing V) (facing W) /\
-    forall p q, R p q ->
-      perceive M p = perceive M q /\ forall i, R (traverse p i) (traverse q i).
+(** The certificate for that: a relation of states that contains the first ones, whose related states have equal
+    percepts, and that every action preserves. *)
+Definition bisimilar E (I : start -> environment E) (V W : start) :=
+  exists R : state (I V) -> state (I W) -> Prop,
+    R (first_state (I V)) (first_state (I W)) /\
+    forall s t, R s t -> sense s = sense t /\ forall e, R (next_state s e) (next_state t e).
 
 (** The robot answers with a map that is isomorphic to its world. *)
-Definition maps (M : marker) (robot : strategy embedded_graph) (W : start) :=
-  exists2 map : embedded_graph, answers robot M W map & isomorphic map W.
+Definition maps E (I : start -> environment E) (robot : strategy_of E embedded_graph) (W : start) :=
+  exists2 map : embedded_graph, answers robot (I W) map & isomorphic map W.
 
 (** And its map also contains the robot's start. *)
-Definition maps_start (M : marker) (robot : strategy start) (W : start) :=
-  exists2 map : start, answers robot M W map & isomorphic_starts map W.
+Definition maps_start E (I : start -> environment E) (robot : strategy_of E start) (W : start) :=
+  exists2 map : start, answers robot (I W) map & isomorphic_starts map W.

@@ -23,28 +23,28 @@ Definition sub_opposite (x : W + bool) : W + bool :=
 Definition sub_clockwise (x : W + bool) : W + bool :=
   match x with inl d => inl (clockwise d) | inr b => inr (~~ b) end.
 
-Lemma sub_involutive : involutive sub_opposite.
+Lemma sub_oppositeK : involutive sub_opposite.
 Proof.
-case=> [d|[]] /=; last by rewrite (negPf (opposite_moves e)) eqxx.
+case=> [d|[]] /=; last by rewrite (negPf (opposite_neq e)) eqxx.
   case: eqP => [->|/eqP de] //=; case: eqP => [->|/eqP doe] //=.
-  by rewrite (inv_eq (@opposite_involutive W)) (negPf doe) (inj_eq (@opposite_inj W)) (negPf de) opposite_involutive.
+  by rewrite (inv_eq (@oppositeK W)) (negPf doe) (inj_eq (@opposite_inj W)) (negPf de) oppositeK.
 by rewrite eqxx.
 Qed.
 
-Lemma sub_moves x : sub_opposite x != x.
+Lemma sub_opposite_neq x : sub_opposite x != x.
 Proof.
 case: x => [d|[]] //=; case: ifP => // _; case: ifP => // _.
-by apply: contra (opposite_moves d) => /eqP[->].
+by apply: contra (opposite_neq d) => /eqP[->].
 Qed.
 
 Lemma sub_clockwise_inj : injective sub_clockwise.
-Proof. by move=> [d|b] [d'|b'] //= [] => [/(@clockwise_injective W)->|/negb_inj->]. Qed.
+Proof. by move=> [d|b] [d'|b'] //= [] => [/(@clockwise_inj W)->|/negb_inj->]. Qed.
 
 Let step x y := (y == sub_opposite x) || (y == sub_clockwise x).
 
 Lemma sub_connected x y : connect step x y.
 Proof.
-apply: (all_connected (root := inl (facing W))); [exact: sub_involutive | exact: sub_clockwise_inj |].
+apply: (all_connected (root := inl (facing W))); [exact: sub_oppositeK | exact: sub_clockwise_inj |].
 have old d : connect step (inl (facing W)) (inl d).
   have /connectP[s path_s ->] := connected (facing W) d; elim/last_ind: s path_s => [|s r IH] /=.
     by move=> _; apply: connect0.
@@ -53,18 +53,18 @@ have old d : connect step (inl (facing W)) (inl d).
     case: eqP => [->|_].
       move/connect_trans; apply; apply: connect_trans (connect_cw _ _ _) _.
       exact: (connect_opp sub_opposite sub_clockwise (inr false)).
-    case: eqP => [->|_] //; rewrite opposite_involutive.
+    case: eqP => [->|_] //; rewrite oppositeK.
     move/connect_trans; apply; apply: connect_trans (connect_cw _ _ _) _.
     exact: (connect_opp sub_opposite sub_clockwise (inr true)).
   exact: (connect_cw sub_opposite sub_clockwise (inl _)).
 case=> [d|[]] //.
   have := connect_opp sub_opposite sub_clockwise (inl e); rewrite /= eqxx; exact: connect_trans.
 have := connect_opp sub_opposite sub_clockwise (inl (opposite e)).
-by rewrite /= (negPf (opposite_moves e)) eqxx; apply: connect_trans.
+by rewrite /= (negPf (opposite_neq e)) eqxx; apply: connect_trans.
 Qed.
 
 Definition subdivided_graph : embedded_graph :=
-  @EmbeddedGraph [finType of W + bool] _ _ sub_involutive sub_moves sub_clockwise_inj sub_connected.
+  @EmbeddedGraph [finType of W + bool] _ _ sub_oppositeK sub_opposite_neq sub_clockwise_inj sub_connected.
 
 Definition subdivided : start := @Start subdivided_graph (inl (facing W)).
 
@@ -78,7 +78,7 @@ Proof. by elim: i => //= i <-. Qed.
 Lemma old_traverse d i : turn d i != e -> traverse d i != e -> old (traverse d i) = traverse (old d) i.
 Proof.
 rewrite {2 3}/traverse -old_turn /= => /negPf ->.
-by rewrite (inv_eq (@opposite_involutive W)) => /negPf ->.
+by rewrite (inv_eq (@oppositeK W)) => /negPf ->.
 Qed.
 
 Lemma old_same_vertex d d' : same_vertex (old d) (old d') -> same_vertex d d'.

@@ -1,10 +1,10 @@
 (** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v],
-    [MovableMarker.v], [Handling.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
+    [MovableMarker.v], [Markers.v], [Folding.v], [Certificate.v] and [FoldingExplorer.v] define the
     terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions Markers
-  Handling.
+From toposlam Require Import Spec Program Algorithm1 Folding Certificate FoldingExplorer GivenActions
+  Markers.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
 From toposlam Require Rounds Correct Mapper Classes MovableMarker MovableCorrect Covering.
 From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Coprime Multigraphs Tours
@@ -15,6 +15,7 @@ Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, e
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
+Import MovableMarker(handling_action, handling, can_handle, movable).
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -31,34 +32,34 @@ Qed.
 
 (** The way back along a path ends at the vertex where it began, and the robot is then turned by the first
     door of the path. Paper: 2.3; Algorithm 1, line 15. *)
-Theorem retrace (G : embedded_graph) (pose : G) (doors : seq door) :
+Theorem way_backK (G : embedded_graph) (pose : G) (doors : seq door) :
   walk (walk pose doors) (way_back (taken pose doors)) = turn pose (head 0 doors).
 Proof. (* paper: alg1.15 *)
-exact: Walks.retrace_walk.
+exact: Walks.way_backK.
 Qed.
 
 (** * Markers that do not suffice, and one that does *)
 
 (** Two starts are indistinguishable, i.e. every door sequence gives the same percepts, exactly if there
     is a bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
-Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
-  bisimilar M V W <-> indistinguishable M V W.
-Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
+Theorem bisimilarP (M : marker) (V W : start) :
+  bisimilar (moving M) V W <-> indistinguishable M V W.
+Proof. exact: Bisimulation.bisimilarP. Qed.
 
-(** In bisimilar starts every robot has the same history, whatever its strategy, and so gives the same
-    answer. Paper: 2.2. *)
-Theorem bisimilar_same_history A (robot : strategy A) (M : marker) (V W : start) :
-  bisimilar M V W ->
-  (forall decisions, history robot M V decisions = history robot M W decisions) /\
-  (forall answer, answers robot M V answer <-> answers robot M W answer).
+(** In bisimilar starts every robot has the same history, whatever its actions and its strategy, and so gives the
+    same answer. Paper: 2.2. *)
+Theorem bisimilar_history E A (robot : strategy_of E A) (I : start -> environment E) (V W : start) :
+  bisimilar I V W ->
+  (forall decisions, history robot (I V) decisions = history robot (I W) decisions) /\
+  (forall answer, answers robot (I V) answer <-> answers robot (I W) answer).
 Proof. (* paper: world.interface *)
-by move=> same; split; [apply: Bisimulation.bisimilar_same_history
-                       | apply: Bisimulation.bisimilar_same_answers].
+by move=> same; split; [apply: Bisimulation.bisimilar_history
+                       | apply: Bisimulation.bisimilar_answers].
 Qed.
 
 (** Without a marker, no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
 Theorem no_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
+  ~ (maps (moving no_marker) robot cycle_3 /\ maps (moving no_marker) robot cycle_4).
 Proof. (* paper: marker.none-insufficient, marker.none-cycles *)
 exact: Impossible.no_marker_impossible.
 Qed.
@@ -67,7 +68,7 @@ Qed.
     with one undirected marker at the hub. Paper: 2.2; Figure 1. *)
 Theorem figure_1_indistinguishable :
   [/\ simple figure_1a, simple figure_1b, ~ isomorphic figure_1a figure_1b
-    & bisimilar undirected figure_1a figure_1b].
+    & bisimilar (moving undirected) figure_1a figure_1b].
 Proof. (* paper: fig1.different, fig1.step *)
 have [simple_a simple_b] := Figures.figure_1_simple.
 split=> //; [exact: Figures.figure_1_not_isomorphic | exact: Figures.figure_1_bisimilar].
@@ -78,7 +79,7 @@ Qed.
     Paper: 2.2. *)
 Theorem smaller_pair_indistinguishable :
   [/\ simple smallest_a, simple smallest_b, ~ isomorphic smallest_a smallest_b
-    & bisimilar undirected smallest_a smallest_b].
+    & bisimilar (moving undirected) smallest_a smallest_b].
 Proof.
 have [simple_a simple_b] := Figures.smallest_simple.
 split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
@@ -87,37 +88,37 @@ Qed.
 (** With one undirected marker that stays at the start vertex, no robot maps both worlds of Figure 1, nor
     both of the smaller pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
-  ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
-  ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
+  ~ (maps (moving undirected) robot figure_1a /\ maps (moving undirected) robot figure_1b) /\
+  ~ (maps (moving undirected) robot smallest_a /\ maps (moving undirected) robot smallest_b).
 Proof. (* paper: marker.undirected-insufficient *)
 exact: Impossible.undirected_marker_impossible.
 Qed.
 
 (** With a directional marker, two starts are indistinguishable exactly if they are isomorphic, facing to
     facing. Paper: 2.3. *)
-Theorem directional_marker_separates (V W : start) :
+Theorem indistinguishable_directionalP (V W : start) :
   indistinguishable directional V W <-> isomorphic_starts V W.
-Proof. exact: Separates.indistinguishable_directional. Qed.
+Proof. exact: Separates.indistinguishable_directionalP. Qed.
 
 (** If one robot maps two indistinguishable starts, and knows where it began, then they are isomorphic,
     facing to facing. Paper: 2.2. *)
 Theorem mapped_indistinguishable_iso (robot : strategy start) (M : marker) (V W : start) :
-  maps_start M robot V -> maps_start M robot W -> indistinguishable M V W -> isomorphic_starts V W.
+  maps_start (moving M) robot V -> maps_start (moving M) robot W -> indistinguishable M V W -> isomorphic_starts V W.
 Proof.
-by move=> maps_V maps_W /Bisimulation.bisimilar_iff_indistinguishable same;
+by move=> maps_V maps_W /Bisimulation.bisimilarP same;
    apply: Impossible.bisimilar_maps_start same maps_V maps_W.
 Qed.
 
 (** * Programs *)
 
 (** If a property always holds for a program, it holds for the robot that runs the program with the
-    default choices: the robot answers, and until then takes only doors that exist. Paper: 2.1. *)
-Theorem obeying_always A (p : percept -> program A) (M : marker) (W : start) (Q : A -> W -> nat -> Prop) :
-  always M (p (perceive M (facing W))) (facing W) Q ->
+    default choices: the robot answers, and until then does only what is possible. Paper: 2.1. *)
+Theorem obeying_always E (I : environment E) A (p : percept -> program_of E A) (Q : A -> state I -> nat -> Prop) :
+  always I (p (sense (first_state I))) (first_state I) Q ->
   let robot := obeying p in
   exists answer n,
-    [/\ robot (history robot M W n) = Answer answer, Q answer (situation robot M W n).2 n
-      & forall j i, robot (history robot M W j) = Leave i -> i < degree (situation robot M W j).2].
+    [/\ robot (history robot I n) = Answer answer, Q answer (situation robot I n).2 n
+      & forall j e, robot (history robot I j) = Act e -> possible (situation robot I j).2 e].
 Proof. exact: Obeying.obeying_always. Qed.
 
 (** * Algorithm 1 *)
@@ -140,21 +141,21 @@ Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
 
 (** When Algorithm 1 first reaches line 4, the known map is a part of the world, and the robot is where it
     believes to be. Paper: 2.3; Algorithm 1, lines 1 to 3. *)
-Theorem map_embeds_at_first : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
+Theorem embeds_at_start : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
 Proof. (* paper: alg1.2, alg1.3 *)
 exact: Correct.embeds_at_start.
 Qed.
 
 (** If, at line 4, the known map is a part of the world and the robot is where it believes to be, then so
     they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
-Theorem map_embeds_after_round (test : hypothesis_test) :
+Theorem embeds_explore (test : hypothesis_test) :
   valid test -> embeds S place -> pose < size S -> unexplored S != [::] ->
-  always directional (explore test any_path S pose) (place pose)
+  always (moving directional W) (explore test any_path S pose) (place pose)
     (fun after there _ => exists place' : nat -> W,
        [/\ embeds after.1 place', after.2 < size after.1 & there = place' after.2]).
 Proof. (* paper: alg1.4, alg1.located *)
 move=> ok known lt some; have short T path : size path < known_vertices T -> any_path T path by [].
-apply: Always.always_weaken (Rounds.explore_spec ok short known lt some).
+apply: Always.alwaysW (Rounds.explore_spec ok short known lt some).
 by move=> after r k [[place' [known' lt' -> _]] _]; exists place'.
 Qed.
 
@@ -175,31 +176,31 @@ Let once := Validation.validate_spec known test_valid h_known path_leads turned_
 (** A confirmed hypothesis is true: the robot came in by the dart of the hypothesis, and it is then where
     it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
        place h = t /\ place believed = pose).
 Proof. (* paper: alg1.validation, alg1.17 *)
-apply: Always.always_weaken once.
+apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k // [placed _ -> _] _ [<-].
 Qed.
 
 (** A true hypothesis is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended _ _ => exists believed, ended = Confirmed believed).
 Proof. (* paper: alg1.16 *)
-move=> true_h; apply: Always.always_weaken once.
+move=> true_h; apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k; [exists believed | case].
 Qed.
 
 (** After a rejected hypothesis the robot is where it was, turned by a door that it knows. Paper: 2.3;
     Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
-  always directional (validate test S (perceive directional t) turned h path) (turn t turned)
+  always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall turned', ended = Rejected turned' -> pose = turn t turned').
 Proof. (* paper: alg1.14, alg1.15 *)
-apply: Always.always_weaken once.
+apply: Always.alwaysW once.
 by case=> [believed|turned'] pose k // [_ -> _ _] _ [<-].
 Qed.
 
@@ -210,7 +211,7 @@ End Validation.
 Theorem hypotheses_decided (test : hypothesis_test) (S : partial_map) (W : start) (place : nat -> W) (t : W)
     (H : seq nat) :
   valid test -> embeds S place -> {subset H <= unexplored S} ->
-  always directional (try_all test any_path (size H) S (perceive directional t) 0 H) t
+  always (moving directional W) (try_all test any_path (size H) S (perceive directional t) 0 H) t
     (fun became pose _ =>
        match became with
        | Loop h believed => [/\ h \in H, place h = t & place believed = pose]
@@ -219,7 +220,7 @@ Theorem hypotheses_decided (test : hypothesis_test) (S : partial_map) (W : start
 Proof. (* paper: alg1.8, alg1.9 *)
 move=> ok known sub; have short T path : size path < known_vertices T -> any_path T path by [].
 have := Rounds.try_all_spec ok short known (erefl (size H)) sub (Walks.degree_gt0 t).
-by apply: Always.always_weaken => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
+by apply: Always.alwaysW => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
 Qed.
 
 (** In every world, from every start, Algorithm 1 ends, with any choice of an edge at line 5, of a
@@ -228,11 +229,11 @@ Qed.
     As many rounds suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
 Theorem algorithm1_correct (test : hypothesis_test) (W : start) (bound : nat) :
   valid test -> edges W <= bound ->
-  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => right_answer answer pose).
 Proof. (* paper: alg1.isomorphic, alg1.located, alg1.terminates, alg1.every-world *)
 move=> ok enough; have short S path : size path < known_vertices S -> any_path S path by [].
-by apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [].
+by apply: Always.alwaysW (Correct.algorithm1_spec ok short enough) => answer pose k [].
 Qed.
 
 (** With paths that have fewer edges than there are known vertices, such as shortest paths, Algorithm 1
@@ -242,26 +243,26 @@ Theorem algorithm1_cost (test : hypothesis_test) (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
   valid test -> m <= bound ->
-  always directional (algorithm1 test short_paths bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test short_paths bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= m * n + 2 * m ^ 2 * (n - 1)).
 Proof. (* paper: cost.bound *)
 move=> m n ok enough; have short S path : size path < known_vertices S -> short_paths S path by [].
-apply: Always.always_weaken (Correct.algorithm1_spec ok short enough) => answer pose k [_].
+apply: Always.alwaysW (Correct.algorithm1_spec ok short enough) => answer pose k [_].
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
 (** With any limit on rounds, also with one that is too low, Algorithm 1 answers nothing or rightly. Paper:
     2.3; Algorithm 1. *)
-Theorem algorithm1_never_wrong (test : hypothesis_test) (W : start) (bound : nat) :
+Theorem algorithm1_sound (test : hypothesis_test) (W : start) (bound : nat) :
   valid test ->
-  always directional (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (algorithm1 test any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
-Proof. by move=> ok; apply: (Correct.algorithm1_any ok) => S path. Qed.
+Proof. by move=> ok; apply: (Correct.algorithm1_sound ok) => S path. Qed.
 
 (** One directional marker suffices: there is one robot that maps every world with such a marker, without
     any knowledge of that world. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
-  exists robot : strategy start, forall W : start, maps_start directional robot W.
+  exists robot : strategy start, forall W : start, maps_start (moving directional) robot W.
 Proof. (* paper: marker.directional-sufficient *)
 by exists Mapper.mapper; apply: Mapper.mapper_maps.
 Qed.
@@ -272,11 +273,11 @@ Theorem directional_marker_locates :
   exists robot : strategy located, forall W : start, exists map decisions,
     let m := edges W in
     let n := vertices W in
-    let pose := (situation robot directional W decisions).2 in
-    [/\ robot (history robot directional W decisions) = Answer map,
+    let pose := (situation robot (moving directional W) decisions).2 in
+    [/\ robot (history robot (moving directional W) decisions) = Answer map,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (history robot directional W j) = Leave i ->
-          i < degree (situation robot directional W j).2
+        forall j i, robot (history robot (moving directional W) j) = Act i ->
+          i < degree (situation robot (moving directional W) j).2
       & decisions <= m * n + 2 * m ^ 2 * (n - 1)].
 Proof.
 exists Mapper.locating_mapper => W; have := Mapper.locating_mapper_maps W.
@@ -288,7 +289,7 @@ Qed.
 (** In two starts that are indistinguishable with one undirected marker, all classes of poses that
     perceive the same for ever have the same size, in both worlds, and this size divides the degree of the
     marked vertex. Paper: beyond 2.2. *)
-Theorem class_sizes (V W : start) :
+Theorem card_class_dvd (V W : start) :
   indistinguishable undirected V W ->
   exists size, size %| degree (facing V) /\
     forall X Y, (X = V \/ X = W) -> (Y = V \/ Y = W) ->
@@ -302,60 +303,54 @@ Qed.
 (** With one marker that can be picked up and dropped, the mapping algorithm of Dudek, Jenkin, Milios and
     Wilkes maps every world without loops and parallel edges, with any choices; the robot is then where it
     believes to be, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
-Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
+Theorem movable_marker_correct (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
-  let begin := Some (facing W) in
-  MovableMarker.always_handling
-    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin
-    (fun answer pose lying => lying = None /\ right_answer answer pose).
+  let begin := first_state (handling W) in
+  always (handling W) (movable any_path bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ right_answer answer s.1).
 Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
-exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
+exact: (MovableCorrect.movable_marker_correct short simple_W enough).
 Qed.
 
 (** With any limit on rounds, also with one that is too low, it answers nothing or rightly. Paper: 2.3. *)
-Theorem movable_marker_never_wrong (W : start) (bound : nat) :
+Theorem movable_marker_sound (W : start) (bound : nat) :
   simple W ->
-  let begin := Some (facing W) in
-  MovableMarker.always_handling
-    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin
-    (fun answer pose lying => lying = None /\ (answer = None \/ right_answer answer pose)).
+  let begin := first_state (handling W) in
+  always (handling W) (movable any_path bound (sense begin)) begin
+    (fun answer s _ => s.2 = None /\ (answer = None \/ right_answer answer s.1)).
 Proof.
 move=> simple_W; have short S path : size path < known_vertices S -> any_path S path by [].
-exact: (MovableCorrect.movable_marker_any short simple_W).
+exact: (MovableCorrect.movable_marker_sound short simple_W).
 Qed.
 
-(** With paths that have fewer edges than there are known vertices, it makes at most
-    1 + m ((n + 4) (n - 1) + 4 m + 8) decisions: moves, pick-ups and drops. Paper: 2.3. *)
+(** With paths that have fewer edges than there are known vertices, it does at most
+    1 + m ((n + 4) (n - 1) + 4 m + 8) actions: moves, pick-ups and drops. Paper: 2.3. *)
 Theorem movable_marker_cost (W : start) (bound : nat) :
   simple W ->
   let m := edges W in
   let n := vertices W in
-  let begin := Some (facing W) in
-  within (1 + m * ((n + 4) * (n - 1) + 4 * m + 8))
-    (MovableMarker.movable short_paths bound (MovableMarker.perceive_lying begin (facing W)))
-    (facing W) begin.
+  let begin := first_state (handling W) in
+  always (handling W) (movable short_paths bound (sense begin)) begin
+    (fun _ _ actions => actions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)).
 Proof.
 move=> simple_W m n begin; have short S path : size path < known_vertices S -> short_paths S path by [].
 rewrite -addnA [4 * m + 8]addnC addnA subn1.
-exact: (MovableCost.movable_within short simple_W (fun S path => id)).
+exact: (MovableCost.movable_cost short simple_W (fun S path => id)).
 Qed.
 
 (** So one robot maps every world without loops and parallel edges with one movable marker, within this bound.
-    It knows where it is in its map, carries the marker in the end, and takes only doors that exist. Paper: 1
-    and 2.3. *)
+    It knows where it is in its map, carries the marker in the end, takes only doors that exist, picks up the
+    marker only where it lies, and drops it only if it carries it. Paper: 1 and 2.3. *)
 Theorem movable_marker_locates :
-  exists robot : handling_strategy located, forall W : start, simple W ->
+  exists robot : strategy_of handling_action located, forall W : start, simple W ->
   exists map decisions,
     let m := edges W in
     let n := vertices W in
-    let: (pose, lying) := (handling_situation robot W decisions).2 in
-    [/\ robot (handling_history robot W decisions) = Report map, lying = None,
+    let: (pose, lying) := (situation robot (handling W) decisions).2 in
+    [/\ robot (history robot (handling W) decisions) = Answer map, lying = None,
         exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (Algorithm1.robot map) = pose],
-        forall j i, robot (handling_history robot W j) = Act (MovableMarker.LeaveBy i) ->
-          i < degree (handling_situation robot W j).2.1
+        forall j e, robot (history robot (handling W) j) = Act e -> can_handle (situation robot (handling W) j).2 e
       & decisions <= 1 + m * ((n + 4) * (n - 1) + 4 * m + 8)].
 Proof.
 exists MovableMapper.movable_mapper => W /MovableMapper.movable_mapper_maps.
@@ -372,10 +367,10 @@ Theorem as_good_as_directional (M : marker) (near beyond : pred percept) A (robo
   exists robot' : strategy A,
     (forall (W : start) (bound : nat),
        identifies M near beyond W -> (forall d : W, degree d <= bound) ->
-       forall n answer, robot (history robot directional W n) = Answer answer ->
-       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' M W n') = Answer answer) /\
+       forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+       exists2 n', n' <= n + n.+1 * (2 * bound) & robot' (history robot' (moving M W) n') = Answer answer) /\
     (forall (W : start) j i,
-       robot' (history robot' M W j) = Leave i -> i < degree (situation robot' M W j).2).
+       robot' (history robot' (moving M W) j) = Act i -> i < degree (situation robot' (moving M W) j).2).
 Proof.
 exists (Simulation.simulating near beyond robot); split=> [W bound identifies_W small n answer|W j i].
   exact: Simulation.simulating_answers.
@@ -384,7 +379,7 @@ Qed.
 
 (** So one robot maps every world with an arrow on an edge. Paper: beyond 2.3. *)
 Theorem directed_edge_suffices :
-  exists robot : strategy start, forall W : start, maps_start directed_edge robot W.
+  exists robot : strategy start, forall W : start, maps_start (moving directed_edge) robot W.
 Proof.
 have [robot maps_W] := Identifying.identifying_suffices directed_edge predT (fun seen => seen.2 == PassedAlong).
 by exists robot => W; apply/maps_W/Identifying.directed_edge_identifies.
@@ -392,8 +387,8 @@ Qed.
 
 (** One robot maps every world without loops and parallel edges with two markers that look different, at both
     ends of an edge. Paper: beyond 2.3. *)
-Theorem two_distinct_suffices_in_simple_worlds :
-  exists robot : strategy start, forall W : start, simple W -> maps_start two_distinct robot W.
+Theorem two_distinct_suffices_simple :
+  exists robot : strategy start, forall W : start, simple W -> maps_start (moving two_distinct) robot W.
 Proof.
 have [robot maps_W] :=
   Identifying.identifying_suffices two_distinct (fun seen => seen.2 == First) (fun seen => seen.2 == Second).
@@ -402,9 +397,9 @@ Qed.
 
 (** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
     beyond 2.2. *)
-Theorem undirected_marker_at_dead_end_suffices :
+Theorem undirected_dead_end_suffices :
   exists robot : strategy start, forall W : start,
-    degree (facing W) = 1 -> maps_start undirected robot W.
+    degree (facing W) = 1 -> maps_start (moving undirected) robot W.
 Proof.
 have [robot maps_W] := Identifying.identifying_suffices undirected (fun seen => seen == (1, Lying)) predT.
 by exists robot => W dead_end; apply/maps_W/Identifying.dead_end_identifies.
@@ -419,122 +414,156 @@ Proof. exact: Coprime.coprime_degree_determines. Qed.
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
     with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem undirected_edge_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar undirected_edge edge_a edge_b
-    & ~ (maps undirected_edge robot edge_a /\ maps undirected_edge robot edge_b)].
+  [/\ simple edge_a, simple edge_b, ~ isomorphic edge_a edge_b, bisimilar (moving undirected_edge) edge_a edge_b
+    & ~ (maps (moving undirected_edge) robot edge_a /\ maps (moving undirected_edge) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_undirected_edge.
-by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+have differ := Figures.edge_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** Nor do two markers that look alike at both ends of an edge, in the same two worlds. Paper: beyond 2.2. *)
 Theorem two_identical_impossible (robot : strategy embedded_graph) :
-  [/\ simple edge_a, simple edge_b, bisimilar two_identical edge_a edge_b
-    & ~ (maps two_identical robot edge_a /\ maps two_identical robot edge_b)].
+  [/\ simple edge_a, simple edge_b, ~ isomorphic edge_a edge_b, bisimilar (moving two_identical) edge_a edge_b
+    & ~ (maps (moving two_identical) robot edge_a /\ maps (moving two_identical) robot edge_b)].
 Proof.
 have [simple_a simple_b] := Figures.edge_simple; have same := Figures.edge_two_identical.
-by split=> //; apply: Impossible.bisimilar_impossible same Figures.edge_not_isomorphic robot.
+have differ := Figures.edge_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
 (** Two markers that look different at both ends of an edge do not suffice in worlds with parallel edges, nor
-    in worlds with loops: no robot maps both worlds of three parallel edges, in the plane and on the torus,
-    nor both of two loops. Paper: beyond 2.2. *)
+    in worlds with loops: the two worlds of three parallel edges, in the plane and on the torus, are not isomorphic
+    but bisimilar, and so are two of two loops. No robot maps both of a pair. Paper: beyond 2.2. *)
 Theorem two_distinct_impossible (robot : strategy embedded_graph) :
-  ~ (maps two_distinct robot theta_plane /\ maps two_distinct robot theta_torus) /\
-  ~ (maps two_distinct robot two_loops_plane /\ maps two_distinct robot two_loops_torus).
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar (moving two_distinct) theta_plane theta_torus
+    & ~ (maps (moving two_distinct) robot theta_plane /\ maps (moving two_distinct) robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar (moving two_distinct) two_loops_plane two_loops_torus
+    & ~ (maps (moving two_distinct) robot two_loops_plane /\ maps (moving two_distinct) robot two_loops_torus)].
 Proof.
-split; apply: Impossible.bisimilar_impossible robot.
-- exact: Multigraphs.theta_two_distinct.
-- exact: Multigraphs.theta_not_isomorphic.
-- exact: Multigraphs.loops_two_distinct.
-exact: Multigraphs.loops_not_isomorphic.
+have differ := Multigraphs.theta_not_isomorphic; have same := Multigraphs.theta_two_distinct.
+have differ' := Multigraphs.loops_not_isomorphic; have same' := Multigraphs.loops_two_distinct.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
 Qed.
 
 (** Two markers that look different and are not adjacent do not suffice, not even in worlds without loops and
     parallel edges: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
 Theorem two_distant_impossible (robot : strategy embedded_graph) :
-  [/\ simple paths_a, simple paths_b, bisimilar two_distant paths_a paths_b
-    & ~ (maps two_distant robot paths_a /\ maps two_distant robot paths_b)].
+  [/\ simple paths_a, simple paths_b, ~ isomorphic paths_a paths_b, bisimilar (moving two_distant) paths_a paths_b
+    & ~ (maps (moving two_distant) robot paths_a /\ maps (moving two_distant) robot paths_b)].
 Proof.
 have [simple_a simple_b] := Multigraphs.paths_simple; have same := Multigraphs.paths_two_distant.
-by split=> //; apply: Impossible.bisimilar_impossible same Multigraphs.paths_not_isomorphic robot.
+have differ := Multigraphs.paths_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
 Qed.
 
-(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: no robot that
-    can pick it up and drop it maps both worlds of three parallel edges, nor both of two loops. Paper: beyond
-    2.3. *)
-Theorem movable_marker_impossible (robot : handling_strategy embedded_graph) :
-  ~ (handling_maps robot theta_plane /\ handling_maps robot theta_torus) /\
-  ~ (handling_maps robot two_loops_plane /\ handling_maps robot two_loops_torus).
-Proof. by split; [apply: Multigraphs.theta_handling | apply: Multigraphs.loops_handling]. Qed.
+(** One movable marker does not suffice in worlds with parallel edges, nor in worlds with loops: the same pairs are
+    bisimilar for robots that can pick it up and drop it, and no robot maps both of a pair. Paper: beyond 2.3. *)
+Theorem movable_marker_impossible (robot : strategy_of handling_action embedded_graph) :
+  [/\ ~ isomorphic theta_plane theta_torus, bisimilar handling theta_plane theta_torus
+    & ~ (maps handling robot theta_plane /\ maps handling robot theta_torus)] /\
+  [/\ ~ isomorphic two_loops_plane two_loops_torus, bisimilar handling two_loops_plane two_loops_torus
+    & ~ (maps handling robot two_loops_plane /\ maps handling robot two_loops_torus)].
+Proof.
+have differ := Multigraphs.theta_not_isomorphic; have same := Multigraphs.theta_handling.
+have differ' := Multigraphs.loops_not_isomorphic; have same' := Multigraphs.loops_handling.
+by split; split=> //; [apply: Impossible.bisimilar_impossible same differ robot
+                      | apply: Impossible.bisimilar_impossible same' differ' robot].
+Qed.
 
 (** * Folding *)
 
 (** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
     so that opposites and clockwise successors are kept, and only the facing dart maps to the facing dart,
     then both starts are isomorphic. Paper: beyond 2.3. *)
-Theorem complete_trail_is_the_world (V W : start) (f : V -> W) :
+Theorem covering_isomorphic (V W : start) (f : V -> W) :
   (forall d, f (opposite d) = opposite (f d)) ->
   (forall d, f (clockwise d) = clockwise (f d)) ->
   (forall d, f d = facing W <-> d = facing V) ->
   isomorphic_starts V W.
 Proof. exact: Covering.covering_isomorphic. Qed.
 
-(** The folded trail of a walk maps into every start with the percepts of this walk: darts of the trail that
-    are folded stand for one dart of the start, and different darts of a visit stand for different ones.
-    Paper: beyond 2.3. *)
+(** The folded trail of a walk maps, locally one to one, into every start with the percepts of this walk: darts of
+    the trail that are folded stand for one dart of the start; those at both ends of an edge for opposite darts; the
+    next one around a visit for the next one clockwise; the one that the marker points to for the facing dart; and
+    the darts of a visit for all darts of a vertex, different ones for different ones. Paper: beyond 2.3. *)
 Theorem folding_sound (W : start) (doors : seq door) :
   let seen := sees W doors in
-  (forall x y, folded doors seen x y -> dart_of W doors x = dart_of W doors y) /\
-  (forall visit i j, visit < size seen -> i < degree_seen seen visit -> j < degree_seen seen visit ->
-     dart_of W doors (visit, i) = dart_of W doors (visit, j) -> i = j).
-Proof. by split; [apply: Trail.folding_sound | apply: Trail.visit_injective]. Qed.
+  let dart := dart_of W doors in
+  [/\ forall x y, folded doors seen x y -> dart x = dart y,
+      forall x y, one_edge doors x y -> dart y = opposite (dart x),
+      forall visit i, dart (visit, i.+1) = clockwise (dart (visit, i)),
+      forall visit i, sighting_seen seen visit = Pointing i -> dart (visit, i) = facing W
+    & forall visit, visit < size seen ->
+        (forall i, degree (dart (visit, i)) = degree_seen seen visit) /\
+        (forall i j, i < degree_seen seen visit -> j < degree_seen seen visit ->
+           dart (visit, i) = dart (visit, j) -> i = j)].
+Proof.
+split=> // [x y|x y|visit i|visit visit_lt].
+- exact: Trail.folding_sound.
+- exact: Trail.one_edge_dart.
+- exact: Trail.dart_of_pointing.
+by split=> [i|i j i_lt j_lt]; [apply: Trail.degree_dart_of | apply: Trail.visit_inj].
+Qed.
 
-(** If no dart of the folded trail is open, all starts with the percepts of the walk are isomorphic, facing
-    to facing. Paper: beyond 2.3. *)
+(** If no dart of the folded trail is open, every start with the percepts of the walk is isomorphic to it, facing to
+    facing: each dart of the start is one of the trail, and darts of the trail that stand for one dart are folded.
+    So all these starts are isomorphic. Paper: beyond 2.3. *)
 Theorem complete_folding_determines (V W : start) (doors : seq door) :
-  sees V doors = sees W doors -> complete doors (sees W doors) -> isomorphic_starts V W.
-Proof. exact: Trail.complete_folding_determines. Qed.
+  let seen := sees W doors in
+  sees V doors = seen -> complete doors seen ->
+  [/\ forall d : V, exists2 x, x.1 < size seen & dart_of V doors x = d,
+      forall x y, x.1 < size seen -> y.1 < size seen -> dart_of V doors x = dart_of V doors y -> folded doors seen x y
+    & isomorphic_starts V W].
+Proof.
+rewrite /= => same; rewrite -same => whole; split; first exact: Trail.complete_folding_onto.
+  exact: Unfolding.complete_folding_inj.
+by apply: (Trail.complete_folding_determines same); rewrite -same.
+Qed.
 
 (** If a dart of the folded trail is open, two worlds that are not isomorphic have the percepts of the walk.
-    They are simple if the robot's world is, and their degrees are at most its greatest degree, or 2. Paper:
+    They are simple if the folded trail is, and their degrees are at most its greatest degree, or 2. Paper:
     beyond 2.3. *)
 Theorem open_folding_ambiguous (W : start) (doors : seq door) (visit : nat) (i : door) :
-  visit < size (sees W doors) -> ~ followed doors (sees W doors) (visit, i) ->
+  let seen := sees W doors in
+  visit < size seen -> ~ followed doors seen (visit, i) ->
   exists V V' : start,
-    [/\ sees V doors = sees W doors, sees V' doors = sees W doors, ~ isomorphic V V',
-        simple W -> simple V /\ simple V'
-      & forall bound, 2 <= bound -> (forall d : W, degree d <= bound) ->
+    [/\ sees V doors = seen, sees V' doors = seen, ~ isomorphic V V',
+        simple_trail doors seen -> simple V /\ simple V'
+      & forall bound, 2 <= bound -> (forall visit, visit < size seen -> degree_seen seen visit <= bound) ->
           (forall d : V, degree d <= bound) /\ (forall d : V', degree d <= bound)].
 Proof. exact: Unfolding.open_folding_ambiguous. Qed.
+
+(** In a world without loops and parallel edges every folded trail is simple. Paper: beyond 2.3. *)
+Theorem simple_folding (W : start) (doors : seq door) : simple W -> simple_trail doors (sees W doors).
+Proof. exact: Unfolding.simple_folding. Qed.
 
 (** A robot maps every start exactly if in each it answers, when its folded trail is complete, with a start
     that has its percepts. Paper: beyond 2.3. *)
 Theorem correct_iff_complete (robot : strategy start) :
-  (forall W, maps_start directional robot W) <->
+  (forall W, maps_start (moving directional) robot W) <->
   (forall W, exists n map,
-     let past := history robot directional W n in
+     let past := history robot (moving directional W) n in
      let doors := doors_taken robot directional W n in
      [/\ robot past = Answer map, sees map doors = past & complete doors past]).
 Proof. exact: Determined.correct_iff_complete. Qed.
 
 (** A robot that maps every world has gone over every edge before it answers. Paper: beyond 2.3. *)
 Theorem every_edge_is_traversed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   forall d : W, traverses (facing W) (doors_taken robot directional W n) d.
 Proof. exact: Moves.every_edge_is_traversed. Qed.
 
 (** So it makes at least as many moves as the world has edges. Paper: beyond 2.3. *)
 Theorem at_least_m_moves (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   edges W <= size (doors_taken robot directional W n).
 Proof. exact: Moves.at_least_m_moves. Qed.
 
 (** And it comes back to the marked vertex at least m - n + 1 times. Paper: beyond 2.3. *)
 Theorem returns_needed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   edges W < vertices W + returns W (doors_taken robot directional W n).
 Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
 
@@ -542,8 +571,8 @@ Proof. by move=> maps_all W n answer; apply: Returns.returns_needed. Qed.
     makes at least 2 depth + 1 moves for each of them, except as many as there are vertices that cannot be
     reached without them. Paper: beyond 2.3. *)
 Theorem far_cycles_cost (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
   forall (far : pred W) (depth : nat),
   (forall d, far (opposite d) = far d) ->
   (forall doors d, same_vertex (walk (facing W) doors) d -> far d -> depth <= size doors) ->
@@ -552,37 +581,57 @@ Proof. by move=> maps_all W n answer answered far depth; apply: Returns.far_cycl
 
 (** So order m n moves are needed. For any two numbers there is a world of a chain of k + 1 edges, which begins
     at the marker and ends at a vertex with l loops, in which every robot that maps every world makes at least
-    (2 k + 3) l moves. Paper: beyond 2.3. *)
+    (2 k + 3) l moves. If l > k, that is at least half of m n. Paper: beyond 2.3. *)
 Theorem lower_bound (k l : nat) :
   exists W : start, [/\ edges W = k + 1 + l, vertices W = k + 2
-    & forall robot : strategy start, (forall V, maps_start directional robot V) ->
-      forall n answer, robot (history robot directional W n) = Answer answer ->
-      (2 * k + 3) * l <= size (doors_taken robot directional W n)].
+    & forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
+      forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+      let moves := size (doors_taken robot directional W n) in
+      (2 * k + 3) * l <= moves /\ (k < l -> edges W * vertices W <= 2 * moves)].
 Proof.
 exists (Lollipop.lollipop k l); rewrite Lollipop.lollipop_edges Lollipop.lollipop_vertices addn1 addn2.
 split=> // robot maps_all n answer answered.
-by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+have cost : (2 * k + 3) * l <= size (doors_taken robot directional (Lollipop.lollipop k l) n).
+  by have := Lollipop.lollipop_cost maps_all answered; rewrite mulnS -addnA addnC -addnA.
+split=> // k_lt; apply: leq_trans (_ : 2 * ((2 * k + 3) * l) <= _); last by rewrite leq_mul2l.
+apply: leq_trans (_ : (l + l) * k.+2 <= _); first by rewrite leq_mul2r leq_add2r k_lt orbT.
+by rewrite addnn -mul2n -mulnA leq_mul2l /= mulnC leq_mul2r -addn2 leq_add ?orbT // mul2n -addnn leq_addr.
 Qed.
 
 (** In every world there is a walk with a complete folded trail that has as many moves as the formula of the
     certificate says. Paper: beyond 2.3. *)
 Theorem certificate_attained (W : start) :
-  exists2 doors, complete doors (sees W doors) & size doors = certificate_length W.
+  exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W.
 Proof. exact: CertificateAttained.certificate_attained. Qed.
 
 (** No walk with a complete folded trail has fewer moves. Paper: beyond 2.3. *)
 Theorem certificate_shortest (W : start) (doors : seq door) :
-  complete doors (sees W doors) -> certificate_length W <= size doors.
+  complete doors (sees W doors) -> certificate_moves W <= size doors.
 Proof. exact: CertificateAttained.certificate_shortest. Qed.
 
 (** So a robot that maps every world makes at least as many moves in each. Paper: beyond 2.3. *)
 Theorem certificate_needed (robot : strategy start) :
-  (forall W, maps_start directional robot W) ->
-  forall (W : start) n answer, robot (history robot directional W n) = Answer answer ->
-  certificate_length W <= size (doors_taken robot directional W n).
+  (forall W, maps_start (moving directional) robot W) ->
+  forall (W : start) n answer, robot (history robot (moving directional W) n) = Answer answer ->
+  certificate_moves W <= size (doors_taken robot directional W n).
 Proof.
 move=> maps_all W n answer answered; apply: CertificateNeeded.certificate_needed.
 exact: Returns.robot_determined answered.
+Qed.
+
+(** The formula of the certificate: it is a lower bound for every robot that maps every world, in each world, and it is
+    attained, by the shortest walk with a complete folded trail. Paper: beyond 2.3. *)
+Theorem certificate_length (W : start) :
+  [/\ forall robot : strategy start, (forall V, maps_start (moving directional) robot V) ->
+        forall n answer, robot (history robot (moving directional W) n) = Answer answer ->
+        certificate_moves W <= size (doors_taken robot directional W n),
+      forall doors, complete doors (sees W doors) -> certificate_moves W <= size doors
+    & exists2 doors, complete doors (sees W doors) & size doors = certificate_moves W].
+Proof.
+split=> [robot maps_all n answer answered|doors whole|].
+- exact: certificate_needed answered.
+- exact: certificate_shortest.
+exact: certificate_attained.
 Qed.
 
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
@@ -591,21 +640,23 @@ Qed.
     2 m (m + 1) actions suffice. Paper: beyond 2.3. *)
 Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
   2 * edges W * (edges W + 1) <= bound ->
-  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer any_length patience bound (perceive directional (facing W)))
+    (facing W)
     (fun answer pose _ => right_answer answer pose).
 Proof.
 move=> enough; have short k l : k <= l -> any_length k l by [].
-apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+apply: Always.alwaysW (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
 by move=> answer pose k [[//|[_]]]; rewrite ltnNge enough.
 Qed.
 
 (** With any limit on actions, also with one that is too low, it answers nothing or rightly. Paper: beyond 2.3. *)
-Theorem folding_explorer_never_wrong (W : start) (patience : partial_map -> nat) (bound : nat) :
-  always directional (folding_explorer any_length patience bound (perceive directional (facing W))) (facing W)
+Theorem folding_explorer_sound (W : start) (patience : partial_map -> nat) (bound : nat) :
+  always (moving directional W) (folding_explorer any_length patience bound (perceive directional (facing W)))
+    (facing W)
     (fun answer pose _ => answer = None \/ right_answer answer pose).
 Proof.
 have short k l : k <= l -> any_length k l by [].
-apply: Always.always_weaken (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
+apply: Always.alwaysW (ExplorerCorrect.folding_explorer_spec patience short W 0 bound).
 by move=> answer pose k [[right|[none _]] _]; [right | left].
 Qed.
 
@@ -615,16 +666,17 @@ Qed.
 Theorem folding_explorer_cost (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
-  always directional (folding_explorer no_longer usual_patience bound (perceive directional (facing W))) (facing W)
+  always (moving directional W) (folding_explorer no_longer usual_patience bound (perceive directional (facing W)))
+    (facing W)
     (fun _ _ moves => moves <= 6 * n * m ^ 2 + 18 * n * m + 2 * m + 2 * n + 802).
 Proof. exact: ExplorerCorrect.folding_explorer_cost. Qed.
 
 (** The explorer that is compared with the running one, whose actions are given from outside, is the folding
     explorer: what always holds for the folding explorer holds for it, as long as the actions are allowed. Paper:
     beyond 2.3. *)
-Theorem given_actions_always (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
+Theorem always_guided_explorer (M : marker) (W : start) (allowed : nat -> nat -> bool) (patience : partial_map -> nat)
     (bound : nat) (seen : percept) (pose : W) (Q : option (partial_map * nat) -> W -> nat -> Prop) :
-  always M (folding_explorer allowed patience bound seen) pose Q ->
+  always (moving M W) (folding_explorer allowed patience bound seen) pose Q ->
   always_guided M (guided_explorer allowed patience bound seen) pose Q.
 Proof. exact: GivenActionsCorrect.always_guided_actions. Qed.
 
@@ -639,12 +691,12 @@ Theorem tour_checks_the_map (map : start) (tour : seq door) :
     percepts directional pose tour = sees map tour <-> pose = facing W /\ isomorphic_starts map W.
 Proof. exact: Tours.tour_checks_the_map. Qed.
 
-(** Every map has such a walk, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
-Theorem map_has_a_tour (map : start) :
+(** From a map alone such a walk can be computed, with at most 2 m (2 n - 1) moves. Paper: beyond 2.3. *)
+Theorem tour_of_map (map : start) :
   let m := edges map in
   let n := vertices map in
-  exists2 tour, complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1).
-Proof. exact: ShortTours.map_has_a_short_tour. Qed.
+  {tour : seq door | complete tour (sees map tour) & size tour <= 2 * m * (2 * n - 1)}.
+Proof. exact: ShortTours.tour_of_map. Qed.
 
 (** If at most k percepts of k + 1 such walks are false, and all walks have the percepts that the map predicts,
     then the map is right, wherever the walks began. Paper: beyond 2.3. *)
@@ -658,7 +710,7 @@ Proof. exact: Tours.k_false_percepts. Qed.
 
 (** One such walk can confirm a wrong map if one of its percepts is false: in a chain of three vertices it has
     the percepts that a chain of two predicts. Paper: beyond 2.3. *)
-Theorem one_false_percept_deceives :
+Theorem one_false_percept :
   [/\ complete [:: 0] (sees chain_2 [:: 0]), ~ isomorphic chain_2 chain_3
     & false_percepts (sees chain_3 [:: 0]) (sees chain_2 [:: 0]) = 1].
 Proof. exact: Tours.one_false_percept. Qed.

@@ -14,13 +14,13 @@ Lemma tour_checks_the_map (T : start) tour : complete tour (sees T tour) ->
 Proof.
 move=> complete_T W q; split=> [same|[-> iso]]; last exact/esym/isomorphic_sees.
 have at_start : q = facing W.
-  apply/points_back; have := percepts_eq_walk same (leq0n _); rewrite !take0 /= /perceive => -[_ ->].
-  exact/points_back.
+  apply/pointing0P; have := percepts_eq_walk same (leq0n _); rewrite !take0 /= /perceive => -[_ ->].
+  exact/pointing0P.
 split=> //; apply: isomorphic_starts_sym; rewrite at_start in same.
 exact: complete_folding_determines complete_T.
 Qed.
 
-Lemma no_false_percept right perceived :
+Lemma false_percepts_eq0 right perceived :
   size perceived = size right -> false_percepts right perceived = 0 -> perceived = right.
 Proof.
 rewrite /false_percepts => same_size none; apply/esym.
@@ -41,7 +41,7 @@ have [j /eqP none] : exists j, false_percepts (percepts directional (q j) tour) 
   by apply: leq_sum => j _; rewrite lt0n.
 have same_size : size (perceived j) = size (percepts directional (q j) tour).
   by rewrite agree /sees !size_percepts.
-have [_ iso] := (tour_checks_the_map complete_T (q j)).1 (etrans (esym (no_false_percept same_size none)) (agree j)).
+have [_ iso] := (tour_checks_the_map complete_T (q j)).1 (etrans (esym (false_percepts_eq0 same_size none)) (agree j)).
 exact: iso.
 Qed.
 

@@ -37,7 +37,7 @@ Lemma went_back i j d : went i j d -> went j i (opposite d).
 Proof.
 case/orP=> /andP[/eqP ij /eqP ->]; rewrite /went.
   by rewrite -(pose_next ij) ij !eqxx orbT.
-by rewrite (pose_next ij) opposite_involutive ij !eqxx.
+by rewrite (pose_next ij) oppositeK ij !eqxx.
 Qed.
 
 Lemma went_at i j d : went i j d -> same_vertex (pose_at i) d.
@@ -155,9 +155,9 @@ have /same_vertexP[k cE] : same_vertex (dart (i : nat, a)) (dart (i : nat, c)).
   rewrite !dart_ofE; apply: same_vertex_trans _ (same_vertex_turn _ _).
   by rewrite same_vertex_sym same_vertex_turn.
 apply: Linked (_ : folded _ _ _ (i : nat, a + k)) _.
-  by apply: folded_around; rewrite cE !dart_ofE turn_add.
+  by apply: folded_around; rewrite cE !dart_ofE turnD.
 apply: Linked (folded_shift k ab) _; apply: folded_around.
-by rewrite -cd cE same !dart_ofE /= turn_add.
+by rewrite -cd cE same !dart_ofE /= turnD.
 Qed.
 
 (** The trail's edges are those that the walk goes over. *)
@@ -169,7 +169,7 @@ case/orP=> /andP[/eqP ij /eqP->].
   have lt : i < size doors by have := ltn_ord j; rewrite ij ltnS.
   by exists (nth 0 doors i), 0; rewrite !dart_ofE -(pose_next ij) ij; split=> //; apply: Onward.
 have lt : j < size doors by have := ltn_ord i; rewrite ij ltnS.
-exists 0, (nth 0 doors j); rewrite !dart_ofE (pose_next ij) opposite_involutive ij.
+exists 0, (nth 0 doors j); rewrite !dart_ofE (pose_next ij) oppositeK ij.
 by split=> //; apply: Backward.
 Qed.
 
@@ -243,7 +243,7 @@ have -> : [pick k | one i k] = [pick k | one j k].
 by case: pickP => // /(_ j); rewrite one_refl.
 Qed.
 
-Lemma first_idem i : first_visit (first_visit i) = first_visit i.
+Lemma first_first i : first_visit (first_visit i) = first_visit i.
 Proof. exact/esym/first_eq/one_first. Qed.
 
 (** Where a dart of a vertex leads, if the walk has gone over its edge. *)
@@ -269,7 +269,7 @@ Qed.
 
 Lemma link_at i d j : link i d = Some j -> first_visit j = j /\ same_vertex (pose_at j) (opposite d).
 Proof.
-move=> /link_some[k [l [_ /went_back/went_at l_d ->]]]; split; first exact: first_idem.
+move=> /link_some[k [l [_ /went_back/went_at l_d ->]]]; split; first exact: first_first.
 by apply: same_vertex_trans l_d; rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
 
@@ -329,31 +329,31 @@ Definition unfolded_opposite (z : unfolded_dart) : unfolded_dart :=
 Definition unfolded_clockwise (z : unfolded_dart) : unfolded_dart :=
   pack (is_dart_clockwise (valP z)).
 
-Lemma unfolded_involutive : involutive unfolded_opposite.
+Lemma unfolded_oppositeK : involutive unfolded_opposite.
 Proof.
 case=> [[[i d] dead_end] ok]; apply: val_inj => /=; case/and3P: ok => /= /eqP first _.
 case: dead_end => /= [/eqP->//|_].
 case linked: (link i d) => [j|] //=.
-by rewrite (link_back first linked) opposite_involutive.
+by rewrite (link_back first linked) oppositeK.
 Qed.
 
-Lemma unfolded_moves z : unfolded_opposite z != z.
+Lemma unfolded_opposite_neq z : unfolded_opposite z != z.
 Proof.
 apply/eqP=> /(congr1 val); case: z => [[[i d] []] ok] //=.
-by case: (link i d) => [j [_ /eqP]|//]; rewrite (negPf (opposite_moves d)).
+by case: (link i d) => [j [_ /eqP]|//]; rewrite (negPf (opposite_neq d)).
 Qed.
 
-Lemma unfolded_injective : injective unfolded_clockwise.
+Lemma unfolded_clockwise_inj : injective unfolded_clockwise.
 Proof.
 move=> [[[i d] b] ok] [[[i' d'] b'] ok'] /(congr1 val) /= same; apply: val_inj => /=.
-by case: b b' same {ok ok'} => -[] //= [-> /(@clockwise_injective W)->].
+by case: b b' same {ok ok'} => -[] //= [-> /(@clockwise_inj W)->].
 Qed.
 
 Definition root_visit : visit := ord0.
 
 Lemma facing_is_dart : is_dart (first_visit root_visit, facing W, false).
 Proof.
-apply/and3P; split=> //=; first by rewrite first_idem.
+apply/and3P; split=> //=; first by rewrite first_first.
 have -> : facing W = pose_at root_visit by rewrite /pose_at take0.
 by rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
@@ -363,7 +363,7 @@ Definition unfolded_facing : unfolded_dart := pack facing_is_dart.
 (** The dart of a visit. *)
 Lemma visit_is_dart (i : visit) d : same_vertex (pose_at i) d -> is_dart (first_visit i, d, false).
 Proof.
-move=> near; apply/and3P; split=> //=; first by rewrite first_idem.
+move=> near; apply/and3P; split=> //=; first by rewrite first_first.
 by apply: same_vertex_trans near; rewrite same_vertex_sym one_same_vertex // one_first.
 Qed.
 
@@ -383,7 +383,7 @@ Qed.
 
 Lemma unfolded_connected x y : connect step x y.
 Proof.
-apply: (all_connected (root := unfolded_facing)); [exact: unfolded_involutive | exact: unfolded_injective |].
+apply: (all_connected (root := unfolded_facing)); [exact: unfolded_oppositeK | exact: unfolded_clockwise_inj |].
 have visited k : forall i : visit, i = k :> nat ->
     forall d (near : same_vertex (pose_at i) d), connect step unfolded_facing (at_visit near).
   elim: k => [|k IH] i ik d near.
@@ -408,7 +408,7 @@ rewrite -[exist _ _ _]/(pack ok) same; exact: connect_opp.
 Qed.
 
 Definition unfolded_graph : embedded_graph :=
-  @EmbeddedGraph [finType of unfolded_dart] _ _ unfolded_involutive unfolded_moves unfolded_injective
+  @EmbeddedGraph [finType of unfolded_dart] _ _ unfolded_oppositeK unfolded_opposite_neq unfolded_clockwise_inj
     unfolded_connected.
 
 Definition unfolded : start := @Start unfolded_graph unfolded_facing.
@@ -537,32 +537,87 @@ Proof.
 rewrite /below; case: x => [[[i d] []] ok] //= _; by case: (link i d).
 Qed.
 
-Lemma unfolded_simple : simple W -> simple unfolded.
+(** Behind a dart that the walk has not left open. *)
+Lemma linked_dart (x : unfolded) : ~~ (val x).2 -> ~~ (val (opposite x)).2 ->
+  exists k l a b, [/\ (val x).1.1 = first_visit k, (val (opposite x)).1.1 = first_visit l,
+    dart (k : nat, a) = below x & one_edge doors (k : nat, a) (l : nat, b)].
+Proof.
+rewrite /below; case: x => [[[i d] []] ok] //= _; case/and3P: ok => /= /eqP first near _.
+case linked: (link i d) => [j|] //= _; have [k [l [ik kl ->]]] := link_some linked.
+have [a [b [aE _ edge]]] := went_one_edge kl; exists k, l, a, b; split=> //.
+by rewrite -first; apply: first_eq.
+Qed.
+
+Lemma one_of_first (i j : visit) : first_visit i = first_visit j -> one i j.
+Proof. by move=> same; apply: one_trans (one_first i) _; rewrite same one_sym // one_first. Qed.
+
+Lemma one_at_vertex (i j : visit) a b : one i j -> at_vertex_of doors seen (i : nat, a) (j : nat, b).
+Proof.
+move=> ij; have /same_vertexP[c cE] : same_vertex (pose_at i) (dart (j : nat, b)).
+  by apply: same_vertex_trans (one_same_vertex ij) _; apply: same_vertex_turn.
+by exists c; apply: one_folded.
+Qed.
+
+Lemma unfolded_simple : simple_trail doors seen -> simple unfolded.
 Proof.
 move=> [no_loop no_parallel]; split=> [x|x y near far].
   apply/negP=> near; case dead: (val x).2.
-    by have /eqP := near_dead_end near dead; rewrite (negPf (unfolded_moves x)).
+    by have /eqP := near_dead_end near dead; rewrite (negPf (unfolded_opposite_neq x)).
   have plain : ~~ (val x).2 by rewrite dead.
-  have [_ plain' same] := near_dart near plain.
-  by move: same; rewrite below_opposite // (negPf (no_loop _)).
+  have [same plain' _] := near_dart near plain.
+  have [k [l [a [b [kE lE _ edge]]]]] := linked_dart plain plain'.
+  by apply: (no_loop _ _ edge); apply: one_at_vertex; apply: one_of_first; rewrite -kE -lE.
 case dead: (val x).2; first by rewrite (near_dead_end near dead).
 have plain : ~~ (val x).2 by rewrite dead.
 have [same_first plain_y same] := near_dart near plain.
 case end_x: (val (opposite x)).2.
-  by apply: (inv_inj (@opposite_involutive unfolded)); rewrite (near_dead_end far end_x).
+  by apply: (inv_inj (@oppositeK unfolded)); rewrite (near_dead_end far end_x).
 have plain_ox : ~~ (val (opposite x)).2 by rewrite end_x.
-have [_ plain_oy] := near_dart far plain_ox; rewrite !below_opposite // => /(no_parallel _ _ same) same_below.
+have [same_far plain_oy _] := near_dart far plain_ox.
+have [k [l [a [b [kE lE aE edge]]]]] := linked_dart plain plain_ox.
+have [k' [l' [a' [b' [k'E l'E a'E edge']]]]] := linked_dart plain_y plain_oy.
+have same_below : below x = below y.
+  rewrite -aE -a'E; apply/folding_sound/(no_parallel _ _ _ _ edge edge').
+    by apply: one_at_vertex; apply: one_of_first; rewrite -kE -k'E same_first.
+  by apply: one_at_vertex; apply: one_of_first; rewrite -lE -l'E same_far.
 apply: val_inj; move: same_first plain plain_y same_below; rewrite /below.
-by case: (val x) (val y) => [[j a] []] [[k b] []] //= -> _ _ ->.
+by case: (val x) (val y) => [[j c] []] [[k2 e] []] //= -> _ _ ->.
 Qed.
 
-Lemma unfolded_degree bound : 0 < bound -> (forall d : W, degree d <= bound) ->
+Lemma unfolded_degree bound : 0 < bound -> (forall k, k < size seen -> degree_seen seen k <= bound) ->
   forall x : unfolded, degree x <= bound.
 Proof.
 move=> some small x; case dead: (val x).2; last first.
-  by rewrite -(part_degree (f := below)) //; [apply: below_turn | apply: below_one]; rewrite dead.
+  rewrite -(part_degree (f := below)); [|by apply: below_turn; rewrite dead|by apply: below_one; rewrite dead].
+  have near : same_vertex (pose_at (val x).1.1) (below x) by have /and3P[] := valP x.
+  have le : (val x).1.1 <= size doors by rewrite -ltnS.
+  by rewrite -(same_vertex_degree near) -(degree_seenE _ le) small // size_sees.
 apply: leq_trans some; rewrite -[1](card1 x); apply: subset_leq_card; apply/subsetP=> y near.
 by rewrite inE (near_dead_end near dead).
+Qed.
+
+(** ** A complete folded trail is its world *)
+
+Lemma dart_of_unfolded (i : visit) a : val (dart_of unfolded doors (i : nat, a)) = (first_visit i, dart (i : nat, a), false).
+Proof.
+have le : i <= n by rewrite -ltnS.
+have at_i := unfolded_walk le; rewrite /dart_of /= turn_dart ?at_i //.
+by rewrite /below at_i /=; congr (first_visit _, _, _); apply: val_inj; rewrite /= nth_visitK.
+Qed.
+
+Lemma complete_folding_inj : complete doors seen -> forall x y, x.1 < size seen -> y.1 < size seen ->
+  dart x = dart y -> folded doors seen x y.
+Proof.
+move=> whole [k a] [l b] /=; rewrite size_sees => k_lt l_lt same.
+have [f [iso f_facing]] : isomorphic_starts unfolded W by apply: complete_folding_determines whole; apply: unfolded_sees.
+have f_dart x : f (dart_of unfolded doors x) = dart x.
+  by rewrite /dart_of (isomorphism_turn iso) (isomorphism_walk iso) f_facing.
+have [f_bij _ _] := iso; have f_inj := bij_inj f_bij.
+pose i : visit := Ordinal k_lt; pose j : visit := Ordinal l_lt.
+have : dart_of unfolded doors (i : nat, a) = dart_of unfolded doors (j : nat, b).
+  by apply: f_inj; rewrite !f_dart.
+move/(congr1 val); rewrite !dart_of_unfolded => -[first_same _].
+by apply: (@one_folded i j) => //; apply: one_of_first.
 Qed.
 
 End Unfolding.
@@ -572,11 +627,13 @@ Lemma open_folding_ambiguous (W : start) doors k i :
   k < size (sees W doors) -> ~ followed doors (sees W doors) (k, i) ->
   exists V V' : start,
     [/\ sees V doors = sees W doors, sees V' doors = sees W doors, ~ isomorphic V V',
-        simple W -> simple V /\ simple V'
-      & forall bound, 2 <= bound -> (forall d : W, degree d <= bound) ->
+        simple_trail doors (sees W doors) -> simple V /\ simple V'
+      & forall bound, 2 <= bound ->
+          (forall visit, visit < size (sees W doors) -> degree_seen (sees W doors) visit <= bound) ->
           (forall d : V, degree d <= bound) /\ (forall d : V', degree d <= bound)].
 Proof.
-rewrite size_sees => lt not_followed; pose j : 'I_(size doors).+1 := Ordinal lt.
+move=> k_lt not_followed; have lt : k < (size doors).+1 by rewrite -(size_sees W).
+pose j : 'I_(size doors).+1 := Ordinal lt.
 pose d := dart_of W doors (k, i); have near : same_vertex (pose_at W (j : 'I__)) d by apply: same_vertex_turn.
 have open : link (first_visit W j) d = None.
   case linked: (link _ _) => [l|//]; case: not_followed; apply/(followedP W j i).
@@ -586,14 +643,32 @@ split.
 - exact: unfolded_sees.
 - exact: open_sees open.
 - by move/isomorphic_sym; apply: subdivided_not_isomorphic.
-- by move=> simple_W; have simple_V := unfolded_simple doors simple_W; split=> //; apply: subdivided_simple.
+- by move=> simple_S; have simple_V := unfolded_simple simple_S; split=> //; apply: subdivided_simple.
 move=> bound two small; have small_V : forall x : unfolded W doors, degree x <= bound.
-  by apply: unfolded_degree => //; apply: ltnW.
+  exact: unfolded_degree (ltnW two) small.
 by split=> //; apply: subdivided_degree.
 Qed.
 
+(** The folded trail is as simple as the world. *)
+Lemma simple_folding (W : start) doors : simple W -> simple_trail doors (sees W doors).
+Proof.
+move=> [no_loop no_parallel].
+have near x y : at_vertex_of doors (sees W doors) x y -> same_vertex (dart_of W doors x) (dart_of W doors y).
+  case=> i /folding_sound <-; apply: same_vertex_trans _ (same_vertex_turn _ _).
+  by rewrite same_vertex_sym same_vertex_turn.
+split=> [x y edge here|x y x' y' edge edge' here there].
+  by have := near _ _ here; rewrite (one_edge_dart W edge) (negPf (no_loop _)).
+have yy' := near _ _ there; have xx' := near _ _ here; have same : dart_of W doors x = dart_of W doors x'.
+  by apply: no_parallel xx' _; rewrite -(one_edge_dart W edge) -(one_edge_dart W edge').
+case: here => i ix'; have le : x.1 < (size doors).+1 by case: edge => k lt //=; apply: ltnW.
+have xi : folded doors (sees W doors) (x.1, x.2) (x.1, i).
+  apply: (@folded_around W doors (Ordinal le)).
+  by rewrite /= -surjective_pairing same -(folding_sound ix').
+by rewrite [x]surjective_pairing; apply: Linked xi ix'.
+Qed.
+
 (** It is decidable whether a dart is open. *)
-Lemma followed_decidable (W : start) doors k i : k < size (sees W doors) ->
+Lemma followed_orN (W : start) doors k i : k < size (sees W doors) ->
   followed doors (sees W doors) (k, i) \/ ~ followed doors (sees W doors) (k, i).
 Proof.
 rewrite size_sees => lt; have := followedP W (Ordinal lt : 'I_(size doors).+1) i.

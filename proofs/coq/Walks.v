@@ -14,7 +14,7 @@ Variable G : embedded_graph.
 Implicit Types (p q r : G) (i j : door) (ds : seq door).
 
 Lemma opposite_inj : injective (@opposite G).
-Proof. exact: inv_inj (@opposite_involutive G). Qed.
+Proof. exact: inv_inj (@oppositeK G). Qed.
 
 (** * Vertices and turns *)
 
@@ -22,7 +22,7 @@ Lemma same_vertex_refl p : same_vertex p p.
 Proof. exact: connect0. Qed.
 
 Lemma same_vertex_sym p q : same_vertex p q = same_vertex q p.
-Proof. exact: fconnect_sym (@clockwise_injective G) p q. Qed.
+Proof. exact: fconnect_sym (@clockwise_inj G) p q. Qed.
 
 Lemma same_vertex_trans p q r : same_vertex p q -> same_vertex q r -> same_vertex p r.
 Proof. exact: connect_trans. Qed.
@@ -41,31 +41,31 @@ Proof. exact: order_gt0. Qed.
 
 Lemma same_vertex_degree p q : same_vertex p q -> degree p = degree q.
 Proof.
-move=> pq; apply: eq_card; exact: same_connect (fconnect_sym (@clockwise_injective G)) _ _ pq.
+move=> pq; apply: eq_card; exact: same_connect (fconnect_sym (@clockwise_inj G)) _ _ pq.
 Qed.
 
 Lemma degree_turn p i : degree (turn p i) = degree p.
 Proof. by rewrite -(same_vertex_degree (same_vertex_turn p i)). Qed.
 
-Lemma turn_add p i j : turn p (i + j) = turn (turn p i) j.
+Lemma turnD p i j : turn p (i + j) = turn (turn p i) j.
 Proof. by rewrite /turn addnC iterD. Qed.
 
 Lemma turn_inj i : injective (fun p => turn p i).
-Proof. by elim: i => [|i IH] p q //= /(@clockwise_injective G) /IH. Qed.
+Proof. by elim: i => [|i IH] p q //= /(@clockwise_inj G) /IH. Qed.
 
 Lemma turn_degree p : turn p (degree p) = p.
-Proof. exact: iter_order (@clockwise_injective G) p. Qed.
+Proof. exact: iter_order (@clockwise_inj G) p. Qed.
 
 Lemma turn_mod p i : turn p (i %% degree p) = turn p i.
 Proof.
-rewrite [in RHS](divn_eq i (degree p)) turn_add; congr turn.
-by elim: (i %/ _) => // k IH; rewrite mulSn turn_add turn_degree.
+rewrite [in RHS](divn_eq i (degree p)) turnD; congr turn.
+by elim: (i %/ _) => // k IH; rewrite mulSn turnD turn_degree.
 Qed.
 
-Lemma turn_inverse_door p i : turn (turn p i) (inverse_door (degree p) i) = p.
+Lemma inverse_doorK p i : turn (turn p i) (inverse_door (degree p) i) = p.
 Proof.
 rewrite -(turn_mod p i) -[in inverse_door _ _](degree_turn p (i %% degree p)) /inverse_door turn_mod.
-by rewrite degree_turn -turn_add subnKC ?turn_degree // ltnW // ltn_pmod // degree_gt0.
+by rewrite degree_turn -turnD subnKC ?turn_degree // ltnW // ltn_pmod // degree_gt0.
 Qed.
 
 (** * Walks *)
@@ -87,10 +87,10 @@ Lemma walk_opposite p : walk p [:: 0] = opposite p.
 Proof. by []. Qed.
 
 Lemma walk_clockwise p : walk p [:: 1; 0] = clockwise p.
-Proof. exact: opposite_involutive. Qed.
+Proof. exact: oppositeK. Qed.
 
 (** Everything can be reached. *)
-Lemma walk_anywhere p q : exists ds, walk p ds = q.
+Lemma connected_walk p q : exists ds, walk p ds = q.
 Proof.
 have /connectP[s path_s ->] := connected p q; elim: s p path_s => [|r s IH] p /=; first by exists [::].
 case/andP=> step /IH[ds <-]; case/orP: step => /eqP->; first by exists (0 :: ds).
@@ -109,13 +109,13 @@ Lemma taken_rcons p ds i : taken p (rcons ds i) = rcons (taken p ds) (i, degree 
 Proof. by rewrite -!cats1 taken_cat. Qed.
 
 (** The way back ends where the walk began, turned by its first door. *)
-Lemma retrace_walk p ds : walk (walk p ds) (way_back (taken p ds)) = turn p (head 0 ds).
+Lemma way_backK p ds : walk (walk p ds) (way_back (taken p ds)) = turn p (head 0 ds).
 Proof.
-case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first exact: opposite_involutive.
+case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first exact: oppositeK.
 pose p' := traverse p i; pose back := way_back (taken p' (j :: ds)).
 have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
   by rewrite /back /= rev_cons.
-rewrite walk_rcons [walk _ _]IH /traverse turn_inverse_door; exact: opposite_involutive.
+rewrite walk_rcons [walk _ _]IH /traverse inverse_doorK; exact: oppositeK.
 Qed.
 
 (** Whether the doors of a walk are below the degrees of their vertices, as those of a real robot are. *)
@@ -131,7 +131,7 @@ case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first by rewrite /= degree_
 pose p' := traverse p i; pose back := way_back (taken p' (j :: ds)).
 have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
   by rewrite /back /= rev_cons.
-have back_to : walk (walk p [:: i, j & ds]) back = turn p' j := retrace_walk p' (j :: ds).
+have back_to : walk (walk p [:: i, j & ds]) back = turn p' j := way_backK p' (j :: ds).
 by rewrite passable_rcons [passable _ _]IH back_to degree_turn ltn_pmod ?degree_gt0.
 Qed.
 

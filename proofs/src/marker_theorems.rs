@@ -29,9 +29,9 @@ pub const MARKER_THEOREMS: [MarkerTheorem; 10] = [
     one_robot("directed-edge", EVERY, "directed_edge_suffices"),
     no_robot("two-identical", EVERY, "two_identical_impossible"),
     no_robot("two-distinct", &[Class::Multigraph], "two_distinct_impossible"),
-    one_robot("two-distinct", SIMPLE, "two_distinct_suffices_in_simple_worlds"),
+    one_robot("two-distinct", SIMPLE, "two_distinct_suffices_simple"),
     no_robot("movable", &[Class::Multigraph], "movable_marker_impossible"),
-    one_robot("movable", SIMPLE, "movable_marker_maps_simple_worlds"),
+    one_robot("movable", SIMPLE, "movable_marker_correct"),
 ];
 
 const fn one_robot(
@@ -71,7 +71,7 @@ mod tests {
     use crate::theorems;
 
     /// Theorems about markers that are not kinds: at a dead end, and two that are not adjacent.
-    const OTHERS: [&str; 2] = ["undirected_marker_at_dead_end_suffices", "two_distant_impossible"];
+    const OTHERS: [&str; 2] = ["undirected_dead_end_suffices", "two_distant_impossible"];
 
     #[test]
     fn each_theorem_on_markers_is_in_the_table_once() {
