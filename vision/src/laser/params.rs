@@ -89,6 +89,10 @@ params! {
         /// Neighbouring rays that end on one straight line end on one wall if the ends are nearer to each
         /// other than this. Geometry: along a corridor rays meet its walls far apart.
         bridge: f64 = 3.0,
+        /// Readings without a return between two others that are at most this far apart show free space up to
+        /// the nearer one of these. Geometry: along a corridor, the walls on both sides end at the scanner's
+        /// range, which is at least 26 m.
+        max_silence: f64 = 0.1,
         /// Obstacles smaller than this along both axes do not divide a way. Geometry: people, chairs.
         small_obstacle: f64 = 1.0,
         /// A gap narrower than this is no way. Geometry: the doors of rooms.

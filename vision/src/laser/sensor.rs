@@ -188,6 +188,17 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     let ends: Vec<Option<[f64; 2]>> =
         readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
     let end = |index: usize| *ends.get(index)?;
+    // The next reading with a return, if those without one in between cover a small angle only.
+    let next = |index: usize| {
+        let (bearing, _) = readings[index];
+        let others = (index + 1..readings.len()).chain(0..index);
+        let (at, next, range) = others
+            .filter_map(|at| readings[at].1.map(|range| (at, readings[at].0, range)))
+            .next()?;
+        let step = wrapped(next - bearing);
+        let is_near = at == index + 1 || (0.0..=params.max_silence).contains(&step);
+        is_near.then_some((at, step, range))
+    };
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
         if range > farthest {
@@ -195,13 +206,15 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
             continue;
         }
         rays.hits.push(point(bearing, range));
-        let Some(&(next, Some(other))) = readings.get(index + 1) else { continue };
-        let step = wrapped(next - bearing);
+        let Some((at, step, other)) = next(index) else { continue };
         // Rays closer than cells, up to where the map ends.
         let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
         for part in 1..parts {
             let bearing = bearing + step * f64::from(part) / f64::from(parts);
             rays.between.push(point(bearing, range.min(other).min(farthest)));
+        }
+        if at != index + 1 {
+            continue;
         }
         let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
         let [before, Some(one), Some(two), after] = four else { continue };
@@ -232,4 +245,49 @@ fn met(from: [f64; 2], towards: [f64; 2], one: [f64; 2], other: [f64; 2]) -> Opt
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
     let met = cross(off, line) / cross(ray, line);
     (met.is_finite() && met > 0.0).then_some(met)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::laser::{
+        grid::Cell,
+        scan::{ScanGeometry, ScannerPose},
+    };
+
+    /// A scan all around from the middle of an endless corridor, 2 m wide, along the x axis. Nothing
+    /// comes back from beyond 30 m.
+    fn along_corridor(is_silent: impl Fn(f64) -> bool) -> Scan {
+        let step = PI / 180.0;
+        let geometry =
+            ScanGeometry { angle_min: -PI, angle_increment: step, range_min: 0.1, range_max: 30.0 };
+        let range = |index: u32| {
+            let bearing = -PI + f64::from(index) * step;
+            let range = 1.0 / bearing.sin().abs();
+            if range > 30.0 || is_silent(bearing) { f32::INFINITY } else { range as f32 }
+        };
+        Scan::new(geometry, (0..360).map(range).collect(), ScannerPose::default()).unwrap()
+    }
+
+    fn cells(scan: &Scan, points: &[[f64; 2]]) -> Vec<Cell> {
+        let view = LaserSensor::new(LaserParams::default()).see(scan, &Odometry::default());
+        let grid = view.unwrap().grid;
+        points.iter().map(|&point| grid.cells[grid.index(point).unwrap()]).collect()
+    }
+
+    #[test]
+    fn the_middle_of_a_corridor_is_free_beyond_the_range_of_the_scanner() {
+        let points = [-14.0, -8.0, 8.0, 14.0].map(|x| [x, 0.0]);
+        assert_eq!(cells(&along_corridor(|_| false), &points), [Cell::Free; 4]);
+    }
+
+    #[test]
+    fn what_a_wide_angle_without_returns_hides_is_unknown() {
+        let is_silent = |bearing: f64| (bearing - 0.3).abs() < 0.2;
+        let beside = [0.3_f64.cos(), 0.3_f64.sin()].map(|part| 2.0 * part);
+        let seen = cells(&along_corridor(is_silent), &[beside, [8.0, 0.0]]);
+        assert_eq!(seen, [Cell::Unknown, Cell::Free]);
+    }
 }
