@@ -91,26 +91,6 @@ pub(crate) fn judge_cut(
     })
 }
 
-/// Whether no way leads from the robot to the marker, because hallways are surely cut by an obstacle.
-pub(crate) fn is_cut_off(
-    plan: &FloorPlan,
-    facing: Dart,
-    place: TruePlace,
-    obstacle: Option<Obstacle>,
-) -> bool {
-    let Some(obstacle) = obstacle else { return false };
-    let edges = blocked(plan, obstacle, 0.0);
-    let robot = match place {
-        TruePlace::Junction(reached) => reached,
-        TruePlace::BeforeObstacle(pose) => hallway_behind(plan, &edges, pose, obstacle),
-    };
-    let within_reach = plan.graph().cut(&edges, facing).map(|(_, numbers)| numbers);
-    match (robot, within_reach) {
-        (Some(robot), Some(numbers)) => numbers[robot.at()].is_none(),
-        _ => false,
-    }
-}
-
 /// The dart by which a robot that stands before an obstacle left the last junction: of the hallways that are cut, the one
 /// in which the robot is.
 fn hallway_behind(
@@ -153,62 +133,4 @@ fn blocked(plan: &FloorPlan, [least, greatest]: Obstacle, margin: f64) -> Vec<Da
     };
     let edges = graph.edges().map(|(dart, _)| dart);
     edges.filter(is_blocked).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evaluation::plans;
-
-    /// An obstacle of 30 cm in the middle of a hallway.
-    fn obstacle_in(plan: &FloorPlan, dart: Dart) -> Obstacle {
-        let graph = plan.graph();
-        let ends = [dart, graph.opposite(dart)].map(|dart| plan.junction(graph.vertex(dart)));
-        let middle =
-            [0, 1].map(|axis| f64::midpoint(ends[0].position[axis], ends[1].position[axis]));
-        [middle.map(|place| place - 0.15), middle.map(|place| place + 0.15)]
-    }
-
-    /// Whether no way leads from one end of an edge to the other but the edge itself.
-    fn is_bridge(graph: &EmbeddedGraph, edge: Dart) -> bool {
-        let mut near = vec![false; graph.vertex_count()];
-        near[graph.vertex(edge).at()] = true;
-        for _ in 0..graph.vertex_count() {
-            for (dart, opposite) in graph.edges().filter(|&(dart, _)| dart != edge) {
-                let ends = [dart, opposite].map(|dart| graph.vertex(dart).at());
-                let either = ends.iter().any(|&end| near[end]);
-                for end in ends {
-                    near[end] |= either;
-                }
-            }
-        }
-        !near[graph.vertex(graph.opposite(edge)).at()]
-    }
-
-    #[test]
-    fn a_robot_is_cut_off_beyond_a_bridge_and_nowhere_else() {
-        let [mut cut_off, mut bridges] = [0; 2];
-        for (_, plan) in plans().unwrap() {
-            let graph = plan.graph();
-            for (dart, _) in graph.edges() {
-                let obstacle = Some(obstacle_in(&plan, dart));
-                let ends = [dart, graph.opposite(dart)];
-                let is_bridge = is_bridge(graph, dart);
-                bridges += usize::from(is_bridge);
-                for [marker, robot] in [[ends[0], ends[1]], [ends[1], ends[0]]] {
-                    let place = TruePlace::Junction(Some(robot));
-                    assert_eq!(is_cut_off(&plan, marker, place, obstacle), is_bridge);
-                    assert!(!is_cut_off(
-                        &plan,
-                        marker,
-                        TruePlace::Junction(Some(marker)),
-                        obstacle
-                    ));
-                    cut_off += usize::from(is_cut_off(&plan, marker, place, obstacle));
-                }
-            }
-        }
-        assert_eq!(cut_off, 2 * bridges);
-        assert!(bridges > 10, "{bridges}");
-    }
 }

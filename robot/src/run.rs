@@ -16,7 +16,7 @@ use toposlam_model::{
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
-    judge_cut::{TruePlace, is_cut_off, judge_cut},
+    judge_cut::{TruePlace, judge_cut},
     record::{FrameSensor, RunObserver},
     recording::Recording,
     robot::Robot as _,
@@ -41,7 +41,7 @@ pub struct Run<'p> {
     pub moves: u64,
     /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
-    /// Whether at the end an obstacle is on every way from the robot to its marker.
+    /// Whether at the end an obstacle leaves no way for the robot's body to the junction of its marker.
     pub is_cut_off: bool,
     /// The number of moves that the algorithm makes in the plan's embedded graph.
     pub explore_moves: u64,
@@ -138,7 +138,8 @@ pub fn run<'p>(
         Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
         _ => TruePlace::Junction(monitor.truly_reached()),
     };
-    let is_cut_off = is_cut_off(plan, facing, place, robot.obstacle());
+    let marked = plan.junction(plan.graph().vertex(facing)).position;
+    let is_cut_off = robot.obstacle().is_some() && !robot.may_reach(marked);
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
