@@ -14,12 +14,16 @@ use toposlam_model::{
 
 use crate::{
     pose::Pose,
+    simulator::SimulatedRobot,
     superscout::{CLEARANCE, RADIUS},
     truth::angle,
 };
 
 /// The least and the greatest coordinates of an obstacle, in metres.
 type Obstacle = [[f64; 2]; 2];
+
+/// The robot's centre keeps this distance from what is ahead, in metres.
+const KEPT: f64 = RADIUS + CLEARANCE;
 
 /// Where a robot truly stands.
 #[derive(Clone, Copy, Debug)]
@@ -75,9 +79,7 @@ pub(crate) fn judge_cut(
     // The robot stops before an obstacle, and does not drive exactly along the middle. So it may pass beside
     // the obstacle or not.
     let surely = blocked(plan, obstacle, 0.0);
-    let perhaps = blocked(plan, obstacle, RADIUS + CLEARANCE)
-        .into_iter()
-        .filter(|dart| !surely.contains(dart));
+    let perhaps = blocked(plan, obstacle, KEPT).into_iter().filter(|dart| !surely.contains(dart));
     let mut cuts = vec![surely.clone()];
     for dart in perhaps {
         let more: Vec<_> = cuts.iter().map(|edges| [&edges[..], &[dart]].concat()).collect();
@@ -89,6 +91,58 @@ pub(crate) fn judge_cut(
         (Err(Flaw::WrongMap), other) => other,
         (best, _) => best,
     })
+}
+
+/// Whether a robot can still come to its marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WayToMarker {
+    /// No obstacle is in its way.
+    Free,
+    /// Each way leads through a hallway whose middle an obstacle leaves less room than the robot keeps. It drives along
+    /// the middle.
+    Narrow,
+    /// There is no way for a robot of its size.
+    None,
+}
+
+impl WayToMarker {
+    /// The way of a robot from where it truly stands.
+    pub(crate) fn of(
+        plan: &FloorPlan,
+        facing: Dart,
+        place: TruePlace,
+        robot: &SimulatedRobot,
+    ) -> Self {
+        let Some(obstacle) = robot.obstacle() else { return Self::Free };
+        if !robot.may_reach(plan.junction(plan.graph().vertex(facing)).position) {
+            Self::None
+        } else if is_cut_off(plan, facing, place, obstacle, KEPT) {
+            Self::Narrow
+        } else {
+            Self::Free
+        }
+    }
+}
+
+/// Whether no way leads from the robot to the marker but through hallways whose middle line comes nearer to an obstacle
+/// than a margin, in metres.
+fn is_cut_off(
+    plan: &FloorPlan,
+    facing: Dart,
+    place: TruePlace,
+    obstacle: Obstacle,
+    margin: f64,
+) -> bool {
+    let edges = blocked(plan, obstacle, margin);
+    let robot = match place {
+        TruePlace::Junction(reached) => reached,
+        TruePlace::BeforeObstacle(pose) => hallway_behind(plan, &edges, pose, obstacle),
+    };
+    let within_reach = plan.graph().cut(&edges, facing).map(|(_, numbers)| numbers);
+    match (robot, within_reach) {
+        (Some(robot), Some(numbers)) => numbers[robot.at()].is_none(),
+        _ => false,
+    }
 }
 
 /// The dart by which a robot that stands before an obstacle left the last junction: of the hallways that are cut, the one
@@ -133,4 +187,63 @@ fn blocked(plan: &FloorPlan, [least, greatest]: Obstacle, margin: f64) -> Vec<Da
     };
     let edges = graph.edges().map(|(dart, _)| dart);
     edges.filter(is_blocked).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::plans;
+
+    /// An obstacle of 30 cm in the middle of a hallway.
+    fn obstacle_in(plan: &FloorPlan, dart: Dart) -> Obstacle {
+        let graph = plan.graph();
+        let ends = [dart, graph.opposite(dart)].map(|dart| plan.junction(graph.vertex(dart)));
+        let middle =
+            [0, 1].map(|axis| f64::midpoint(ends[0].position[axis], ends[1].position[axis]));
+        [middle.map(|place| place - 0.15), middle.map(|place| place + 0.15)]
+    }
+
+    /// Whether no way leads from one end of an edge to the other but the edge itself.
+    fn is_bridge(graph: &EmbeddedGraph, edge: Dart) -> bool {
+        let mut near = vec![false; graph.vertex_count()];
+        near[graph.vertex(edge).at()] = true;
+        for _ in 0..graph.vertex_count() {
+            for (dart, opposite) in graph.edges().filter(|&(dart, _)| dart != edge) {
+                let ends = [dart, opposite].map(|dart| graph.vertex(dart).at());
+                let either = ends.iter().any(|&end| near[end]);
+                for end in ends {
+                    near[end] |= either;
+                }
+            }
+        }
+        !near[graph.vertex(graph.opposite(edge)).at()]
+    }
+
+    #[test]
+    fn a_robot_is_cut_off_beyond_a_bridge_and_nowhere_else() {
+        let [mut cut_off, mut bridges] = [0; 2];
+        for (_, plan) in plans().unwrap() {
+            let graph = plan.graph();
+            for (dart, _) in graph.edges() {
+                let obstacle = obstacle_in(&plan, dart);
+                let ends = [dart, graph.opposite(dart)];
+                let is_bridge = is_bridge(graph, dart);
+                bridges += usize::from(is_bridge);
+                for [marker, robot] in [[ends[0], ends[1]], [ends[1], ends[0]]] {
+                    let place = TruePlace::Junction(Some(robot));
+                    assert_eq!(is_cut_off(&plan, marker, place, obstacle, KEPT), is_bridge);
+                    assert!(!is_cut_off(
+                        &plan,
+                        marker,
+                        TruePlace::Junction(Some(marker)),
+                        obstacle,
+                        KEPT
+                    ));
+                    cut_off += usize::from(is_cut_off(&plan, marker, place, obstacle, KEPT));
+                }
+            }
+        }
+        assert_eq!(cut_off, 2 * bridges);
+        assert!(bridges > 10, "{bridges}");
+    }
 }

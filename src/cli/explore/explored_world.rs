@@ -3,10 +3,7 @@
 use std::borrow::Cow;
 
 use toposlam_model::{
-    check::{
-        Algorithm, Algorithm1, ExploredMap, Flaw, Folding, MovableMarker, RunState, judge,
-        judge_map,
-    },
+    check::{Algorithm, Algorithm1, ExploredMap, Flaw, Folding, MovableMarker, judge, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
     mapping::{

@@ -191,8 +191,8 @@ impl ExploreResult<'_> {
         print_hanging(out, "  ", &names.join(", "))?;
         if let Some(MappedWorld { audit_moves, audited_percepts, .. }) = explored.audited() {
             let audits = counted(audited_percepts.len(), "audit");
-            let moves = counted(*audit_moves as usize, "move");
-            let text = format!("{audits} took {moves} more. Each percept is as the map predicts.");
+            let moves = counted(*audit_moves as usize, "more move");
+            let text = format!("{audits} took {moves}. Each percept is as the map predicts.");
             print_paragraph(out, &text)?;
         }
         let robot = explored.robot();
