@@ -58,24 +58,31 @@ impl<'j> MeasuredWalk<'j> {
         watch: &dyn Watch,
     ) -> Option<(RunEvents, usize)> {
         let shows = |visits: &[usize]| {
-            let events = self.events_of(visits);
-            let judged = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
-            self.is_shown_by(visits, &judged.divergence?).then_some(events)
+            let mut visits = visits.to_vec();
+            loop {
+                let events = self.events_of(&visits);
+                let judged = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
+                let found = judged.divergence.filter(|found| self.is_shown_by(&visits, found))?;
+                if found.event + 1 == events.events.len() {
+                    return Some((visits, events));
+                }
+                // The events up to the first that shows it may show it sooner.
+                visits.truncate(found.event / 2 + 1);
+            }
         };
-        let mut visits: Vec<usize> = (0..self.poses.len()).collect();
-        let mut shortest = shows(&visits)?;
+        let all: Vec<usize> = (0..self.poses.len()).collect();
+        let (mut visits, mut shortest) = shows(&all)?;
         let mut trials = 0;
         let mut length = visits.len() - 1;
         while length > 0 {
             let mut from = 0;
             while from + length < visits.len() && trials < TRIALS {
-                let shorter = self.without(&visits, from, from + length);
-                let events = shorter.as_ref().and_then(|shorter| {
+                let shorter = self.without(&visits, from, from + length).and_then(|shorter| {
                     trials += 1;
-                    shows(shorter)
+                    shows(&shorter)
                 });
-                match shorter.zip(events) {
-                    Some((shorter, events)) => (visits, shortest) = (shorter, events),
+                match shorter {
+                    Some(shorter) => (visits, shortest) = shorter,
                     None => from += 1,
                 }
             }
@@ -145,8 +152,8 @@ impl<'j> MeasuredWalk<'j> {
         RunEvents { events, has_head, measurement_noise, ..RunEvents::default() }
     }
 
-    /// Whether a divergence of the events of some visits is that of the whole walk: at its last event, between the same
-    /// events, with the same measurement.
+    /// Whether a divergence of the events of some visits is that of the whole walk: between the same events, with the
+    /// same measurement.
     fn is_shown_by(&self, visits: &[usize], found: &Divergence) -> bool {
         // Arrivals and doors alternate.
         let whole = |event: usize| visits.get(event / 2).map(|&visit| self.arrival(visit));
@@ -183,8 +190,7 @@ impl<'j> MeasuredWalk<'j> {
             ) => quarters == other,
             (one, other) => discriminant(one) == discriminant(other),
         };
-        whole(found.event) == Some(self.divergence.event)
-            && same_end(*between, *before_between)
+        same_end(*between, *before_between)
             && same_end(*earlier, *before_earlier)
             && same_begin
             && same_measurement
