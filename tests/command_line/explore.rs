@@ -120,8 +120,7 @@ fn the_certificate_is_a_walk_whose_folded_trail_is_complete() {
     assert_eq!(movable.status.code(), Some(2));
 }
 
-/// The robot stands at the marker when the map is complete or elsewhere, so an audit takes the certificate and the way to
-/// the marker.
+/// An audit is the way to the marker and the certificate.
 #[test]
 fn an_audit_walks_the_certificate_of_the_map() {
     for (algorithm, path) in ["algorithm1", "folding"]

@@ -99,8 +99,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.carry_out(command)
     }
 
-    /// Turns to a direction in the frame of odometry, and drives to the next junction. A junction to which an obstacle does
-    /// not let the robot come is not the next one if it lies behind.
+    /// Turns to a direction in the frame of odometry, and drives to the next junction. A junction to which an
+    /// obstacle does not let the robot come is not the next one if it lies behind.
     pub(super) fn go_in_direction(&mut self, direction: f64) -> Result<Standing, ExplorerError> {
         let here = self.robot.odometry().odometry;
         self.command(Command { turn: here.seen(direction), forward: 0.0 })?;
