@@ -14,7 +14,6 @@ use toposlam_model::{
 
 use crate::{
     pose::Pose,
-    simulator::SimulatedRobot,
     superscout::{CLEARANCE, RADIUS},
     truth::angle,
 };
@@ -106,15 +105,17 @@ pub enum WayToMarker {
 }
 
 impl WayToMarker {
-    /// The way of a robot from where it truly stands.
+    /// The way of a robot from where it truly stands. `may_reach`: whether there may be a way for its body to a
+    /// place.
     pub(crate) fn of(
         plan: &FloorPlan,
         facing: Dart,
         place: TruePlace,
-        robot: &SimulatedRobot,
+        obstacle: Option<Obstacle>,
+        may_reach: impl FnOnce([f64; 2]) -> bool,
     ) -> Self {
-        let Some(obstacle) = robot.obstacle() else { return Self::Free };
-        if !robot.may_reach(plan.junction(plan.graph().vertex(facing)).position) {
+        let Some(obstacle) = obstacle else { return Self::Free };
+        if !may_reach(plan.junction(plan.graph().vertex(facing)).position) {
             Self::None
         } else if is_cut_off(plan, facing, place, obstacle, KEPT) {
             Self::Narrow

@@ -140,7 +140,8 @@ pub fn run<'p>(
         Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
         _ => TruePlace::Junction(monitor.truly_reached()),
     };
-    let way_to_marker = WayToMarker::of(plan, facing, place, &robot);
+    let way_to_marker =
+        WayToMarker::of(plan, facing, place, robot.obstacle(), |place| robot.may_reach(place));
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();

@@ -261,10 +261,9 @@ fn a_shorter_log_of_a_robot_that_was_carried_has_its_lengths() {
     let folder = folder("conform-moved-shorter");
     let short = folder.join("short.mcap");
     let mut shorter = 0;
-    for (seed, picture) in [("0", "40"), ("1", "90"), ("2", "120"), ("3", "150")] {
+    for (seed, picture) in [("0", "40"), ("1", "40"), ("2", "60")] {
         let fault = format!("carried@{picture}");
-        let plan = "worlds/building-12.toml";
-        let log = logged(&folder, plan, &["--seed", seed, "--fault", &fault]);
+        let log = logged(&folder, "worlds/shape-6.toml", &["--seed", seed, "--fault", &fault]);
         let minimise = [&ANYONE[..], &["--minimise", short.to_str().unwrap()]].concat();
         let (code, report) = judged(&log, &minimise);
         // Percepts may show it first.
@@ -282,7 +281,9 @@ fn a_shorter_log_of_a_robot_that_was_carried_has_its_lengths() {
         assert_eq!((&again["event"], &again["events"]), (&events.into(), &events.into()));
         let measured = |report: &serde_json::Value| {
             let condition = report["condition"].as_str().unwrap();
-            condition.split_once(": ").unwrap().1.split(" m").next().unwrap().to_owned()
+            // The way of a closed walk is shorter; how far from its beginning it ends is not.
+            let what = condition.split_once(": ").unwrap().1;
+            what.split_once(" ends ").map_or(what, |(_, off)| off).to_owned()
         };
         assert_eq!(measured(&again), measured(&report));
         shorter += usize::from(events < report["event"].as_u64().unwrap() as usize);

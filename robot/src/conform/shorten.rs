@@ -73,7 +73,8 @@ pub fn shorten_run(
         | DivergenceCause::WrongMap
         | DivergenceCause::Moves { .. } => None,
         DivergenceCause::Measurement { .. } => {
-            let walk = MeasuredWalk::new(judgement, divergence)?;
+            let last = trace_index(&judgement.trace, divergence.event)?;
+            let walk = MeasuredWalk::new(judgement, divergence, last)?;
             let (events, event) = walk.shortened(&anyone, watch)?;
             Some(ShortenedRun { events, event, by_itself: true })
         }
@@ -167,7 +168,7 @@ fn of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
 }
 
 /// The index in a trace of the event with this id.
-pub(super) fn trace_index(trace: &Trace, id: usize) -> Option<usize> {
+fn trace_index(trace: &Trace, id: usize) -> Option<usize> {
     let index = trace.index_of(id);
     (trace.event(index).id == id).then_some(index)
 }

@@ -19,11 +19,10 @@ use super::{
     events::{CheckedEvent, CheckedKind, RunEvents},
     judgement::{Judgement, judge},
     quirks::Quirks,
-    shorten::trace_index,
 };
 
 /// The largest number of shorter walks that are judged.
-const TRIALS: usize = 2000;
+const TRIALS: usize = 200;
 
 /// The walk up to a measurement that contradicts others.
 pub(super) struct MeasuredWalk<'j> {
@@ -35,9 +34,12 @@ pub(super) struct MeasuredWalk<'j> {
 }
 
 impl<'j> MeasuredWalk<'j> {
-    /// The walk up to a divergence; `None` if its visits are not identified.
-    pub(super) fn new(judgement: &'j Judgement, divergence: &'j Divergence) -> Option<Self> {
-        let last = trace_index(&judgement.trace, divergence.event)?;
+    /// The walk up to a divergence, at this event of the trace; `None` if its visits are not identified.
+    pub(super) fn new(
+        judgement: &'j Judgement,
+        divergence: &'j Divergence,
+        last: usize,
+    ) -> Option<Self> {
         let trace = judgement.trace.up_to(last);
         if !trace.relocations().is_empty() || trace.percepts().len() == trace.doors().len() {
             return None;
