@@ -195,11 +195,17 @@ impl<W: Write> Story<W> {
         Ok(())
     }
 
-    fn print_map(&mut self, map: &PartialMap) -> io::Result<()> {
-        if self.detail.doors {
-            let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
-            print_hanging(&mut self.out, "  Doors: ", &doors.join(" "))?;
+    /// The doors since they were last printed, if they are wanted.
+    fn print_doors(&mut self) -> io::Result<()> {
+        if !self.detail.doors {
+            return Ok(());
         }
+        let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
+        print_hanging(&mut self.out, "  Doors: ", &doors.join(" "))
+    }
+
+    fn print_map(&mut self, map: &PartialMap) -> io::Result<()> {
+        self.print_doors()?;
         let unexplored = map.unexplored_count() as usize;
         let edges = counted((map.dart_count() - unexplored) / 2, "edge");
         let (vertices, unexplored) = (vertices(map.vertex_count()), counted(unexplored, "dart"));

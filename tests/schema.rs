@@ -59,6 +59,7 @@ const COMMANDS: [(&str, &[&str]); 20] = [
             "explore worlds/shape-8.toml --marker movable",
             "explore worlds/shape-6.toml --max-darts 4",
             "explore worlds/shape-6.toml --certificate",
+            "explore worlds/shape-6.toml --audit=2",
         ],
     ),
     (

@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, PathExecution, Standing, Step},
-        scene::{Scene, wrapped},
+        algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
+        scene::{Place as ScenePlace, Scene, wrapped},
     },
     mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured},
     percept::{Door, Percept, Sighting},
@@ -37,6 +37,15 @@ enum Place {
     Junction(Standing),
     /// In a hallway, before an obstacle. The way back is in this direction, in the frame of odometry.
     Obstacle { back: f64 },
+}
+
+/// Where a robot was stopped by an obstacle, in the frame of odometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stall {
+    /// The direction from which it came.
+    back: f64,
+    /// The turning point of the junction to which it was about to come, if it saw one.
+    junction: Option<[f64; 2]>,
 }
 
 /// What a robot does at an obstacle that it cannot pass.
@@ -68,6 +77,8 @@ pub struct RobotExplorer<R, S, O = ()> {
     moves: u64,
     door: Option<Door>,
     obstacles: Obstacles,
+    /// Where an obstacle stopped it, since it last stood at a junction.
+    stall: Option<Stall>,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
     begins_anywhere: bool,
     allowance: Allowance,
@@ -112,6 +123,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             observer,
             place: None,
             obstacles: Obstacles::Fail,
+            stall: None,
             begins_anywhere: false,
             allowance: Allowance::new(RunBudget::default()),
             metres: 0.0,
@@ -245,6 +257,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// Drives a path to its end.
     fn drive(&mut self, mut path: PathExecution) -> Result<Standing, ExplorerError> {
+        let mut junction = None;
         loop {
             let (moves, door) = (self.last_move, self.door);
             if self.observer.stop() {
@@ -255,6 +268,17 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                 hallway.add(frame.odometry);
             }
             let step = path.round(&scene, frame.odometry);
+            if let Err(Lost { why: LostReason::Stalled { .. }, .. }) = step {
+                self.stall = Some(Stall { back: path.way_back(), junction });
+            }
+            junction = match &scene.place {
+                ScenePlace::Junction(view) if path.state() == PathState::Junction => {
+                    let [x, y] = view.turning_point;
+                    let there = frame.odometry.moved(y.atan2(x), x.hypot(y));
+                    Some(there.position)
+                }
+                _ => None,
+            };
             self.last = Some(frame.clone());
             self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
             let command = match step {
@@ -355,6 +379,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
         self.place = Some(Place::Junction(standing));
+        self.stall = None;
         let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
         self.measured = Measured { hallway, shape: arrival.form };
         self.hallway = Some(MeasuredHallway::from(Some(self.robot.odometry().odometry)));
@@ -402,7 +427,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         self.emit(EventKind::Door { number, door });
         let driven = match &from {
             Place::Junction(from) => self.drive(PathExecution::new(&[door], from)),
-            Place::Obstacle { back } => self.drive(PathExecution::onwards_to_junction(*back)),
+            Place::Obstacle { back } => self.go_in_direction(*back),
         };
         match driven {
             Ok(standing) => {
@@ -410,7 +435,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
                 self.arrive(standing);
             }
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
-                let back = wrapped(self.robot.odometry().odometry.heading + PI);
+                let heading = self.robot.odometry().odometry.heading;
+                let back = self.stall.map_or(wrapped(heading + PI), |stall| stall.back);
                 self.place = Some(Place::Obstacle { back });
                 self.moves += 1;
                 self.allow_for(DEAD_END);

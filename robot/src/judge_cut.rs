@@ -21,6 +21,9 @@ use crate::{
 /// The least and the greatest coordinates of an obstacle, in metres.
 type Obstacle = [[f64; 2]; 2];
 
+/// The robot's centre keeps this distance from what is ahead, in metres.
+const KEPT: f64 = RADIUS + CLEARANCE;
+
 /// Where a robot truly stands.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum TruePlace {
@@ -75,9 +78,7 @@ pub(crate) fn judge_cut(
     // The robot stops before an obstacle, and does not drive exactly along the middle. So it may pass beside
     // the obstacle or not.
     let surely = blocked(plan, obstacle, 0.0);
-    let perhaps = blocked(plan, obstacle, RADIUS + CLEARANCE)
-        .into_iter()
-        .filter(|dart| !surely.contains(dart));
+    let perhaps = blocked(plan, obstacle, KEPT).into_iter().filter(|dart| !surely.contains(dart));
     let mut cuts = vec![surely.clone()];
     for dart in perhaps {
         let more: Vec<_> = cuts.iter().map(|edges| [&edges[..], &[dart]].concat()).collect();
@@ -91,15 +92,49 @@ pub(crate) fn judge_cut(
     })
 }
 
-/// Whether no way leads from the robot to the marker, because hallways are surely cut by an obstacle.
-pub(crate) fn is_cut_off(
+/// Whether a robot can still come to its marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WayToMarker {
+    /// No obstacle is in its way.
+    Free,
+    /// Each way leads through a hallway whose middle an obstacle leaves less room than the robot keeps. It drives along
+    /// the middle.
+    Narrow,
+    /// There is no way for a robot of its size.
+    None,
+}
+
+impl WayToMarker {
+    /// The way of a robot from where it truly stands. `may_reach`: whether there may be a way for its body to a
+    /// place.
+    pub(crate) fn of(
+        plan: &FloorPlan,
+        facing: Dart,
+        place: TruePlace,
+        obstacle: Option<Obstacle>,
+        may_reach: impl FnOnce([f64; 2]) -> bool,
+    ) -> Self {
+        let Some(obstacle) = obstacle else { return Self::Free };
+        if !may_reach(plan.junction(plan.graph().vertex(facing)).position) {
+            Self::None
+        } else if is_cut_off(plan, facing, place, obstacle, KEPT) {
+            Self::Narrow
+        } else {
+            Self::Free
+        }
+    }
+}
+
+/// Whether no way leads from the robot to the marker but through hallways whose middle line comes nearer to an obstacle
+/// than a margin, in metres.
+fn is_cut_off(
     plan: &FloorPlan,
     facing: Dart,
     place: TruePlace,
-    obstacle: Option<Obstacle>,
+    obstacle: Obstacle,
+    margin: f64,
 ) -> bool {
-    let Some(obstacle) = obstacle else { return false };
-    let edges = blocked(plan, obstacle, 0.0);
+    let edges = blocked(plan, obstacle, margin);
     let robot = match place {
         TruePlace::Junction(reached) => reached,
         TruePlace::BeforeObstacle(pose) => hallway_behind(plan, &edges, pose, obstacle),
@@ -191,20 +226,21 @@ mod tests {
         for (_, plan) in plans().unwrap() {
             let graph = plan.graph();
             for (dart, _) in graph.edges() {
-                let obstacle = Some(obstacle_in(&plan, dart));
+                let obstacle = obstacle_in(&plan, dart);
                 let ends = [dart, graph.opposite(dart)];
                 let is_bridge = is_bridge(graph, dart);
                 bridges += usize::from(is_bridge);
                 for [marker, robot] in [[ends[0], ends[1]], [ends[1], ends[0]]] {
                     let place = TruePlace::Junction(Some(robot));
-                    assert_eq!(is_cut_off(&plan, marker, place, obstacle), is_bridge);
+                    assert_eq!(is_cut_off(&plan, marker, place, obstacle, KEPT), is_bridge);
                     assert!(!is_cut_off(
                         &plan,
                         marker,
                         TruePlace::Junction(Some(marker)),
-                        obstacle
+                        obstacle,
+                        KEPT
                     ));
-                    cut_off += usize::from(is_cut_off(&plan, marker, place, obstacle));
+                    cut_off += usize::from(is_cut_off(&plan, marker, place, obstacle, KEPT));
                 }
             }
         }

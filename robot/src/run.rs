@@ -16,13 +16,15 @@ use toposlam_model::{
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
-    judge_cut::{TruePlace, is_cut_off, judge_cut},
+    judge_cut::{TruePlace, judge_cut},
     record::{FrameSensor, RunObserver},
     recording::Recording,
     robot::Robot as _,
     run_settings::RunSettings,
     simulator::SimulatedRobot,
 };
+
+pub use crate::judge_cut::WayToMarker;
 
 /// A whole run, and its checks.
 #[derive(Debug)]
@@ -41,8 +43,8 @@ pub struct Run<'p> {
     pub moves: u64,
     /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
-    /// Whether at the end an obstacle is on every way from the robot to its marker.
-    pub is_cut_off: bool,
+    /// Whether at the end the robot can come to its marker.
+    pub way_to_marker: WayToMarker,
     /// The number of moves that the algorithm makes in the plan's embedded graph.
     pub explore_moves: u64,
     /// The simulated time, in seconds.
@@ -138,7 +140,8 @@ pub fn run<'p>(
         Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
         _ => TruePlace::Junction(monitor.truly_reached()),
     };
-    let is_cut_off = is_cut_off(plan, facing, place, robot.obstacle());
+    let way_to_marker =
+        WayToMarker::of(plan, facing, place, robot.obstacle(), |place| robot.may_reach(place));
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
@@ -158,7 +161,7 @@ pub fn run<'p>(
         flaw,
         moves,
         monitor,
-        is_cut_off,
+        way_to_marker,
         explore_moves,
         seconds,
         pictures,
@@ -354,7 +357,39 @@ mod tests {
             assert!(wrong.is_none(), "{wrong:?}");
             let gave_up = runs.iter().filter(|run| run.ending != RunOutcome::Right).count();
             assert!(gave_up <= most_given_up, "{gave_up} of {}", runs.len());
+            let is_free = |run: &&JudgedRun| {
+                run.ending != RunOutcome::Right && run.way_to_marker == WayToMarker::Free
+            };
+            let without_reason = runs.iter().find(is_free);
+            assert!(without_reason.is_none(), "{without_reason:?}");
             assert!(runs.iter().any(|run| !run.blocked().is_empty()));
         }
+    }
+
+    /// Wherever the obstacle stands, in a hallway or before a junction, and also if the lights go out there.
+    #[test]
+    fn a_robot_that_gives_up_before_an_obstacle_has_no_other_way() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let settings = RunSettings::new(recovering(), DARTS);
+        let (mut right, mut gave_up) = (0, 0);
+        for picture in 2..=100 {
+            let mut config = SimulationConfig::at_start(plan.clone(), facing, picture);
+            config.faults = vec![RobotFault::at(FaultKind::Blocked, picture)];
+            if picture.is_multiple_of(2) {
+                config.faults.push(RobotFault::at(FaultKind::LightsOut, picture + 3));
+            }
+            let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
+            match run.outcome() {
+                RunOutcome::Right => right += 1,
+                RunOutcome::GaveUp(error) => {
+                    gave_up += 1;
+                    let way = run.way_to_marker;
+                    assert_ne!(way, WayToMarker::Free, "blocked at picture {picture}: {error}");
+                }
+                RunOutcome::Wrong(why) => panic!("blocked at picture {picture}: {why}"),
+            }
+        }
+        assert!(right > 2 * gave_up, "{right} right, {gave_up} given up");
     }
 }

@@ -2,7 +2,9 @@
 
 mod certificate;
 mod doors_writer;
+mod explored_world;
 mod result;
+mod run_printer;
 mod summary;
 
 use std::{
@@ -12,14 +14,10 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        Algorithm, Algorithm1, Flaw, Folding, MappingAlgorithm, MovableMarker, RunState, judge,
-    },
+    check::MappingAlgorithm,
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    isomorphism::Candidate,
-    mapping::DEFAULT_DART_BOUND,
-    world::GraphWorld,
+    mapping::{DEFAULT_DART_BOUND, MappingMethod},
 };
 
 use super::{
@@ -36,7 +34,9 @@ use crate::{
 };
 use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
+use explored_world::ExploredWorld;
 use result::ExploreResult;
+use run_printer::RunPrinter;
 use summary::Summary;
 
 /// Map one world and print the story: each door, percept and hypothesis, and the map
@@ -46,7 +46,8 @@ use summary::Summary;
 /// The robot gets only percepts from the world. At the end a bijection proves that the map is
 /// isomorphic to the world.
 ///
-/// Algorithm 1 runs, or with --algorithm folding the folding explorer, which needs fewer moves.
+/// Algorithm 1 runs, or with --algorithm folding the folding explorer, which needs fewer moves. With --audit the robot
+/// then walks the certificate of its map, and compares each percept with the map.
 ///
 /// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
 /// loops and parallel edges.
@@ -61,6 +62,7 @@ Examples:
   toposlam explore worlds/shape-8.toml --marker movable
   toposlam explore worlds/building-25.toml --summary
   toposlam explore worlds/shape-6.toml --certificate
+  toposlam explore worlds/shape-6.toml --algorithm folding --audit
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
@@ -119,6 +121,17 @@ pub(super) struct ExploreArguments {
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
+    /// When the map is complete, walk once more and check it. N: the number of audits
+    #[arg(
+        long,
+        value_name = "N",
+        num_args = 0..=1,
+        default_missing_value = "1",
+        require_equals = true,
+        value_parser = clap::value_parser!(u32).range(1..=100)
+    )]
+    audit: Option<u32>,
+
     /// Print a shortest walk that proves the map of the world, and compare the run with it
     #[arg(long)]
     certificate: bool,
@@ -156,68 +169,46 @@ impl ExploreArguments {
         if let Some(svg) = &self.svg {
             output::check_place(svg, &["svg"])?;
         }
-        if self.certificate && self.marker != MappingMarker::Directional {
-            return Err(CliError::at("--certificate", "needs --marker directional"));
+        let of_directional =
+            [("--certificate", self.certificate), ("--audit", self.audit.is_some())];
+        for (option, is_given) in of_directional {
+            if is_given && self.marker != MappingMarker::Directional {
+                return Err(CliError::at(option, "needs --marker directional"));
+            }
         }
         let choice = self.choices.with_budget(self.max_states)?;
         let chosen = self.algorithm.with(self.marker, choice)?;
-        match (self.marker, self.algorithm) {
-            (MappingMarker::Movable, _) => {
-                self.explore(&MovableMarker, chosen, &world, facing, out)
-            }
-            (MappingMarker::Directional, AlgorithmOption::Algorithm1) => {
-                self.explore(&Algorithm1, chosen, &world, facing, out)
-            }
-            (MappingMarker::Directional, AlgorithmOption::Folding) => {
-                self.explore(&Folding, chosen, &world, facing, out)
-            }
-        }
+        self.explore(chosen, &world, facing, out)
     }
 
-    fn explore<A: Algorithm>(
+    fn explore(
         &self,
-        algorithm: &A,
         chosen: MappingAlgorithm,
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let mut out = io::BufWriter::new(out);
-        let mut state = A::State::new(self.max_darts);
-        let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
-        let run = if self.json {
-            let mut doors = DoorsWriter::new(&mut out);
-            let run = algorithm.run(&mut robot, &mut state, &mut doors);
-            doors.finish()?;
-            run
-        } else if self.summarises(world) {
-            print_paragraph(&mut out, &head(world, facing))?;
-            let mut summary = Summary::default();
-            let run = algorithm.run(&mut robot, &mut state, &mut summary);
-            summary.print(&mut out)?;
-            run
-        } else {
-            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
-            let mut story = Story::new(&mut out, world, facing, detail);
-            let run = algorithm.run(&mut robot, &mut state, &mut story);
-            story.finish()?;
-            run
+        let mut printer = self.printer(&mut out, world, facing)?;
+        let explored = match self.marker {
+            MappingMarker::Directional => {
+                let (algorithm, audits) = (self.algorithm.directional(), self.audit.unwrap_or(0));
+                let method = MappingMethod::By { algorithm, audits };
+                ExploredWorld::by_method(method, self.max_darts, &world.graph, facing, &mut printer)
+            }
+            MappingMarker::Movable => {
+                ExploredWorld::by_movable_marker(self.max_darts, &world.graph, facing, &mut printer)
+            }
         };
-        let mut candidate = Candidate::default();
-        let result = run
-            .map_err(Flaw::from)
-            .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
-        let moves = result.is_ok().then(|| state.journey().moves());
+        printer.finish()?;
+        let moves = explored.result.is_ok().then(|| explored.moves_without_audits());
         let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
         let result = ExploreResult {
             world,
             facing,
             marker: self.marker,
             algorithm: self.algorithm,
-            journey: state.journey(),
-            move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
-            carries: robot.carries(),
-            result,
+            explored,
             certificate,
             ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
         };
@@ -238,14 +229,32 @@ impl ExploreArguments {
         Ok(result.outcome())
     }
 
+    /// What is printed while the robot explores.
+    fn printer<'o, W: Write>(
+        &self,
+        out: &'o mut W,
+        world: &NamedWorld,
+        facing: Dart,
+    ) -> io::Result<RunPrinter<'o, W>> {
+        Ok(if self.json {
+            RunPrinter::Doors(DoorsWriter::new(out))
+        } else if self.summarises(world) {
+            print_paragraph(out, &head(world, facing))?;
+            RunPrinter::Summary(Summary::default(), out)
+        } else {
+            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
+            RunPrinter::Story(Box::new(Story::new(out, world, facing, detail)))
+        })
+    }
+
     fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }
         if let Some(path) = &self.svg {
-            let moves = result.journey.moves();
+            let moves = result.explored.moves_without_audits();
             // A marker that the robot carries has no place in the picture.
-            let (start, hand) = if result.carries {
+            let (start, hand) = if result.explored.carries {
                 (None, "; the robot carries its marker")
             } else {
                 (map.start, "")

@@ -25,10 +25,9 @@ impl<W: Write> Story<W> {
             SafeguardEvent::AuditBegun => "The map is complete. The robot audits it.".to_owned(),
             SafeguardEvent::AuditPassed { moves } => {
                 let moves = counted(moves as usize, "move");
-                return print_paragraph(
-                    &mut self.out,
-                    &format!("Every percept of the audit is as the map predicts ({moves})."),
-                );
+                let text = format!("Every percept of the audit is as the map predicts ({moves}).");
+                print_paragraph(&mut self.out, &text)?;
+                return self.print_doors();
             }
             SafeguardEvent::Contradicted(contradiction) => format!(
                 "The robot notices a contradiction{moves}: {contradiction}. It looks for the marker."

@@ -257,6 +257,41 @@ fn a_robot_that_was_carried_was_moved_between_two_events() {
 }
 
 #[test]
+fn a_shorter_log_of_a_robot_that_was_carried_has_its_lengths() {
+    let folder = folder("conform-moved-shorter");
+    let short = folder.join("short.mcap");
+    let mut shorter = 0;
+    for (seed, picture) in [("0", "40"), ("1", "40"), ("2", "60")] {
+        let fault = format!("carried@{picture}");
+        let log = logged(&folder, "worlds/shape-6.toml", &["--seed", seed, "--fault", &fault]);
+        let minimise = [&ANYONE[..], &["--minimise", short.to_str().unwrap()]].concat();
+        let (code, report) = judged(&log, &minimise);
+        // Percepts may show it first.
+        if report["cause"] != "moved" {
+            continue;
+        }
+        let command = report["command"].as_str().unwrap();
+        let words = command.split(' ').skip(1).chain(["--json"]);
+        let output = run(words);
+        assert_eq!((code, output.status.code()), (Some(1), Some(1)), "{command}");
+        let again = objects(&stdout(&output)).remove(0);
+        assert_eq!((&again["cause"], &again["class"]), (&report["cause"], &report["class"]));
+        // It ends with the event that diverges.
+        let events = report["shorter"].as_array().unwrap().len();
+        assert_eq!((&again["event"], &again["events"]), (&events.into(), &events.into()));
+        let measured = |report: &serde_json::Value| {
+            let condition = report["condition"].as_str().unwrap();
+            // The way of a closed walk is shorter; how far from its beginning it ends is not.
+            let what = condition.split_once(": ").unwrap().1;
+            what.split_once(" ends ").map_or(what, |(_, off)| off).to_owned()
+        };
+        assert_eq!(measured(&again), measured(&report));
+        shorter += usize::from(events < report["event"].as_u64().unwrap() as usize);
+    }
+    assert!(shorter > 0);
+}
+
+#[test]
 fn without_odometry_the_report_states_that_lengths_were_not_compared() {
     let folder = folder("conform-no-odometry");
     let log = walked(&folder, &[(1, -1, Some(0)), (3, 1, Some(0)), (1, -1, None)]);

@@ -13,7 +13,7 @@ use toposlam_model::{
     },
     isomorphism::Bijection,
     marker::{Directional, Marker, Movable},
-    percept::{Door, Percept},
+    percept::{Door, Percept, Sighting},
     world::{Action, GraphWorld, World},
 };
 
@@ -117,6 +117,54 @@ fn the_certificate_is_a_walk_whose_folded_trail_is_complete() {
                     No robot can map the world in fewer. This run took 1.00 times as many. doors 0 2 1 1 1 2 1";
     assert!(text.contains(expected), "{text}");
     let movable = run(["explore", "worlds/shape-6.toml", "--marker", "movable", "--certificate"]);
+    assert_eq!(movable.status.code(), Some(2));
+}
+
+/// An audit is the way to the marker and the certificate.
+#[test]
+fn an_audit_walks_the_certificate_of_the_map() {
+    for (algorithm, path) in ["algorithm1", "folding"]
+        .iter()
+        .flat_map(|one| world_files().into_iter().map(move |path| (one, path)))
+    {
+        let file = path.to_str().unwrap();
+        let explored = |audit: &[&str]| {
+            let options = ["explore", "--json", "--certificate", "--algorithm", algorithm, file];
+            objects(&stdout_of([&options[..], audit].concat())).remove(0)
+        };
+        let [none, one, two] = [&[][..], &["--audit"], &["--audit=2"]].map(explored);
+        let number = |value: &Value| value.as_u64().unwrap() as usize;
+        let certificate = number(&none["certificate"]["moves"]);
+        assert_eq!(none["audit_moves"], Value::Null);
+        for (audits, audited) in [(1, &one), (2, &two)] {
+            let [moves, of_audits] = ["moves", "audit_moves"].map(|name| number(&audited[name]));
+            assert_eq!(moves, number(&none["moves"]) + of_audits, "{file}");
+            assert!(of_audits > audits * certificate, "{file}: {of_audits}");
+            for name in ["map", "isomorphic", "certificate", "start", "edges"] {
+                assert_eq!(audited[name], none[name], "{file}: {name}");
+            }
+            // All doors are those of a walk in the world that ends with the certificate.
+            let doors: Vec<Door> = audited["doors"].as_array().unwrap().iter().map(door).collect();
+            assert_eq!(doors.len(), moves);
+            assert_eq!(
+                audited["doors"].as_array().unwrap()[..number(&none["moves"])],
+                none["doors"].as_array().unwrap()[..]
+            );
+            let world = read_world(&path);
+            let robot = GraphWorld::with_marker(&world.graph, Directional, world.start.unwrap());
+            let percepts = percepts(robot, &doors);
+            let last = moves - certificate;
+            assert!(matches!(percepts[last].sighting, Sighting::Pointing(_)), "{file}");
+            let trail = fold(&percepts[last..], &doors[last..]).unwrap();
+            assert!(trail.is_complete(), "{file}");
+        }
+    }
+    let text = flat(&stdout_of(["explore", "worlds/shape-6.toml", "--audit=2", "--doors"]));
+    assert!(text.contains("The map is complete. The robot audits it. Every percept"), "{text}");
+    assert!(text.contains(" Each percept is as the map predicts. "), "{text}");
+    let text = flat(&stdout_of(["explore", "worlds/shape-6.toml", "--audit", "--summary"]));
+    assert!(text.contains(" moves of audits "), "{text}");
+    let movable = run(["explore", "worlds/shape-6.toml", "--marker", "movable", "--audit"]);
     assert_eq!(movable.status.code(), Some(2));
 }
 

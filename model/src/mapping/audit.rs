@@ -36,6 +36,17 @@ impl Audit {
     }
 }
 
+/// A move of an audit after which the percept agreed with the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AuditMove {
+    /// The door taken.
+    pub door: Door,
+    /// The percept behind it.
+    pub percept: Percept,
+    /// The robot's pose in the map.
+    pub pose: Dart,
+}
+
 /// Why an audit ended early.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AuditError<E> {
@@ -76,12 +87,12 @@ impl<E> From<AuditError<E>> for MappingError<E> {
     }
 }
 
-impl<W: World, V: FnMut(&mut W, Dart)> AuditWalk<'_, '_, W, V> {
-    fn compare(&mut self) -> Result<(), AuditError<W::Error>> {
+impl<W: World, V: FnMut(&mut W, AuditMove)> AuditWalk<'_, '_, W, V> {
+    fn compare(&mut self) -> Result<Percept, AuditError<W::Error>> {
         let perceived = self.world.percept().map_err(AuditError::World)?;
         let (moves, expected) = (self.believed.moves(), self.believed.sensed());
         if perceived == expected {
-            Ok(())
+            Ok(perceived)
         } else {
             Err(AuditError::Mismatch { moves, expected, perceived })
         }
@@ -94,8 +105,8 @@ impl<W: World, V: FnMut(&mut W, Dart)> AuditWalk<'_, '_, W, V> {
         self.world.traverse(door).map_err(AuditError::World)?;
         // The map has each of its doors.
         let _ = self.believed.traverse(door);
-        self.compare()?;
-        (self.visit)(self.world, self.believed.pose());
+        let percept = self.compare()?;
+        (self.visit)(self.world, AuditMove { door, percept, pose: self.believed.pose() });
         Ok(())
     }
 
@@ -112,8 +123,8 @@ impl<W: World, V: FnMut(&mut W, Dart)> AuditWalk<'_, '_, W, V> {
     }
 }
 
-/// Audits a map that the robot has made of a world, with a directional marker. After each move that agrees,
-/// `visit` gets the robot's pose in the map.
+/// Audits a map that the robot has made of a world, with a directional marker. `visit` gets each move that
+/// agrees.
 ///
 /// # Errors
 /// Returns an error if the world does, or at the first percept that is not as the map predicts.
@@ -122,7 +133,7 @@ pub fn audit<W: World>(
     map: &EmbeddedGraph,
     facing: Dart,
     pose: Dart,
-    visit: impl FnMut(&mut W, Dart),
+    visit: impl FnMut(&mut W, AuditMove),
 ) -> Result<Audit, AuditError<W::Error>> {
     let believed = GraphWorld::new(map, facing);
     let placed = believed.state().placed;

@@ -3,9 +3,9 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    DirectionalAlgorithm, EarlierWalk, FACING, FoldingExploration, InvalidStep, MappedWorld,
-    MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent,
-    audit, map_with_recovery,
+    AuditMove, DirectionalAlgorithm, EarlierWalk, FACING, FoldingExploration, InvalidStep,
+    MappedWorld, MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate,
+    SafeguardEvent, audit, map_with_recovery,
 };
 
 /// How a robot maps.
@@ -103,17 +103,19 @@ fn audited<W: Relocate>(
     observer: &mut impl Observer<W>,
 ) -> Result<MappedWorld, MappingError<W::Error>> {
     let Some(map) = run.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
-    let mut report = |world: &mut W, event| {
-        observer.event(world, run.journey(), MappingEvent::Safeguard(event));
-    };
+    let mut report = |world: &mut W, event| observer.event(world, run.journey(), event);
     let (mut pose, mut audit_moves, mut audited_percepts) = (run.robot(), 0, Vec::new());
     for _ in 0..audits {
-        report(world, SafeguardEvent::AuditBegun);
-        let audited = audit(world, map, FACING, pose, |_, _| {})?;
+        report(world, MappingEvent::Safeguard(SafeguardEvent::AuditBegun));
+        let moved = |world: &mut W, AuditMove { door, percept, .. }| {
+            report(world, MappingEvent::Moved { door, percept });
+        };
+        let audited = audit(world, map, FACING, pose, moved)?;
         pose = audited.pose;
         audit_moves += audited.moves;
         audited_percepts.push(audited.percepts());
-        report(world, SafeguardEvent::AuditPassed { moves: audited.moves });
+        let passed = SafeguardEvent::AuditPassed { moves: audited.moves };
+        report(world, MappingEvent::Safeguard(passed));
     }
     let moves = run.moves() + audit_moves;
     Ok(MappedWorld {

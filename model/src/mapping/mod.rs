@@ -17,7 +17,7 @@ mod partial_map;
 mod tree;
 
 pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
-pub use audit::{Audit, AuditError, audit};
+pub use audit::{Audit, AuditError, AuditMove, audit};
 pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};

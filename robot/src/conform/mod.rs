@@ -22,6 +22,7 @@ mod recorded_events;
 mod scan_odometry;
 mod seen_junctions;
 mod shorten;
+mod shorten_measured;
 mod tolerance;
 
 #[cfg(test)]

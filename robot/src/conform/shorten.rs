@@ -16,6 +16,7 @@ use super::{
     extract::{SensedScene, infer_events},
     judgement::{Judgement, judge},
     quirks::Quirks,
+    shorten_measured::MeasuredWalk,
 };
 use crate::record::Arrival;
 
@@ -33,8 +34,8 @@ pub struct ShortenedRun {
 /// The events up to the first divergence, without those that it does not need; `None` if there is no
 /// divergence, or nothing to remove.
 ///
-/// If percepts and doors diverge, sequences of moves are removed; if an event contradicts itself or the
-/// odometry, only the last events are kept.
+/// If percepts and doors diverge, sequences of moves are removed; if measurements do, closed walks are; if an event
+/// contradicts itself or the odometry, only the last events are kept.
 #[must_use]
 pub fn shorten_run(
     judgement: &Judgement,
@@ -70,9 +71,13 @@ pub fn shorten_run(
         DivergenceCause::Unfinished { .. }
         | DivergenceCause::Map { .. }
         | DivergenceCause::WrongMap
-        | DivergenceCause::Moves { .. }
-        // A log of percepts and doors has no measurements.
-        | DivergenceCause::Measurement { .. } => None,
+        | DivergenceCause::Moves { .. } => None,
+        DivergenceCause::Measurement { .. } => {
+            let last = trace_index(&judgement.trace, divergence.event)?;
+            let walk = MeasuredWalk::new(judgement, divergence, last)?;
+            let (events, event) = walk.shortened(&anyone, watch)?;
+            Some(ShortenedRun { events, event, by_itself: true })
+        }
         _ => {
             // The odometry after a door belongs to the next event.
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
@@ -181,6 +186,9 @@ impl RunEvents {
             | CheckedKind::Door { number, .. } = &mut event.kind
             {
                 *number = number.map(|number| number.wrapping_sub(before));
+            }
+            if let CheckedKind::Arrival { hallway, .. } = &mut event.kind {
+                *hallway = None;
             }
         }
         let Self { has_head, may_turn_back, measurement_noise, .. } = *self;

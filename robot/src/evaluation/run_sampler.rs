@@ -15,7 +15,7 @@ use super::{RobotEquipment, parallel::made_in_turn};
 use crate::{
     explorer::ExplorerError,
     record::StoppedBy,
-    run::{RunOutcome, explored, run},
+    run::{RunOutcome, WayToMarker, explored, run},
     run_settings::RunSettings,
     simulator::{FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
@@ -59,8 +59,8 @@ pub struct JudgedRun {
     pub case: RunCase,
     /// Its outcome.
     pub ending: RunOutcome,
-    /// Whether at the end an obstacle is on every way from the robot to its marker: it cannot finish.
-    pub is_cut_off: bool,
+    /// Whether at the end the robot can come to its marker.
+    pub way_to_marker: WayToMarker,
     /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
     /// What the map took, if the robot has one.
@@ -183,7 +183,7 @@ fn judged(
     (!stopped).then_some(JudgedRun {
         case,
         ending,
-        is_cut_off: run.is_cut_off,
+        way_to_marker: run.way_to_marker,
         moves: [run.moves, run.explore_moves],
         mapped: run.mapped,
         seconds: run.seconds,

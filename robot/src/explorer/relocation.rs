@@ -99,6 +99,22 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.carry_out(command)
     }
 
+    /// Turns to a direction in the frame of odometry, and drives to the next junction. A junction to which an
+    /// obstacle does not let the robot come is not the next one if it lies behind.
+    pub(super) fn go_in_direction(&mut self, direction: f64) -> Result<Standing, ExplorerError> {
+        let here = self.robot.odometry().odometry;
+        self.command(Command { turn: here.seen(direction), forward: 0.0 })?;
+        let junction = self.stall.and_then(|stall| stall.junction);
+        let behind = junction.map(|[x, y]| {
+            let (sine, cosine) = direction.sin_cos();
+            (here.position[0] - x) * cosine + (here.position[1] - y) * sine
+        });
+        self.drive(match behind {
+            Some(behind) if behind > 0.0 => PathExecution::onwards_from_junction(direction, behind),
+            _ => PathExecution::onwards_to_junction(direction),
+        })
+    }
+
     /// Drives until the robot is at a junction, wherever it stands.
     pub(super) fn find_junction(&mut self) -> Result<Standing, ExplorerError> {
         self.wait_for_sight()?;
@@ -111,7 +127,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             let left =
                 if tries < DIRECTIONS.len() * TRIES { self.leave_by_door(tries)? } else { None };
             let direction = left.unwrap_or_else(|| wrapped(heading + relative));
-            match self.drive(PathExecution::onwards_to_junction(direction)) {
+            match self.go_in_direction(direction) {
                 Ok(standing) => {
                     self.arrive_from_nowhere(standing);
                     return Ok(standing);

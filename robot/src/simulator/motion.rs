@@ -203,6 +203,11 @@ impl SimulatedBase {
         self.read();
     }
 
+    /// Whether there may be a way for the robot to a place.
+    pub(super) fn may_reach(&self, place: [f64; 2]) -> bool {
+        self.surroundings.may_lead(self.pose.position, place)
+    }
+
     /// Moves the robot for this time unless something is in its way. Its wheels turn in either
     /// case.
     fn advance(&mut self, seconds: f64) {

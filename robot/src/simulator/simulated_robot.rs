@@ -121,6 +121,12 @@ impl SimulatedRobot {
         self.obstacle.map(|obstacle| [obstacle.least, obstacle.greatest])
     }
 
+    /// Whether there may be a way for the robot's body to a place. If not, no robot of its size can go there.
+    #[must_use]
+    pub fn may_reach(&self, place: [f64; 2]) -> bool {
+        self.base.may_reach(place)
+    }
+
     /// The true pose.
     #[must_use]
     pub fn pose(&self) -> Pose {

@@ -1,5 +1,7 @@
 //! Walls and obstacles around a simulated robot, and the ranges of its sonars. Section 2.5.
 
+use std::{collections::BTreeSet, f64::consts::FRAC_1_SQRT_2};
+
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
 use super::{
@@ -13,6 +15,11 @@ use crate::{
 
 /// Range of the sonars from the robot's centre, in metres.
 const RANGE: f64 = 1.5;
+/// The distance between the points of the grid on which ways are looked for, in metres.
+const GRID: f64 = 0.05;
+/// The next points of the grid.
+const NEIGHBOURS: [[i32; 2]; 8] =
+    [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
 /// The walls of a building and the obstacles on its floor.
 #[derive(Clone, Debug)]
@@ -50,12 +57,40 @@ impl Surroundings {
 
     /// Whether there is room for the robot's body at a place.
     pub(super) fn has_room(&self, place: [f64; 2]) -> bool {
+        self.is_free(place, RADIUS)
+    }
+
+    /// Whether nothing is nearer to a place than this, in metres.
+    fn is_free(&self, place: [f64; 2], radius: f64) -> bool {
         self.near(place).all(|thing| {
             let off = |axis: usize| {
                 place[axis] - place[axis].clamp(thing.least[axis], thing.greatest[axis])
             };
-            off(0) * off(0) + off(1) * off(1) >= RADIUS * RADIUS
+            off(0) * off(0) + off(1) * off(1) >= radius * radius
         })
+    }
+
+    /// Whether there may be a way for the robot's body from one place to another. If not, there is none: each way
+    /// of the body is also a way of a body that is smaller by half the diagonal of a square, over the nearest
+    /// points of the grid.
+    pub(super) fn may_lead(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        let point = |[x, y]: [i32; 2]| [to[0] + GRID * f64::from(x), to[1] + GRID * f64::from(y)];
+        let is_free = |at: &[i32; 2]| self.is_free(point(*at), RADIUS - GRID * FRAC_1_SQRT_2);
+        let begin = [0, 1].map(|axis| ((from[axis] - to[axis]) / GRID).round() as i32);
+        let mut found = BTreeSet::from([begin]);
+        let mut open = Vec::from_iter(is_free(&begin).then_some(begin));
+        while let Some(at) = open.pop() {
+            if at == [0, 0] {
+                return true;
+            }
+            for [x, y] in NEIGHBOURS {
+                let next = [at[0] + x, at[1] + y];
+                if found.insert(next) && is_free(&next) {
+                    open.push(next);
+                }
+            }
+        }
+        false
     }
 
     /// The distance from the robot's body that a sonar measures, in metres.
@@ -96,7 +131,10 @@ fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> f64 {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
+    use toposlam_model::embedded_graph::{Dart, EmbeddedGraph};
+
     use super::*;
+    use crate::evaluation::plans;
 
     /// One hallway to the east, 2 m wide. The walls of its dead ends are at x = -1 and x = 7.
     fn hallway() -> Surroundings {
@@ -131,5 +169,54 @@ mod tests {
         assert!(!hallway.has_room([3.4, 0.0]) && hallway.has_room([3.2, 0.0]));
         let range = hallway.sonar(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 }, 0);
         assert!((range - (0.5 - RADIUS)).abs() < 1e-6);
+    }
+
+    /// Whether no way leads from one end of an edge to the other but the edge itself.
+    fn is_bridge(graph: &EmbeddedGraph, edge: Dart) -> bool {
+        let mut near = vec![false; graph.vertex_count()];
+        near[graph.vertex(edge).at()] = true;
+        for _ in 0..graph.vertex_count() {
+            for (dart, opposite) in graph.edges().filter(|&(dart, _)| dart != edge) {
+                let ends = [dart, opposite].map(|dart| graph.vertex(dart).at());
+                let either = ends.iter().any(|&end| near[end]);
+                for end in ends {
+                    near[end] |= either;
+                }
+            }
+        }
+        !near[graph.vertex(graph.opposite(edge)).at()]
+    }
+
+    #[test]
+    fn no_way_leads_past_an_obstacle_across_a_bridge_and_across_nothing_else() {
+        let mut bridges = 0;
+        for (name, plan) in plans().unwrap() {
+            let graph = plan.graph();
+            for (dart, opposite) in graph.edges() {
+                let ends = [dart, opposite].map(|dart| plan.junction(graph.vertex(dart)).position);
+                let middle = [0, 1].map(|axis| f64::midpoint(ends[0][axis], ends[1][axis]));
+                // As wide as the hallway, or with a passage that is wide enough for the robot's body or is not.
+                for (passage, is_passable) in [(0.0, false), (0.3, false), (0.5, true)] {
+                    let half = [0, 1].map(|axis| {
+                        let is_along = ends[0][axis] != ends[1][axis];
+                        if is_along { 0.15 } else { plan.hallway_width() / 2.0 - passage }
+                    });
+                    let corner = |side: f64| [0, 1].map(|axis| middle[axis] + side * half[axis]);
+                    let mut surroundings = Surroundings::new(&plan);
+                    assert!(surroundings.may_lead(ends[0], ends[1]), "{name}");
+                    surroundings.put(Rectangle { least: corner(-1.0), greatest: corner(1.0) });
+                    let may_pass = is_passable || !is_bridge(graph, dart);
+                    assert_eq!(
+                        surroundings.may_lead(ends[0], ends[1]),
+                        may_pass,
+                        "{name} {dart:?}"
+                    );
+                    // A robot in the obstacle cannot move.
+                    assert!(!surroundings.may_lead(middle, ends[1]));
+                }
+                bridges += usize::from(is_bridge(graph, dart));
+            }
+        }
+        assert!(bridges > 10, "{bridges}");
     }
 }

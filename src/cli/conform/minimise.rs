@@ -125,8 +125,8 @@ fn divergence_of(bytes: &[u8], evidence: Evidence, question: &ConformConfig) -> 
     judge(run.events, question, &Quirks::default(), &()).ok()?.divergence
 }
 
-/// A log of the events: percepts and doors. It has odometry only where an event has an angle off its door
-/// or its entry.
+/// A log of the events: percepts and doors. It has odometry only where a hallway is measured, or an event has an angle
+/// off its door or its entry.
 fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(head)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
@@ -136,7 +136,22 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
         match kind {
-            CheckedKind::Arrival { arrival, entry_off, .. } => {
+            CheckedKind::Arrival { arrival, entry_off, hallway: Some(hallway) } => {
+                // The robot leaves along the door, and comes in along the entry door.
+                let by_entry = arrival.entry.map(|entry| entry + entry_off.unwrap_or(0.0) + PI);
+                let by_door = last.left.map(|(leads, off)| leads + off);
+                let half = hallway.length / 2.0;
+                let ways =
+                    [by_door.or(by_entry), by_entry.or(by_door)].map(Option::unwrap_or_default);
+                log.write(ODOM, time, &odometry(stamp, &at))?;
+                for way in ways {
+                    at = Odometry { heading: way, ..at }.moved(0.0, half);
+                    log.write(ODOM, time, &odometry(stamp, &at))?;
+                }
+                log.write(Percept::TOPIC, time, &arrival_message(stamp, arrival))?;
+                last = LastJunction { arrival: Some(*arrival), left: None };
+            }
+            CheckedKind::Arrival { arrival, entry_off, hallway: None } => {
                 if let Some(way) = last.way(arrival, *entry_off) {
                     // Odometry before and after the drive gives the direction of the entry door.
                     for forward in [0.0, DISTANCE] {

@@ -9,7 +9,7 @@ use toposlam_robot::{
         RobotEquipment,
         run_sampler::{Faults, JudgedRun, RunSampler},
     },
-    run::RunOutcome,
+    run::{RunOutcome, WayToMarker},
     simulator::{FAULTS, FaultKind},
 };
 
@@ -193,7 +193,8 @@ impl EvaluateRunsArguments {
                 "moves": run.moves[0], "explore_moves": run.moves[1],
                 "right": run.ending == RunOutcome::Right,
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
-                "cut_off": run.is_cut_off,
+                "cut_off": run.way_to_marker == WayToMarker::None,
+                "narrow": run.way_to_marker == WayToMarker::Narrow,
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
                 "recoveries": run.mapped.as_ref().map(|mapped| mapped.recoveries),
@@ -262,12 +263,18 @@ fn print_safeguards(
     }
     writeln!(out, "  blocked  {blocked} of the right runs are right but for a hallway")?;
     let gave_up = judged.iter().filter(|run| matches!(run.ending, RunOutcome::GaveUp(_)));
-    let cut_off = gave_up.filter(|run| run.is_cut_off).count();
-    let text = format!(
-        "{} given up because an obstacle is on every way to the marker",
-        counted(cut_off, "run")
-    );
-    print_hanging(out, "  cut off  ", &text)?;
+    let ended = |way| gave_up.clone().filter(|run| run.way_to_marker == way).count();
+    for (name, way, why) in [
+        ("cut off", WayToMarker::None, "an obstacle leaves no way to the marker"),
+        (
+            "narrow",
+            WayToMarker::Narrow,
+            "each way to the marker is beside an obstacle, within 0.4 m of the middle of a hallway",
+        ),
+    ] {
+        let text = format!("{} given up because {why}", counted(ended(way), "run"));
+        print_hanging(out, &format!("  {name:<9}"), &text)?;
+    }
     Ok(())
 }
 

@@ -9,16 +9,22 @@ use toposlam_model::{
     folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
-    mapping::{FACING, Journey, MappingError},
+    mapping::{FACING, MappedWorld, MappingError},
 };
 
-use super::{AlgorithmOption, CliError, MappingMarker, Outcome, certificate::CertificateOfStart};
+use super::{
+    AlgorithmOption, CliError, MappingMarker, Outcome, certificate::CertificateOfStart,
+    explored_world::ExploredWorld,
+};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
 struct Rest<'a> {
     moves: u64,
+    /// With --audit, if the audits agreed with the map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_moves: Option<u64>,
     edges: Option<usize>,
     vertices: usize,
     isomorphic: bool,
@@ -57,13 +63,7 @@ pub(super) struct ExploreResult<'a> {
     pub(super) facing: Dart,
     pub(super) marker: MappingMarker,
     pub(super) algorithm: AlgorithmOption,
-    pub(super) journey: &'a Journey,
-    /// The most moves that the algorithm may make in this world.
-    pub(super) move_bound: u64,
-    /// Whether the robot carries its marker.
-    pub(super) carries: bool,
-    /// The bijection from the map to the world, or what is wrong.
-    pub(super) result: Result<&'a Bijection, Flaw>,
+    pub(super) explored: ExploredWorld,
     /// With `--certificate`.
     pub(super) certificate: Option<CertificateOfStart>,
     /// All runs, with `--choices all`.
@@ -72,7 +72,7 @@ pub(super) struct ExploreResult<'a> {
 
 impl ExploreResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
-        match (&self.result, &self.ways) {
+        match (&self.explored.result, &self.ways) {
             (Err(Flaw::Error(MappingError::Bound { .. })), _) => Outcome::Incomplete,
             (Err(_), _) | (_, Some(Err(_))) => Outcome::Violated,
             (Ok(_), Some(Ok(ways))) if ways.limit.is_some() => Outcome::Incomplete,
@@ -82,16 +82,16 @@ impl ExploreResult<'_> {
 
     /// The map as a world, if it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
-        let (name, moves) = (&self.world.name, self.journey.moves());
+        let (name, moves) = (&self.world.name, self.explored.moves_without_audits());
         let about = format!("The map of {name}, made in {moves} moves");
-        let graph = self.journey.map().complete()?;
+        let graph = self.explored.journey().map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
     /// The first thing that is wrong.
     fn error(&self) -> Option<&Flaw> {
         let of_ways = self.ways.as_ref().and_then(|ways| ways.as_ref().err());
-        self.result.as_ref().err().or(of_ways)
+        self.explored.result.as_ref().err().or(of_ways)
     }
 
     fn ways(&self) -> Option<&EveryWay> {
@@ -100,12 +100,13 @@ impl ExploreResult<'_> {
 
     /// Prints the rest of the object that the run began with its doors.
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let map = self.journey.map();
+        let map = self.explored.journey().map();
         let rest = Rest {
-            moves: self.journey.moves(),
+            moves: self.explored.moves(),
+            audit_moves: self.explored.audited().map(|mapped| mapped.audit_moves),
             edges: map.complete().map(EmbeddedGraph::edge_count),
             vertices: map.vertex_count(),
-            isomorphic: self.result.is_ok(),
+            isomorphic: self.explored.result.is_ok(),
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
             marker: (self.marker != MappingMarker::Directional).then(|| self.marker.name()),
@@ -130,9 +131,9 @@ impl ExploreResult<'_> {
     /// Prints the result with the names of at most `listed` vertices.
     pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), CliError> {
         writeln!(out)?;
-        match &self.result {
+        match &self.explored.result {
             Err(flaw) => {
-                let moves = counted(self.journey.moves() as usize, "move");
+                let moves = counted(self.explored.moves() as usize, "move");
                 print_paragraph(out, &format!("After {moves}: {flaw}."))?;
                 if matches!(flaw, Flaw::Error(MappingError::Bound { .. })) {
                     print_paragraph(out, "Use --max-darts N to raise the bound.")?;
@@ -159,7 +160,8 @@ impl ExploreResult<'_> {
         listed: usize,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let Self { world, journey, move_bound, .. } = self;
+        let Self { world, explored, .. } = self;
+        let journey = explored.journey();
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
         let moves = counted(journey.moves() as usize, "move");
@@ -167,7 +169,7 @@ impl ExploreResult<'_> {
             MappingMarker::Directional => certificate_length(&world.graph, self.facing),
             MappingMarker::Movable => edges,
         };
-        let [least, most] = [least as u128, (*move_bound).into()].map(grouped);
+        let [least, most] = [least as u128, explored.move_bound.into()].map(grouped);
         let complete = format!(
             "The map is complete after {moves}: {size}. A run in this world takes at least {least} \
              and at most {most} moves."
@@ -187,11 +189,17 @@ impl ExploreResult<'_> {
         }
         print_paragraph(out, "It is isomorphic to the world:")?;
         print_hanging(out, "  ", &names.join(", "))?;
-        let robot = journey.robot();
+        if let Some(MappedWorld { audit_moves, audited_percepts, .. }) = explored.audited() {
+            let audits = counted(audited_percepts.len(), "audit");
+            let moves = counted(*audit_moves as usize, "more move");
+            let text = format!("{audits} took {moves}. Each percept is as the map predicts.");
+            print_paragraph(out, &text)?;
+        }
+        let robot = explored.robot();
         let (vertex, index) = (journey.map().vertex(robot).0, journey.map().index(robot));
         let pose = format!("at v{vertex}, entered by dart v{vertex}.{index}");
         print_paragraph(out, &format!("The robot is where it believes to be: {pose}."))?;
-        if self.carries {
+        if explored.carries {
             print_paragraph(out, "It carries its marker.")?;
         }
         Ok(())

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{FoldingEvent, Journey, MappingEvent, MovableEvent, Observer};
+use toposlam_model::mapping::{
+    FoldingEvent, Journey, MappingEvent, MovableEvent, Observer, SafeguardEvent,
+};
 
 use crate::cli::text::grouped;
 
@@ -18,12 +20,14 @@ pub(super) struct Summary {
     confirmed: u64,
     /// Of the folding explorer: how often the trail was folded.
     folded: u64,
+    audit_moves: u64,
 }
 
 impl Summary {
     pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out)?;
-        let Self { rounds, vertices, loops, ruled_out, rejected, confirmed, folded } = *self;
+        let Self { rounds, vertices, loops, ruled_out, rejected, confirmed, folded, audit_moves } =
+            *self;
         for (name, count) in [
             ("rounds", rounds),
             ("that found a new vertex", vertices),
@@ -32,9 +36,10 @@ impl Summary {
             ("candidates rejected by their path", rejected),
             ("candidates confirmed", confirmed),
             ("times that the trail was folded", folded),
+            ("moves of audits", audit_moves),
         ] {
             // Only the folding explorer has a trail.
-            if name.contains("trail") && count == 0 {
+            if (name.contains("trail") || name.contains("audits")) && count == 0 {
                 continue;
             }
             let indent = if name.starts_with("that") { "    " } else { "  " };
@@ -58,6 +63,9 @@ impl<W: ?Sized> Observer<W> for Summary {
                 self.rounds += 1;
             }
             MappingEvent::Folding(FoldingEvent::Folded { .. }) => self.folded += 1,
+            MappingEvent::Safeguard(SafeguardEvent::AuditPassed { moves }) => {
+                self.audit_moves += moves;
+            }
             MappingEvent::Rejected { .. }
             | MappingEvent::Folding(FoldingEvent::Refuted { .. })
             | MappingEvent::Movable(MovableEvent::NotAt { .. } | MovableEvent::NotBehind { .. }) => {

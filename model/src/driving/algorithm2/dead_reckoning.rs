@@ -94,6 +94,11 @@ impl DeadReckoning {
         }
     }
 
+    /// On the way in a direction of the frame of odometry, from a junction that lies this far behind.
+    pub(super) fn from_junction(direction: f64, behind: f64) -> Self {
+        Self { since_turn: behind, ..Self::on_the_way(direction) }
+    }
+
     pub(super) fn bound_leg(&mut self, metres: f64) {
         self.leg_bound = metres;
     }
@@ -182,6 +187,14 @@ impl DeadReckoning {
 
     pub(super) fn since_turn(&self) -> f64 {
         self.since_turn
+    }
+
+    /// The direction from which the robot comes, in the frame of odometry.
+    pub(super) fn way_back(&self) -> f64 {
+        match self.stage {
+            Stage::OnTheWay => wrapped(self.leg + PI),
+            Stage::AtJunction => self.entry,
+        }
     }
 
     /// The direction of the hallway, relative to the robot's heading.

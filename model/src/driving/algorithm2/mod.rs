@@ -136,6 +136,17 @@ impl<'a> PathExecution<'a> {
         }
     }
 
+    /// The same of a robot that turns its back to a junction to which it could not come: it lies this far behind, in
+    /// metres, and is not the next one.
+    #[must_use]
+    pub fn onwards_from_junction(direction: f64, behind: f64) -> Self {
+        Self {
+            state: PathState::Leaving,
+            reckoning: DeadReckoning::from_junction(direction, behind),
+            ..Self::onwards_to_junction(direction)
+        }
+    }
+
     fn at_junction(queue: &'a [Door], visit: JunctionEstimate, entry: f64) -> Self {
         // 1
         let state = PathState::Leaving;
@@ -160,6 +171,12 @@ impl<'a> PathExecution<'a> {
     #[must_use]
     pub fn queue(&self) -> &'a [Door] {
         self.queue
+    }
+
+    /// The direction from which the robot comes, in the frame of odometry.
+    #[must_use]
+    pub fn way_back(&self) -> f64 {
+        self.reckoning.way_back()
     }
 
     /// The distance since the robot last turned to a door, in metres of odometry.

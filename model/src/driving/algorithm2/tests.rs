@@ -653,3 +653,30 @@ fn a_path_is_given_up_in_words() {
     assert_eq!(lost.to_string(), said);
     assert_near(lost.since_turn, robot.path.since_turn());
 }
+
+/// A robot that has turned its back to a junction.
+fn with_its_back_to_a_junction(path: PathExecution<'static>) -> Robot<'static> {
+    Robot { path, odometry: Odometry::default() }
+}
+
+#[test]
+fn a_junction_to_which_the_robot_could_not_come_is_not_the_next_one() {
+    // An obstacle stopped it 0.4 m before the turning point, and it has turned round.
+    let behind = junction(T_LEFT, -0.4, 0.0);
+    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_from_junction(0.0, 0.4));
+    assert_eq!(robot.sees(&behind), ahead(UNIT / 2.0));
+    assert_eq!((robot.path.state(), robot.path.way_back()), (PathState::Leaving, PI));
+    assert_eq!(robot.sees(&hallway(0.0)), ahead(UNIT));
+    assert_eq!(robot.path.state(), PathState::Hallway);
+    // Otherwise it would be the one to which it has come.
+    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_to_junction(0.0));
+    robot.sees(&behind);
+    assert_eq!(robot.path.state(), PathState::Junction);
+    // The next one is.
+    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_from_junction(0.0, 0.4));
+    for _ in 0..5 {
+        robot.sees(&hallway(0.0));
+    }
+    robot.sees(&junction(T_LEFT, 0.75, 0.0));
+    assert_eq!(robot.path.state(), PathState::Junction);
+}

@@ -29,7 +29,7 @@ use crate::{
     mapping::{
         Contradiction, FACING, InvalidStep, Journey, MappingError, MappingEvent, Observer,
         SafeguardEvent,
-        audit::{AuditError, audit, try_doors},
+        audit::{AuditError, AuditMove, audit, try_doors},
     },
     marker::Marker,
     measurement::{MeasurementCheck, MeasurementNoise},
@@ -411,8 +411,8 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
                 return Err(InvalidStep::NoPlan.into());
             };
             blocked.clear();
-            let note = |world: &mut Remembering<W>, pose| {
-                let dart = map.opposite(pose);
+            let note = |world: &mut Remembering<W>, made: AuditMove| {
+                let dart = map.opposite(made.pose);
                 if world.world.is_blocked() && !blocked.contains(&dart) {
                     blocked.push(dart);
                 }

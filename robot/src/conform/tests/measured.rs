@@ -208,3 +208,75 @@ fn inferred_hallways_are_about_as_long_as_recorded_ones() {
     }
     assert!(log.lines.iter().any(|(_, line)| matches!(line, EventKind::Frame(Frame { .. }))));
 }
+
+/// The closed walks that a contradiction does not need are left out. What is left has the same measurements.
+#[test]
+fn a_shorter_log_contradicts_itself_in_the_same_way() {
+    let (mut shortened, mut kept, mut of) = (0, 0, 0);
+    for (_, _, good) in runs() {
+        let good = good.recorded();
+        for event in (2..good.events.len()).step_by(6) {
+            let mut events = good.clone();
+            let CheckedKind::Arrival { hallway: Some(hallway), .. } =
+                &mut events.events[event].kind
+            else {
+                panic!("{event}")
+            };
+            hallway.length += 6.0;
+            let judgement = judge(events.clone(), &by_anyone(), &Quirks::default(), &()).unwrap();
+            let Some(whole) = judgement.divergence.clone() else { continue };
+            let DivergenceCause::Measurement { between, earlier, measurement } = whole.cause else {
+                panic!("{whole:?}")
+            };
+            let short = shorten_run(&judgement, &by_anyone(), &()).unwrap();
+            assert!(short.by_itself && short.event == short.events.events.len() - 1);
+            let again = judged(&short.events, &by_anyone()).divergence.unwrap();
+            assert_eq!(again.event, short.event, "{event}");
+            let DivergenceCause::Measurement {
+                between: now_between,
+                earlier: now_earlier,
+                measurement: now,
+            } = again.cause
+            else {
+                panic!("{again:?}")
+            };
+            // The same visits end it.
+            let source = |events: &RunEvents, at: usize| events.events[at].source;
+            assert_eq!(source(&short.events, now_between[1]), source(&events, between[1]));
+            assert_eq!(source(&short.events, now_earlier[1]), source(&events, earlier[1]));
+            match (measurement, now) {
+                (
+                    ContradictoryMeasurement::Length { now: before, .. },
+                    ContradictoryMeasurement::Length { now, .. },
+                ) => assert!((before - now).abs() < 1e-9),
+                (one, other) => assert_eq!(
+                    std::mem::discriminant(&one),
+                    std::mem::discriminant(&other),
+                    "{one} {other}"
+                ),
+            }
+            for CheckedEvent { source, kind } in &short.events.events {
+                let same = events.events.iter().find(|event| event.source == *source).unwrap();
+                match (kind, &same.kind) {
+                    (
+                        CheckedKind::Arrival { hallway: Some(now), .. },
+                        CheckedKind::Arrival { hallway: Some(before), .. },
+                    ) => assert_eq!(now, before),
+                    (
+                        CheckedKind::Arrival { hallway: None, arrival, .. },
+                        CheckedKind::Arrival { .. },
+                    ) => assert_eq!(arrival.number, Some(0)),
+                    (
+                        CheckedKind::Door { door: now, .. },
+                        CheckedKind::Door { door: before, .. },
+                    ) => assert_eq!(now, before),
+                    other => panic!("{other:?}"),
+                }
+            }
+            shortened += 1;
+            kept += short.events.events.len();
+            of += whole.event + 1;
+        }
+    }
+    assert!(shortened > 20 && 3 * kept < 2 * of, "{kept} of {of} events in {shortened} logs");
+}

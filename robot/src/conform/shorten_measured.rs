@@ -1,0 +1,204 @@
+//! Shortens a log whose measurements contradict each other: closed walks that the contradiction does not need are
+//! removed, so that each measurement is still that of its hallway.
+
+use std::mem::discriminant;
+
+use toposlam_model::{
+    driving::scene::wrapped,
+    embedded_graph::Dart,
+    enumerate::Watch,
+    folding::fold,
+    measurement::ContradictoryMeasurement,
+    percept::{Percept, Sighting},
+    trace::Trace,
+};
+
+use super::{
+    config::ConformConfig,
+    divergence::{Divergence, DivergenceCause},
+    events::{CheckedEvent, CheckedKind, RunEvents},
+    judgement::{Judgement, judge},
+    quirks::Quirks,
+};
+
+/// The largest number of shorter walks that are judged.
+const TRIALS: usize = 200;
+
+/// The walk up to a measurement that contradicts others.
+pub(super) struct MeasuredWalk<'j> {
+    events: &'j RunEvents,
+    divergence: &'j Divergence,
+    trace: Trace,
+    /// The pose at each visit, as the dart by which the robot came in, in the folded trail of the walk.
+    poses: Vec<Dart>,
+}
+
+impl<'j> MeasuredWalk<'j> {
+    /// The walk up to a divergence, at this event of the trace; `None` if its visits are not identified.
+    pub(super) fn new(
+        judgement: &'j Judgement,
+        divergence: &'j Divergence,
+        last: usize,
+    ) -> Option<Self> {
+        let trace = judgement.trace.up_to(last);
+        if !trace.relocations().is_empty() || trace.percepts().len() == trace.doors().len() {
+            return None;
+        }
+        let trail = fold(trace.percepts(), trace.doors()).ok()?;
+        let mut poses = vec![trail.start()];
+        for &door in trace.doors() {
+            poses.push(trail.opposite(trail.behind(*poses.last()?, door))?);
+        }
+        Some(Self { events: &judgement.events, divergence, trace, poses })
+    }
+
+    /// The events of a shorter walk with the same contradiction, and the index of the one that diverges; `None` if the
+    /// whole walk does not have it by itself.
+    pub(super) fn shortened(
+        &self,
+        question: &ConformConfig,
+        watch: &dyn Watch,
+    ) -> Option<(RunEvents, usize)> {
+        let shows = |visits: &[usize]| {
+            let mut visits = visits.to_vec();
+            loop {
+                let events = self.events_of(&visits);
+                let judged = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
+                let found = judged.divergence.filter(|found| self.is_shown_by(&visits, found))?;
+                if found.event + 1 == events.events.len() {
+                    return Some((visits, events));
+                }
+                // The events up to the first that shows it may show it sooner.
+                visits.truncate(found.event / 2 + 1);
+            }
+        };
+        let all: Vec<usize> = (0..self.poses.len()).collect();
+        let (mut visits, mut shortest) = shows(&all)?;
+        let mut trials = 0;
+        let mut length = visits.len() - 1;
+        while length > 0 {
+            let mut from = 0;
+            while from + length < visits.len() && trials < TRIALS {
+                let shorter = self.without(&visits, from, from + length).and_then(|shorter| {
+                    trials += 1;
+                    shows(&shorter)
+                });
+                match shorter {
+                    Some(shorter) => (visits, shortest) = shorter,
+                    None => from += 1,
+                }
+            }
+            length -= 1;
+        }
+        let last = shortest.events.len() - 1;
+        Some((shortest, last))
+    }
+
+    /// The visits without a closed walk from one to another; at the beginning, without all before one at the marker.
+    fn without(&self, visits: &[usize], from: usize, to: usize) -> Option<Vec<usize>> {
+        let marked = |visit: usize| {
+            let Percept { sighting, .. } = self.trace.percepts()[visit];
+            matches!(sighting, Sighting::Pointing(_))
+        };
+        if self.poses[visits[from]] == self.poses[visits[to]] {
+            Some([&visits[..=from], &visits[to + 1..]].concat())
+        } else if from == 0 && marked(visits[to]) {
+            Some(visits[to..].to_vec())
+        } else {
+            None
+        }
+    }
+
+    /// The arrival of a visit, by its index among the events.
+    fn arrival(&self, visit: usize) -> usize {
+        self.trace.event(2 * visit).id
+    }
+
+    /// The direction of the entry door of a visit, in the frame of odometry.
+    fn entry(&self, visit: usize) -> Option<f64> {
+        match self.events.events.get(self.arrival(visit))?.kind {
+            CheckedKind::Arrival { arrival, .. } => arrival.entry,
+            _ => None,
+        }
+    }
+
+    /// The events of some visits, and of the move to each from the visit before it.
+    fn events_of(&self, visits: &[usize]) -> RunEvents {
+        let mut events: Vec<CheckedEvent> = Vec::new();
+        // Odometry has turned on the walks that were removed.
+        let mut turned = 0.0;
+        for (number, &visit) in visits.iter().enumerate() {
+            let moves = u32::try_from(number).ok();
+            if let Some(before) = number.checked_sub(1).map(|before| visits[before]) {
+                if let Some((now, then)) = self.entry(before).zip(self.entry(visit - 1)) {
+                    turned += now - then;
+                }
+                let door = self.trace.event(2 * visit - 1).id;
+                let mut door = self.events.events[door].clone();
+                if let CheckedKind::Door { number, .. } = &mut door.kind {
+                    *number = moves;
+                }
+                events.push(door);
+            }
+            let mut event = self.events.events[self.arrival(visit)].clone();
+            if let CheckedKind::Arrival { arrival, entry_off, hallway } = &mut event.kind {
+                arrival.number = moves;
+                arrival.entry = arrival.entry.map(|entry| wrapped(entry + turned));
+                if number == 0 {
+                    (*entry_off, *hallway) = (None, None);
+                }
+            }
+            events.push(event);
+        }
+        let RunEvents { has_head, measurement_noise, .. } = *self.events;
+        RunEvents { events, has_head, measurement_noise, ..RunEvents::default() }
+    }
+
+    /// Whether a divergence of the events of some visits is that of the whole walk: between the same events, with the
+    /// same measurement.
+    fn is_shown_by(&self, visits: &[usize], found: &Divergence) -> bool {
+        // Arrivals and doors alternate.
+        let whole = |event: usize| visits.get(event / 2).map(|&visit| self.arrival(visit));
+        let same_end =
+            |shorter: [usize; 2], longer: [usize; 2]| whole(shorter[1]) == Some(longer[1]);
+        let (
+            DivergenceCause::Measurement { between, earlier, measurement },
+            DivergenceCause::Measurement {
+                between: before_between,
+                earlier: before_earlier,
+                measurement: before,
+            },
+        ) = (&found.cause, &self.divergence.cause)
+        else {
+            return false;
+        };
+        let same_begin = match before {
+            // Moves, which may begin at another visit of the same place.
+            ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. } => true,
+            _ => whole(between[0]) == Some(before_between[0]),
+        };
+        let same_measurement = match (measurement, before) {
+            (
+                ContradictoryMeasurement::Length { now, .. },
+                ContradictoryMeasurement::Length { now: other, .. },
+            )
+            | (
+                ContradictoryMeasurement::Turn { now, .. },
+                ContradictoryMeasurement::Turn { now: other, .. },
+            ) => (now - other).abs() < SAME,
+            (
+                ContradictoryMeasurement::ClosedTurns { quarters },
+                ContradictoryMeasurement::ClosedTurns { quarters: other },
+            ) => quarters == other,
+            (one, other) => discriminant(one) == discriminant(other),
+        };
+        same_end(*between, *before_between)
+            && same_end(*earlier, *before_earlier)
+            && same_begin
+            && same_measurement
+            && found.fault == self.divergence.fault
+    }
+}
+
+/// Measurements with a smaller difference are the same, in metres or radians.
+const SAME: f64 = 1e-6;
