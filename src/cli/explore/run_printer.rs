@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use toposlam::story::Story;
 use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 
 use super::{doors_writer::DoorsWriter, summary::Summary};
+use crate::story::Story;
 
 /// Prints a run.
 pub(super) enum RunPrinter<'o, W: Write> {
