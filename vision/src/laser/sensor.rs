@@ -191,10 +191,9 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     // The next reading with a return, if those without one in between cover a small angle only.
     let next = |index: usize| {
         let (bearing, _) = readings[index];
-        let others = (index + 1..readings.len()).chain(0..index);
-        let (at, next, range) = others
-            .filter_map(|at| readings[at].1.map(|range| (at, readings[at].0, range)))
-            .next()?;
+        let mut others = (index + 1..readings.len()).chain(0..index);
+        let (at, next, range) =
+            others.find_map(|at| readings[at].1.map(|range| (at, readings[at].0, range)))?;
         let step = wrapped(next - bearing);
         let is_near = at == index + 1 || (0.0..=params.max_silence).contains(&step);
         is_near.then_some((at, step, range))
