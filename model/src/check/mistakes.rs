@@ -308,7 +308,11 @@ impl MistakeCheck {
     /// Makes all runs. The result does not depend on the number of threads.
     pub fn run(&self, watch: &dyn Watch) -> MistakeTally {
         let check = |part: &EnumerationPart| {
-            let mut tally = MistakeTally::default();
+            let mut tally = MistakeTally { interrupted: watch.stop(), ..MistakeTally::default() };
+            // There are many parts, and the first start of each may take long.
+            if tally.interrupted {
+                return tally;
+            }
             let mut runs = MistakenRuns { check: *self, candidate: Candidate::default() };
             let ended = part.for_each(&mut |found: EnumeratedGraph| {
                 runs.check_start(found.graph, &mut tally);
@@ -465,5 +469,21 @@ mod tests {
             // The robot was carried on the last way of the audit.
             assert_eq!(all.wrong_pose, tally.counts[MISTAKE_KINDS.len() - 1].wrong_pose);
         }
+    }
+    /// Stops from the beginning.
+    struct Stopped;
+
+    impl Watch for Stopped {
+        fn stop(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn a_check_that_is_stopped_begins_no_start() {
+        let check =
+            MistakeCheck::new(Class::Multigraph, 5, DirectionalAlgorithm::Algorithm1.into());
+        let tally = check.unwrap().run(&Stopped);
+        assert_eq!(tally, MistakeTally { interrupted: true, ..MistakeTally::default() });
     }
 }

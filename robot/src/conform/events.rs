@@ -199,7 +199,7 @@ impl RunEvents {
     pub fn without_excursions(&self) -> Self {
         let mut events: Vec<CheckedEvent> = Vec::new();
         // By how many doors clockwise the next door is farther from the entry of the last arrival.
-        let mut turned = 0;
+        let mut turned = Door::BACK;
         // The number of moves that are left out.
         let mut left_out = 0;
         for event in &self.events {
@@ -218,20 +218,21 @@ impl RunEvents {
                         && back.kind == CheckedKind::TurnedBack
                         && arrival.is_same_from(again, door)
                     {
-                        turned = door.0;
+                        turned = door;
                         left_out += 1;
                         events.truncate(events.len() - 2);
                         continue;
                     }
-                    turned = 0;
+                    turned = Door::BACK;
                 }
                 (
                     CheckedKind::Door { door, .. },
                     [.., CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. }],
-                ) if arrival.degree > 0 => {
-                    door.0 = (door.0 + std::mem::take(&mut turned)) % arrival.degree;
+                ) if door.0 < arrival.degree => {
+                    let entry = std::mem::replace(&mut turned, Door::BACK);
+                    *door = door.seen_from(entry.inverse(arrival.degree), arrival.degree);
                 }
-                _ => turned = 0,
+                _ => turned = Door::BACK,
             }
             match &mut event.kind {
                 CheckedKind::Arrival { arrival: Arrival { number: Some(number), .. }, .. }

@@ -113,16 +113,15 @@ impl Arrival {
     /// Whether another arrival can be at the same junction, entered by a door of this one.
     #[must_use]
     pub fn is_same_from(&self, other: &Self, door: Door) -> bool {
+        if self.degree != other.degree || door.0 >= self.degree {
+            return false;
+        }
         let turned = |sighting: Sighting| match sighting {
-            Sighting::Pointing(along) if self.degree > 0 => {
-                Sighting::Pointing(Door((along.0 + self.degree - door.0) % self.degree))
-            }
+            Sighting::Pointing(along) => Sighting::Pointing(along.seen_from(door, self.degree)),
             other => other,
         };
-        let [one, other_sighting] = [self.sighting.map(turned), other.sighting];
-        self.degree == other.degree
-            && door.0 < self.degree
-            && one.zip(other_sighting).is_none_or(|(one, other)| one == other)
+        let sightings = self.sighting.map(turned).zip(other.sighting);
+        sightings.is_none_or(|(one, other)| one == other)
     }
 
     /// Whether a percept agrees with it, as far as it is recorded.

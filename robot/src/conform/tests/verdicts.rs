@@ -201,7 +201,12 @@ proptest! {
         let question = options.question(&plan, facing);
         let [before, mut events] = [&good, &mutated].map(|log| options.recorded(log));
         events.end.as_mut().unwrap().moves = good.moves();
-        let Ok(judgement) = judge(events.clone(), &question, &Quirks::default(), &()) else {
+        // As the command does.
+        let checked = match options.driver {
+            RunDriver::Anyone => events.without_excursions(),
+            RunDriver::Method(_) => events.clone(),
+        };
+        let Ok(judgement) = judge(checked, &question, &Quirks::default(), &()) else {
             return Ok(());
         };
         match judgement.divergence.as_ref().map(|divergence| &divergence.cause) {
@@ -453,29 +458,31 @@ fn the_first_event_that_no_planar_world_explains_is_exact() {
     assert_eq!(judged(&events, &other).divergence, None);
 }
 
-#[test]
-fn a_driver_may_turn_back_but_not_find_another_junction_then() {
-    let arrival = |degree| CheckedKind::Arrival {
-        arrival: Arrival {
-            number: None,
-            degree,
-            sighting: Some(Sighting::Nothing),
-            form: None,
-            entry: None,
-        },
+/// Events of other programs, without measurements.
+fn bare_events(kinds: impl IntoIterator<Item = CheckedKind>) -> RunEvents {
+    let event = |kind| CheckedEvent { source: EventSource::default(), kind };
+    RunEvents { events: kinds.into_iter().map(event).collect(), ..RunEvents::default() }
+}
+
+fn bare_arrival(degree: u32, sighting: Sighting) -> CheckedKind {
+    let sighting = Some(sighting);
+    CheckedKind::Arrival {
+        arrival: Arrival { number: None, degree, sighting, form: None, entry: None },
         entry_off: None,
         hallway: None,
-    };
-    let door = |door| CheckedKind::Door { door: Door(door), number: None, off: None };
-    let kinds = |again| {
-        vec![arrival(3), door(1), CheckedKind::TurnedBack, arrival(again), door(2), arrival(2)]
-    };
-    let events = |again| RunEvents {
-        events: kinds(again)
-            .into_iter()
-            .map(|kind| CheckedEvent { source: EventSource::default(), kind })
-            .collect(),
-        ..RunEvents::default()
+    }
+}
+
+fn bare_door(door: u32) -> CheckedKind {
+    CheckedKind::Door { door: Door(door), number: None, off: None }
+}
+
+#[test]
+fn a_driver_may_turn_back_but_not_find_another_junction_then() {
+    let arrival = |degree| bare_arrival(degree, Sighting::Nothing);
+    let events = |again| {
+        let back = CheckedKind::TurnedBack;
+        bare_events([arrival(3), bare_door(1), back, arrival(again), bare_door(2), arrival(2)])
     };
     let anyone = ConformConfig { driver: RunDriver::Anyone, ..without_world() };
     assert_eq!(judged(&events(3).without_excursions(), &anyone).divergence, None);
@@ -485,4 +492,57 @@ fn a_driver_may_turn_back_but_not_find_another_junction_then() {
     // Who does not say that it may turn back has not moved as it should.
     let found = judged(&events(3), &anyone).divergence.unwrap();
     assert_eq!((found.event, found.cause), (2, DivergenceCause::TurnedBack));
+}
+
+#[test]
+fn the_door_after_turning_back_is_counted_from_the_first_entry() {
+    // From the way back, doors 1 and 2 of the second entry are doors 2 and 0 of the first one; and the marker is
+    // along the same door.
+    let pointing = |door| Sighting::Pointing(Door(door));
+    let back = || CheckedKind::TurnedBack;
+    for (again, door) in [(1, 2), (2, 0)] {
+        let events = bare_events([
+            bare_arrival(3, pointing(0)),
+            bare_door(1),
+            back(),
+            bare_arrival(3, pointing(2)),
+            bare_door(again),
+        ]);
+        let kept = bare_events([bare_arrival(3, pointing(0)), bare_door(door)]);
+        assert_eq!(events.without_excursions(), RunEvents { may_turn_back: true, ..kept });
+    }
+    // Twice; then 1 + 1 + 1 doors are all round.
+    let excursion = |along| [bare_door(1), back(), bare_arrival(3, pointing(along))];
+    let first = bare_arrival(3, pointing(0));
+    let twice = excursion(2).into_iter().chain(excursion(1));
+    let events = bare_events([first.clone()].into_iter().chain(twice).chain([bare_door(1)]));
+    let kept = RunEvents { may_turn_back: true, ..bare_events([first, bare_door(0)]) };
+    assert_eq!(events.without_excursions(), kept);
+}
+
+#[test]
+fn a_door_that_a_junction_does_not_have_diverges_whoever_drives() {
+    let anyone = ConformConfig { driver: RunDriver::Anyone, ..without_world() };
+    let nothing = |degree| bare_arrival(degree, Sighting::Nothing);
+    let at = |events: RunEvents| {
+        let found = judged(&events.without_excursions(), &anyone).divergence;
+        found.map(|found| (found.event, found.cause.name()))
+    };
+    for (door, found) in [(1, None), (2, Some((3, "no-world"))), (u32::MAX, Some((3, "no-world")))]
+    {
+        // After the junction with two doors lies another one.
+        let walk = [nothing(1), bare_door(0), nothing(2), bare_door(door), nothing(1)];
+        assert_eq!(at(bare_events(walk)), found, "door {door}");
+    }
+    for door in [2, u32::MAX] {
+        let back = || CheckedKind::TurnedBack;
+        let pointing = |door| bare_arrival(2, Sighting::Pointing(Door(door)));
+        // By a door that is not there, the robot has not turned back.
+        let left = [pointing(0), bare_door(door), back(), pointing(0), bare_door(0), nothing(1)];
+        assert_eq!(at(bare_events(left)), Some((1, "no-world")), "door {door}");
+        let later = [pointing(0), bare_door(1), back(), pointing(1), bare_door(door), nothing(1)];
+        assert_eq!(at(bare_events(later)), Some((1, "no-world")), "door {door}");
+        let marker = [pointing(door), bare_door(1), back(), pointing(door), bare_door(0)];
+        assert_eq!(at(bare_events(marker)), Some((0, "no-world")), "marker along door {door}");
+    }
 }
