@@ -280,7 +280,7 @@ impl Watch for Impatient {
     }
 }
 
-/// Its one run stands for all starts, of which there are far too many.
+/// Such a run ends in the same way in all 12 billion starts, and each of them is judged.
 #[test]
 fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
     let sweep = LazySweep::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();

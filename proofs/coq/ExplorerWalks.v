@@ -177,7 +177,8 @@ Lemma contradicts_right x h : h < size S -> x.1 < size (trail K) -> contradicts 
 Proof.
 move=> h_lt x_lt contra same; have [at_lt atE] := be_in_trail be h_lt.
 have [f folded_f right] := fold_with_right (be_explains be) (be_classes be) x_lt at_lt (etrans same (esym atE)).
-move: contra; rewrite /contradicts folded_f => /orP[/negP|/hasP[p /(mem_passages (be_explains be)) ok /eqP own]]; last first.
+move: contra; rewrite /contradicts folded_f.
+move=> /orP[/negP|/hasP[p /(mem_passages (be_explains be)) ok /eqP own]]; last first.
   have [from_lt to_lt edgeE] := passage_ends (be_explains be) ok.
   have [_ fromE _] := standing_for_right (be_explains be) right from_lt.
   have [_ toE _] := standing_for_right (be_explains be) right to_lt.

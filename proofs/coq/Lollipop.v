@@ -86,7 +86,9 @@ Qed.
 
 Lemma lollipop_connected d e : connect step d e.
 Proof.
-apply: (all_connected (root := lollipop_facing)) => [||x]; [exact: lollipop_oppositeK | exact: lollipop_clockwise_inj |].
+apply: (all_connected (root := lollipop_facing)) => [||x].
+- exact: lollipop_oppositeK.
+- exact: lollipop_clockwise_inj.
 apply: connect_sub (near_all x) => y z /orP[/eqP->|/andP[/eqP-> _]]; [exact: connect_cw | exact: connect_opp].
 Qed.
 

@@ -313,7 +313,8 @@ have code_fits g : g \in far_sets -> fits g (code g).2.
   rewrite /code /=; case: pickP => //= /(_ F); rewrite /fits F_sub /= => /negbT/forallPn[d].
   by rewrite -F_g eqxx.
 have code_inj : {in far_sets &, injective code}.
-  move=> g g' g_far g'_far same_code; have [same_odd same_F] : odd_returns g = odd_returns g' /\ (code g).2 = (code g').2.
+  move=> g g' g_far g'_far same_code.
+  have [same_odd same_F] : odd_returns g = odd_returns g' /\ (code g).2 = (code g').2.
     by rewrite same_code; case: same_code.
   have same_cross d : cross g d = cross g' d.
     have /andP[_ /forallP/(_ d)/eqP->] := code_fits g g_far.

@@ -598,7 +598,8 @@ Qed.
 
 (** ** A complete folded trail is its world *)
 
-Lemma dart_of_unfolded (i : visit) a : val (dart_of unfolded doors (i : nat, a)) = (first_visit i, dart (i : nat, a), false).
+Lemma dart_of_unfolded (i : visit) a :
+  val (dart_of unfolded doors (i : nat, a)) = (first_visit i, dart (i : nat, a), false).
 Proof.
 have le : i <= n by rewrite -ltnS.
 have at_i := unfolded_walk le; rewrite /dart_of /= turn_dart ?at_i //.
@@ -609,7 +610,8 @@ Lemma complete_folding_inj : complete doors seen -> forall x y, x.1 < size seen 
   dart x = dart y -> folded doors seen x y.
 Proof.
 move=> whole [k a] [l b] /=; rewrite size_sees => k_lt l_lt same.
-have [f [iso f_facing]] : isomorphic_starts unfolded W by apply: complete_folding_determines whole; apply: unfolded_sees.
+have [f [iso f_facing]] : isomorphic_starts unfolded W.
+  by apply: complete_folding_determines whole; apply: unfolded_sees.
 have f_dart x : f (dart_of unfolded doors x) = dart x.
   by rewrite /dart_of (isomorphism_turn iso) (isomorphism_walk iso) f_facing.
 have [f_bij _ _] := iso; have f_inj := bij_inj f_bij.

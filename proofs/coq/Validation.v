@@ -99,7 +99,8 @@ have := IH q' d' matched' 0 (rcons before i) d'_lt path q'E (degree_gt0 _) (fun 
   if_true' at_end.
 apply: alwaysW => -[pose'|j] r k [].
   by move/was_there=> -> pose'_lt -> k_le; split.
-move=> placed -> j_lt k_le; split=> //; first by move=> there; apply: placed; rewrite -(traverse_known em lt dd' same) there.
+move=> placed -> j_lt k_le; split=> //.
+  by move=> there; apply: placed; rewrite -(traverse_known em lt dd' same) there.
 by move: k_le; rewrite size_rcons => k_le; arithmetic.
 Qed.
 

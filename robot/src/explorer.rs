@@ -2,18 +2,17 @@
 //! Sections 4.3 and 5.
 
 mod error;
+mod obstacle;
 mod relocation;
-
-use std::f64::consts::PI;
 
 use thiserror::Error;
 use toposlam_model::{
     driving::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
-        scene::{Place as ScenePlace, Scene, wrapped},
+        scene::Scene,
     },
     mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured},
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Percept},
     world::World,
 };
 
@@ -29,6 +28,7 @@ use crate::{
 };
 
 pub use error::ExplorerError;
+use obstacle::{DEAD_END, Obstacles, Stall, turning_point};
 
 /// Where the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,27 +38,6 @@ enum Place {
     /// In a hallway, before an obstacle. The way back is in this direction, in the frame of odometry.
     Obstacle { back: f64 },
 }
-
-/// Where a robot was stopped by an obstacle, in the frame of odometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Stall {
-    /// The direction from which it came.
-    back: f64,
-    /// The turning point of the junction to which it was about to come, if it saw one.
-    junction: Option<[f64; 2]>,
-}
-
-/// What a robot does at an obstacle that it cannot pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Obstacles {
-    /// It gives up.
-    Fail,
-    /// It returns, as from a dead end.
-    DeadEnds,
-}
-
-/// The percept at an obstacle.
-const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };
 
 /// A robot that explores. Everything that happens goes to one observer.
 ///
@@ -271,14 +250,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             if let Err(Lost { why: LostReason::Stalled { .. }, .. }) = step {
                 self.stall = Some(Stall { back: path.way_back(), junction });
             }
-            junction = match &scene.place {
-                ScenePlace::Junction(view) if path.state() == PathState::Junction => {
-                    let [x, y] = view.turning_point;
-                    let there = frame.odometry.moved(y.atan2(x), x.hypot(y));
-                    Some(there.position)
-                }
-                _ => None,
-            };
+            let is_coming = path.state() == PathState::Junction;
+            junction = is_coming.then(|| turning_point(&scene, frame.odometry)).flatten();
             self.last = Some(frame.clone());
             self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
             let command = match step {
@@ -435,16 +408,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
                 self.arrive(standing);
             }
             Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
-                let heading = self.robot.odometry().odometry.heading;
-                let back = self.stall.map_or(wrapped(heading + PI), |stall| stall.back);
-                self.place = Some(Place::Obstacle { back });
-                self.moves += 1;
-                self.allow_for(DEAD_END);
-                (self.hallway, self.measured) = (None, Measured::default());
-                let number = Some(u32::try_from(self.last_move).unwrap_or(u32::MAX));
-                let Percept { degree, sighting } = DEAD_END;
-                let (sighting, form, entry) = (Some(sighting), None, Some(back));
-                self.emit(EventKind::Arrival(Arrival { number, degree, sighting, form, entry }));
+                self.stand_at_obstacle();
             }
             Err(error) => {
                 self.allowance.lose_way();
@@ -457,7 +421,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
+    use std::f64::consts::{FRAC_PI_2, PI};
 
     use toposlam_model::driving::{
         odometry::Odometry,

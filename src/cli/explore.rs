@@ -25,6 +25,7 @@ use super::{
     exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker},
+    method_options::AuditOption,
     output,
     text::print_paragraph,
 };
@@ -121,16 +122,8 @@ pub(super) struct ExploreArguments {
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
-    /// When the map is complete, walk once more and check it. N: the number of audits
-    #[arg(
-        long,
-        value_name = "N",
-        num_args = 0..=1,
-        default_missing_value = "1",
-        require_equals = true,
-        value_parser = clap::value_parser!(u32).range(1..=100)
-    )]
-    audit: Option<u32>,
+    #[command(flatten)]
+    audit: AuditOption,
 
     /// Print a shortest walk that proves the map of the world, and compare the run with it
     #[arg(long)]
@@ -170,7 +163,7 @@ impl ExploreArguments {
             output::check_place(svg, &["svg"])?;
         }
         let of_directional =
-            [("--certificate", self.certificate), ("--audit", self.audit.is_some())];
+            [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
         for (option, is_given) in of_directional {
             if is_given && self.marker != MappingMarker::Directional {
                 return Err(CliError::at(option, "needs --marker directional"));
@@ -192,7 +185,8 @@ impl ExploreArguments {
         let mut printer = self.printer(&mut out, world, facing)?;
         let explored = match self.marker {
             MappingMarker::Directional => {
-                let (algorithm, audits) = (self.algorithm.directional(), self.audit.unwrap_or(0));
+                let (algorithm, audits) =
+                    (self.algorithm.directional(), self.audit.audits().unwrap_or(0));
                 let method = MappingMethod::By { algorithm, audits };
                 ExploredWorld::by_method(method, self.max_darts, &world.graph, facing, &mut printer)
             }

@@ -6,12 +6,9 @@ use toposlam_robot::measured_hallway::log_noise;
 
 use super::{CliError, mapping_marker::AlgorithmOption, text::counted};
 
-/// How a robot maps.
+/// The audits of a map.
 #[derive(Clone, Copy, Debug, clap::Args)]
-pub(super) struct MethodOptions {
-    /// The algorithm that makes the map: algorithm1 or folding [default: algorithm1; with --recover: folding]
-    #[arg(long, hide_possible_values = true)]
-    algorithm: Option<AlgorithmOption>,
+pub(super) struct AuditOption {
     /// When the map is complete, walk once more and check it. N: the number of audits
     #[arg(
         long,
@@ -22,6 +19,23 @@ pub(super) struct MethodOptions {
         value_parser = clap::value_parser!(u32).range(1..=100)
     )]
     audit: Option<u32>,
+}
+
+impl AuditOption {
+    /// The number of audits, if the option is given.
+    pub(super) fn audits(self) -> Option<u32> {
+        self.audit
+    }
+}
+
+/// How a robot maps.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(super) struct MethodOptions {
+    /// The algorithm that makes the map: algorithm1 or folding [default: algorithm1; with --recover: folding]
+    #[arg(long, hide_possible_values = true)]
+    algorithm: Option<AlgorithmOption>,
+    #[command(flatten)]
+    audit: AuditOption,
     /// Go on after a contradiction, and if the robot gets lost; the map is audited
     #[arg(long)]
     recover: bool,
@@ -41,14 +55,14 @@ impl MethodOptions {
             }
             (true, Some(DirectionalAlgorithm::Folding) | None) => {
                 Ok(MappingMethod::Recovering(RecoveryConfig {
-                    audits: self.audit.unwrap_or(1),
+                    audits: self.audit.audits().unwrap_or(1),
                     noise: Some(log_noise()),
                     ..RecoveryConfig::default()
                 }))
             }
             (false, algorithm) => Ok(MappingMethod::By {
                 algorithm: algorithm.unwrap_or_default(),
-                audits: self.audit.unwrap_or(0),
+                audits: self.audit.audits().unwrap_or(0),
             }),
         }
     }

@@ -65,6 +65,12 @@ fn a_percept_without_the_degree_where_the_marker_lies_is_not_enough() {
     );
 }
 
+/// A program may do what is impossible, if nothing forbids it.
+#[test]
+fn what_always_holds_includes_that_each_action_is_possible() {
+    assert_matters("possible", "Program.v", "possible s e /\\", "true /\\");
+}
+
 #[test]
 fn a_marker_without_a_direction_is_not_enough() {
     let pointing = "Pointing (findex clockwise pose (facing W))";

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_model::{
     driving::{
-        algorithm2::{Command, PathExecution, PathState, Standing, UNIT},
+        algorithm2::{Command, PathState, Standing, UNIT},
         scene::{JunctionView, Place as ScenePlace, wrapped},
     },
     mapping::{Measured, Relocate},
@@ -94,25 +94,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     /// Reports a command of a robot that does not know where it is, and carries it out.
-    fn command(&mut self, command: Command) -> Result<(), ExplorerError> {
+    pub(super) fn command(&mut self, command: Command) -> Result<(), ExplorerError> {
         self.emit(EventKind::Command { state: PathState::Unknown, command: Some(command) });
         self.carry_out(command)
-    }
-
-    /// Turns to a direction in the frame of odometry, and drives to the next junction. A junction to which an
-    /// obstacle does not let the robot come is not the next one if it lies behind.
-    pub(super) fn go_in_direction(&mut self, direction: f64) -> Result<Standing, ExplorerError> {
-        let here = self.robot.odometry().odometry;
-        self.command(Command { turn: here.seen(direction), forward: 0.0 })?;
-        let junction = self.stall.and_then(|stall| stall.junction);
-        let behind = junction.map(|[x, y]| {
-            let (sine, cosine) = direction.sin_cos();
-            (here.position[0] - x) * cosine + (here.position[1] - y) * sine
-        });
-        self.drive(match behind {
-            Some(behind) if behind > 0.0 => PathExecution::onwards_from_junction(direction, behind),
-            _ => PathExecution::onwards_to_junction(direction),
-        })
     }
 
     /// Drives until the robot is at a junction, wherever it stands.
