@@ -470,6 +470,7 @@ mod tests {
             assert_eq!(all.wrong_pose, tally.counts[MISTAKE_KINDS.len() - 1].wrong_pose);
         }
     }
+
     /// Stops from the beginning.
     struct Stopped;
 
