@@ -483,6 +483,19 @@ mod tests {
         assert_eq!(asked, 4);
     }
 
+    /// It may have turned while it steered past the obstacle.
+    #[test]
+    fn the_way_back_from_an_obstacle_is_along_the_hallway_whatever_the_heading() {
+        let robot = Still { pictures: vec![Some(3.0)], asked: 0 };
+        let mut explorer = RobotExplorer::new(robot, NoSensor, ());
+        explorer.stand_at_obstacle();
+        assert_eq!(explorer.place, Some(super::Place::Obstacle { back: PI }));
+        explorer.stall = Some(Stall { back: 3.0, junction: None });
+        explorer.stand_at_obstacle();
+        assert_eq!(explorer.place, Some(super::Place::Obstacle { back: 3.0 }));
+        assert_eq!(explorer.percept().unwrap(), DEAD_END);
+    }
+
     #[test]
     fn a_missing_picture_is_retaken_at_most_5_times() {
         assert!(percept(&[None, None, None, None, None, Some(3.0)]).0.is_ok());

@@ -177,15 +177,8 @@ impl<'j> MeasuredWalk<'j> {
             ContradictoryMeasurement::Length { .. } | ContradictoryMeasurement::Turn { .. } => true,
             _ => whole(between[0]) == Some(before_between[0]),
         };
+        // The length or the turn is that of the same move.
         let same_measurement = match (measurement, before) {
-            (
-                ContradictoryMeasurement::Length { now, .. },
-                ContradictoryMeasurement::Length { now: other, .. },
-            )
-            | (
-                ContradictoryMeasurement::Turn { now, .. },
-                ContradictoryMeasurement::Turn { now: other, .. },
-            ) => (now - other).abs() < SAME,
             (
                 ContradictoryMeasurement::ClosedTurns { quarters },
                 ContradictoryMeasurement::ClosedTurns { quarters: other },
@@ -199,6 +192,3 @@ impl<'j> MeasuredWalk<'j> {
             && found.fault == self.divergence.fault
     }
 }
-
-/// Measurements with a smaller difference are the same, in metres or radians.
-const SAME: f64 = 1e-6;
