@@ -1,5 +1,7 @@
 //! Moments and times as text: dates, seconds and the display of a clock.
 
+pub use crate::model::counts::grouped;
+
 const YEAR: u64 = 365 * 24 * 3600;
 
 /// A time in nanoseconds: a date if it can be one, otherwise seconds.
@@ -23,8 +25,7 @@ pub fn since_start(seconds: f64) -> String {
     if is_date(seconds) {
         return moment((seconds * 1e9) as u64);
     }
-    let tenths = (seconds * 10.0).round().max(0.0) as u64;
-    format!("{}.{} s", grouped((tenths / 10).into()), tenths % 10)
+    format!("{} s", tenths(seconds))
 }
 
 /// The same as minutes and seconds, with hours if there are any.
@@ -45,18 +46,11 @@ fn is_date(seconds: f64) -> bool {
     seconds >= YEAR as f64
 }
 
-/// A number with a comma between thousands.
+/// A number with one decimal, and a comma between thousands, as in `1,127.8`.
 #[must_use]
-pub fn grouped(number: u128) -> String {
-    let digits = number.to_string();
-    let mut out = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
+pub fn tenths(number: f64) -> String {
+    let tenths = (number * 10.0).round().max(0.0) as u64;
+    format!("{}.{}", grouped((tenths / 10).into()), tenths % 10)
 }
 
 /// The year, month and day of the Gregorian calendar, a number of days after 1970-01-01.
@@ -119,9 +113,4 @@ mod tests {
         assert_eq!(clock(1.7e9), "2023-11-14 22:13:20.000 UTC");
     }
 
-    #[test]
-    fn thousands_are_grouped() {
-        let texts = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
-        assert_eq!(texts, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
-    }
 }

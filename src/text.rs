@@ -8,7 +8,7 @@ use std::{
 
 use textwrap::{Options, WordSplitter, core::display_width};
 
-use crate::moment::grouped;
+pub use crate::model::counts::{counted, vertices};
 
 /// The widest line that is printed: the terminal's width, and at most 80 columns.
 pub static WIDTH: LazyLock<usize> = LazyLock::new(|| {
@@ -65,20 +65,4 @@ pub fn wrapped(width: usize, head: &str, indent: usize, text: &str) -> Vec<Strin
 /// Returns the error of the output.
 pub fn print_paragraph(out: &mut dyn Write, text: &str) -> io::Result<()> {
     print_indented(out, "", 0, text)
-}
-
-/// A number and its noun, as in "1 edge", "2 edges".
-#[must_use]
-pub fn counted(number: usize, noun: &str) -> String {
-    format!("{} {noun}{}", grouped(number as u128), if number == 1 { "" } else { "s" })
-}
-
-/// A number of vertices, as in "1 vertex", "2 vertices".
-#[must_use]
-pub fn vertices(number: usize) -> String {
-    if number == 1 {
-        "1 vertex".to_owned()
-    } else {
-        format!("{} vertices", grouped(number as u128))
-    }
 }

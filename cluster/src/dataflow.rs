@@ -8,7 +8,7 @@
 //!   +------------- assignments <-------------+
 //! ```
 //!
-//! The loop ends when no task is left: then nobody has the right to send a message. Each process sees that and
+//! The loop ends when no task is left: then no process can send a message. Each process sees that and
 //! groups its records.
 
 use std::{
@@ -57,7 +57,7 @@ type Round = u64;
 /// The output of an operator that sends nothing.
 type Nothing<'o> = OutputBuilderSession<'o, Round, CapacityContainerBuilder<Vec<()>>>;
 
-/// What a process is told of a job.
+/// The events that a process receives.
 pub(crate) enum JobEvent<J: Job> {
     /// In process 0: a task is done.
     Done(usize, J::Output),

@@ -18,7 +18,7 @@ pub enum HostsError {
         text: String,
     },
     /// Two processes cannot have one address.
-    #[error("line {line}: {address} is there twice")]
+    #[error("line {line}: {address} is listed twice")]
     Twice {
         /// The number of the second line, from 1.
         line: usize,
@@ -34,7 +34,7 @@ impl Hosts {
     /// Reads one address a line. Empty lines, and what follows a `#`, are skipped.
     ///
     /// # Errors
-    /// Returns an error if a line is not an address, if one is there twice, or if there is none.
+    /// Returns an error if a line is not an address, if one is listed twice, or if there is none.
     pub fn parse(text: &str) -> Result<Self, HostsError> {
         let mut addresses: Vec<String> = Vec::new();
         for (line, text) in (1..).zip(text.lines()) {

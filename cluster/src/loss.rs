@@ -27,7 +27,7 @@ pub(crate) fn on_loss(lost: impl Fn(usize) + Send + Sync + 'static) {
     }));
 }
 
-/// Ends the connections: meanwhile none is lost, whatever the threads say that use them.
+/// Ends the connections: meanwhile none is lost, whatever errors the threads report.
 pub(crate) fn without_loss(end: impl FnOnce()) {
     DONE.store(true, Ordering::Relaxed);
     let _ = panic::catch_unwind(AssertUnwindSafe(end));

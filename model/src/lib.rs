@@ -43,6 +43,7 @@
 pub mod ambiguity;
 pub mod check;
 mod clone_in_place;
+pub mod counts;
 pub mod driving;
 pub mod embedded_graph;
 pub mod enumerate;

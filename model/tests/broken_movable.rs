@@ -227,8 +227,8 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             4,
             vec![new(3), new(2), new(2), new(1), 6],
             "after 8 moves: the world contradicts itself: at the known vertex v0, entered by its \
-             dart 1, there should be degree 3 without the marker but there is degree 3 with a \
-             marker lying there"
+             dart 1: expected degree 3 without the marker, found degree 3 with a marker lying \
+             there"
                 .to_owned(),
         ),
         (

@@ -64,7 +64,7 @@ fn a_start_without_its_marker_is_a_contradiction() {
     }
     assert_eq!(
         scripted(&[plain(3)]).to_string(),
-        "the world contradicts itself: at the start the marker must lie, but there is degree 3 \
+        "the world contradicts itself: the marker must lie at the start, but there is degree 3 \
          without the marker"
     );
 }

@@ -70,7 +70,7 @@ fn a_door_that_is_not_there_cannot_be_taken() {
     let error = Refused::NoSuchDoor { door: Door(1), degree: 1 };
     assert_eq!(world.traverse(Door(1)), Err(error));
     assert_eq!(world.pose(), Dart(0));
-    assert_eq!(error.to_string(), "door 1 was taken at a vertex with 1 doors");
+    assert_eq!(error.to_string(), "door 1 was taken at a vertex with 1 door");
 }
 
 proptest! {

@@ -38,11 +38,11 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
     assert_eq!(verdict(&exploration, &world), None);
     // The map of another world.
     assert_eq!(verdict(&exploration, &GraphWorld::new(&torus, Dart(0))), Some(Flaw::WrongMap));
-    // A move that the robot knows nothing of.
+    // A move that the robot is not aware of.
     let mut moved = world.clone();
     moved.traverse(Door::BACK).unwrap();
     assert!(matches!(verdict(&exploration, &moved), Some(Flaw::WrongPose { .. })));
-    // To and fro, until it is one move too many.
+    // Back and forth, until it is one move too many.
     let bound = Algorithm1.move_bound(3, 2);
     while exploration.moves() <= bound {
         assert_eq!(verdict(&exploration, &world), None);

@@ -178,7 +178,7 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
         search,
         dart_bound: question.max_darts,
     };
-    // Whoever drives may turn back between junctions. The algorithms do not.
+    // A robot that no algorithm drives may turn back between junctions.
     let events = match question.driver {
         RunDriver::Anyone => extracted.events.without_excursions(),
         RunDriver::Method(_) => extracted.events.clone(),

@@ -391,7 +391,7 @@ def check(
     >>> report.verdict, report.mapped, report.starts
     ('violated', 1, 3)
     >>> print(report.failures[0])
-    start simple-2-0 v0:v1, after 1 move: the map is not the world: 1 edges against 2
+    start simple-2-0 v0:v1, after 1 move: the map is not the world: 1 edge against 2
     """
     question = _question(explorer, edges, cls, marker, max_moves, seconds, max_failures)
     check_limit("processes", processes)

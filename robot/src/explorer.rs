@@ -182,7 +182,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         (run, mapped)
     }
 
-    /// Returns to the marker, and tells why.
+    /// Returns to the marker, and returns the reason.
     fn return_to_marker(&mut self, limit: BudgetLimit) -> ExplorerError {
         while let Some(door) = self.allowance.door_back() {
             match self.traverse(door) {

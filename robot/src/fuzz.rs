@@ -162,7 +162,7 @@ fn read_run(log: &Log, mapping: &TopicMap) {
     }
 }
 
-/// Judges the run in a log without images, whoever chose its doors: it diverges at one of its events or at
+/// Judges the run in a log without images, whatever chose its doors: it diverges at one of its events or at
 /// its end, or not; or there is an error.
 fn judge_run(log: &Log, mapping: &TopicMap) {
     let Some(evidence) = Evidence::of(mapping) else { return };

@@ -63,7 +63,7 @@ pub enum RunOutcome {
     /// The robot gave up, for this reason.
     #[error("the robot gave up: {0}")]
     GaveUp(MappingError<ExplorerError>),
-    /// The map or the pose is wrong, and the robot did not notice.
+    /// The map or the pose is wrong, and the robot did not detect it.
     #[error("{0}")]
     Wrong(String),
 }

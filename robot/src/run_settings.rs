@@ -31,7 +31,7 @@ impl RunSettings {
     }
 }
 
-/// What the head of a log says of a run.
+/// The settings in the head of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedSettings {
     /// How the robot maps.

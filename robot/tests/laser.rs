@@ -247,11 +247,11 @@ fn an_arm_that_the_scanner_did_not_look_into_makes_the_visit_undecided() {
         let causes: Vec<_> = half.events.iter().map(|event| &event.kind).collect();
         let undecided = CheckedKind::Undecided(UndecidedCause::UnseenArm);
         assert_eq!(causes, [&undecided], "{angles:?}");
-        // Whoever looks all around sees it, ...
+        // A robot that looks all around sees it, ...
         let around = events_of_scanner(360, &params, &plan, &way, 0.0);
         let degree = Some(angles.len() as u32 + 2);
         assert_eq!(visits(&around), [(degree, Some(door))], "{angles:?}");
-        // ... and whoever comes the other way.
+        // ... and one that comes the other way.
         let back: Vec<_> = way.into_iter().rev().collect();
         assert_eq!(visits(&events(&plan, &back, 0.0)).len(), 1);
         assert_eq!(visits(&events(&plan, &back, 0.0))[0].0, degree, "{angles:?}");

@@ -80,7 +80,7 @@ fn doors_are_taken_by_laser_as_the_specification_says() {
 }
 
 #[test]
-fn among_furniture_doors_and_people_a_robot_errs_by_giving_up() {
+fn among_furniture_doors_and_people_a_robot_gives_up_when_it_fails() {
     let traversals = TraversalSampler::new(plans().unwrap(), 6, 1.0);
     let judged = traversals.judged(0..150, &laser_robots(ScannerParams::default()), &());
     let count = |is: fn(&TraversalOutcome) -> bool| {

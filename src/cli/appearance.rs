@@ -14,10 +14,8 @@ use super::CliError;
 /// Width and height of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum ImageSize {
-    /// Small
     #[value(name = "640x480")]
     Small,
-    /// Large
     #[value(name = "1280x960")]
     Large,
 }
@@ -57,7 +55,7 @@ pub(super) struct Appearance {
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Set one effect (repeatable); `toposlam render --help` lists them
+    /// Set one effect (repeatable); they are listed by `toposlam render --help`
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<EffectSetting>,
 }

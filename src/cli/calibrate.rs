@@ -38,7 +38,7 @@ Example:
     --mask-out mask.png
   toposlam calibrate view.png --rim 611,480,652 --out camera.toml
 
-Missing values are taken from --initial. Without it they are the SuperScout's:
+Missing values are taken from --initial. Without it they are the SuperScout's: \
 radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
     &[
         (0, "the rim was found, or was given"),

@@ -204,7 +204,7 @@ impl CheckArguments {
             cases.push(line.ci_case());
             report.size(line)?;
             if let Some(cluster) = &mut cluster {
-                report.threads(cluster, &format!("{edges} edges"))?;
+                report.threads(cluster, &counted(edges, "edge"))?;
             }
             let (failed, interrupted) = (tally.failed() > 0, tally.interrupted);
             keep_worse(&mut worst, tally.worst);
@@ -310,7 +310,7 @@ impl CheckArguments {
         algorithm: &MappingAlgorithm,
         cluster: Option<&mut ClusterSession>,
     ) -> Result<(Tally, Option<u64>), CliError> {
-        let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+        let progress = Progress::new(&counted(edges, "edge"), "starts")?;
         let is_first = cluster.as_deref().is_none_or(ClusterSession::is_first);
         let journal = match (&self.journal, work) {
             (Some(folder), Work::Lazy(sweep)) if is_first => {
@@ -320,7 +320,11 @@ impl CheckArguments {
             _ => None,
         };
         if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
-            remark!("{edges} edges: {} of the work finished before", counted(before, "unit"));
+            remark!(
+                "{}: {} of the work finished before",
+                counted(edges, "edge"),
+                counted(before, "unit")
+            );
         }
         let (units, watched): (&dyn FinishedUnits, _) = match &journal {
             Some(journal) => (journal, Some(journal.watch(&progress))),
@@ -374,7 +378,7 @@ impl CheckArguments {
             let Work::Lazy(sweep) = work else {
                 return Err(needs_default_choices("--estimate"));
             };
-            let progress = Progress::new(&format!("{edges} edges"), "starts")?;
+            let progress = Progress::new(&counted(edges, "edge"), "starts")?;
             self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
             progress.finish();
         }

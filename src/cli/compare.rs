@@ -42,7 +42,8 @@ Examples:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --walk 0,1,1
   toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none
-  toposlam compare worlds/real/aces.toml worlds/real/aces-corners.toml --smooth-corners
+  toposlam compare worlds/real/aces.toml worlds/real/aces-corners.toml \\
+    --smooth-corners
 
 If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
 be in. If there are more than 100,000 pairs, the proof is the classes of indistinguishable states. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \

@@ -60,8 +60,10 @@ use robot_marker::RobotMarker;
 Examples:
   toposlam simulate worlds/shape-6.toml --by-scene --log run.mcap
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
-  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
-  toposlam conform scans.log.gz --driver anyone --marker directional --assume-marker",
+  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml \\
+    --colours colours.toml
+  toposlam conform scans.log.gz --driver anyone --marker directional \\
+    --assume-marker",
     &[
         (0, "all logs conform"),
         (1, "a log diverges"),

@@ -119,7 +119,9 @@ const NOTES: &str =
 This command needs a build with ROS 1: cargo build --release --features ros1
 
 Examples:
-  toposlam drive --ros http://robot:11311 --calibration camera.toml --colours colours.toml \\
-      --log run.mcap --map map.toml
+  toposlam drive --ros http://robot:11311 --calibration camera.toml \\
+    --colours colours.toml --log run.mcap --map map.toml
   toposlam drive --ros http://robot:11311 --sensor laser --log run.mcap
-  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311    a simulated robot";
+
+A simulated robot:
+  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311";

@@ -409,7 +409,7 @@ fn print(
         let duration = if duration < 60.0 { exact } else { duration_text(duration) };
         writeln!(out, "from {}, for {duration}", moment(start))?;
     }
-    writeln!(out, "{} messages", grouped(log.messages_total().into()))?;
+    writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
     if let Some(skipped) = log.skipped() {
         print_hanging(out, "", &format!("skipped {}", skipped_text(skipped)))?;
     }

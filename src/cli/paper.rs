@@ -11,7 +11,7 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
-    text::{print_hanging, print_indented},
+    text::{counted, print_hanging, print_indented},
 };
 use crate::paper::{
     CITATIONS, Citation, PaperTrace, Status, TABLE, TracedRequirement, requirements,
@@ -145,7 +145,7 @@ fn print_table(
     }
     let done = done(rows);
     let (all, open) = (rows.len(), rows.len() - done);
-    writeln!(out, "{all} requirements: {done} done, {open} open")?;
+    writeln!(out, "{}: {done} done, {open} open", counted(all, "requirement"))?;
     let faults: Vec<_> = trace.faults().collect();
     if !faults.is_empty() {
         writeln!(out, "\nThe table and the sources disagree:")?;

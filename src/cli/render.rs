@@ -23,6 +23,7 @@ use super::{
 /// Render the image that the robot's camera takes from a pose in a floor plan
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
+#[command(mut_arg("effect", |effect| effect.help("Set one effect (repeatable); they are listed below")))]
 pub(super) struct RenderArguments {
     /// Floor plan
     plan: PathBuf,

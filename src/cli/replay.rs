@@ -19,7 +19,7 @@ use super::{
     mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
     output,
-    text::{counted, grouped, print_hanging, since_start, vertices},
+    text::{counted, grouped, print_hanging, since_start, tenths, vertices},
 };
 
 /// Run sensing and mapping again on the images of a log, without a robot
@@ -169,7 +169,7 @@ impl ReplayArguments {
         let comparison = &replay.comparison;
         writeln!(out, "{}: the map is {whole}", self.log.display())?;
         writeln!(out, "  pictures    {}", comparison.pictures)?;
-        writeln!(out, "  moves       {}", replay.mapping.moves())?;
+        writeln!(out, "  moves       {}", grouped(replay.mapping.moves().into()))?;
         let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
         writeln!(out, "  map         {vertices}, {edges}")?;
         if let Some(error) = &replay.error {
@@ -186,7 +186,8 @@ impl ReplayArguments {
             ("doors", comparison.doors),
         ];
         for (name, agreement) in rows.iter().filter(|(_, agreement)| agreement.of > 0) {
-            writeln!(out, "  {name:<11} {agreement}")?;
+            let [agree, of] = [agreement.agree, agreement.of].map(|count| grouped(count.into()));
+            writeln!(out, "  {name:<11} {agree} of {of}")?;
         }
         if let Some(same) = comparison.map {
             writeln!(out, "  map         {}", if same { "yes" } else { "no" })?;
@@ -202,7 +203,7 @@ impl ReplayArguments {
         let ratio = (replay.recorded_seconds / seconds.max(1e-9)) as u128;
         let minutes = replay.recorded_seconds / 60.0;
         writeln!(out, "Time:")?;
-        writeln!(out, "  recorded    {minutes:.1} minutes")?;
+        writeln!(out, "  recorded    {} minutes", tenths(minutes))?;
         writeln!(out, "  computed    {seconds:.2} s, {} times faster", grouped(ratio))?;
         Ok(())
     }

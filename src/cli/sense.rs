@@ -46,7 +46,7 @@ Example:
 
 An image that cannot be used is reported, and the others are sensed.
 
-Angles and positions are relative to the robot's heading, counter-clockwise. Doors are listed
+Angles and positions are relative to the robot's heading, counter-clockwise. Doors are listed \
 clockwise from the entry door.",
     &[
         (0, "all images were sensed, also if a scene is unknown"),

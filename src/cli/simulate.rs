@@ -408,7 +408,8 @@ Examples:
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80
-  toposlam simulate worlds/shape-8.toml --by-scene --recover --max-moves 15 --log part.mcap
+  toposlam simulate worlds/shape-8.toml --by-scene --recover --max-moves 15 \\
+    --log part.mcap
   toposlam simulate worlds/shape-8.toml --by-scene --recover --resume part.mcap
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 ";

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use textwrap::core::display_width;
 
 pub(crate) use crate::{
-    moment::{grouped, moment, since_start},
+    moment::{grouped, moment, since_start, tenths},
     text::{WIDTH, counted, print_hanging, print_indented, print_paragraph, vertices, wrapped},
 };
 

@@ -49,8 +49,8 @@ Example, with rendered images and labels:
   toposlam calibrate images/*.png --out camera.toml
   toposlam train --images images --labels labels --calibration camera.toml \\
     --out colours.toml
-  toposlam render worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 --seed 8 \\
-    --out view.png
+  toposlam render worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 \\
+    --seed 8 --out view.png
   toposlam sense view.png --calibration camera.toml --colours colours.toml",
         &[(0, "the colours are learned"), (2, "bad usage or input"), (3, "interrupted")],
     )

@@ -30,10 +30,10 @@ impl<W: Write> Story<W> {
                 return self.print_doors();
             }
             SafeguardEvent::Contradicted(contradiction) => format!(
-                "The robot notices a contradiction{moves}: {contradiction}. It looks for the marker."
+                "Contradiction{moves}: {contradiction}. The robot looks for the marker."
             ),
             SafeguardEvent::TooLarge { bound } => format!(
-                "The map would have more than {} darts{moves}. The robot forgets it, and looks for the \
+                "The map would have more than {} darts{moves}. The robot discards it and looks for the \
                  marker.",
                 grouped(bound as u128)
             ),
@@ -45,7 +45,7 @@ impl<W: Write> Story<W> {
             SafeguardEvent::MarkerFound { kept, walks } => {
                 let walks = counted(walks, "walk");
                 format!(
-                    "It finds the marker{moves}. Of its {walks} from or to the marker {} agree.",
+                    "It finds the marker{moves}. {} of its {walks} from or to the marker agree.",
                     grouped(kept as u128)
                 )
             }

@@ -71,7 +71,7 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
         (&laser, &["--look", "vinyl"], "--look: has no effect with --sensor laser"),
         (&laser, &["--effect", "blur=1"], "--effect: has no effect with --sensor laser"),
         (&laser, &["--scanner", &unknown], "unknown field `noises`"),
-        (&laser, &["--scanner", &far], "range = 1000 is not from 3 to 100"),
+        (&laser, &["--scanner", &far], "`range` is 1000; it must be from 3 to 100"),
         (
             &["evaluate", "control", "--sensor", "laser"],
             &["--images"],

@@ -121,7 +121,7 @@ fn printed_events_are_read_as_they_were_printed() {
     assert_eq!(events, objects(&text));
     let back: Vec<_> = events.iter().map(|event| event["turned_back"] == true).collect();
     assert_eq!(back.iter().position(|&back| back), Some(3));
-    // Whoever has not turned back has come to another junction.
+    // A robot that has not turned back has come to another junction.
     let (code, ..) = check(&text.replace("\"turned_back\":true", "\"turned_back\":false"));
     assert_eq!(code, Some(1));
     let undecided = text.replacen("\"degree\":3,\"door\":1", "\"degree\":null,\"door\":null", 1);

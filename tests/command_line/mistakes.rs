@@ -8,18 +8,18 @@ fn mistakes(options: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn an_audit_notices_what_the_algorithm_alone_does_not() {
+fn an_audit_detects_what_the_algorithm_alone_does_not() {
     for algorithm in ["algorithm1", "folding"] {
         let with = ["--algorithm", algorithm];
         let (code, text) = mistakes(&with);
         assert_eq!(code, Some(1), "{text}");
         assert!(
-            text.contains("\nWrong degree, the smallest that is not noticed: in a world with 2")
+            text.contains("\nWrong degree, the smallest that is not detected: in a world with 2")
         );
         assert!(text.lines().any(|line| line.starts_with("violated: ")), "{text}");
         let (code, text) = mistakes(&[&with[..], &["--audit"]].concat());
         assert_eq!(code, Some(0), "{text}");
-        assert!(text.ends_with("holds: each run ends with the right map, or the robot notices\n"));
+        assert!(text.ends_with("holds: each run ends with the right map, or the mistake is detected\n"));
     }
 }
 

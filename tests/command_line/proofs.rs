@@ -121,7 +121,7 @@ fn a_lemma_is_checked_in_every_case() {
     let text = stdout_of(["proofs", "--run", lemmas[0].name]);
     let row = text.lines().next().unwrap();
     assert!(row.starts_with(lemmas[0].name) && row.ends_with(" s  holds"), "{text}");
-    assert!(text.lines().last().unwrap().starts_with("holds: 1 of 1 lemmas, "), "{text}");
+    assert!(text.lines().last().unwrap().starts_with("holds: 1 of 1 lemma, "), "{text}");
 }
 
 #[test]

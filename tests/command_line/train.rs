@@ -226,7 +226,7 @@ fn images_that_are_too_dark_or_bright_are_left_out_and_reported() {
     let report = &objects(&stdout(&output))[0];
     let [black, white] = ["black", "white"].map(|name| set.path(&format!("images/{name}.png")));
     let dark = "the floor beside the robot's body is too dark";
-    let burnt = "the floor beside the robot's body is burnt out";
+    let burnt = "the floor beside the robot's body is overexposed";
     assert_eq!(stderr(&output), format!("left out: {black}: {dark}\nleft out: {white}: {burnt}\n"));
     let left_out = [(black, dark), (white, burnt)];
     let left_out = left_out.map(|(image, reason)| json!({ "image": image, "reason": reason }));

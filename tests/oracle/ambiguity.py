@@ -160,7 +160,7 @@ def embedded_graphs_by_pairing(class_name, edges):
 
 # ---------------------------------------------------------------- where the marker is
 # A vertex is the sorted tuple of its darts. A place is written by darts alone, in a way that does
-# not depend on how they are numbered; `moved` numbers the darts of a place anew.
+# not depend on how they are numbered; `moved` renumbers the darts of a place.
 
 def vertices_by_dart(graph):
     found, which, _ = cycles(graph[1])

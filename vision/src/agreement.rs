@@ -351,7 +351,7 @@ mod tests {
         let t = DrawnPlace::junction([false, true, true, true], 0.7);
         for before in [0.4, 0.5, 0.55] {
             let boundary = drawn::bearings().look(&t.seen_from([-before, 0.0], 0.0));
-            // A little too wide and too near: a camera that is not as calibrated errs so.
+            // A little too wide and too near: a camera that is not as calibrated gives such an error.
             let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
             let agreement = bar.agreement(&boundary, &WallFrame::along(0.0), 1, &params());

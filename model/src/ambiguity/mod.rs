@@ -2,7 +2,7 @@
 //! percepts. Section 2.2.
 //!
 //! Whether two starts are indistinguishable is decided by the coarsest partition of the states
-//! of both worlds; what a [`Comparison`] hands over is a [witness](Relation), which is verified
+//! of both worlds; what a [`Comparison`] returns is a [witness](Relation), which is verified
 //! without it. The [`AmbiguitySearch`] finds all such worlds of a class by the quotient of each.
 
 mod candidate;

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::{
     embedded_graph::{Dart, GraphError},
+    counts::grouped,
     mapping::MappingError,
     world::Refused,
 };
@@ -50,7 +51,7 @@ pub enum Flaw {
         dart: u32,
     },
     /// More moves than the bound.
-    #[error("it took {moves} moves; the bound is {bound}")]
+    #[error("it took {} moves; the bound is {}", grouped((*moves).into()), grouped((*bound).into()))]
     TooManyMoves {
         /// The moves.
         moves: u64,

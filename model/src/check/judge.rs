@@ -4,6 +4,7 @@ use std::{borrow::Cow, fmt};
 
 use super::{Algorithm, Flaw, RunState};
 use crate::{
+    counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
     mapping::{FACING, Journey, MappingEvent, PartialMap},
@@ -109,7 +110,7 @@ pub struct FalseStep {
 impl fmt::Display for FalseStep {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let Self { moves, added } = self;
-        write!(out, "after {moves} moves ")?;
+        write!(out, "after {} ", counted(*moves as usize, "move"))?;
         match added {
             MappingEvent::LoopClosed { edge, other } => {
                 write!(out, "the map's darts {} and {} are wrongly made one edge", edge.0, other.0)

@@ -5,6 +5,7 @@ use std::{borrow::Cow, fmt, ops::ControlFlow};
 
 use super::{ExploredMap, Flaw, judge::judge_map};
 use crate::{
+    counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
@@ -108,14 +109,13 @@ pub struct Mistake {
 impl fmt::Display for Mistake {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let Self { moves, truth, effect } = self;
-        let s = if *moves == 1 { "" } else { "s" };
-        write!(out, "after {moves} move{s}, ")?;
+        write!(out, "after {}, ", counted(*moves as usize, "move"))?;
         match effect {
             MistakeEffect::Perceived(percept) => {
                 write!(out, "the robot perceives \"{percept}\" instead of \"{truth}\"")
             }
             MistakeEffect::Carried(dart) => {
-                write!(out, "the robot is carried to where dart {} comes in", dart.0)
+                write!(out, "the robot is carried to the vertex of dart {}, entered by it", dart.0)
             }
         }
     }
@@ -185,9 +185,9 @@ pub struct MistakeCounts {
     pub reported: u64,
     /// The robot gives up, because its map has more than twice the darts of the world and 20.
     pub too_large: u64,
-    /// The map is right, the pose is wrong, and the robot does not notice.
+    /// The map is right, the pose is wrong, and nothing shows it to the robot.
     pub wrong_pose: u64,
-    /// The map is wrong, and the robot does not notice.
+    /// The map is wrong, and nothing shows it to the robot.
     pub wrong_map: u64,
     /// The moves of the right runs, beyond those of the runs without a mistake.
     pub extra_moves: i64,
@@ -197,12 +197,12 @@ impl MistakeCounts {
     /// The number of runs.
     #[must_use]
     pub fn runs(&self) -> u64 {
-        self.right + self.reported + self.too_large + self.unnoticed()
+        self.right + self.reported + self.too_large + self.undetected()
     }
 
     /// The number of runs that end with a wrong map or a wrong pose.
     #[must_use]
-    pub fn unnoticed(&self) -> u64 {
+    pub fn undetected(&self) -> u64 {
         self.wrong_pose + self.wrong_map
     }
 
@@ -217,9 +217,9 @@ impl MistakeCounts {
     }
 }
 
-/// A run that ends with a wrong map or a wrong pose, and the robot does not notice.
+/// A run that ends with a wrong map or a wrong pose, and nothing shows it to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnnoticedMistake {
+pub struct UndetectedMistake {
     /// The world.
     pub graph: EmbeddedGraph,
     /// The facing dart.
@@ -238,7 +238,7 @@ pub struct MistakeTally {
     /// For each of the [`MISTAKE_KINDS`], how the runs ended.
     pub counts: [MistakeCounts; 5],
     /// For each of them, the first run that ends with a wrong map; if there is none, with a wrong pose.
-    pub first: [Option<UnnoticedMistake>; 5],
+    pub first: [Option<UndetectedMistake>; 5],
     /// The moves of all runs without a mistake.
     pub moves: u64,
     /// Whether the check was interrupted.
@@ -271,8 +271,8 @@ impl MistakeTally {
 }
 
 /// A wrong map goes before a wrong pose.
-fn keep_first(first: &mut Option<UnnoticedMistake>, other: UnnoticedMistake) {
-    let is_pose = |mistake: &UnnoticedMistake| matches!(mistake.flaw, Flaw::WrongPose { .. });
+fn keep_first(first: &mut Option<UndetectedMistake>, other: UndetectedMistake) {
+    let is_pose = |mistake: &UndetectedMistake| matches!(mistake.flaw, Flaw::WrongPose { .. });
     if first.as_ref().is_none_or(|first| is_pose(first) && !is_pose(&other)) {
         *first = Some(other);
     }
@@ -292,7 +292,7 @@ enum Ending {
     Right(u64),
     Reported,
     TooLarge,
-    Unnoticed(Flaw),
+    Undetected(Flaw),
 }
 
 impl MistakeCheck {
@@ -356,14 +356,14 @@ impl MistakenRuns {
                         }
                         Ending::Reported => counts.reported += 1,
                         Ending::TooLarge => counts.too_large += 1,
-                        Ending::Unnoticed(flaw) => {
+                        Ending::Undetected(flaw) => {
                             match flaw {
                                 Flaw::WrongPose { .. } => counts.wrong_pose += 1,
                                 _ => counts.wrong_map += 1,
                             }
                             let graph = graph.clone();
-                            let unnoticed = UnnoticedMistake { graph, facing, mistake, flaw };
-                            keep_first(&mut tally.first[at], unnoticed);
+                            let undetected = UndetectedMistake { graph, facing, mistake, flaw };
+                            keep_first(&mut tally.first[at], undetected);
                         }
                     }
                 }
@@ -389,7 +389,7 @@ impl MistakenRuns {
         let (moves, pose) = (world.world.moves(), world.world.pose());
         match judge_map(&explored, (graph, facing), pose, &mut self.candidate) {
             Ok(_) => Ending::Right(moves),
-            Err(flaw) => Ending::Unnoticed(flaw),
+            Err(flaw) => Ending::Undetected(flaw),
         }
     }
 

@@ -36,7 +36,7 @@ pub use lazy::{
 pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
-    UnnoticedMistake,
+    UndetectedMistake,
 };
 pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
 pub use tally::{FailedStart, Tally, WorstStart};

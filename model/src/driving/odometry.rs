@@ -1,4 +1,4 @@
-//! Odometry: where the robot says that it is, by its wheels alone. Sections 2.5 and 4.
+//! Odometry: the pose estimated from the wheels. Sections 2.5 and 4.
 
 use super::scene::wrapped;
 

@@ -25,7 +25,7 @@ pub enum FloorPlanError {
         position: [f64; 2],
     },
     /// Two junctions have the same name.
-    #[error("junction `{junction}` stands twice")]
+    #[error("junction `{junction}` is listed twice")]
     JunctionTwice {
         /// The junction.
         junction: String,
@@ -70,7 +70,7 @@ pub enum FloorPlanError {
         to: String,
     },
     /// Two hallways lie between the same junctions.
-    #[error("hallway `{from}` - `{to}` stands twice")]
+    #[error("hallway `{from}` - `{to}` is listed twice")]
     HallwayTwice {
         /// Where it begins.
         from: String,

@@ -94,9 +94,9 @@ fn numbers_must_be_finite_and_the_width_positive() {
 #[test]
 fn names_must_be_known_and_stand_once() {
     let (a, b) = (("a", [0.0, 0.0]), ("b", [4.0, 0.0]));
-    assert_eq!(message(plan(&[a, a], &[])), "junction `a` stands twice");
+    assert_eq!(message(plan(&[a, a], &[])), "junction `a` is listed twice");
     assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "q")])), "there is no junction `q`");
-    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "a")])), "hallway `b` - `a` stands twice");
+    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "a")])), "hallway `b` - `a` is listed twice");
 }
 
 // paper: env.right-angles

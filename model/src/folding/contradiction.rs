@@ -2,7 +2,10 @@
 
 use thiserror::Error;
 
-use crate::percept::Sighting;
+use crate::{
+    counts::{counted, grouped},
+    percept::Sighting,
+};
 
 /// The first event that no world of any size explains together with the events before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -21,7 +24,7 @@ pub enum FoldError {
     #[error(transparent)]
     Contradiction(#[from] TrailContradiction),
     /// The trail is too large. Nothing is proved.
-    #[error("the junctions on the walk have more than {MAX_DARTS} doors together")]
+    #[error("the junctions on the walk have more than {} doors together", grouped(MAX_DARTS as u128))]
     TooManyDarts {
         /// The index of the percept.
         event: usize,
@@ -38,7 +41,7 @@ pub enum TrailError {
     #[error(transparent)]
     Contradiction(#[from] ContradictionReason),
     /// The trail would have more than [`MAX_DARTS`] darts.
-    #[error("the junctions on the walk have more than {MAX_DARTS} doors together")]
+    #[error("the junctions on the walk have more than {} doors together", grouped(MAX_DARTS as u128))]
     TooManyDarts,
 }
 
@@ -59,7 +62,7 @@ pub enum ContradictionReason {
     #[error("a junction has at least one door")]
     NoDoors,
     /// The robot left by a door that the vertex does not have.
-    #[error("door {door} was taken at a junction with {degree} doors")]
+    #[error("door {door} was taken at a junction with {}", counted(*degree as usize, "door"))]
     NoSuchDoor {
         /// The door.
         door: u32,
@@ -67,7 +70,10 @@ pub enum ContradictionReason {
         degree: u32,
     },
     /// The marker points along a door that the vertex does not have.
-    #[error("the marker points along door {door} of a junction with {degree} doors")]
+    #[error(
+        "the marker points along door {door} of a junction with {}",
+        counted(*degree as usize, "door")
+    )]
     MarkerDoor {
         /// The door.
         door: u32,
@@ -76,8 +82,8 @@ pub enum ContradictionReason {
     },
     /// Two visits are visits of one vertex, with different degrees.
     #[error(
-        "the junctions after {} and {} moves are the same one, with {} doors and with {}",
-        visits[0], visits[1], degrees[0], degrees[1]
+        "the junctions after {} and {} moves are the same one, with {} and with {}",
+        visits[0], visits[1], counted(degrees[0] as usize, "door"), degrees[1]
     )]
     Degree {
         /// The visits.
@@ -97,7 +103,7 @@ pub enum ContradictionReason {
         sightings: [Sighting; 2],
     },
     /// A pose is identified with another pose at its vertex.
-    #[error("the junction after {visit} moves would be turned onto itself")]
+    #[error("the junction after {} would be turned onto itself", counted(*visit, "move"))]
     Rotation {
         /// A visit of the vertex.
         visit: usize,
@@ -109,7 +115,7 @@ pub enum ContradictionReason {
         visits: [usize; 2],
     },
     /// A dart is identified with its opposite.
-    #[error("an edge at the junction after {visit} moves would have one end only")]
+    #[error("an edge at the junction after {} would have one end only", counted(*visit, "move"))]
     OwnOpposite {
         /// A visit of the vertex.
         visit: usize,

@@ -3,7 +3,10 @@
 use std::fmt;
 
 use super::{Bijection, Canonical, canonical};
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use crate::{
+    counts::{counted, grouped, vertices},
+    embedded_graph::{Dart, EmbeddedGraph},
+};
 
 /// A difference that shows that two embedded graphs are not isomorphic.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,10 +60,15 @@ impl Difference {
 impl fmt::Display for Difference {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Edges(one, other) => write!(out, "{one} edges against {other}"),
-            Self::Vertices(one, other) => write!(out, "{one} vertices against {other}"),
+            Self::Edges(one, other) => {
+                write!(out, "{} against {}", counted(*one, "edge"), grouped(*other as u128))
+            }
+            Self::Vertices(one, other) => {
+                write!(out, "{} against {}", vertices(*one), grouped(*other as u128))
+            }
             Self::Degrees { degree, vertices: (one, other) } => {
-                write!(out, "{one} vertices of degree {degree} against {other}")
+                let (one, other) = (vertices(*one), grouped(*other as u128));
+                write!(out, "{one} of degree {degree} against {other}")
             }
             Self::Genus(one, other) => write!(out, "genus {one} against {other}"),
             Self::Orders => write!(out, "the orders around the vertices differ"),
@@ -76,16 +84,16 @@ impl fmt::Display for Difference {
 pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijection, Difference> {
     let different = || Difference::between(one, other);
     match by_rare_darts(one, other) {
-        Verdict::Same(bijection) => Ok(bijection),
-        Verdict::Different => Err(different()),
-        Verdict::TooManyCandidates => {
+        RareDarts::Same(bijection) => Ok(bijection),
+        RareDarts::Different => Err(different()),
+        RareDarts::TooManyCandidates => {
             bijection(&canonical(one), &canonical(other)).ok_or_else(different)
         }
     }
 }
 
 /// The result of a comparison by rare darts.
-enum Verdict {
+enum RareDarts {
     Same(Bijection),
     Different,
     TooManyCandidates,
@@ -96,7 +104,7 @@ const CANDIDATES: usize = 16;
 
 /// Darts whose surroundings look alike have the same colour; an isomorphism keeps colours, so a dart
 /// of the rarest one can only go to the few others of it.
-fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Verdict {
+fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDarts {
     let (of_one, of_other) = (colours(one), colours(other));
     let sorted = |colours: &[u64]| {
         let mut sorted = colours.to_vec();
@@ -105,21 +113,21 @@ fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Verdict {
     };
     let all = sorted(&of_one);
     if all != sorted(&of_other) {
-        return Verdict::Different;
+        return RareDarts::Different;
     }
     let rarest = all.chunk_by(|a, b| a == b).min_by_key(|alike| alike.len());
     let Some(alike) = rarest.filter(|alike| alike.len() <= CANDIDATES) else {
-        return Verdict::TooManyCandidates;
+        return RareDarts::TooManyCandidates;
     };
     let Some(from) = one.darts().find(|dart| of_one[dart.at()] == alike[0]) else {
-        return Verdict::Different;
+        return RareDarts::Different;
     };
     other
         .darts()
         .filter(|dart| of_other[dart.at()] == alike[0])
         .map(|to| Bijection::of_starts((one, from), (other, to)))
         .find(|bijection| bijection.verify(one, other))
-        .map_or(Verdict::Different, Verdict::Same)
+        .map_or(RareDarts::Different, RareDarts::Same)
 }
 
 /// A number for each dart that depends only on its surroundings, a few steps deep.
@@ -174,16 +182,16 @@ mod tests {
     #[test]
     fn worlds_with_a_rare_dart_are_compared_by_it() {
         let graph = cycle_with_a_tail(30);
-        assert!(matches!(by_rare_darts(&graph, &graph), Verdict::Same(_)));
-        assert!(matches!(by_rare_darts(&graph, &cycle_with_a_tail(31)), Verdict::Different));
+        assert!(matches!(by_rare_darts(&graph, &graph), RareDarts::Same(_)));
+        assert!(matches!(by_rare_darts(&graph, &cycle_with_a_tail(31)), RareDarts::Different));
         let lists = [("u", vec!["a", "b", "c"]), ("v", vec!["a", "b", "c"])];
         let theta = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&theta, &theta), Verdict::Same(_)));
+        assert!(matches!(by_rare_darts(&theta, &theta), RareDarts::Same(_)));
         let name = |edge: usize| (edge % 30).to_string();
         let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
         let lists: Vec<_> = (0..30).map(around).collect();
         let cycle = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&cycle, &cycle), Verdict::TooManyCandidates));
+        assert!(matches!(by_rare_darts(&cycle, &cycle), RareDarts::TooManyCandidates));
         assert!(isomorphism(&cycle, &cycle).unwrap().verify(&cycle, &cycle));
     }
 }

@@ -141,9 +141,9 @@ mod tests {
         let path = graph(&[("u", &["a"]), ("v", &["a", "b"]), ("w", &["b"])]);
         let pan = graph(&[("u", &["a", "a", "b"]), ("v", &["b"])]);
         let two = graph(&[("u", &["a", "b"]), ("v", &["a", "b"])]);
-        assert_eq!(difference(&edge, &plane), "1 edges against 2");
+        assert_eq!(difference(&edge, &plane), "1 edge against 2");
         assert_eq!(difference(&path, &two), "3 vertices against 2");
-        assert_eq!(difference(&pan, &two), "1 vertices of degree 3 against 0");
+        assert_eq!(difference(&pan, &two), "1 vertex of degree 3 against 0");
         assert_eq!(difference(&plane, &torus), "genus 0 against 1");
         let left = graph(&[
             ("u", &["a", "b", "c"]),

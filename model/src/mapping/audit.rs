@@ -1,4 +1,4 @@
-//! The audit of a map: a walk that finds every mistake of a map, if the robot perceives rightly on it.
+//! The audit of a map: a walk that finds every mistake of a map, if the percepts on it are right.
 //!
 //! The robot goes to the marker and walks a [certificate](crate::folding::certificate) of the map. It
 //! compares each percept with the map. If it is already where it believes the marker to be, it first leaves

@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::{
     embedded_graph::{Dart, Vertex},
     folding::ContradictionReason,
+    counts::grouped,
     percept::{Percept, Sighting},
 };
 
@@ -24,7 +25,10 @@ pub enum MappingError<E> {
     #[error("invalid step: {0}")]
     InvalidStep(InvalidStep),
     /// More darts are known than the bound allows.
-    #[error("more than {bound} darts (edge ends) are known, and the map is not complete")]
+    #[error(
+        "more than {} darts (edge ends) are known, and the map is not complete",
+        grouped(*bound as u128)
+    )]
     Bound {
         /// The bound.
         bound: usize,
@@ -84,8 +88,8 @@ pub enum Contradiction {
         /// The percept.
         perceived: Percept,
     },
-    /// At the start the movable marker must lie.
-    #[error("at the start the marker must lie, but there is {}", Seen(perceived))]
+    /// The movable marker must lie at the start.
+    #[error("the marker must lie at the start, but there is {}", Seen(perceived))]
     StartWithoutMarker {
         /// The percept.
         perceived: Percept,
@@ -98,7 +102,7 @@ pub enum Contradiction {
     },
     /// A known place looks different.
     #[error(
-        "at the known vertex v{}, entered by its dart {index}, there should be {} but there is {}",
+        "at the known vertex v{}, entered by its dart {index}: expected {}, found {}",
         vertex.0, Seen(expected), Seen(perceived)
     )]
     KnownPlace {
@@ -155,7 +159,7 @@ pub enum Contradiction {
     },
     /// A place looks different on the way back: from a rejected hypothesis, or to a marker that was
     /// left there.
-    #[error("on the way back there should be {} but there is {}", Seen(expected), Seen(perceived))]
+    #[error("on the way back: expected {}, found {}", Seen(expected), Seen(perceived))]
     WayBack {
         /// The percept there on the way out, seen from the new entry, with the marker if the robot left
         /// it there.
@@ -164,7 +168,7 @@ pub enum Contradiction {
         perceived: Percept,
     },
     /// An audit of the map found another percept than the map predicts.
-    #[error("the audit of the map should find {} but finds {}", Seen(expected), Seen(perceived))]
+    #[error("the audit of the map: expected {}, found {}", Seen(expected), Seen(perceived))]
     Audit {
         /// The percept by the map.
         expected: Percept,
@@ -173,7 +177,7 @@ pub enum Contradiction {
     },
     /// Lengths of hallways, or other measurements, contradict each other.
     #[error(
-        "what was measured of the hallways does not agree: the robot was moved, or its wheels slipped"
+        "the measurements of the hallways contradict each other: the robot was moved, or its wheels slipped"
     )]
     Moved,
     /// A hallway that was blocked is free.

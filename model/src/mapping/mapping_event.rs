@@ -196,9 +196,9 @@ pub enum SafeguardEvent {
         /// The moves of the audit.
         moves: u64,
     },
-    /// The robot has noticed a contradiction, and looks for the marker.
+    /// The robot has detected a contradiction, and looks for the marker.
     Contradicted(Contradiction),
-    /// The robot has noticed that its map becomes too large. It forgets everything, and looks for the marker.
+    /// The map becomes too large. The robot discards it, and looks for the marker.
     TooLarge {
         /// The bound on darts.
         bound: usize,

@@ -10,20 +10,21 @@ pub struct HallwayMeasurement {
     pub turn: Option<f64>,
 }
 
-/// The uncertainty of measurements by odometry; standard deviations.
+/// The uncertainty of measurements by odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasurementNoise {
-    /// Of the place where the robot stands at a junction, along its way, in metres.
+    /// Standard deviation of the place where the robot stands at a junction, along its way, in metres.
     pub standing: f64,
-    /// Of a length, in metres after 1 m; it grows with the square root of the way.
+    /// Standard deviation of a length, in metres after 1 m; it grows with the square root of the way.
     pub wandering: f64,
-    /// Of a length, as a share of it. An error that is the same in each traversal does not count.
+    /// Standard deviation of a length, as a share of it. An error that is the same in each traversal does not count.
     pub scale: f64,
-    /// Of the direction of a door, in radians.
+    /// Standard deviation of the direction of a door, in radians.
     pub door: f64,
-    /// Of a turn, in radians after 1 m; it grows with the square root of the way.
+    /// Standard deviation of a turn, in radians after 1 m; it grows with the square root of the way.
     pub turning: f64,
-    /// Of a turn, in radians per metre. It is the same in each traversal: one wheel is larger than the other.
+    /// Standard deviation of a turn, in radians per metre. It is the same in each traversal: one wheel is larger
+    /// than the other.
     pub drift: f64,
 }
 

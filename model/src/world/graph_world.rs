@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::{MovableMarkerWorld, World};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
+    counts::{counted, grouped},
     marker::{Directional, Marker},
     percept::{Door, Percept, Sighting},
 };
@@ -15,7 +16,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Refused {
     /// It chose a door that its vertex does not have.
-    #[error("door {} was taken at a vertex with {degree} doors", door.0)]
+    #[error("door {} was taken at a vertex with {}", door.0, counted(*degree as usize, "door"))]
     NoSuchDoor {
         /// The door.
         door: Door,
@@ -29,7 +30,7 @@ pub enum Refused {
     #[error("the robot carries no marker that it could drop")]
     NothingToDrop,
     /// It made more moves than allowed.
-    #[error("no more than {bound} moves are allowed")]
+    #[error("no more than {} moves are allowed", grouped((*bound).into()))]
     OutOfMoves {
         /// The number of moves allowed.
         bound: u64,

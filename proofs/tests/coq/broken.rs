@@ -1,4 +1,4 @@
-//! The development with one thing changed does not hold, and the script says so: a check that no fault
+//! The development with one thing changed does not hold, and the script reports it: a check that no fault
 //! can fail says nothing.
 
 use std::{fs, path::PathBuf};
@@ -30,7 +30,7 @@ impl Changed {
         Self { sources, compiled }
     }
 
-    /// What the script says of it, on its output and beside it: it does not hold.
+    /// What the script prints, on standard output and on standard error: it does not hold.
     #[track_caller]
     fn violated(&self) -> (String, String) {
         let said = check(&self.sources, &self.compiled);

@@ -32,13 +32,13 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What the script says of a development that is compiled in a folder.
+/// What the script prints for a development that is compiled in a folder.
 fn check(development: &Path, compiled: &Path) -> Output {
     let mut script = Command::new("bash");
     script.arg(source("check")).arg("--out").args([compiled, development]).output().unwrap()
 }
 
-/// The development as it stands, compiled; and what the script said of it.
+/// The development as it stands, compiled; and the output of the script.
 struct Compiled {
     folder: PathBuf,
     said: Output,

@@ -1,5 +1,5 @@
 //! The harnesses for Kani, where there is no Kani: that they compile against a stand-in for its
-//! library, that they are those of the table, and that the scripts believe Kani only where it
+//! library, that they are those of the table, and that the scripts accept Kani's result only where it
 //! proves something. Nothing here says that a lemma holds.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]

@@ -1,4 +1,4 @@
-//! That the scripts believe Kani only where it proves something, and ask it for every harness.
+//! That the scripts accept Kani's result only where it proves something, and ask it for every harness.
 
 use std::{
     env, fs,
@@ -83,7 +83,7 @@ const VERDICT: &str = "the verdict is not that it is verified";
 const COMPLETE: &str = "Kani did not complete, or not with one success";
 
 #[test]
-fn a_verified_harness_whose_covers_are_satisfied_is_believed() {
+fn a_verified_harness_whose_covers_are_satisfied_is_accepted() {
     assert_eq!(refusal(VERIFIED), None);
 }
 
@@ -240,7 +240,7 @@ fn verify(name: &str, arguments: &[&str], said: &str, code: u8) -> (Option<i32>,
 
 #[cfg(unix)]
 #[test]
-fn the_script_asks_kani_for_every_harness_and_believes_it_only_through_the_gate() {
+fn the_script_asks_kani_for_every_harness_and_accepts_its_result_only_through_the_gate() {
     let table = table();
     let count = table.len();
     let one = table.first().unwrap().split_once(' ').unwrap().0;

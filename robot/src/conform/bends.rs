@@ -1,4 +1,4 @@
-//! Where the way of a robot bends: whoever passes the corner of a corridor shows it by his own way.
+//! Where the way of a robot bends: a robot that passes the corner of a corridor turns there.
 
 use std::{collections::VecDeque, f64::consts::PI};
 

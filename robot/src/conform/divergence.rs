@@ -3,6 +3,7 @@
 use std::{f64::consts::FRAC_PI_6, fmt};
 
 use toposlam_model::{
+    counts::counted,
     mapping::DirectionalAlgorithm,
     measurement::ContradictoryMeasurement,
     trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
@@ -225,10 +226,11 @@ impl fmt::Display for DivergenceCause {
         match self {
             Self::NotInTurn(not) => write!(out, "{not}"),
             Self::Number { expected, recorded } => {
-                write!(out, "its move number is {expected}, and the log says {recorded}")
+                write!(out, "its move number is {expected}, and the log records {recorded}")
             }
             Self::Form { degree, doors } => {
-                write!(out, "its degree is {degree}, but it has {doors} doors")
+                let doors = counted(*doors as usize, "door");
+                write!(out, "its degree is {degree}, but it has {doors}")
             }
             Self::Aside { off } => {
                 write!(out, "the robot drove off {} from the door", degrees(*off))
@@ -253,7 +255,8 @@ impl fmt::Display for DivergenceCause {
             }
             Self::Return { before, now } => write!(
                 out,
-                "the robot turned back and entered the junction that it had left: {before} doors, now {now}"
+                "the robot turned back and entered the junction that it had left: {}, now {now}",
+                counted(*before as usize, "door")
             ),
             Self::Undecided(UndecidedCause::Unclear) => {
                 write!(out, "the robot was at a junction that was not seen clearly")
@@ -289,7 +292,7 @@ impl fmt::Display for DivergenceCause {
             Self::Unfinished { unexplored } => {
                 write!(
                     out,
-                    "the log says that the map is complete; {unexplored} edge ends are unexplored"
+                    "the log records that the map is complete; {unexplored} edge ends are unexplored"
                 )
             }
             Self::Map { algorithm } => {
@@ -297,7 +300,7 @@ impl fmt::Display for DivergenceCause {
             }
             Self::WrongMap => write!(out, "the map is not the known world"),
             Self::Moves { made, recorded } => {
-                write!(out, "the log says that {recorded} moves were made; it has {made}")
+                write!(out, "the log records that {recorded} moves were made; it has {made}")
             }
         }
     }

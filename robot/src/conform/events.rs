@@ -96,7 +96,7 @@ pub struct RunEvents {
 
 /// An event that is earlier than the one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("event {event} is at {:.3} s, before the one ahead of it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+#[error("event {event} is at {:.3} s, earlier than the event before it, at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
 pub struct OutOfOrder {
     /// Its number, counted from 1.
     pub event: usize,
@@ -243,7 +243,7 @@ impl RunEvents {
             }
             events.push(event);
         }
-        // Whoever has turned back at the end has not arrived again.
+        // A robot that has turned back at the end has not arrived again.
         events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
         Self { events, may_turn_back: true, ..self.clone() }
     }

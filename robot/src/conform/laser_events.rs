@@ -404,7 +404,7 @@ impl LaserEvents {
         let mut turned_back = false;
         if let Some((last, turned)) = &self.last {
             turned_back = turned ^ visit.turned_back;
-            // Whoever comes in where he went out, with no junction on the way, has turned back.
+            // A robot that comes in where it went out, with no junction on the way, has turned back.
             if distance(last.centre, visit.centre) < last.extent {
                 turned_back |= entry.is_none_or(|entry| is_same_arm(entry, last.exit));
                 entry = entry.or(Some(last.exit));

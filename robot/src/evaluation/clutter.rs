@@ -43,7 +43,7 @@ pub fn cluttered_settings() -> Result<Vec<(&'static str, EffectSettings)>, KnobE
     all.map(|(name, settings)| Ok((name, EffectSettings::new(settings.iter().copied())?))).collect()
 }
 
-/// What sensing said of the views with one kind of clutter.
+/// The results of sensing for the views with one kind of clutter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClutterCounts {
     /// Views in hallways, and up to the turning points of junctions.

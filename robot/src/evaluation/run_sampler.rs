@@ -84,8 +84,8 @@ impl JudgedRun {
         self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
     }
 
-    /// Whether the map or the pose is wrong and the robot did not notice, though it could have. Without an audit, a
-    /// robot that was carried to a place that looks the same cannot notice.
+    /// Whether the map or the pose is wrong, and the robot could have detected it and did not. Without an audit, a
+    /// robot cannot detect that it was carried to a place that looks the same.
     #[must_use]
     pub fn is_violation(&self) -> bool {
         let audits = self.mapped.as_ref().is_some_and(|mapped| mapped.audit_moves > 0);

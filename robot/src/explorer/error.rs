@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 use toposlam_model::{
+    counts::counted,
     driving::algorithm2::{Lost, LostReason},
     percept::Door,
 };
@@ -34,7 +35,7 @@ pub enum ExplorerError {
         cause: String,
     },
     /// The robot does not start at an L.
-    #[error("the robot stands at a junction with {degree} doors; a run starts at an L")]
+    #[error("the robot is at a junction with {}; a run starts at an L", counted(*.degree as usize, "door"))]
     NotAnL {
         /// The degree of the junction.
         degree: u32,

@@ -63,7 +63,7 @@ pub enum DecodeErrorKind {
     #[error("the encapsulation {0:#06x} is not known; known are 0x0000 and 0x0001, plain CDR")]
     Encapsulation(u16),
     /// The width of a letter is not defined.
-    #[error("a wstring cannot be read, for its writers do not agree on its letters")]
+    #[error("wstring is not supported: writers encode it differently")]
     WideText,
 }
 

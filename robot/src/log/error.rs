@@ -3,6 +3,7 @@
 use std::{fmt, io};
 
 use thiserror::Error;
+use toposlam_model::counts::grouped;
 
 use super::decode::DecodeError;
 
@@ -164,7 +165,7 @@ pub enum LogErrorKind {
     #[error("{0}")]
     Line(String),
     /// A line is too long.
-    #[error("the line is longer than {0} bytes")]
+    #[error("the line is longer than {} bytes", grouped(*.0 as u128))]
     LongLine(usize),
     /// The clock of a log of lines jumps, and stays there.
     #[error("the clock jumps from {from:.3} s to {to:.3} s, and stays there")]
@@ -177,8 +178,8 @@ pub enum LogErrorKind {
     /// The topic of a message is unknown.
     #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
-    /// A message is older than its chunk says.
-    #[error("a message is older than its chunk says")]
+    /// A message has an earlier time than its chunk.
+    #[error("a message has an earlier time than its chunk")]
     TooOld,
     /// A message does not match its definition.
     #[error("message {number}, on {topic}: {error}")]

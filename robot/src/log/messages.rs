@@ -157,7 +157,7 @@ own! {
         /// The number of moves that the path was followed.
         followed: u32,
     }
-    /// The map, whenever it has grown.
+    /// The map, each time that it has grown.
     Map "/toposlam/map" {
         /// The number of moves before it.
         r#move: u32,
@@ -168,13 +168,13 @@ own! {
         /// The dart by which the robot came in.
         robot: u32,
     }
-    /// The last message of a log that is whole.
+    /// The last message of a complete log.
     End "/toposlam/end" {
         /// Moves made.
         moves: u32,
         /// `mapped`, `gave-up`, `stopped` or `out-of-budget`.
         ending: String,
-        /// Why, if it gave up.
+        /// The reason, if it gave up or ran out of budget.
         cause: String,
     }
 }

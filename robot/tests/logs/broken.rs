@@ -115,7 +115,7 @@ fn damaged_mcap_files_are_reported() {
         let chunk = find(bytes, b"zstd") - 32;
         bytes[chunk] += 1;
     });
-    assert!(message.ends_with("a message is older than its chunk says"), "{message}");
+    assert!(message.ends_with("a message has an earlier time than its chunk"), "{message}");
 }
 
 #[test]

@@ -155,7 +155,7 @@ fn a_wrong_line_is_an_error_with_its_number() {
         "line 3: the clock jumps from 5.000 s to 8000.250 s, and stays there"
     );
     let long = format!("{odom}FLASER {}", "1 ".repeat(600_000));
-    assert_eq!(error(&long), "line 2: the line is longer than 1048576 bytes");
+    assert_eq!(error(&long), "line 2: the line is longer than 1,048,576 bytes");
 }
 
 #[test]

@@ -18,7 +18,7 @@ use toposlam_model::{
 use crate::cli::{
     CliError,
     json::print_line,
-    text::{duration_text, grouped, print_paragraph},
+    text::{counted, duration_text, grouped, print_paragraph},
 };
 
 /// The edges that are left where a probe no longer draws.
@@ -164,12 +164,13 @@ impl EstimateLine<'_> {
         let Self { edges, class, algorithm, marker, probes, seed, threads, .. } = self;
         print_paragraph(
             out,
-            &format!("{algorithm}, {marker} marker, class {class}, {edges} edges"),
+            &format!("{algorithm}, {marker} marker, class {class}, {}", counted(*edges, "edge")),
         )?;
         writeln!(out, "  starts      {}", self.starts.text(whole))?;
         writeln!(out, "  moves       {}", self.moves_total.text(whole))?;
         writeln!(out, "  moves made  {}", self.moves_made.text(whole))?;
-        writeln!(out, "  time        {} on {threads} threads", self.seconds.text(duration_text))?;
+        let threads = counted(*threads, "thread");
+        writeln!(out, "  time        {} on {threads}", self.seconds.text(duration_text))?;
         writeln!(out, "  {} probes, seed {seed}; 95 % confidence", grouped((*probes).into()))?;
         Ok(out.flush()?)
     }

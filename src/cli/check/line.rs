@@ -10,7 +10,7 @@ use toposlam_model::{
     marker::{Directional, Marker},
 };
 
-use crate::cli::{CliError, Outcome, RunChoices, version::VERSION};
+use crate::cli::{CliError, Outcome, RunChoices, text::counted, version::VERSION};
 
 /// The algorithm that is checked, and its marker.
 #[derive(Clone, Copy)]
@@ -117,7 +117,9 @@ impl FailureLine {
         let step = failure.false_step.map(|step| step.to_string());
         Self {
             cause: failure.flaw.to_string(),
-            step: step.or_else(|| failure.moves.map(|moves| format!("after {moves} moves"))),
+            step: step.or_else(|| {
+                failure.moves.map(|moves| format!("after {}", counted(moves as usize, "move")))
+            }),
             moves: failure.moves,
             world: world_file::to_json(&failed_world(failure, subject)),
         }

@@ -17,7 +17,7 @@ use crate::cli::{
     ci_report::CiCase,
     cluster::ClusterSession,
     json::print_line,
-    text::{grouped, print_hanging, print_paragraph},
+    text::{counted, grouped, print_hanging, print_paragraph},
 };
 
 /// The worlds of a file or of a class, in words.
@@ -61,7 +61,7 @@ impl SizeLine {
 
     /// What is checked.
     pub(in crate::cli) fn name(&self) -> String {
-        format!("{} edges, {}", self.edges, self.worlds_in_words())
+        format!("{}, {}", counted(self.edges, "edge"), self.worlds_in_words())
     }
 }
 
@@ -206,8 +206,8 @@ impl<'o> CheckReport<'o> {
         writeln!(self.out)?;
         print_paragraph(self.out, &verdict)?;
         if let Some(elapsed) = elapsed {
-            let threads = rayon::current_num_threads();
-            remark!("{:.2} s on {threads} threads", elapsed.as_secs_f64());
+            let threads = counted(rayon::current_num_threads(), "thread");
+            remark!("{:.2} s on {threads}", elapsed.as_secs_f64());
         }
         Ok(outcome)
     }

@@ -118,7 +118,7 @@ impl ConformArguments {
         let dart_bound = self.max_darts.unwrap_or(settings.dart_bound);
         let limits = (settings.budget, dart_bound);
         let question = self.question(known.as_ref(), marker, driver, limits);
-        // Whoever drives may turn back between junctions. The algorithms do not.
+        // A robot that no algorithm drives may turn back between junctions.
         let events = match driver {
             RunDriver::Anyone => gathered.events.without_excursions(),
             RunDriver::Method(_) => gathered.events.clone(),

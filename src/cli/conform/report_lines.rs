@@ -10,7 +10,7 @@ use super::{CliError, Judged, fact_fields::FactFields};
 use crate::{
     cli::{
         json::print_line,
-        text::{counted, print_command, print_hanging, since_start},
+        text::{counted, grouped, print_command, print_hanging, since_start},
     },
     report::{CoveredCase, DivergenceReport, LogReport},
 };
@@ -224,7 +224,7 @@ pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), CliErr
     for (name, reason, events) in &report.tolerated {
         let times = match events.len() {
             1 => "once".to_owned(),
-            times => format!("{times} times"),
+            times => format!("{} times", grouped(times as u128)),
         };
         print_hanging(
             out,
@@ -249,10 +249,12 @@ fn diverged(
     divergence: &DivergenceReport,
 ) -> Result<(), CliError> {
     let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = divergence;
-    let (events, time) = (report.events.len(), since_start(*time));
-    writeln!(out, "{}: diverges at event {event} of {events}, at {time}: {fault}", report.log)?;
+    let [number, of] = [*event, report.events.len()].map(|number| grouped(number as u128));
+    let time = since_start(*time);
+    writeln!(out, "{}: diverges at event {number} of {of}, at {time}: {fault}", report.log)?;
     print_hanging(out, "  ", &format!("{what}: {why}"))?;
     if let Some((message, offset)) = message {
+        let [message, offset] = [*message, *offset].map(|number| grouped(number.into()));
         writeln!(out, "  message {message} of the log, at byte {offset}")?;
     }
     if !allowed.is_empty() {
@@ -275,7 +277,7 @@ fn diverged(
     if !report.shorter.is_empty() {
         let mut events: Vec<_> = report.shorter.iter().take(SHORT).cloned().collect();
         if let Some(more) = report.shorter.len().checked_sub(SHORT + 1) {
-            events.push(format!("and {} more", more + 1));
+            events.push(format!("and {} more", grouped((more + 1) as u128)));
         }
         let count = counted(report.shorter.len(), "event");
         writeln!(out, "  shorter log with this divergence, {count}:")?;
@@ -294,7 +296,7 @@ fn covered(coverage: &[CoveredCase]) -> String {
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
     let listed: Vec<_> =
-        seen.iter().map(|covered| format!("{} {}", covered.case, covered.count)).collect();
+        seen.iter().map(|covered| format!("{} {}", covered.case, grouped(covered.count.into()))).collect();
     let missed: Vec<_> = coverage
         .iter()
         .filter(possible)

@@ -13,7 +13,7 @@ use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
     safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
-    text::{print_paragraph, sentence},
+    text::{counted, grouped, print_paragraph, sentence, tenths, vertices},
 };
 
 /// The result of a run.
@@ -68,12 +68,12 @@ impl DriveResult<'_> {
     pub(super) fn map(&self) -> Option<NamedWorld> {
         self.mapped.ok()?;
         let graph = self.mapping.map().complete()?;
-        let moves = self.moves;
+        let moves = counted(self.moves as usize, "move");
         let (name, of) = match self.world {
             "" => ("map".to_owned(), "an unknown world"),
             world => (format!("{world}-map"), world),
         };
-        let about = format!("The map of {of}, made by a live robot in {moves} moves");
+        let about = format!("The map of {of}, made by a live robot in {moves}");
         Some(NamedWorld::numbered(&name, &about, graph.clone(), Some(FACING)))
     }
 
@@ -84,25 +84,26 @@ impl DriveResult<'_> {
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let (moves, vertices) = (self.moves, self.mapping.map().vertex_count());
+        let moves = counted(self.moves as usize, "move");
         let ended = match self.mapped {
             Ok(mapped) if !mapped.blocked.is_empty() => {
                 let doors = blocked_in_words(mapped.blocked.len());
-                format!("the map is complete but for {doors}, after {moves} moves")
+                format!("the map is complete but for {doors}, after {moves}")
             }
-            Ok(_) => format!("the map is complete, after {moves} moves"),
+            Ok(_) => format!("the map is complete, after {moves}"),
             Err(MappingError::World(error @ ExplorerError::Budget { .. })) => error.to_string(),
             Err(error) => format!("the robot gave up: {error}"),
         };
         writeln!(out)?;
         print_paragraph(out, &sentence(&ended))?;
-        writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
+        let (vertices, edges) =
+            (vertices(self.mapping.map().vertex_count()), counted(self.edges(), "edge"));
+        writeln!(out, "  map               {vertices}, {edges}")?;
         if let Ok(mapped) = self.mapped {
             print_safeguards(out, self.method, mapped, self.mapping.map(), self.percepts)?;
         }
-        let minutes = self.seconds / 60.0;
-        writeln!(out, "  {:<17} {}", self.frames, self.pictures)?;
-        writeln!(out, "  robot time        {minutes:.1} minutes")?;
+        writeln!(out, "  {:<17} {}", self.frames, grouped(self.pictures.into()))?;
+        writeln!(out, "  robot time        {} minutes", tenths(self.seconds / 60.0))?;
         Ok(())
     }
 

@@ -19,7 +19,7 @@ use crate::cli::{
     CliError, Outcome,
     json::print_line,
     progress::Progress,
-    text::{grouped, print_rows},
+    text::{counted, grouped, print_rows},
 };
 
 /// The JSON line of one kind of clutter.
@@ -77,10 +77,11 @@ pub(super) fn measure(
         print_rows(out, heads, &rows)?;
         let views = grouped((all.all as u64).into());
         let most = 100.0 * upper_bound(wrong, all.all.max(1));
+        let wrong = grouped(wrong as u128);
         writeln!(out, "\nwrong: {wrong} of {views}, at most {most:.3} % ({})", status.name())?;
     }
-    let threads = rayon::current_num_threads();
-    remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+    let threads = counted(rayon::current_num_threads(), "thread");
+    remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
     Ok(match status {
         TargetStatus::Missed => Outcome::Violated,
         TargetStatus::Met if !interrupted => Outcome::Holds,

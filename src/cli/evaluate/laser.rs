@@ -60,7 +60,7 @@ Examples:
   toposlam evaluate laser --scanner scanner.toml   another scanner
   toposlam evaluate laser --walk 17                each visit of one walk
 
-A target is met if the 95 % interval of the rate is within it, missed if the
+A target is met if the 95 % interval of the rate is within it, missed if the \
 interval is beyond it, and otherwise not shown: the sample is too small.",
     &[
         (0, "all targets are met"),
@@ -182,8 +182,8 @@ impl EvaluateLaserArguments {
         } else {
             self.print((&walks, &made, &driven), &report, interrupted, outcome, out)?;
         }
-        let threads = rayon::current_num_threads();
-        remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        let threads = counted(rayon::current_num_threads(), "thread");
+        remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
@@ -213,7 +213,8 @@ impl EvaluateLaserArguments {
         let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
         writeln!(out, "  buildings: {}", self.buildings.name())?;
-        writeln!(out, "  odometry drifts by up to {} degrees in 10 m\n", self.drift)?;
+        let degrees = if (self.drift - 1.0).abs() < f64::EPSILON { "degree" } else { "degrees" };
+        writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?;
         let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
         let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
         print_rows(out, heads, &rows)?;
@@ -231,7 +232,8 @@ impl EvaluateLaserArguments {
                 }
             }
             for (degree, way) in &walk.invented {
-                let text = format!("walk {}, {way:.0} m: invented, {degree} doors", walk.number);
+                let doors = counted(*degree as usize, "door");
+                let text = format!("walk {}, {way:.0} m: invented, {doors}", walk.number);
                 print_indented(out, "  ", 4, &text)?;
             }
         }
@@ -343,10 +345,11 @@ fn group_row(group: &LaserGroup) -> [String; 6] {
 /// A visit, in words.
 fn in_words(visit: &JudgedLaserVisit) -> String {
     let JudgedLaserVisit { features, way, door, found, verdict, .. } = visit;
-    let expected = format!("{} doors, left by door {door}", features.degree);
+    let doors = |degree: u32| counted(degree as usize, "door");
+    let expected = format!("{}, left by door {door}", doors(features.degree));
     let found = match found {
-        Some((degree, Some(door))) => format!("; derived {degree} doors, door {door}"),
-        Some((degree, None)) => format!("; derived {degree} doors"),
+        Some((degree, Some(door))) => format!("; derived {}, door {door}", doors(*degree)),
+        Some((degree, None)) => format!("; derived {}", doors(*degree)),
         None => String::new(),
     };
     format!("{way:.0} m: {}, {expected}{found}", verdict.name())

@@ -1,5 +1,5 @@
 //! `toposlam evaluate lengths`: the lengths and turns of hallways by odometry, false alarms, and changes that are
-//! found.
+//! detected.
 
 use std::{io::Write, time::Instant};
 
@@ -24,7 +24,8 @@ use crate::cli::{
     use_threads,
 };
 
-/// Measure the lengths of hallways by odometry: how often do they contradict each other, and what do they find?
+/// Measure the lengths of hallways by odometry: how often do they contradict each other, and how many changes
+/// are detected?
 ///
 /// Robots map whole buildings by Algorithm 1, and measure the length and the turn of each traversed hallway. A
 /// contradiction between measurements is a false alarm, because nothing happened in these runs. The target is at
@@ -102,7 +103,7 @@ impl EvaluateLengthsArguments {
             [tally.measured, tally.compared].map(|count| grouped(count as u128));
         let count = counted(runs.len(), "run");
         writeln!(out, "  {measured} traversals in {count}")?;
-        writeln!(out, "  {compared} of them of hallways that were measured before")?;
+        writeln!(out, "  {compared} of them in hallways that were measured before")?;
         for (run, alarm) in alarms(runs) {
             let what = format!("run {} in {}", run.case.number, run.case.plan_name);
             print_failure(out, what, alarm.measurement)?;

@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf, time::Instant};
 use serde_json::json;
 use toposlam_model::{
     check::{
-        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UnnoticedMistake,
+        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UndetectedMistake,
     },
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -24,7 +24,7 @@ use crate::cli::{
     use_threads,
 };
 
-/// Measure what one mistake does: is the map right, or does the robot notice?
+/// Measure what one mistake does: is the map right, or is the mistake detected?
 ///
 /// From each start of every world of a size, the robot explores once for each place of its run and for each
 /// mistake that can happen there: another degree (from 1 to twice the number of edges), a marker where none
@@ -32,8 +32,8 @@ use crate::cli::{
 /// place. Everything else is true.
 ///
 /// With --audit, the robot walks once more when its map is complete. The walk is the shortest one that can
-/// show that the map is right. With --recover, it also goes on after a contradiction, with what it still
-/// believes.
+/// show that the map is right. With --recover, it also goes on after a contradiction, with the percepts that it
+/// keeps.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -43,11 +43,11 @@ Examples:
   toposlam evaluate mistakes --algorithm folding --recover --edges 1..=4
   toposlam evaluate mistakes --out-dir mistakes   the smallest ones, as worlds
 
-A wrong pose is no violation if the robot was carried to a place that looks the
+A wrong pose is not a violation if the robot was carried to a place that looks the \
 same.",
     &[
-        (0, "each run ends with the right map, or the robot notices"),
-        (1, "a wrong map is not noticed"),
+        (0, "each run ends with the right map, or the mistake is detected"),
+        (1, "a mistake that can be detected is not detected"),
         (2, "bad usage or input"),
         (3, "not all runs were made"),
     ],
@@ -61,7 +61,7 @@ pub(super) struct EvaluateMistakesArguments {
     class: Class,
     #[command(flatten)]
     method: MethodOptions,
-    /// Write the smallest start with an unnoticed mistake of each kind into this folder
+    /// Write the smallest start with an undetected mistake of each kind into this folder
     #[arg(long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
     /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
@@ -87,7 +87,7 @@ impl EvaluateMistakesArguments {
         let begun = Instant::now();
         let mut tally = MistakeTally::default();
         for (edges, check) in self.edges.iter().zip(checks) {
-            let progress = Progress::new(&format!("{edges} edges"), "runs")?;
+            let progress = Progress::new(&counted(edges, "edge"), "runs")?;
             tally.merge(check.run(&progress));
             progress.finish();
             if tally.interrupted {
@@ -122,10 +122,10 @@ impl EvaluateMistakesArguments {
             safeguards => safeguards,
         };
         writeln!(out, "{algorithm} {safeguards}, one mistake a run, class {}", self.class)?;
-        let starts = grouped(tally.starts.into());
+        let starts = counted(tally.starts as usize, "start");
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
-        writeln!(out, "  {starts} starts, {mean:.1} moves on average without a mistake\n")?;
-        let heads = ["mistake", "     runs", "    right", "  noticed", "wrong pose", "wrong map"];
+        writeln!(out, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
+        let heads = ["mistake", "     runs", "    right", " detected", "wrong pose", "wrong map"];
         let mut rows: Vec<_> = MISTAKE_KINDS
             .into_iter()
             .zip(tally.counts)
@@ -144,10 +144,10 @@ impl EvaluateMistakesArguments {
         }
         let verdict = match outcome {
             Outcome::Holds => {
-                "holds: each run ends with the right map, or the robot notices".to_owned()
+                "holds: each run ends with the right map, or the mistake is detected".to_owned()
             }
             Outcome::Violated => format!(
-                "violated: {} of {} runs end with a mistake that the robot could notice, and does not",
+                "violated: {} of {} runs end with a detectable mistake that was not detected",
                 grouped(violations(tally).into()),
                 grouped(all.runs().into()),
             ),
@@ -162,7 +162,7 @@ impl EvaluateMistakesArguments {
         let Some(folder) = &self.out_dir else { return Ok(()) };
         for (kind, mistake) in first_mistakes(tally) {
             let name = kind.name().replace(' ', "-");
-            let UnnoticedMistake { graph, facing, .. } = mistake;
+            let UndetectedMistake { graph, facing, .. } = mistake;
             let world = NamedWorld::discovered(&name, &in_words(kind, mistake), graph, *facing);
             output::write_world(&folder.join(format!("{name}.toml")), &world)?;
         }
@@ -198,27 +198,27 @@ impl EvaluateMistakesArguments {
             "class": self.class.name(), "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
             "starts": tally.starts, "runs": all.runs(), "right": all.right,
-            "unnoticed": all.unnoticed(), "moves_total": tally.moves,
+            "unnoticed": all.undetected(), "moves_total": tally.moves,
             "interrupted": tally.interrupted, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "mistakes", &line)
     }
 }
 
-/// The first unnoticed mistake of each kind.
+/// The first undetected mistake of each kind.
 fn first_mistakes(
     tally: &MistakeTally,
-) -> impl Iterator<Item = (MistakeKind, &UnnoticedMistake)> + '_ {
+) -> impl Iterator<Item = (MistakeKind, &UndetectedMistake)> + '_ {
     let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
     first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
 }
 
-/// The number of runs with a mistake that the robot could notice, and did not. That it was carried to a place
-/// that looks the same, it cannot notice; but an audit finds a wrong map.
+/// The number of runs with a detectable mistake that was not detected. A robot cannot detect that it was carried to
+/// a place that looks the same, but an audit detects a wrong map.
 fn violations(tally: &MistakeTally) -> u64 {
     let of = |(kind, counts): (MistakeKind, MistakeCounts)| match kind {
         MistakeKind::Carried => counts.wrong_map,
-        _ => counts.unnoticed(),
+        _ => counts.undetected(),
     };
     MISTAKE_KINDS.into_iter().zip(tally.counts).map(of).sum()
 }
@@ -236,12 +236,12 @@ fn row(name: &str, counts: MistakeCounts) -> [String; 6] {
     ]
 }
 
-/// An unnoticed mistake in words.
-fn in_words(kind: MistakeKind, unnoticed: &UnnoticedMistake) -> String {
-    let UnnoticedMistake { graph, mistake, flaw, .. } = unnoticed;
+/// An undetected mistake in words.
+fn in_words(kind: MistakeKind, undetected: &UndetectedMistake) -> String {
+    let UndetectedMistake { graph, mistake, flaw, .. } = undetected;
     let edges = counted(graph.edge_count(), "edge");
     format!(
-        "{}, the smallest that is not noticed: in a world with {edges}, {mistake}; {flaw}.",
+        "{}, the smallest that is not detected: in a world with {edges}, {mistake}; {flaw}.",
         capital(kind.name())
     )
 }

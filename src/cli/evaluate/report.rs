@@ -66,8 +66,9 @@ impl<'o> Printer<'o> {
                 }),
             );
         }
-        let (views, visits) = (grouped((*views).into()), grouped((*visits).into()));
-        writeln!(self.out, "Sensing on {views} views and {visits} visits, seed {seed}")?;
+        let views = counted(*views as usize, "view");
+        let visits = counted(*visits as usize, "visit");
+        writeln!(self.out, "Sensing on {views} and {visits}, seed {seed}")?;
         print_hanging(self.out, "  floor plans  ", &plans.join(", "))?;
         print_hanging(self.out, "  looks        ", &looks.join(", "))?;
         writeln!(self.out, "  image sizes  {}", sizes.join(", "))?;
@@ -196,7 +197,7 @@ impl<'o> Printer<'o> {
         let verdict = match outcome {
             Outcome::Holds => "holds: all targets are met".to_owned(),
             Outcome::Violated if missed == 1 => "violated: a target is missed".to_owned(),
-            Outcome::Violated => format!("violated: {missed} targets are missed"),
+            Outcome::Violated => format!("violated: {} are missed", counted(missed, "target")),
             Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
             Outcome::Incomplete => {
                 format!("not shown: the sample is too small for {}", counted(not_shown, "target"))
@@ -269,7 +270,7 @@ pub(super) fn rate_row(rate: &Rate) -> [String; 6] {
             Some(limit) => {
                 let (target, status) =
                     (percent(limit), status(rate.standing(), rate.cases_needed()));
-                format!("{}; target {}: {status}", rate.what, target.trim_start())
+                format!("{}; target {}: {status}", rate.what, unbroken(target.trim_start()))
             }
         },
     ]
@@ -283,7 +284,10 @@ fn errors_row(errors: &Errors) -> [String; 7] {
     let (unit, short) = unit(errors.unit);
     let mut what = format!("{}, {unit}", errors.what);
     let limits = errors.limits.iter();
-    let limits = limits.map(|&(quantile, limit)| format!("{} {limit} {short}", called(quantile)));
+    let limits = limits.map(|&(quantile, limit)| {
+        let [quantile, limit] = [called(quantile).to_owned(), format!("{limit} {short}")];
+        format!("{} {}", unbroken(&quantile), unbroken(&limit))
+    });
     let targets: Vec<_> = limits.collect();
     if !targets.is_empty() {
         what.push_str("; target ");
@@ -298,10 +302,20 @@ fn errors_row(errors: &Errors) -> [String; 7] {
 /// Prints the reported classes for each true class.
 fn confusion(out: &mut dyn Write, report: &VisionReport) -> io::Result<()> {
     for (is, said) in &report.confusion {
-        let said = said.iter().map(|(class, &count)| format!("{class} {}", grouped(count as u128)));
+        let said = said
+            .iter()
+            .map(|(class, &count)| format!("{class}{NO_BREAK}{}", grouped(count as u128)));
         print_hanging(out, &format!("  {is:<14}"), &said.collect::<Vec<_>>().join(", "))?;
     }
     Ok(())
+}
+
+/// A space at which no line ends.
+const NO_BREAK: char = '\u{a0}';
+
+/// A number with its unit, on one line.
+fn unbroken(text: &str) -> String {
+    text.replace(' ', "\u{a0}")
 }
 
 /// The status of a target. If it is not shown, also the number of cases that could show it.

@@ -20,7 +20,7 @@ use crate::cli::{
     json::print_line,
     method_options::{MethodOptions, safeguards_in_words},
     progress::Progress,
-    text::{counted, grouped, print_hanging, print_rows},
+    text::{counted, grouped, print_hanging, print_rows, tenths},
     use_threads,
 };
 
@@ -41,9 +41,9 @@ Examples:
   toposlam evaluate runs --faults --algorithm folding --recover
   toposlam evaluate runs --algorithm folding             fewer moves
 
-With --faults, a run may also be given up if the robot reports a contradiction.
-A wrong map is no violation if the robot was carried to a place that it cannot
-distinguish from the right one. With --recover it is: an audit finds it.",
+With --faults, a run may also be given up if the robot reports a contradiction. \
+A wrong map is not a violation if the robot was carried to a place that it cannot \
+distinguish from the right one. With --recover it is, because an audit detects it.",
     &[
         (0, "every run is right"),
         (1, "a run is wrong"),
@@ -106,7 +106,7 @@ impl EvaluateRunsArguments {
         } else {
             let sensing = self.robots.sensing();
             writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
-            let starts = format!("{} starts", grouped(runs.starts() as u128));
+            let starts = counted(runs.starts(), "start");
             let plans = counted(count, "floor plan");
             let by = method.algorithm().in_words();
             let by = format!("{by} {}", safeguards_in_words(method));
@@ -118,7 +118,7 @@ impl EvaluateRunsArguments {
         Ok(outcome)
     }
 
-    /// Whether a run fails: without faults it must be right, with faults it must not be wrong unnoticed.
+    /// Whether a run fails: without faults it must be right, with faults it must not be wrong without an error.
     fn violates(&self, run: &JudgedRun) -> bool {
         match self.faults {
             None => run.ending != RunOutcome::Right,
@@ -158,7 +158,8 @@ impl EvaluateRunsArguments {
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
         let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
-        writeln!(out, "  {moves} moves, {pictures} images, {hours:.1} hours of simulated time")?;
+        let hours = tenths(hours);
+        writeln!(out, "  {moves} moves, {pictures} images, {hours} hours of simulated time")?;
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -238,7 +239,7 @@ fn print_safeguards(
     let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
     let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
     let recoveries =
-        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{recoveries} recoveries") };
+        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{} recoveries", number(recoveries.into())) };
     let text = format!("{text}, {} more for {recoveries}", number(extra));
     print_hanging(out, "  moves    ", &text)?;
     let recovered = || {
@@ -261,6 +262,7 @@ fn print_safeguards(
         );
         print_hanging(out, "  cost     ", &text)?;
     }
+    let blocked = grouped(blocked as u128);
     writeln!(out, "  blocked  {blocked} of the right runs are right but for a hallway")?;
     let gave_up = judged.iter().filter(|run| matches!(run.ending, RunOutcome::GaveUp(_)));
     let ended = |way| gave_up.clone().filter(|run| run.way_to_marker == way).count();
@@ -294,12 +296,13 @@ fn tally<'r>(runs: impl Iterator<Item = &'r JudgedRun>) -> [usize; 3] {
 fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
     let runs = || judged.iter().filter(|run| run.has_fault(kind));
     let [right, gave_up, wrong] = tally(runs());
+    let number = |count: usize, width: usize| format!("{:>width$}", grouped(count as u128));
     [
         kind.name().to_owned(),
-        format!("{:>5}", runs().count()),
-        format!("{right:>5}"),
-        format!("{gave_up:>8}"),
-        format!("{wrong:>5}"),
+        number(runs().count(), 5),
+        number(right, 5),
+        number(gave_up, 8),
+        number(wrong, 5),
     ]
 }
 

@@ -36,6 +36,7 @@ use crate::cli::{
     exit_codes::help_end,
     input, output,
     progress::Progress,
+    text::counted,
     use_threads,
 };
 
@@ -59,8 +60,8 @@ Examples:
   toposlam evaluate vision --clutter               right, unknown and wrong
   toposlam evaluate vision --effect furniture=5 --out-dir failing
 
-A target is met if the 95 % interval of the rate is within it, missed if the
-interval is beyond it, and otherwise not shown: the sample is too small. A target
+A target is met if the 95 % interval of the rate is within it, missed if the \
+interval is beyond it, and otherwise not shown: the sample is too small. A target \
 of 0 is met if nothing was seen, and the rate is at most 0.1 %.",
     &[
         (0, "all targets are met"),
@@ -91,8 +92,8 @@ pub(super) struct EvaluateVisionArguments {
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Set one effect in every view (repeatable); `toposlam render --help` lists them. Colours are learned
-    /// without it
+    /// Set one effect in every view (repeatable); they are listed by `toposlam render --help`. Colours are
+    /// learned without it
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<EffectSetting>,
     /// Measure single views without clutter, with each kind of it, and with all kinds: furniture, cables, wide
@@ -162,8 +163,8 @@ impl EvaluateVisionArguments {
             TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
         };
         printer.verdict(outcome, interrupted)?;
-        let threads = rayon::current_num_threads();
-        remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        let threads = counted(rayon::current_num_threads(), "thread");
+        remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 

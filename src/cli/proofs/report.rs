@@ -13,7 +13,11 @@ use super::{
     check::{CheckEnd, LemmaCheck},
     lemma_case::{LemmaCase, print_head},
 };
-use crate::cli::{CliError, Outcome, json::print_line, text::print_hanging};
+use crate::cli::{
+    CliError, Outcome,
+    json::print_line,
+    text::{counted, print_hanging},
+};
 
 /// Prints the result of each lemma when it is there.
 pub(super) struct ProofsReport<'o> {
@@ -116,8 +120,13 @@ impl<'o> ProofsReport<'o> {
         }
         write!(self.out, "\n{verdict}")?;
         if lemmas > 0 {
-            let hold = if outcome == Outcome::Holds { "" } else { " hold" };
-            write!(self.out, ": {held} of {lemmas} lemmas{hold}, {}", cases(self.cases))?;
+            let hold = match (outcome, lemmas) {
+                (Outcome::Holds, _) => "",
+                (_, 1) => " holds",
+                _ => " hold",
+            };
+            let lemmas = counted(lemmas, "lemma");
+            write!(self.out, ": {held} of {lemmas}{hold}, {}", cases(self.cases))?;
         }
         if not_checked > 0 {
             write!(self.out, "; {not_checked} not checked")?;

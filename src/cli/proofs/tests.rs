@@ -200,7 +200,7 @@ fn a_lemma_with_another_number_of_cases_than_expected_fails() {
         assert_eq!(outcome.unwrap(), Outcome::Violated);
         assert!(text.contains(" s  fails\n\nlow\n  It is so.\n  fails: expected "), "{text}");
         assert!(text.contains(cause), "{text}");
-        assert!(text.ends_with("\n\nviolated: 0 of 1 lemmas hold, 0 cases\n"), "{text}");
+        assert!(text.ends_with("\n\nviolated: 0 of 1 lemma holds, 0 cases\n"), "{text}");
         let (_, text) = run(&lemmas, &["--run", "low", "--json"]);
         let line = &objects(&text)[0];
         assert_eq!((&line["cases"], &line["pinned"]), (&4.into(), &pinned.into()));
@@ -334,7 +334,7 @@ fn an_interrupt_does_not_wait_for_the_case() {
     let interrupted = check_lemma(&endless, &Impatient).unwrap();
     assert!(matches!(interrupted.end, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
-        (false, "\nincomplete, interrupted: 0 of 1 lemmas hold, 0 cases\n"),
+        (false, "\nincomplete, interrupted: 0 of 1 lemma holds, 0 cases\n"),
         (true, "\"interrupted\":true,\"holds\":false}\n"),
     ] {
         let mut out = Vec::new();

@@ -19,7 +19,7 @@ use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
     safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
-    text::{print_paragraph, sentence},
+    text::{counted, grouped, print_paragraph, sentence, tenths, vertices},
 };
 
 /// The result of a run.
@@ -101,25 +101,25 @@ impl SimulationResult<'_> {
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
         self.run.mapped.as_ref()?;
-        let (name, moves) = (&self.world.name, self.run.moves);
-        let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
+        let (name, moves) = (&self.world.name, counted(self.run.moves as usize, "move"));
+        let about = format!("The map of {name}, made by a simulated robot in {moves}");
         let graph = self.run.mapping.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
     /// The result in words.
     pub(super) fn in_words(&self) -> String {
-        let moves = self.run.moves;
+        let moves = counted(self.run.moves as usize, "move");
         match self.run.outcome() {
             RunOutcome::Right if !self.run.blocked().is_empty() => {
                 let doors = blocked_in_words(self.run.blocked().len());
-                format!("the map is right, and complete but for {doors}, after {moves} moves")
+                format!("the map is right, and complete but for {doors}, after {moves}")
             }
             RunOutcome::Right if self.run.method.recovers() => {
-                format!("the map is right, after {moves} moves")
+                format!("the map is right, after {moves}")
             }
             RunOutcome::Right => {
-                format!("the map is right, after {moves} moves, all as specified")
+                format!("the map is right, after {moves}, all as specified")
             }
             RunOutcome::GaveUp(MappingError::World(error @ ExplorerError::Budget { .. })) => {
                 error.to_string()
@@ -140,28 +140,31 @@ impl SimulationResult<'_> {
         for fault in &self.missed {
             let text = format!(
                 "The fault {fault} did not happen: the run ended after {} {}.",
-                run.pictures, self.frames
+                grouped(run.pictures.into()),
+                self.frames
             );
             print_paragraph(out, &text)?;
         }
         let map = run.mapping.map();
-        let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
-        let (moves, expected) = (run.moves, run.explore_moves);
+        let known = counted((map.dart_count() - map.unexplored_count() as usize) / 2, "edge");
+        let known = format!("{}, {known}", vertices(map.vertex_count()));
+        let [moves, expected] = [run.moves, run.explore_moves].map(|moves| grouped(moves.into()));
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
         if let Some(mapped) = &run.mapped {
             print_safeguards(out, run.method, mapped, map, self.percepts)?;
         }
-        writeln!(out, "  edges             {edges}")?;
-        writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
+        writeln!(out, "  edges             {}", grouped(edges as u128))?;
+        writeln!(out, "  map               {known}")?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
-        writeln!(out, "  {:<17} {}", self.frames, run.pictures)?;
-        writeln!(out, "  simulated time    {minutes:.1} minutes")?;
+        writeln!(out, "  {:<17} {}", self.frames, grouped(run.pictures.into()))?;
+        writeln!(out, "  simulated time    {} minutes", tenths(minutes))?;
         // Without images there is almost nothing to compute.
         if self.replayed.is_some() && seconds >= SHOWN {
             let ratio = run.seconds / seconds.max(1e-9);
             writeln!(
                 out,
-                "  computation       {seconds:.2} s off-line, {ratio:.0} times real time"
+                "  computation       {seconds:.2} s off-line, {} times real time",
+                grouped(ratio.round() as u128)
             )?;
         }
         remark!("{:.1} s", self.wall_seconds);

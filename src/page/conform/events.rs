@@ -6,7 +6,7 @@ use toposlam_robot::conform::ConformVerdict;
 
 use super::{each, wording};
 use crate::{
-    moment::clock,
+    moment::{clock, grouped},
     picture::escaped,
     report::{EventLine, LogReport},
 };
@@ -57,7 +57,7 @@ pub(super) fn all(report: &LogReport, log: usize) -> String {
     let summary = match report.events.len() {
         0 => "No event".to_owned(),
         1 => "The only event".to_owned(),
-        count => format!("All {count} events"),
+        count => format!("All {} events", grouped(count as u128)),
     };
     format!(
         "<details class=\"all\">\n<summary>{summary}</summary>\n{}{missing}</details>\n",

@@ -2,7 +2,7 @@
 
 use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
-    moment::clock,
+    moment::{clock, grouped},
     picture::escaped,
     report::{DivergenceReport, FoldedReport, LogReport, SourceFile},
 };
@@ -68,12 +68,14 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
 fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> String {
     let DivergenceReport { event, time, message, fault, cause, what, why, .. } = divergence;
     let of = report.events.len();
+    let [number, all] = [*event, of].map(|number| grouped(number as u128));
     let place = if *event > of {
-        format!("After all {of} events")
+        format!("After all {all} events")
     } else {
-        format!("Event {event} of {of}")
+        format!("Event {number} of {all}")
     };
     let message = message.map_or_else(String::new, |(number, offset)| {
+        let [number, offset] = [number, offset].map(|number| grouped(number.into()));
         format!(" \u{b7} message {number} of the log, byte {offset}")
     });
     format!(
@@ -140,7 +142,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
         };
         let mut places: Vec<_> = first.iter().map(place).collect();
         if !rest.is_empty() {
-            places.push(format!("{} more", rest.len()));
+            places.push(format!("{} more", grouped(rest.len() as u128)));
         }
         let places = if places.is_empty() {
             "not used".to_owned()
@@ -152,7 +154,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
             escaped(name),
             match at.len() {
                 1 => "once".to_owned(),
-                times => format!("{times} times"),
+                times => format!("{} times", grouped(times as u128)),
             },
             escaped(&wording::sentence(reason)),
         )
@@ -204,7 +206,7 @@ fn folded(report: &LogReport, level: Level) -> String {
     let were = if *open_doors == 1 { "was" } else { "were" };
     let places = match vertices {
         1 => String::new(),
-        count => format!(" Of the {count} places, some may be one."),
+        count => format!(" Of the {} places, some may be one.", grouped(*count as u128)),
     };
     let legend = format!(
         "<p class=\"legend\"><span class=\"open-door\"></span> {doors} that {were} never followed.{places}\

@@ -14,6 +14,7 @@ mod tests;
 
 use super::{PAGE_STYLE, template::filled};
 use crate::{
+    moment::grouped,
     picture::escaped,
     report::{LogReport, ReportOrigin},
 };
@@ -82,8 +83,8 @@ fn short_list<T>(items: &[T], few: usize, of: impl Fn(&T) -> String) -> String {
         return list(items);
     }
     let (first, rest) = items.split_at(few);
-    let more =
-        format!("<details><summary>{} more</summary>\n{}</details>\n", rest.len(), list(rest));
+    let count = grouped(rest.len() as u128);
+    let more = format!("<details><summary>{count} more</summary>\n{}</details>\n", list(rest));
     list(first) + &more
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Level, coverage, each, panel, wording};
 use crate::{
+    moment::grouped,
     picture::escaped,
     report::{DivergenceReport, LogReport},
 };
@@ -57,6 +58,6 @@ fn row(report: &LogReport, number: usize) -> String {
          <td class=\"right number\">{}</td></tr>\n",
         escaped(&report.log),
         wording::sign(report.verdict),
-        report.events.len(),
+        grouped(report.events.len() as u128),
     )
 }

@@ -276,7 +276,7 @@ fn what_is_tolerated_leads_to_its_events() {
 fn many_events_make_a_page_that_is_not_large() {
     let page = page_of(&[diverged(10_000, 7_000)]);
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
-    assert!(page.contains("<summary>All 10000 events</summary>"));
+    assert!(page.contains("<summary>All 10,000 events</summary>"));
     assert_eq!(page.matches("<div class=\"leaf\">").count(), 100);
 }
 

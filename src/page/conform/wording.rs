@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
-use crate::report::LogReport;
+pub(super) use crate::text::counted;
+use crate::{moment::grouped, report::LogReport};
 
 /// The worst verdict; incomplete without any log.
 pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
@@ -39,17 +40,13 @@ pub(super) fn tally(reports: &[LogReport]) -> String {
         .iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, verdict)| match (verdict, count) {
-            (ConformVerdict::Conforms, 2..) => format!("{count} conform"),
-            _ => format!("{count} {}", verdict.name()),
+            (ConformVerdict::Conforms, 2..) => format!("{} conform", grouped(*count as u128)),
+            _ => format!("{} {}", grouped(*count as u128), verdict.name()),
         })
         .collect();
     format!("{}: {}", counted(reports.len(), "log"), parts.join(", "))
 }
 
-/// A number of things.
-pub(super) fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
 
 /// A sentence with a capital letter and a full stop.
 pub(super) fn sentence(words: &str) -> String {
@@ -65,13 +62,13 @@ pub(super) fn fits(report: &LogReport) -> String {
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
         1 => "The only event fits".to_owned(),
-        count => format!("All {count} events fit"),
+        count => format!("All {} events fit", grouped(count as u128)),
     };
     let tolerated = report.tolerated.iter().flat_map(|(_, _, events)| events);
     match tolerated.collect::<BTreeSet<_>>().len() {
         0 => all + ".",
         1 => all + ", except one that is tolerated.",
-        count => format!("{all}, except {count} that are tolerated."),
+        count => format!("{all}, except {} that are tolerated.", grouped(count as u128)),
     }
 }
 

@@ -66,7 +66,7 @@ pub enum LightError {
     #[error("no floor beside the robot's body is seen")]
     Unseen,
     /// Most samples have a channel at its greatest level.
-    #[error("the floor beside the robot's body is burnt out")]
+    #[error("the floor beside the robot's body is overexposed")]
     BurntOut,
     /// There is too little light.
     #[error("the floor beside the robot's body is too dark")]

@@ -87,7 +87,7 @@ pub struct ColourModel {
 
 impl ColourModel {
     /// The gain that brings an image to the light of this model. `ring` has the colours of its
-    /// [`FloorRing`](super::FloorRing). `None` if they are too dark, burnt out, or without a common
+    /// [`FloorRing`](super::FloorRing). `None` if they are too dark, overexposed, or without a common
     /// colour.
     #[must_use]
     pub fn gain(&self, ring: &[[u8; 3]]) -> Option<Gain> {

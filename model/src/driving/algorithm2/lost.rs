@@ -11,7 +11,7 @@ use crate::percept::Door;
 pub struct Lost {
     /// What happened.
     pub why: LostReason,
-    /// What the robot was about.
+    /// The state of Algorithm 2.
     pub state: PathState,
     /// How far it had come since it last turned to a door, in metres of odometry.
     pub since_turn: f64,

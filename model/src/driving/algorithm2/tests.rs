@@ -488,7 +488,7 @@ fn a_junction_that_is_known_is_not_decided_again() {
 }
 
 #[test]
-fn a_junction_is_seen_anew_after_the_last_one_was_left() {
+fn a_junction_is_seen_again_after_the_last_one_was_left() {
     let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
     robot.sees(&junction(T_RIGHT, 0.0, 0.0));
     robot.sees(&hallway(0.0));

@@ -2,7 +2,10 @@
 
 use thiserror::Error;
 
-use crate::embedded_graph::GraphError;
+use crate::{
+    counts::{counted, vertices},
+    embedded_graph::GraphError,
+};
 
 /// Why bytes are not one of plantri's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -30,7 +33,7 @@ pub enum PlantriErrorKind {
     #[error("the file ends in the middle of a world")]
     Truncated,
     /// A neighbour is not a vertex.
-    #[error("vertex {vertex} lists the neighbour {neighbour}, but there are {vertices} vertices")]
+    #[error("vertex {vertex} lists the neighbour {neighbour}; the world has {}", vertices(*.vertices))]
     UnknownNeighbour {
         /// The vertex with the list.
         vertex: usize,
@@ -76,7 +79,7 @@ pub enum PlantriErrorKind {
     #[error("the body ends in the middle of an edge")]
     HalfEdgeNumber,
     /// An edge's number is too high.
-    #[error("vertex {vertex} lists edge {edge}, but there are {edges} edges, counted from 0")]
+    #[error("vertex {vertex} lists edge {edge}; the world has {}, counted from 0", counted(*.edges as usize, "edge"))]
     UnknownEdge {
         /// The vertex with the list.
         vertex: usize,

@@ -156,7 +156,7 @@ fn each_fault_of_planar_code_has_its_byte() {
     assert_eq!(message(&second), "byte 61, world 2: the file ends in the middle of a world");
     assert_eq!(
         message(&[2, 2, 0, 3, 0]),
-        "byte 3, world 1: vertex 2 lists the neighbour 3, but there are 2 vertices"
+        "byte 3, world 1: vertex 2 lists the neighbour 3; the world has 2 vertices"
     );
     assert_eq!(
         message(&[3, 2, 0, 1, 3, 0, 1, 0]),
@@ -199,7 +199,7 @@ fn each_fault_of_edge_code_has_its_byte() {
     );
     assert_eq!(
         edge_message(&[3, 0, 255, 1]),
-        "byte 3, world 1: vertex 2 lists edge 1, but there are 1 edges, counted from 0"
+        "byte 3, world 1: vertex 2 lists edge 1; the world has 1 edge, counted from 0"
     );
     assert_eq!(
         edge_message(&[5, 0, 0, 255, 0, 1]),
@@ -214,7 +214,7 @@ fn each_fault_of_edge_code_has_its_byte() {
     assert_eq!(
         edge_message(&[&[0, 0x1f, 30][..], &[1; 30]].concat()),
         "byte 3, world 1: \
-         vertex 1 lists edge 18446744073709551615, but there are 1 edges, counted from 0"
+         vertex 1 lists edge 18446744073709551615; the world has 1 edge, counted from 0"
     );
 }
 

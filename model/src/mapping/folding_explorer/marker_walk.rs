@@ -30,8 +30,8 @@ pub(super) struct MarkerWalk {
     ways: Ways,
 }
 
-/// After this many refuted suppositions for each open dart, the robot takes the next open dart. If it never
-/// did, it could suppose for ever.
+/// After this many refuted assumptions for each open dart, the robot takes the next open dart. Otherwise it
+/// could go on for ever with wrong assumptions.
 const SUPPOSITIONS: usize = 4;
 
 impl MarkerWalk {

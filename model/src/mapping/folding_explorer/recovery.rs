@@ -248,7 +248,7 @@ struct Recovery<'w, 'e, W, O> {
     observer: Through<'w, O>,
     config: RecoveryConfig,
     walks: EarlierWalks,
-    /// Whether the last search, for a junction or for the marker, was in vain.
+    /// Whether the last search, for a junction or for the marker, was without success.
     has_failed: bool,
     /// Whether the blocked doors were tried again.
     has_retried: bool,
@@ -331,8 +331,8 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         relocated.map_err(|error| self.failed(MappingError::World(error)))
     }
 
-    /// The robot does not find a junction, or the marker. Two searches in vain, one after the other, do not come
-    /// from one mistake, so the second is the last.
+    /// The robot does not find a junction, or the marker. Two searches without success, one after the other, do
+    /// not come from one mistake, so the second is the last.
     fn failed(&mut self, error: MappingError<W::Error>) -> MappingError<W::Error> {
         if mem::replace(&mut self.has_failed, true) {
             self.recoveries = self.config.most_recoveries;

@@ -28,7 +28,7 @@ fn visit(darts: &[u32], shape: JunctionShape, length: Option<f64>, door: u32) ->
     }
 }
 
-/// A robot that goes to and fro in one hallway.
+/// A robot that goes back and forth in one hallway.
 fn to_and_fro(lengths: &[f64]) -> Vec<MeasuredVisit> {
     let length = |visit: usize| visit.checked_sub(1).map(|before| lengths[before]);
     let dart = |number: usize| number as u32 % 2;

@@ -11,7 +11,7 @@ fn by_anyone() -> ConformConfig<'static> {
     ConformConfig { driver: RunDriver::Anyone, ..without_world() }
 }
 
-/// The first divergence of these lines, with moves that are counted anew.
+/// The first divergence of these lines, with moves that are counted again.
 fn divergence_of(mut lines: Vec<(Reckoned, EventKind)>) -> Option<Divergence> {
     let mut moves = 0;
     for (_, line) in &mut lines {

@@ -52,7 +52,7 @@ fn each_cause_has_a_name_a_class_and_words() {
             Number { expected: 2, recorded: 5 },
             "number",
             Log,
-            "its move number is 2, and the log says 5",
+            "its move number is 2, and the log records 5",
         ),
         (Form { degree: 3, doors: 2 }, "form", Log, "its degree is 3, but it has 2 doors"),
         (Aside { off: FRAC_PI_4 }, "aside", Motion, "the robot drove off 45 degrees from the door"),
@@ -107,7 +107,7 @@ fn each_cause_has_a_name_a_class_and_words() {
             Unfinished { unexplored: 3 },
             "unfinished",
             Chosen,
-            "the log says that the map is complete; 3 edge ends are unexplored",
+            "the log records that the map is complete; 3 edge ends are unexplored",
         ),
         (
             Map { algorithm: Folding },
@@ -120,7 +120,7 @@ fn each_cause_has_a_name_a_class_and_words() {
             Moves { made: 7, recorded: 8 },
             "moves",
             Log,
-            "the log says that 8 moves were made; it has 7",
+            "the log records that 8 moves were made; it has 7",
         ),
     ];
     for (cause, name, fault, words) in &table {

@@ -98,7 +98,7 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
     let (header, body) = read().ok_or("it ends after its chunk")?;
     let length = body.end;
     Ok((
-        match header.op().ok_or("it does not say what it is")? {
+        match header.op().ok_or("its type is missing")? {
             MESSAGE => {
                 let (connection, time) = message(header)?;
                 Record::Message { connection, time, bytes: body }
@@ -197,7 +197,7 @@ fn one(
 ) -> Result<Result<u8, &'static str>, LogError> {
     let header_bytes = window.get(at + 4, header_length.into()).map_err(unreadable(at))?;
     let header = Fields(header_bytes.unwrap_or_default());
-    let Some(op) = header.op() else { return Ok(Err("it does not say what it is")) };
+    let Some(op) = header.op() else { return Ok(Err("its type is missing")) };
     let found = match op {
         MESSAGE => match message(header) {
             Ok(message) => {
@@ -227,7 +227,7 @@ fn one(
             let compression = Compression::of_bag(compression).map_err(|cause| cause.at(at))?;
             let size = u64::from(size);
             if compression == Compression::None && size != body.end - body.start {
-                return Ok(Err("a chunk that is not compressed, and not as long as it says"));
+                return Ok(Err("an uncompressed chunk has another length than its header states"));
             }
             scan.sections.push(Section {
                 file: 0,

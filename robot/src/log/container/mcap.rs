@@ -72,7 +72,7 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
         CHANNEL => channel(content),
         _ => Some(Record::Other),
     };
-    Ok((record.ok_or("it is shorter than what it says")?, end))
+    Ok((record.ok_or("it is shorter than its length field")?, end))
 }
 
 /// Looks through an MCAP file.
@@ -133,7 +133,7 @@ fn one(
     listener: &mut Listener<'_>,
     total: &mut Option<u64>,
 ) -> io::Result<Result<(), LogErrorKind>> {
-    const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than what it says");
+    const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than its length field");
     let most = match op {
         MESSAGE => MESSAGE_HEAD as u64,
         SCHEMA | CHANNEL => u64::MAX,

@@ -1,6 +1,7 @@
 //! Errors in the definition of a message, with their lines.
 
 use thiserror::Error;
+use toposlam_model::counts::grouped;
 
 use super::{MOST_BYTES, MOST_DEPTH, MOST_FIELDS};
 
@@ -28,7 +29,7 @@ pub enum DefinitionErrorKind {
     #[error("there are two fields `{0}`")]
     TwoFields(String),
     /// A constant that is a list or a message.
-    #[error("a constant of the type `{0}` cannot be")]
+    #[error("the type `{0}` cannot be used for a constant")]
     ConstantType(String),
     /// A type that the text does not define.
     #[error("the type `{0}` is not defined")]
@@ -43,13 +44,13 @@ pub enum DefinitionErrorKind {
     #[error("a list of `{0}`, which has no fields")]
     ListOfNothing(String),
     /// Messages in messages in messages.
-    #[error("messages stand in one another more than {MOST_DEPTH} deep")]
+    #[error("messages are nested more than {MOST_DEPTH} levels deep")]
     TooDeep,
     /// More fields than any message has.
-    #[error("there are more than {MOST_FIELDS} fields")]
+    #[error("there are more than {} fields", grouped(MOST_FIELDS as u128))]
     TooManyFields,
     /// A longer text than any definition.
-    #[error("the definition is longer than {MOST_BYTES} bytes")]
+    #[error("the definition is longer than {} bytes", grouped(MOST_BYTES as u128))]
     TooLong,
 }
 

@@ -22,7 +22,7 @@ pub enum Dialect {
 
 /// The longest definition that is read, in bytes.
 pub const MOST_BYTES: usize = 1 << 20;
-/// How deep messages may stand in one another.
+/// How deep messages may be nested.
 pub const MOST_DEPTH: usize = 32;
 /// How many fields a message may have, those of the messages in it counted too; a list counts once.
 pub const MOST_FIELDS: usize = 1 << 16;

@@ -70,7 +70,7 @@ fn an_error_has_its_line() {
             "line 1 of the definition: `int32[x] a` is neither a field nor a constant",
         ),
         ("\nB b".into(), "line 2 of the definition: the type `B` is not defined"),
-        ("B B=1".into(), "line 1 of the definition: a constant of the type `B` cannot be"),
+        ("B B=1".into(), "line 1 of the definition: the type `B` cannot be used for a constant"),
         ("A a".into(), "line 1 of the definition: `A` is a part of itself"),
         (after("B b", "a/B\nA[] a"), "line 4 of the definition: `A` is a part of itself"),
         (after("B[] b", "a/B\n"), "line 1 of the definition: a list of `B`, which has no fields"),
@@ -101,7 +101,7 @@ fn a_message_is_neither_deep_nor_wide_without_end() {
     assert!(ros1(&chain(MOST_DEPTH - 2, one)).is_ok());
     assert!(ros1(&chain(MOST_DEPTH - 1, one)).unwrap_err().contains("more than 32 deep"));
     let two = |nth| format!("B{nth} x\nB{nth} y\n");
-    assert!(ros1(&chain(20, two)).unwrap_err().contains("more than 65536 fields"));
+    assert!(ros1(&chain(20, two)).unwrap_err().contains("more than 65,536 fields"));
     // The parts are deep already when they are used.
     let late = format!("B15 y\n{}", chain(MOST_DEPTH - 2, one));
     assert!(ros1(&late).is_ok());

@@ -51,7 +51,7 @@ scanner_params! {
     doors = 0.5, 0.0..=5.0;
     /// Pieces of furniture along the walls in 10 m of a corridor.
     furniture = 0.5, 0.0..=10.0;
-    /// People that walk to and fro, in 100 m of corridors.
+    /// People who walk back and forth, in 100 m of corridors.
     people = 1.0, 0.0..=20.0;
 }
 
@@ -62,7 +62,7 @@ pub enum ScannerParamsError {
     #[error("{0}")]
     Toml(String),
     /// A value is out of its range.
-    #[error("{name} = {value} is not from {least} to {greatest}")]
+    #[error("`{name}` is {value}; it must be from {least} to {greatest}")]
     OutOfRange {
         /// The parameter.
         name: &'static str,
@@ -132,8 +132,8 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_named() {
         let message = |text: &str| ScannerParams::from_toml(text).unwrap_err().to_string();
-        assert_eq!(message("noise = 3.0"), "noise = 3 is not from 0 to 0.2");
-        assert_eq!(message("dropouts = nan"), "dropouts = NaN is not from 0 to 0.5");
+        assert_eq!(message("noise = 3.0"), "`noise` is 3; it must be from 0 to 0.2");
+        assert_eq!(message("dropouts = nan"), "`dropouts` is NaN; it must be from 0 to 0.5");
         assert!(message("glas = 1.0").contains("unknown field `glas`"), "{}", message("glas = 1"));
         assert!(message("noise = \"much\"").contains("invalid type"));
     }

@@ -41,7 +41,7 @@ pub enum WallSurface {
     Black,
 }
 
-/// Somebody who walks to and fro in a corridor.
+/// Somebody who walks back and forth in a corridor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Person {
     corridor: Corridor,

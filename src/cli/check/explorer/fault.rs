@@ -61,19 +61,20 @@ pub(super) enum ExplorerFault {
     #[error("did not read a percept and answer it within {seconds} s")]
     TimedOut { seconds: f64 },
     /// The run takes too long.
-    #[error("did not end within {limit} moves")]
+    #[error("did not end within {}", counted(*limit as usize, "move"))]
     OutOfMoves { limit: u64 },
 }
 
 fn refusal(refused: &Refused) -> String {
     match refused {
         Refused::NoSuchDoor { door, degree } => {
-            format!("took door {} at a vertex with {degree} doors, 0 to {}", door.0, degree - 1)
+            let doors = counted(*degree as usize, "door");
+            format!("took door {} at a vertex with {doors}, 0 to {}", door.0, degree - 1)
         }
         Refused::NothingToPickUp => "picked up a marker where there is none".to_owned(),
         Refused::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
         Refused::NoWorldLeft => refused.to_string(),
-        Refused::OutOfMoves { bound } => format!("made more than {bound} moves"),
+        Refused::OutOfMoves { bound } => format!("made more than {}", counted(*bound as usize, "move")),
     }
 }
 

@@ -117,7 +117,7 @@ impl CheckArguments {
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
         for (edges, worlds) in sizes.by_ref() {
-            let progress = Progress::endless(&format!("{edges} edges"), "starts")?;
+            let progress = Progress::endless(&counted(edges, "edge"), "starts")?;
             let tally = sweep.run(&worlds, &progress);
             progress.finish();
             let tally = tally?;

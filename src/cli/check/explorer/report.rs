@@ -38,7 +38,7 @@ impl ExplorerSize<'_> {
 
     /// Its name for CI systems.
     pub(super) fn name(&self) -> String {
-        format!("{} edges, {}", self.edges, self.worlds())
+        format!("{}, {}", counted(self.edges, "edge"), self.worlds())
     }
 
     /// The result for CI systems.
