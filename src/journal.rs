@@ -48,8 +48,8 @@ pub struct FrameEntry {
     pub scene: String,
     /// What the robot did; `None` if a path ended.
     pub command: Option<Command>,
-    /// The annotated picture as a small JPEG file, if one was rendered.
-    pub picture: Option<Vec<u8>>,
+    /// The annotated image as a small JPEG file, if one was rendered.
+    pub image: Option<Vec<u8>>,
     /// The number of lines of the story before it.
     pub story: usize,
     /// The number of maps before it.

@@ -51,7 +51,7 @@ pub struct LogReport {
     /// The command that checks it, if it was written.
     pub command: Option<String>,
     /// The camera image at the divergence, or the last one before it, as a JPEG or PNG file.
-    pub picture: Option<Vec<u8>>,
+    pub image: Option<Vec<u8>>,
     /// What the events before the divergence, or all events, prove about the world; `None` if this is not
     /// known, or if the log determines its world.
     pub folded: Option<FoldedReport>,

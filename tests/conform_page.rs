@@ -98,7 +98,7 @@ fn conforming(log: &str, events: usize) -> LogReport {
         )],
         shorter: Vec::new(),
         command: None,
-        picture: None,
+        image: None,
         twin: None,
         folded: None,
         world: Some(world()),
@@ -159,7 +159,7 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
         .map(str::to_owned)
         .into(),
         command: Some("toposlam conform shorter.mcap --world worlds/shape-6.toml".to_owned()),
-        picture: Some(picture()),
+        image: Some(picture()),
         ..conforming(log, events)
     }
 }

@@ -166,7 +166,7 @@ impl Stage {
         };
         until("odometry", || stage.received("/odom"));
         match sensor {
-            "camera" => until("pictures", || stage.received("/camera")),
+            "camera" => until("images", || stage.received("/camera")),
             _ => until("scans", || stage.received("/scan 360")),
         }
         Some(stage)
@@ -233,7 +233,7 @@ impl Stage {
     }
 }
 
-/// The camera, and the colours of the building as they are learned from a few labelled pictures.
+/// The camera, and the colours of the building as they are learned from a few labelled images.
 fn see(folder: &Path) {
     let path = |name: &str| folder.join(name).display().to_string();
     for inside in ["images", "labels"] {

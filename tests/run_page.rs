@@ -11,8 +11,8 @@ use toposlam::{
 
 use crate::{browser, journal};
 
-/// A few small pictures.
-fn pictures() -> Vec<Vec<u8>> {
+/// A few small images.
+fn images() -> Vec<Vec<u8>> {
     let jpeg = |shade: u8| {
         let pixel = |x, y| image::Rgb([shade, 4 * x as u8, 5 * y as u8]);
         let mut file = Cursor::new(Vec::new());
@@ -50,14 +50,14 @@ fn the_page_of_a_run_follows_it_to_its_end() {
         fs::write(&file, page).unwrap();
         file
     };
-    let run = journal::journal("shape-6", pictures());
+    let run = journal::journal("shape-6", images());
     let mut wrong = run.clone();
     wrong.calls[3].conforms = false;
     let mut empty = run.clone();
     empty.rounds.clear();
     empty.calls.clear();
     let mut blind = run.clone();
-    blind.rounds.iter_mut().for_each(|round| round.picture = None);
+    blind.rounds.iter_mut().for_each(|round| round.image = None);
     let large = journal::journal("building-25", Vec::new());
     let pages =
         [("right", run), ("wrong", wrong), ("blind", blind), ("large", large), ("empty", empty)]

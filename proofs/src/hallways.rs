@@ -1,7 +1,7 @@
 //! A plan of hallways without images: the scenes that a robot gets there, correct or not, and the effect
 //! of its motions. Sections 3 and 4.
 //!
-//! Angles and distances are made of a few small numbers. A surprise (a picture that shows nothing, or is
+//! Angles and distances are made of a few small numbers. A surprise (an image that shows nothing, or is
 //! wrong; a motion that is not carried out) is a choice, paid from a [`Budget`]. So the number of cases is
 //! finite, and they are all cases with no more surprises than that.
 
@@ -41,9 +41,9 @@ const FREE: f64 = 0.5;
 const TIE: f64 = 1e-6;
 /// Places and directions that are nearer than this, in metres or radians, are the same.
 const NEAR: f64 = 0.1;
-/// Nearer to a junction than this, a picture of a hallway is a mistake,
+/// Nearer to a junction than this, an image of a hallway is a mistake,
 const SURELY: f64 = 0.7;
-/// and farther than this, a picture of a junction.
+/// and farther than this, an image of a junction.
 const HARDLY: f64 = 1.6;
 
 /// The driver: Algorithm 2, or a broken variant of it.
@@ -139,15 +139,15 @@ impl PathJunction {
 pub struct Budget {
     /// In all.
     pub surprises: u8,
-    /// Among these, pictures that are wrong,
+    /// Among these, images that are wrong,
     pub mistakes: u8,
     /// and motions of which the half is carried out, or nothing.
     pub failures: u8,
 }
 
-/// What a picture showed of the next junction, or of the one at which the robot stands.
+/// What an image showed of the next junction, or of the one at which the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureEvidence {
+pub enum ImageEvidence {
     /// No shape.
     Nothing,
     /// The shape of the junction that is there.
@@ -219,8 +219,8 @@ impl HallwayDrive {
         surprise
     }
 
-    /// The scene of a picture, and its evidence.
-    pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, PictureEvidence) {
+    /// The scene of an image, and its evidence.
+    pub fn image(&mut self, choose: &mut impl Choose) -> (Scene, ImageEvidence) {
         let junction = *self.nearest();
         let distance = junction.distance(&self.robot);
         let (place, evidence) = if distance <= self.sight {
@@ -229,7 +229,7 @@ impl HallwayDrive {
             self.in_hallway(choose, junction, distance)
         };
         choose
-            .show(|| Exhibit::Value { name: "picture", value: format!("{evidence:?}: {place:?}") });
+            .show(|| Exhibit::Value { name: "image", value: format!("{evidence:?}: {place:?}") });
         (Scene { place, marker: None }, evidence)
     }
 
@@ -238,22 +238,22 @@ impl HallwayDrive {
         choose: &mut impl Choose,
         junction: PathJunction,
         distance: f64,
-    ) -> (Place, PictureEvidence) {
+    ) -> (Place, ImageEvidence) {
         let mistakes = if self.budget.mistakes == 0 { 0 } else { FORMS.len() as u8 - 1 };
         let hallway = u8::from(distance > SURELY || mistakes > 0);
         match self.surprise(choose, 1 + hallway + mistakes) {
-            0 => (Place::Junction(junction.seen(&self.robot)), PictureEvidence::Truth),
-            1 => (Place::Unknown(Reason::NothingFits), PictureEvidence::Nothing),
+            0 => (Place::Junction(junction.seen(&self.robot)), ImageEvidence::Truth),
+            1 => (Place::Unknown(Reason::NothingFits), ImageEvidence::Nothing),
             2 => {
                 self.budget.mistakes -= u8::from(distance <= SURELY);
-                (Place::Hallway(self.hallway(HallwayStatus::Clear)), PictureEvidence::Nothing)
+                (Place::Hallway(self.hallway(HallwayStatus::Clear)), ImageEvidence::Nothing)
             }
             other => {
                 self.budget.mistakes -= 1;
                 let mut others = FORMS.into_iter().filter(|&form| form != junction.form);
                 let form = others.nth(usize::from(other) - 3).unwrap_or(FORMS[0]);
                 let mistaken = PathJunction { form, ..junction };
-                (Place::Junction(mistaken.seen(&self.robot)), PictureEvidence::Mistake(form))
+                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(form))
             }
         }
     }
@@ -263,17 +263,17 @@ impl HallwayDrive {
         choose: &mut impl Choose,
         junction: PathJunction,
         distance: f64,
-    ) -> (Place, PictureEvidence) {
+    ) -> (Place, ImageEvidence) {
         let mistakes = if self.budget.mistakes == 0 { 0 } else { 2 * FORMS.len() as u8 };
         let near = u8::from(distance <= HARDLY);
         match self.surprise(choose, 2 + near + mistakes) {
-            0 => (Place::Hallway(self.hallway(HallwayStatus::Clear)), PictureEvidence::Nothing),
-            1 => (Place::Unknown(Reason::NothingFits), PictureEvidence::Nothing),
+            0 => (Place::Hallway(self.hallway(HallwayStatus::Clear)), ImageEvidence::Nothing),
+            1 => (Place::Unknown(Reason::NothingFits), ImageEvidence::Nothing),
             2 => {
                 let unclear = HallwayStatus::Unclear(Unclear::ClustersAhead);
-                (Place::Hallway(self.hallway(unclear)), PictureEvidence::Nothing)
+                (Place::Hallway(self.hallway(unclear)), ImageEvidence::Nothing)
             }
-            3 if near > 0 => (Place::Junction(junction.seen(&self.robot)), PictureEvidence::Truth),
+            3 if near > 0 => (Place::Junction(junction.seen(&self.robot)), ImageEvidence::Truth),
             other => {
                 self.budget.mistakes -= 1;
                 let other = usize::from(other - 3 - near);
@@ -284,7 +284,7 @@ impl HallwayDrive {
                 let there = Odometry { heading: onwards, ..self.robot }.moved(0.0, ahead);
                 let entry = wrapped(onwards + PI);
                 let mistaken = PathJunction { form, at: there.position, entry };
-                (Place::Junction(mistaken.seen(&self.robot)), PictureEvidence::Mistake(form))
+                (Place::Junction(mistaken.seen(&self.robot)), ImageEvidence::Mistake(form))
             }
         }
     }

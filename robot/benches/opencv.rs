@@ -47,8 +47,8 @@ fn main() {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
     let pose = Pose { position: [-0.1, 3.6], heading: 1.7 };
-    let picture = render(&rig, &building, pose, &effects, 7);
-    picture.save(folder.join("picture.png")).unwrap();
+    let image = render(&rig, &building, pose, &effects, 7);
+    image.save(folder.join("image.png")).unwrap();
     let mask = label_mask(&rig, &labels(&rig, &building, pose, &effects));
     mask.save(folder.join("labels.png")).unwrap();
     write_maps(&camera, &folder);
@@ -64,10 +64,10 @@ fn main() {
     let mut view = GroundView::unseen();
     let mut ours = || {
         let begun = Instant::now();
-        let gain = colours.gain(&ring.colours(&picture)).unwrap();
+        let gain = colours.gain(&ring.colours(&image)).unwrap();
         let lit = table.lit(gain);
         let lighted = Instant::now();
-        unwrapping.view(&picture, &lit, &mut view);
+        unwrapping.view(&image, &lit, &mut view);
         let classified = Instant::now();
         black_box(clusters(&bearings.look(&view), &params.cluster));
         let done = Instant::now();

@@ -31,7 +31,7 @@ const POSE: Pose = Pose { position: [0.3, 4.2], heading: 1.2 };
     (640, "laboratory"), (640, "tiles"), (640, "vinyl"), (640, "school"),
     (1280, "laboratory"), (1280, "tiles"), (1280, "vinyl"), (1280, "school"),
 ], sample_count = 20, sample_size = 1)]
-fn picture(bencher: Bencher, (width, look): (u32, &str)) {
+fn image(bencher: Bencher, (width, look): (u32, &str)) {
     let mut effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     effects.blur = 1.1;
     let plan = plan("shape-8");

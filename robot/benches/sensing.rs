@@ -42,7 +42,7 @@ const PLACES: [(&str, Pose); 3] = [
 struct Case {
     camera: Camera,
     colours: ColourModel,
-    pictures: [RgbImage; 3],
+    images: [RgbImage; 3],
 }
 
 fn case(width: u32) -> Case {
@@ -53,8 +53,8 @@ fn case(width: u32) -> Case {
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
-    let pictures = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));
-    Case { camera, colours, pictures }
+    let images = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));
+    Case { camera, colours, images }
 }
 
 /// The whole of sensing, from the decoded image to the scene.
@@ -62,7 +62,7 @@ fn case(width: u32) -> Case {
 fn whole<const PLACE: usize>(bencher: Bencher, width: u32) {
     let case = case(width);
     let mut sensor = Sensor::new(&case.camera, &case.colours);
-    bencher.bench_local(|| sensor.sense(&case.pictures[PLACE]).unwrap());
+    bencher.bench_local(|| sensor.sense(&case.images[PLACE]).unwrap());
 }
 
 /// The light of an image, and its table.
@@ -71,7 +71,7 @@ fn step_1_light(bencher: Bencher, width: u32) {
     let case = case(width);
     let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
     bencher.bench_local(|| {
-        let gain = case.colours.gain(&ring.colours(&case.pictures[0])).unwrap();
+        let gain = case.colours.gain(&ring.colours(&case.images[0])).unwrap();
         table.lit(gain).class([100; 3])
     });
 }
@@ -82,18 +82,18 @@ fn step_2_ground_view(bencher: Bencher, width: u32) {
     let case = case(width);
     let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
     let unwrapping = Unwrapping::new(&case.camera);
-    let gain = case.colours.gain(&ring.colours(&case.pictures[0])).unwrap();
+    let gain = case.colours.gain(&ring.colours(&case.images[0])).unwrap();
     let lit = table.lit(gain);
     let mut view = GroundView::unseen();
-    bencher.bench_local(|| unwrapping.view(&case.pictures[0], &lit, &mut view));
+    bencher.bench_local(|| unwrapping.view(&case.images[0], &lit, &mut view));
 }
 
 /// A ground view for the following stages.
 fn view(case: &Case, place: usize) -> GroundView {
     let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
-    let gain = case.colours.gain(&ring.colours(&case.pictures[place])).unwrap();
+    let gain = case.colours.gain(&ring.colours(&case.images[place])).unwrap();
     let mut view = GroundView::unseen();
-    Unwrapping::new(&case.camera).view(&case.pictures[place], &table.lit(gain), &mut view);
+    Unwrapping::new(&case.camera).view(&case.images[place], &table.lit(gain), &mut view);
     view
 }
 

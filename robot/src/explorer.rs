@@ -78,7 +78,7 @@ pub struct RobotExplorer<R, S, O = ()> {
 /// Why a frame cannot be used.
 #[derive(Debug, Error)]
 enum Unusable {
-    #[error("the camera gives no picture")]
+    #[error("the camera gives no image")]
     Missing,
     #[error("it is older than the end of the last motion")]
     Stale,
@@ -296,15 +296,15 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             }
         }
         let (moves, door, cause) = (self.last_move, self.door, last.to_string());
-        Err(ExplorerError::NoPicture { moves, door, pictures: RETAKES, cause })
+        Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause })
     }
 
     /// A frame that was taken since the robot last moved, and its scene.
     fn frame(&mut self) -> Result<(Frame, Scene), Unusable> {
         let at = self.robot.odometry();
         let frame = self.robot.capture().map_err(|error| match error {
-            RobotError::NoPicture => Unusable::Missing,
-            RobotError::StalePicture { .. } => Unusable::Stale,
+            RobotError::NoImage => Unusable::Missing,
+            RobotError::StaleImage { .. } => Unusable::Stale,
             error => Unusable::Robot(error),
         })?;
         if frame.taken < at.time {
@@ -433,14 +433,14 @@ mod tests {
 
     /// A robot at the turning point of an L.
     struct Still {
-        /// When each picture is taken; `None` if it does not come. The last repeats.
-        pictures: Vec<Option<f64>>,
+        /// When each image is taken; `None` if it does not come. The last repeats.
+        images: Vec<Option<f64>>,
         asked: usize,
     }
 
     impl Robot for Still {
         fn capture(&mut self) -> Result<Frame, RobotError> {
-            let taken = self.pictures[self.asked.min(self.pictures.len() - 1)];
+            let taken = self.images[self.asked.min(self.images.len() - 1)];
             self.asked += 1;
             let line = |direction| CentreLine { through: [0.0; 2], direction };
             let doors = vec![line(PI), line(FRAC_PI_2)];
@@ -449,7 +449,7 @@ mod tests {
             let (id, scene) = (self.asked as u64, Some(scene));
             taken
                 .map(|taken| Frame { id, taken, scene, ..Frame::default() })
-                .ok_or(RobotError::NoPicture)
+                .ok_or(RobotError::NoImage)
         }
 
         fn turn(&mut self, _: f64) -> Result<(), RobotError> {
@@ -465,8 +465,8 @@ mod tests {
         }
     }
 
-    fn percept(pictures: &[Option<f64>]) -> (Result<Percept, ExplorerError>, usize) {
-        let robot = Still { pictures: pictures.to_vec(), asked: 0 };
+    fn percept(images: &[Option<f64>]) -> (Result<Percept, ExplorerError>, usize) {
+        let robot = Still { images: images.to_vec(), asked: 0 };
         let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         let percept = explorer.percept();
         (percept, explorer.robot().asked)
@@ -476,9 +476,9 @@ mod tests {
     // paper: alg2.4
     // paper: alg2.5
     #[test]
-    fn a_picture_from_before_the_end_of_the_last_motion_is_not_used() {
+    fn an_image_from_before_the_end_of_the_last_motion_is_not_used() {
         let (percept, asked) = percept(&[Some(1.9), Some(1.9), Some(2.0), Some(2.5)]);
-        // Two pictures decide the start, and there the marker lies along the entry.
+        // Two images decide the start, and there the marker lies along the entry.
         assert_eq!(percept.unwrap().to_string(), "2 doors, marker along door 0");
         assert_eq!(asked, 4);
     }
@@ -486,7 +486,7 @@ mod tests {
     /// It may have turned while it steered past the obstacle.
     #[test]
     fn the_way_back_from_an_obstacle_is_along_the_hallway_whatever_the_heading() {
-        let robot = Still { pictures: vec![Some(3.0)], asked: 0 };
+        let robot = Still { images: vec![Some(3.0)], asked: 0 };
         let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         explorer.stand_at_obstacle();
         assert_eq!(explorer.place, Some(super::Place::Obstacle { back: PI }));
@@ -497,11 +497,11 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_picture_is_retaken_at_most_5_times() {
+    fn a_missing_image_is_retaken_at_most_5_times() {
         assert!(percept(&[None, None, None, None, None, Some(3.0)]).0.is_ok());
         let (percept, asked) = percept(&[None]);
         let error = percept.unwrap_err().to_string();
-        let cause = "6 unusable pictures in a row: the camera gives no picture";
+        let cause = "6 unusable images in a row: the camera gives no image";
         assert_eq!((error, asked), (format!("on move 0, at the start: {cause}"), 6));
     }
 }

@@ -64,7 +64,7 @@ pub struct RecordedRobot<'a> {
 impl RecordedRobot<'_> {
     /// The number of frames that were taken.
     #[must_use]
-    pub fn pictures(&self) -> usize {
+    pub fn frames(&self) -> usize {
         self.next
     }
 
@@ -77,7 +77,7 @@ impl RecordedRobot<'_> {
             None => "the end".to_owned(),
             Some(_) if !self.turned => format!("a turn by {:.4} rad", self.last().turn),
             Some(_) if !self.moved => format!("{:.4} m ahead", self.last().forward),
-            Some(_) => "a picture".to_owned(),
+            Some(_) => "an image".to_owned(),
         };
         RobotError::NotRecorded { entry: self.next + 1, recorded, asked }
     }
@@ -87,7 +87,7 @@ impl Robot for RecordedRobot<'_> {
     fn capture(&mut self) -> Result<Frame, RobotError> {
         let round = self.rounds.get(self.next).filter(|_| self.turned && self.moved);
         let Some((frame, command)) = round else {
-            return Err(self.not_recorded("a picture".to_owned()));
+            return Err(self.not_recorded("an image".to_owned()));
         };
         self.next += 1;
         self.turned = command.turn == 0.0;
@@ -145,7 +145,7 @@ mod tests {
         let reckoned = robot.odometry();
         assert_eq!((reckoned.time, reckoned.odometry.position[0]), (3.0, 3.0));
         assert_eq!(robot.capture().unwrap().id, 2);
-        assert_eq!(robot.pictures(), 2);
+        assert_eq!(robot.frames(), 2);
     }
 
     #[test]
@@ -159,7 +159,7 @@ mod tests {
         let is = "entry 2 of the recording is a turn by 0.5000 rad, but the robot is asked for ";
         assert_eq!(error(|robot| robot.turn(0.4)), format!("{is}a turn by 0.4000 rad"));
         assert_eq!(error(|robot| robot.forward(0.25)), format!("{is}0.2500 m ahead"));
-        assert_eq!(error(|robot| robot.capture().map(|_| ())), format!("{is}a picture"));
+        assert_eq!(error(|robot| robot.capture().map(|_| ())), format!("{is}an image"));
         let recording = recording();
         let mut robot = recording.robot();
         robot.capture().unwrap();
@@ -169,7 +169,7 @@ mod tests {
         let past = robot.capture().unwrap_err().to_string();
         assert_eq!(
             past,
-            "entry 3 of the recording is the end, but the robot is asked for a picture"
+            "entry 3 of the recording is the end, but the robot is asked for an image"
         );
     }
 }

@@ -63,13 +63,15 @@ pub struct Replay {
     pub comparison: ReplayComparison,
     /// How long the recorded run took, in seconds.
     pub recorded_seconds: f64,
+    /// The recorded frames that were used: images, scenes, or scenes of laser scans.
+    pub frames: Role,
 }
 
 /// How a replay compares with the recorded run.
 #[derive(Clone, Debug, Default)]
 pub struct ReplayComparison {
     /// The number of frames that were used.
-    pub pictures: u64,
+    pub frames: u64,
     /// Scenes that were reproduced.
     pub scenes: Agreement,
     /// Commands of Algorithm 2.
@@ -88,8 +90,8 @@ pub struct ReplayComparison {
 /// A result that differs from the recorded one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayDifference {
-    /// The number of the picture, counted from 1.
-    pub picture: u64,
+    /// The number of the frame, counted from 1.
+    pub frame: u64,
     /// When it was taken, in seconds since the first message of the log.
     pub time: f64,
     /// What differs.
@@ -117,7 +119,7 @@ pub enum ReplayError {
     NoSensor,
     /// There is nothing to replay.
     #[error(
-        "it has neither pictures nor scenes together with odometry and the commands of Algorithm 2; \
+        "it has neither images nor scenes together with odometry and the commands of Algorithm 2; \
          check the run of another robot with `toposlam conform`"
     )]
     Nothing,
@@ -126,7 +128,7 @@ pub enum ReplayError {
 /// Runs the off-line version on a log.
 ///
 /// # Errors
-/// Returns an error if the log cannot be read or has nothing to replay, or if its first picture is not of
+/// Returns an error if the log cannot be read or has nothing to replay, or if its first image is not of
 /// the calibrated camera's size.
 // paper: exp.off-line
 pub fn replay(
@@ -173,10 +175,11 @@ pub fn replay(
     let recorded = robot.recorded.map.filter(|_| ended);
     comparison.map = recorded.map(|recorded| recorded.same_map(&map));
     let length = log.end().unwrap_or(0).saturating_sub(start);
-    Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, mapping })
+    let frames = if frames == Role::Scene && has(Role::Scan) { Role::Scan } else { frames };
+    Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, mapping, frames })
 }
 
-/// Checks that a picture has the size of the calibrated camera's. A damaged picture has none.
+/// Checks that an image has the size of the calibrated camera's. A damaged image has none.
 fn check_size(sensor: &Sensor, image: &CameraImage) -> Result<(), WrongSize> {
     let Ok(pixels) = image.pixels() else { return Ok(()) };
     let (found, expected) = ([pixels.width(), pixels.height()], sensor.camera().image);
@@ -288,7 +291,7 @@ impl RecordedResults {
         for event in results {
             match &event.kind {
                 EventKind::Frame(frame) => {
-                    to.pictures += 1;
+                    to.frames += 1;
                     (id, time) = (frame.id, frame.taken);
                     if let (Some(recorded), Some(found)) = (self.scenes.get(&id), &frame.scene) {
                         let same = recorded == found;
@@ -341,10 +344,10 @@ impl ReplayComparison {
         recorded: &impl fmt::Debug,
         found: &impl fmt::Debug,
     ) {
-        let picture = self.pictures;
+        let frame = self.frames;
         if !same && self.difference.is_none() {
             let (recorded, found) = (format!("{recorded:?}"), format!("{found:?}"));
-            self.difference = Some(ReplayDifference { picture, time, what, recorded, found });
+            self.difference = Some(ReplayDifference { frame, time, what, recorded, found });
         }
     }
 }

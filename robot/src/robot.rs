@@ -10,7 +10,7 @@ pub trait Robot {
     /// Takes a frame.
     ///
     /// # Errors
-    /// Returns [`RobotError::NoPicture`] or [`RobotError::StalePicture`] if the next attempt may succeed,
+    /// Returns [`RobotError::NoImage`] or [`RobotError::StaleImage`] if the next attempt may succeed,
     /// another error if the robot cannot go on.
     // paper: hardware.capture
     fn capture(&mut self) -> Result<Frame, RobotError>;
@@ -65,11 +65,11 @@ pub struct Reckoned {
 /// Why a robot fails.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RobotError {
-    /// The camera gave no picture; the next may come.
-    #[error("the camera gives no picture")]
-    NoPicture,
-    /// There are no more pictures in the log.
-    #[error("the log has no more pictures")]
+    /// The camera gave no image; the next may come.
+    #[error("the camera gives no image")]
+    NoImage,
+    /// There are no more images in the log.
+    #[error("the log has no more images")]
     EndOfLog,
     /// A recorded robot got a command that is not the recorded one.
     #[error("entry {entry} of the recording is {recorded}, but the robot is asked for {asked}")]
@@ -105,9 +105,9 @@ pub enum RobotError {
         /// The topic.
         topic: String,
     },
-    /// All pictures were taken before the robot stood still.
-    #[error("the last picture is {behind:.3} s older than the end of the last motion")]
-    StalePicture {
+    /// All images were taken before the robot stood still.
+    #[error("the last image is {behind:.3} s older than the end of the last motion")]
+    StaleImage {
         /// By how much, in seconds.
         behind: f64,
     },

@@ -49,8 +49,8 @@ pub struct Run<'p> {
     pub explore_moves: u64,
     /// The simulated time, in seconds.
     pub seconds: f64,
-    /// The number of pictures that the robot asked for.
-    pub pictures: u64,
+    /// The number of images or scans that the robot asked for.
+    pub frames: u64,
 }
 
 /// How a run ended.
@@ -152,7 +152,7 @@ pub fn run<'p>(
         }
     });
     let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
-    let (seconds, pictures) = (robot.time(), robot.pictures());
+    let (seconds, frames) = (robot.time(), robot.frames());
     Run {
         method,
         mapping,
@@ -164,7 +164,7 @@ pub fn run<'p>(
         way_to_marker,
         explore_moves,
         seconds,
-        pictures,
+        frames,
     }
 }
 
@@ -288,7 +288,7 @@ mod tests {
                 &mut recording,
                 &RunSettings::new(algorithm, DARTS),
             );
-            assert_eq!(recording.len() as u64, run.pictures);
+            assert_eq!(recording.len() as u64, run.frames);
             let again =
                 offline(&recording, NoSensor, (), &RunSettings::new(algorithm, DARTS)).unwrap();
             assert_eq!(again.map(), run.mapping.map());
@@ -309,7 +309,7 @@ mod tests {
                 .to_string()
         };
         for (kind, why) in [
-            (FaultKind::LightsOut, "7 pictures in a row do not show where the robot is"),
+            (FaultKind::LightsOut, "7 images in a row do not show where the robot is"),
             (FaultKind::Blocked, "3 commands in a row were not carried out"),
         ] {
             setting.faults = vec![RobotFault::at(kind, 20)];
@@ -321,7 +321,7 @@ mod tests {
         }
         setting.faults =
             vec![RobotFault { lasting: 100, ..RobotFault::at(FaultKind::Dropped, 20) }];
-        assert!(outcome(&setting).contains("the camera gives no picture"));
+        assert!(outcome(&setting).contains("the camera gives no image"));
         for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
             setting.faults = vec![RobotFault::at(kind, 20)];
             assert_eq!(outcome(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
@@ -373,11 +373,11 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let settings = RunSettings::new(recovering(), DARTS);
         let (mut right, mut gave_up) = (0, 0);
-        for picture in 2..=100 {
-            let mut config = SimulationConfig::at_start(plan.clone(), facing, picture);
-            config.faults = vec![RobotFault::at(FaultKind::Blocked, picture)];
-            if picture.is_multiple_of(2) {
-                config.faults.push(RobotFault::at(FaultKind::LightsOut, picture + 3));
+        for frame in 2..=100 {
+            let mut config = SimulationConfig::at_start(plan.clone(), facing, frame);
+            config.faults = vec![RobotFault::at(FaultKind::Blocked, frame)];
+            if frame.is_multiple_of(2) {
+                config.faults.push(RobotFault::at(FaultKind::LightsOut, frame + 3));
             }
             let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
             match run.outcome() {
@@ -385,9 +385,9 @@ mod tests {
                 RunOutcome::GaveUp(error) => {
                     gave_up += 1;
                     let way = run.way_to_marker;
-                    assert_ne!(way, WayToMarker::Free, "blocked at picture {picture}: {error}");
+                    assert_ne!(way, WayToMarker::Free, "blocked at frame {frame}: {error}");
                 }
-                RunOutcome::Wrong(why) => panic!("blocked at picture {picture}: {why}"),
+                RunOutcome::Wrong(why) => panic!("blocked at frame {frame}: {why}"),
             }
         }
         assert!(right > 2 * gave_up, "{right} right, {gave_up} given up");

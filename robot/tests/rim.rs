@@ -84,7 +84,7 @@ fn found(seeds: std::ops::Range<u64>, size: [u32; 2], settings: &[(&str, f64)]) 
     [shown.clone().count(), shown.filter(|(_, error)| error.is_some()).count()]
 }
 
-/// The picture of a real robot: the image crops the mirror on three sides.
+/// The image of a real robot: the image crops the mirror on three sides.
 const CROPPED: [(&str, f64); 2] = [("zoom", 1.45), ("off-centre", -0.03)];
 
 /// All that clutters it.

@@ -186,7 +186,7 @@ impl OpenLog {
     }
 
     /// The last image up to a message, with its scene drawn over it if it is known.
-    pub(super) fn picture(&self, last_message: EventId) -> Option<Vec<u8>> {
+    pub(super) fn image(&self, last_message: EventId) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
         let mapping = match annotated {
             Some(_) => TopicMap::of(Role::Image, ANNOTATED),
@@ -201,12 +201,12 @@ impl OpenLog {
             }
         }
         let Some(Content::Event(EventKind::Frame(frame))) = last else { return None };
-        let picture = frame.image?;
-        if let (Some(file), true) = (picture.file(), annotated.is_some() || self.sensing.is_none())
+        let taken = frame.image?;
+        if let (Some(file), true) = (taken.file(), annotated.is_some() || self.sensing.is_none())
         {
             return Some(file.to_vec());
         }
-        let image = picture.pixels().ok()?;
+        let image = taken.pixels().ok()?;
         let drawn = match (&self.sensing, self.sensor()) {
             (Some((camera, _)), Some(mut sensor)) => {
                 annotate::over(image, camera, &sensor.sense(image).ok()?)

@@ -14,13 +14,14 @@ const fn renamed(verb: &'static [&'static str], old: &'static str, new: &'static
     Renamed { verb, old, new, action: ArgAction::Set }
 }
 
-const RENAMED: [Renamed; 6] = [
+const RENAMED: [Renamed; 7] = [
     renamed(&["counterexample"], "edges", "--max-edges"),
     renamed(&["counterexample"], "out", "--out-dir"),
     renamed(&["conform"], "edges", "--max-edges"),
     renamed(&["calibrate"], "start", "--initial"),
     Renamed { action: ArgAction::SetTrue, ..renamed(&["render"], "marker", "--with-marker") },
     renamed(&["evaluate", "vision"], "out", "--out-dir"),
+    renamed(&["simulate"], "picture-time", "--image-time"),
 ];
 
 /// The command line with the old names.

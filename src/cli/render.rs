@@ -119,7 +119,7 @@ fn parse_pose(text: &str) -> Result<Pose, String> {
 fn after_help() -> String {
     let mut text = b"Effects, with the range from which each is drawn:\n".to_vec();
     for (scope, title) in
-        [(EffectScope::Building, "Of the building:"), (EffectScope::Picture, "Of the image:")]
+        [(EffectScope::Building, "Of the building:"), (EffectScope::Image, "Of the image:")]
     {
         // Writing to memory does not fail.
         let _ = writeln!(text, "  {title}");

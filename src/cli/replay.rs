@@ -8,6 +8,7 @@ use toposlam_model::{
     mapping::{FACING, MappingError},
 };
 use toposlam_robot::{
+    log::topic_map::Role,
     replay::{Agreement, Replay, ReplayDifference, ReplayError, replay},
     run_settings::{RecordedSettings, RunSettings},
 };
@@ -139,7 +140,7 @@ impl ReplayArguments {
         let both = |agreement: Agreement| [agreement.agree, agreement.of];
         Line {
             log: self.log.display().to_string(),
-            pictures: replay.comparison.pictures,
+            pictures: replay.comparison.frames,
             moves: replay.mapping.moves(),
             vertices: map.vertex_count(),
             edges: edges(replay),
@@ -151,7 +152,7 @@ impl ReplayArguments {
             doors: both(replay.comparison.doors),
             map: replay.comparison.map,
             difference: replay.comparison.difference.clone().map(|difference| DifferenceJson {
-                picture: difference.picture,
+                picture: difference.frame,
                 time: difference.time,
                 what: difference.what,
                 recorded: difference.recorded,
@@ -168,7 +169,12 @@ impl ReplayArguments {
         let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
         let comparison = &replay.comparison;
         writeln!(out, "{}: the map is {whole}", self.log.display())?;
-        writeln!(out, "  pictures    {}", comparison.pictures)?;
+        let (frame, frames) = match replay.frames {
+            Role::Image => ("image", "images"),
+            Role::Scan => ("scan", "scans"),
+            _ => ("scene", "scenes"),
+        };
+        writeln!(out, "  {frames:<11} {}", grouped(comparison.frames.into()))?;
         writeln!(out, "  moves       {}", grouped(replay.mapping.moves().into()))?;
         let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
         writeln!(out, "  map         {vertices}, {edges}")?;
@@ -193,9 +199,10 @@ impl ReplayArguments {
             writeln!(out, "  map         {}", if same { "yes" } else { "no" })?;
         }
         if let Some(difference) = &comparison.difference {
-            let ReplayDifference { picture, what, recorded, found, .. } = difference;
+            let ReplayDifference { frame: number, what, recorded, found, .. } = difference;
+            let number = grouped((*number).into());
             let time = since_start(difference.time);
-            writeln!(out, "First difference: the {what} at picture {picture}, {time}")?;
+            writeln!(out, "First difference: the {what} at {frame} {number}, {time}")?;
             print_hanging(out, "  recorded    ", recorded)?;
             print_hanging(out, "  replayed    ", found)?;
         }

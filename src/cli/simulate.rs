@@ -27,7 +27,7 @@ use toposlam_robot::{
     run::{offline, run},
     run_settings::RunSettings,
     simulator::{
-        Effects, FAULTS, FOR_EVER, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig,
+        Effects, FAULTS, FOR_EVER, IMAGE_TIME, RobotFault, SimulatedRobot, SimulationConfig,
     },
 };
 use toposlam_vision::camera::Camera;
@@ -49,7 +49,7 @@ use crate::{
     story::{Story, StoryDetail},
 };
 use result::SimulationResult;
-use run_capture::{Pictures, RunCapture};
+use run_capture::{KeptImages, RunCapture};
 
 /// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
 ///
@@ -106,11 +106,11 @@ pub(super) struct SimulateArguments {
     /// Noise of wheels and odometry, as a multiple of the default
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
     noise: f64,
-    /// Time to take a picture, in seconds
-    #[arg(long, default_value_t = PICTURE_TIME, value_name = "SECONDS", value_parser = seconds)]
-    picture_time: f64,
-    /// Inject a fault at a picture; may be repeated
-    #[arg(long, value_name = "NAME@PICTURE[:COUNT]")]
+    /// Time to take an image, in seconds
+    #[arg(long, default_value_t = IMAGE_TIME, value_name = "SECONDS", value_parser = seconds)]
+    image_time: f64,
+    /// Inject a fault when the robot takes this image (repeatable)
+    #[arg(long, value_name = "NAME@IMAGE[:COUNT]")]
     fault: Vec<RobotFault>,
     /// Write a log of the run, .mcap
     #[arg(long, value_name = "FILE")]
@@ -188,7 +188,7 @@ impl SimulateArguments {
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
         let setting = SimulationConfig {
             noise: self.noise,
-            picture_time: self.picture_time,
+            image_time: self.image_time,
             keeps_track: self.log.is_some(),
             faults: self.fault.clone(),
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
@@ -202,7 +202,7 @@ impl SimulateArguments {
             }
             let sensor = RobotSensor::Laser(Box::default());
             let log = self.recorder(&simulation, None)?;
-            return self.simulate(&simulation, robot, Some(sensor), Pictures::None, log, out);
+            return self.simulate(&simulation, robot, Some(sensor), KeptImages::None, log, out);
         }
         let equipped = |robot: SimulatedRobot| match &scanner {
             Some(scanner) => robot.with_scanner(simulation.setting.scanner(scanner)),
@@ -211,7 +211,7 @@ impl SimulateArguments {
         if self.by_scene {
             let robot = equipped(simulation.setting.by_scene());
             let log = self.recorder(&simulation, None)?;
-            return self.simulate(&simulation, robot, None, Pictures::None, log, out);
+            return self.simulate(&simulation, robot, None, KeptImages::None, log, out);
         }
         let effects = self.appearance.effects(self.seed)?;
         let camera = camera_with(&effects, &self.camera()?)?;
@@ -225,12 +225,12 @@ impl SimulateArguments {
         let sensor = RobotSensor::Camera(Box::new(eyes.sensor(self.appearance.look)));
         let log =
             self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
-        let pictures = match (&self.frames, &self.html) {
-            (Some(folder), _) => Pictures::Files { camera, folder: folder.clone() },
-            (None, Some(_)) => Pictures::Small { camera },
-            (None, None) => Pictures::None,
+        let images = match (&self.frames, &self.html) {
+            (Some(folder), _) => KeptImages::Files { camera, folder: folder.clone() },
+            (None, Some(_)) => KeptImages::Small { camera },
+            (None, None) => KeptImages::None,
         };
-        self.simulate(&simulation, robot, Some(sensor), pictures, log, out)
+        self.simulate(&simulation, robot, Some(sensor), images, log, out)
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
@@ -286,26 +286,35 @@ impl SimulateArguments {
         })
     }
 
+    /// What the robot takes before each command.
+    fn frame_kind(&self) -> &'static str {
+        match self.sensor {
+            SensorChoice::Laser => "scans",
+            _ if self.by_scene => "scenes",
+            _ => "images",
+        }
+    }
+
     /// Runs the simulation, prints its result and writes its files.
     fn simulate(
         &self,
         simulation: &Simulation,
         robot: SimulatedRobot,
         sensor: Option<RobotSensor>,
-        pictures: Pictures,
+        images: KeptImages,
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let Simulation { world, plan, facing, settings, .. } = simulation;
         let facing = *facing;
-        let progress = Progress::endless("exploring", "pictures")?;
+        let progress = Progress::endless("exploring", self.frame_kind())?;
         // On a terminal the story shows how far the run is.
         let hidden = !self.json && io::stdout().is_terminal();
         let progress = if hidden { progress.hidden() } else { progress };
         let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = Story::new(StoryLines::new(terminal), world, facing, detail);
-        let mut capture = RunCapture::new(story, progress, pictures);
+        let mut capture = RunCapture::new(story, progress, images);
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
         let run = run(plan, facing, robot, sensor.clone(), observer, settings);
@@ -326,9 +335,9 @@ impl SimulateArguments {
                 _ if self.by_scene => FalsePercepts::BY_SCENE,
                 _ => FalsePercepts::BY_IMAGE,
             },
-            frames: if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" },
+            frame_kind: self.frame_kind(),
             run: &run,
-            missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),
+            missed: self.fault.iter().filter(|fault| fault.frame > run.frames).collect(),
             replayed: replayed.ok(),
             compute_seconds,
             wall_seconds: simulation.begun.elapsed().as_secs_f64(),
@@ -372,7 +381,7 @@ impl Simulation {
     }
 }
 
-/// Parses the time of a picture.
+/// Parses the time of an image.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| (0.0..=60.0).contains(seconds));
     seconds.ok_or_else(|| "expected a number of seconds from 0 to 60".to_owned())
@@ -391,7 +400,7 @@ fn after_help() -> String {
         lasting => format!("  {name:<14} {lasting:>2}   {about}\n"),
     });
     let head =
-        "Faults, and for how many pictures or commands each lasts by default, if it passes:\n"
+        "Faults, and for how many images or commands each lasts by default, if it passes:\n"
             .to_owned();
     let notes = head
         + &faults.collect::<String>()

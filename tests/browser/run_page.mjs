@@ -2,8 +2,8 @@
 //
 //   node run_page.mjs CHROMIUM right=FILE wrong=FILE blind=FILE large=FILE empty=FILE
 //
-// right: every call conforms; wrong: one does not; blind: there are no pictures; large: the plan is large, and
-// there are no pictures; empty: there are no frames.
+// right: every call conforms; wrong: one does not; blind: there are no images; large: the plan is large, and
+// there are no images; empty: there are no frames.
 
 import assert from "node:assert/strict";
 import { DESK, LAPTOP, assertFitsPhone, assertNamesReadable, photograph, visitAll } from "./visits.mjs";
@@ -32,7 +32,7 @@ function shown(page) {
       command: text(".command"),
       called: visible(".facts .call").map((fact) => [fact.textContent, fact.classList.contains("wrong")]),
       image: visible(".camera img")[0]?.src ?? null,
-      noPicture: visible(".no-picture").length,
+      noImage: visible(".no-image").length,
       stage: stages.findIndex((stage) => stage.checkVisibility()),
       story: visible(".story li").map((line) => line.textContent),
       latest: visible(".story .latest").map((line) => line.textContent),
@@ -43,7 +43,7 @@ function shown(page) {
 
 const readData = (page) => page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
 
-/** Where a picture was taken, on the screen. */
+/** Where an image was taken, on the screen. */
 function onScreen(page, { x, y }) {
   return page.evaluate(([x, y]) => {
     const matrix = document.querySelector(".floor svg").getScreenCTM();
@@ -52,7 +52,7 @@ function onScreen(page, { x, y }) {
   }, [x, y]);
 }
 
-/** The page shows the data of this picture. */
+/** The page shows the data of this image. */
 async function assertShows(page, data, at) {
   const now = await shown(page);
   const round = data.rounds[at];
@@ -72,8 +72,8 @@ async function assertShows(page, data, at) {
   assert.deepEqual(now.story, data.story.slice(0, round.story));
   const before = data.rounds.slice(0, at).map(({ story }) => story).filter((lines) => lines < round.story);
   assert.deepEqual(now.latest, now.story.slice(Math.max(0, ...before)));
-  assert.equal(now.image, round.picture === null ? null : data.pictures[round.picture]);
-  assert.equal(now.noPicture, data.pictures.length > 0 && round.picture === null ? 1 : 0);
+  assert.equal(now.image, round.image === null ? null : data.images[round.image]);
+  assert.equal(now.noImage, data.images.length > 0 && round.image === null ? 1 : 0);
   const call = data.calls.find(({ rounds }) => rounds === at + 1);
   const judged = call?.conforms ? "as specified" : "not as specified";
   assert.deepEqual(now.called, call ? [[`${call.percept}: ${judged}`, !call.conforms]] : []);
@@ -122,7 +122,7 @@ async function followByKeysAndButtons(page, data) {
   await click("One frame on", last);
   await click("To the junction before", junctions.filter((at) => at < last).at(-1));
   await click("To the next junction", junctions.filter((at) => at < last).length < junctions.length ? junctions.at(-1) : last);
-  // With the focus on the slider, an arrow is still one picture.
+  // With the focus on the slider, an arrow is still one image.
   await page.locator("#round").focus();
   await press("Home", 0);
   await press("ArrowRight", 1);

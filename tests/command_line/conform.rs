@@ -21,7 +21,7 @@ use super::{folder, objects, run, stderr, stdout, stdout_of};
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
 
-/// The log of a run without pictures.
+/// The log of a run without images.
 pub(super) fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
     let log = folder.join("run.mcap");
     let simulate = ["simulate", world, "--by-scene", "--json", "--log", log.to_str().unwrap()];

@@ -261,8 +261,8 @@ fn a_shorter_log_of_a_robot_that_was_carried_has_its_lengths() {
     let folder = folder("conform-moved-shorter");
     let short = folder.join("short.mcap");
     let mut shorter = 0;
-    for (seed, picture) in [("0", "40"), ("1", "40"), ("2", "60")] {
-        let fault = format!("carried@{picture}");
+    for (seed, image) in [("0", "40"), ("1", "40"), ("2", "60")] {
+        let fault = format!("carried@{image}");
         let log = logged(&folder, "worlds/shape-6.toml", &["--seed", seed, "--fault", &fault]);
         let minimise = [&ANYONE[..], &["--minimise", short.to_str().unwrap()]].concat();
         let (code, report) = judged(&log, &minimise);

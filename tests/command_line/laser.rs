@@ -41,7 +41,7 @@ fn a_robot_with_both_sensors_drives_by_its_camera_and_records_scans() {
     let scanner = scanner.to_str().unwrap();
     let options = ["--by-scene", "--sensor", "both", "--scanner", scanner, "--log", log];
     let text = stdout_of([&["simulate", "worlds/shape-6.toml"][..], &options].concat());
-    assert!(text.contains("\n  pictures          "), "{text}");
+    assert!(text.contains("\n  scenes            "), "{text}");
     let object = objects(&stdout_of(["info", log, "--json"])).remove(0);
     let count = |name: &str| {
         let topics = object["topics"].as_array().unwrap();

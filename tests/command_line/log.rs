@@ -99,7 +99,7 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
     assert_eq!(fs::read(&one).unwrap(), fs::read(&other).unwrap(), "the same bytes each time");
     if let Some(report) = by_python(&one) {
         agree(&report, &line);
-        assert_eq!(report["images"], serde_json::json!({}), "there are no pictures");
+        assert_eq!(report["images"], serde_json::json!({}), "there are no images");
         assert_eq!(report["run"]["calibration"], "");
         assert_eq!(
             report["run"]["command"],
@@ -111,8 +111,8 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
 
 // paper: exp.simulated
 #[test]
-fn a_log_contains_the_original_pictures() {
-    let folder = folder("log_pictures");
+fn a_log_contains_the_original_images() {
+    let folder = folder("log_images");
     let [log, html] = [log_in(&folder, "run"), folder.join("run.html")];
     let line = logged(&log, &["--effects", "none", "--html", html.to_str().unwrap()]);
     if let Some(report) = by_python(&log) {

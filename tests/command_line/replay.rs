@@ -42,13 +42,13 @@ fn a_truncated_log_is_replayed_to_its_end_and_a_log_without_commands_is_an_error
     fs::write(&mapping, "[odometry]\ntopic = \"/odom\"\n").unwrap();
     let output = run(["replay", path, "--mapping", mapping.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("it has neither pictures nor scenes"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("it has neither images nor scenes"), "{}", stderr(&output));
     fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
     let output = run(["replay", path, "--json"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let report = objects(&stdout(&output)).remove(0);
     assert_eq!(report["complete"], false);
-    assert!(report["error"].as_str().unwrap().contains("the log has no more pictures"), "{report}");
+    assert!(report["error"].as_str().unwrap().contains("the log has no more images"), "{report}");
 }
 
 #[test]

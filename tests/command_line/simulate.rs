@@ -10,7 +10,7 @@ const SHAPE_8: &str = "worlds/shape-8.toml";
 // paper: exp.simulated
 // paper: exp.maps
 #[test]
-fn a_robot_that_sees_only_its_pictures_maps_shape_6() {
+fn a_robot_that_sees_only_its_images_maps_shape_6() {
     let folder = folder("simulate");
     let [map, svg, html, frames] =
         ["map.toml", "run.svg", "run.html", "frames"].map(|name| folder.join(name));
@@ -86,8 +86,8 @@ fn a_robot_that_gives_up_reports_where_and_why() {
             "blocked@20",
             "on move 2, by door 1: 3 commands in a row were not carried out; in a hallway",
         ),
-        ("lights-out@20", "7 pictures in a row do not show where the robot is"),
-        ("dropped@20:50", "6 unusable pictures in a row: the camera gives no picture"),
+        ("lights-out@20", "7 images in a row do not show where the robot is"),
+        ("dropped@20:50", "6 unusable images in a row: the camera gives no image"),
     ] {
         let output = run(["simulate", SHAPE_6, "--by-scene", "--fault", fault]);
         let text = stdout(&output);
@@ -142,7 +142,7 @@ fn control_is_as_specified_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_few_doors_are_taken_with_pictures() {
+fn a_few_doors_are_taken_with_images() {
     let arguments = ["evaluate", "control", "--images", "--look", "tiles", "--traversals", "4"];
     let output = run([&arguments[..], &["--plan", SHAPE_8]].concat());
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));

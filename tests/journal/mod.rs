@@ -23,8 +23,8 @@ struct Keeper {
     journal: Journal,
     moves: u64,
     door: Option<Door>,
-    /// A few pictures. Each is used for as many rounds as there are pictures, then a round has none.
-    pictures: Vec<Vec<u8>>,
+    /// A few images. Each is used for as many rounds as there are images, then a round has none.
+    images: Vec<Vec<u8>>,
 }
 
 impl RunObserver for Keeper {
@@ -34,7 +34,7 @@ impl RunObserver for Keeper {
         let pose = event.truth.unwrap();
         match &event.kind {
             EventKind::Frame(frame) => {
-                let turn = rounds / self.pictures.len().max(1) % (self.pictures.len() + 1);
+                let turn = rounds / self.images.len().max(1) % (self.images.len() + 1);
                 journal.rounds.push(FrameEntry {
                     time: event.time as f64 / 1e9,
                     pose,
@@ -42,7 +42,7 @@ impl RunObserver for Keeper {
                     state: PathState::Unknown,
                     scene: in_words(&frame.scene.as_ref().unwrap().place),
                     command: None,
-                    picture: self.pictures.get(turn).cloned(),
+                    image: self.images.get(turn).cloned(),
                     story: journal.story.len(),
                     maps: journal.maps.len(),
                 });
@@ -91,8 +91,8 @@ fn in_words(place: &Place) -> String {
     }
 }
 
-/// The journal of a run in one of the worlds of this repository, with these pictures.
-pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
+/// The journal of a run in one of the worlds of this repository, with these images.
+pub(crate) fn journal(world: &str, images: Vec<Vec<u8>>) -> Journal {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(format!("{world}.toml"));
     let world = world_file::read(&fs::read(path).unwrap()).unwrap();
     let plan = Arc::new(world.plan.unwrap());
@@ -109,7 +109,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         ending: String::new(),
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-    let mut keeper = Keeper { journal, moves: 0, door: None, pictures };
+    let mut keeper = Keeper { journal, moves: 0, door: None, images };
     let algorithm = DirectionalAlgorithm::Algorithm1;
     let settings = RunSettings::new(algorithm, DEFAULT_DART_BOUND);
     let run = run(&plan, facing, robot, NoSensor, &mut keeper, &settings);

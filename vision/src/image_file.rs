@@ -109,9 +109,9 @@ mod tests {
 
     #[test]
     fn a_jpeg_is_whole_with_all_of_its_bytes_only() {
-        let picture = RgbImage::from_fn(32, 24, |u, v| image::Rgb([u as u8 * 7, v as u8 * 9, 99]));
+        let image = RgbImage::from_fn(32, 24, |u, v| image::Rgb([u as u8 * 7, v as u8 * 9, 99]));
         let mut bytes = Vec::new();
-        picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Jpeg).unwrap();
+        image.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Jpeg).unwrap();
         assert!(is_whole_jpeg(&bytes));
         for length in 0..bytes.len() {
             assert!(!is_whole_jpeg(&bytes[..length]), "{length} of {}", bytes.len());

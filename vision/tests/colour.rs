@@ -1,4 +1,4 @@
-//! The colour classifier on pictures of a few colours, in many kinds of light.
+//! The colour classifier on images of a few colours, in many kinds of light.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 #![allow(clippy::cast_sign_loss, reason = "levels are never negative")]
@@ -60,7 +60,7 @@ fn chance(seed: u64, nth: u64) -> f64 {
     (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// The light of a picture.
+/// The light of an image.
 #[derive(Clone, Copy, Debug)]
 struct Taken {
     /// The factors of the colours.
@@ -70,7 +70,7 @@ struct Taken {
     seed: u64,
 }
 
-/// A picture and its labels.
+/// An image and its labels.
 fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
     let [width, height] = CAMERA.image;
     let (mut image, mut labels) = (RgbImage::new(width, height), RgbImage::new(width, height));
@@ -89,7 +89,7 @@ fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
 
 const LIGHTS: [[f64; 3]; 4] = [[1.0; 3], [0.6, 0.62, 0.7], [1.1, 1.05, 0.8], [0.8, 0.9, 0.5]];
 
-/// The model that is learned from pictures in all lights but one.
+/// The model that is learned from images in all lights but one.
 fn trained_without(left_out: usize) -> Training {
     let mut training = Training::new(TAPE);
     for (seed, &light) in LIGHTS.iter().enumerate().filter(|(nth, _)| *nth != left_out) {
@@ -152,7 +152,7 @@ fn a_colour_that_no_class_has_is_unknown() {
     assert_eq!(seen, PixelClass::LEARNED);
 }
 
-/// A picture in which floor and tape mix at the tape's edges, and its labels. On request a patch of floor
+/// An image in which floor and tape mix at the tape's edges, and its labels. On request a patch of floor
 /// in the shade has the colour of the mixture.
 fn blurred(shade: bool) -> (RgbImage, RgbImage) {
     let (mut image, labels) = taken(Taken { light: [1.0; 3], noise: 0.0, seed: 0 });

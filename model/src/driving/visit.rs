@@ -1,6 +1,6 @@
 //! The estimate of a junction from the images of one approach. Sections 3 and 5.1.
 //!
-//! One picture can err. A visit is decided when two agree on the junction's form; the marker is taken
+//! One image can be wrong. A visit is decided when two agree on the junction's form; the marker is taken
 //! from the best view of the approach, for beside the turning point the robot's body hides it.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -21,7 +21,7 @@ pub struct JunctionEstimate {
     forms: [u32; 8],
     /// The best view of the marker.
     marker: Option<Glimpse>,
-    /// Whether a picture was taken from where a marker would be seen well.
+    /// Whether an image was taken from where a marker would be seen well.
     looked: bool,
 }
 
@@ -42,7 +42,7 @@ const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
 const BEST: f64 = 0.5;
 
 impl JunctionShape {
-    /// The form of a junction as one picture shows it; `None` where its doors are not at right angles
+    /// The form of a junction as one image shows it; `None` where its doors are not at right angles
     /// to each other.
     #[must_use]
     pub fn of(junction: &JunctionView) -> Option<Self> {
@@ -138,7 +138,7 @@ impl JunctionEstimate {
         }
     }
 
-    /// The form of the junction, once two pictures agree on it and fewer on any other.
+    /// The form of the junction, once two images agree on it and fewer on any other.
     #[must_use]
     pub fn form(&self) -> Option<JunctionShape> {
         let most = self.forms.into_iter().max().filter(|&most| most >= AGREEING)?;
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn two_pictures_must_agree() {
+    fn two_images_must_agree() {
         let (l, t) = (junction(&[PI, FRAC_PI_2], 0.3), junction(&[PI, FRAC_PI_2, 0.0], 0.3));
         let unknown = Place::Unknown(Reason::NothingFits);
         assert_eq!(seen(std::slice::from_ref(&unknown), None).percept(), None);
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_marker_two_pictures_decide_and_it_lies_along_the_entry_door() {
+    fn at_the_marker_two_images_decide_and_it_lies_along_the_entry_door() {
         let mut visit = JunctionEstimate::at_marker();
         let here = junction(&[PI, FRAC_PI_2], 0.0);
         for expected in

@@ -1,6 +1,6 @@
 //! Algorithm 2: its limits, and where it arrives. Section 4.3.
 //!
-//! In a [`HallwayDrive`] pictures and motions may surprise the robot, within a budget. Arbitrary scenes
+//! In a [`HallwayDrive`] images and motions may surprise the robot, within a budget. Arbitrary scenes
 //! come from [`SCENES`], in any order.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -23,7 +23,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{CaseResult, Choose, Exhibit, Stop, claim},
-    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, PathDriver, PictureEvidence},
+    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, PathDriver, ImageEvidence},
     lemma::declare,
 };
 
@@ -43,11 +43,11 @@ declare! {
             no_command_exceeds_a_unit::<_, Algorithm2, 2>;
         sampled "up to 20 scenes before it": no_command_exceeds_a_unit::<_, Algorithm2, 20>;
     }
-    the_first_picture_takes_the_first_door {
+    the_first_image_takes_the_first_door {
         "At a known junction, an image of it takes the first door of the path and no other, and \
          turns the robot to it, or ends a path without doors; no other image does.",
         paper "4.2; Algorithm 2, lines 20 to 26",
-        exhaustive "paths of up to 2 doors at every shape, pictures of every shape, turned by any \
+        exhaustive "paths of up to 2 doors at every shape, images of every shape, turned by any \
                     multiple of 15 degrees", 6048 cases:
             the_first_door::<_, Algorithm2, 24>;
         kani "the same, turned by multiples of 90 degrees", unwind 10:
@@ -57,10 +57,10 @@ declare! {
         "Each door of a path is taken once, in order, at its junction: when two images agree on \
          the junction. The robot leaves by it when an image shows the doors turned.",
         paper "4.3; Algorithm 2, lines 20 to 26",
-        exhaustive "every path of two doors, over 3.2 m of hallway each; a picture or a motion that \
+        exhaustive "every path of two doors, over 3.2 m of hallway each; an image or a motion that \
                     goes wrong", 46_144 cases:
             doors_in_order::<_, Algorithm2, 1, 1>;
-        sampled "six surprises, of which one picture is a mistake":
+        sampled "six surprises, of which one image is a mistake":
             doors_in_order::<_, Algorithm2, 6, 1>;
     }
     driving_always_ends {
@@ -80,20 +80,20 @@ declare! {
          door.",
         paper "4.3; Algorithm 2",
         exhaustive "every door of every shape to every shape, over 3.2 and 4.1 m of hallway; three \
-                    ranges of sight; two pictures that are unclear, unknown or of hallway or \
+                    ranges of sight; two images that are unclear, unknown or of hallway or \
                     junction", 122_112 cases:
             arrives::<_, Algorithm2, 2>;
-        sampled "five such pictures": arrives::<_, Algorithm2, 5>;
+        sampled "five such images": arrives::<_, Algorithm2, 5>;
     }
     one_mistake_makes_no_false_arrival {
         "The robot arrives at the next junction with its true shape, or gives up, unless two \
          images were mistaken and agreed.",
         paper "4.3; Algorithm 2",
         exhaustive "a door of every shape to every shape, over 3.2 m of hallway; three ranges of \
-                    sight; two surprises, wrong pictures and motions in part or not at all among \
+                    sight; two surprises, wrong images and motions in part or not at all among \
                     them", 793_596 cases:
             no_false_arrival::<_, Algorithm2, 2, 2>;
-        sampled "eight surprises, of which three pictures are mistakes":
+        sampled "eight surprises, of which three images are mistakes":
             no_false_arrival::<_, Algorithm2, 8, 3>;
     }
 }
@@ -130,7 +130,7 @@ const SIGHTS: [f64; 3] = [1.1, 0.75, 1.6];
 /// More rounds than any drive on these plans takes.
 const ROUNDS: u32 = 200;
 
-/// A picture of a junction whose turning point is the given distance ahead, of a robot that then turned.
+/// An image of a junction whose turning point is the given distance ahead, of a robot that then turned.
 fn junction(form: JunctionShape, ahead: f64, turned: f64) -> Place {
     let through =
         if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
@@ -218,7 +218,7 @@ fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(
     let before = choose.below(1 + BEFORE);
     for round in 0..=before {
         let place = if round < before { any_scene(choose) } else { wide_scene(choose) };
-        choose.show(|| Exhibit::Value { name: "picture", value: format!("{place:?}") });
+        choose.show(|| Exhibit::Value { name: "image", value: format!("{place:?}") });
         let Ok(Step::Go(command)) = driver.round(&Scene { place, marker: None }, odometry) else {
             return Ok(());
         };
@@ -245,7 +245,7 @@ fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> 
     let turned = f64::from(choose.below(TURNS)) / f64::from(TURNS) * 2.0 * PI;
     let Place::Junction(view) = junction(seen, 0.0, turned) else { unreachable!() };
     choose.show(|| Exhibit::Value { name: "known", value: format!("{form:?}, path {queue:?}") });
-    choose.show(|| Exhibit::Value { name: "picture", value: format!("{view:?}") });
+    choose.show(|| Exhibit::Value { name: "image", value: format!("{view:?}") });
     let exit = view.doors.get(usize::from(door)).map_or(0.0, |line| line.direction);
     // Odometry knows that the robot has turned.
     let odometry = Odometry { position: [0.0; 2], heading: wrapped(turned) };
@@ -278,9 +278,9 @@ fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> 
 struct End {
     /// The robot's belief; `None` if it gave up.
     standing: Option<Standing>,
-    /// The mistaken pictures since the last door, by their shapes.
+    /// The mistaken images since the last door, by their shapes.
     mistaken: Vec<JunctionShape>,
-    /// Whether a picture showed the junction from where a marker would be seen.
+    /// Whether an image showed the junction from where a marker would be seen.
     looked: bool,
 }
 
@@ -294,22 +294,22 @@ fn driven<C: Choose, D: PathDriver>(
     let mut driver = D::begin(queue, &drive.junction(0).standing(), LEG);
     // The number of doors by which the robot has left, and whether it has taken one more.
     let (mut left_by, mut takes) = (0, false);
-    // The shapes that pictures showed since then, and the mistaken ones.
-    let (mut pictured, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
+    // The shapes that images showed since then, and the mistaken ones.
+    let (mut seen_forms, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
     let mut looked = true;
     for _ in 0..ROUNDS {
-        let (scene, evidence) = drive.picture(choose);
+        let (scene, evidence) = drive.image(choose);
         // The next junction, or the one at which the robot stands.
         let here = *drive.junction(left_by);
         match (evidence, &scene.place) {
-            (PictureEvidence::Mistake(form), _) => {
-                pictured.push(form);
+            (ImageEvidence::Mistake(form), _) => {
+                seen_forms.push(form);
                 mistaken.push(form);
             }
-            (PictureEvidence::Truth, Place::Junction(view))
+            (ImageEvidence::Truth, Place::Junction(view))
                 if here.distance(&drive.robot) < HALFWAY =>
             {
-                pictured.push(here.form);
+                seen_forms.push(here.form);
                 looked |= (0.2..=0.8).contains(&view.distance());
             }
             _ => {}
@@ -322,8 +322,8 @@ fn driven<C: Choose, D: PathDriver>(
         if driver.queue().len() < open {
             claim("one door is taken at a time", driver.queue().len() + 1 == open && !takes)?;
             claim(
-                "two pictures agree",
-                FORMS.into_iter().any(|form| agreeing(&pictured, form) > 1),
+                "two images agree",
+                FORMS.into_iter().any(|form| agreeing(&seen_forms, form) > 1),
             )?;
             takes = true;
         }
@@ -331,7 +331,7 @@ fn driven<C: Choose, D: PathDriver>(
             Err(_) => return Ok(End { standing: None, mistaken, looked }),
             Ok(Step::Arrived(standing)) => {
                 claim("every door was taken", left_by == queue.len() && !takes)?;
-                claim("two pictures agree", agreeing(&pictured, standing.form) > 1)?;
+                claim("two images agree", agreeing(&seen_forms, standing.form) > 1)?;
                 return Ok(End { standing: Some(standing), mistaken, looked });
             }
             Ok(Step::Go(command)) => command,
@@ -345,7 +345,7 @@ fn driven<C: Choose, D: PathDriver>(
         }
         if takes && command.forward > 0.0 {
             (left_by, takes) = (left_by + 1, false);
-            (pictured, mistaken, looked) = (Vec::new(), Vec::new(), false);
+            (seen_forms, mistaken, looked) = (Vec::new(), Vec::new(), false);
         }
         drive.carry_out(choose, command);
     }
@@ -391,7 +391,7 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
     let mut odometry = Odometry::default();
     // Rounds in a row without progress, and metres in a row without a door.
     let (mut idle, mut way) = (0, 0.0);
-    // Unknown pictures in a row, and commands in a row of which nothing was carried out.
+    // Unknown images in a row, and commands in a row of which nothing was carried out.
     let (mut unknowns, mut stalls) = (0, 0);
     let mut round = 0;
     loop {

@@ -59,7 +59,7 @@ pub fn learned(
         let classes = labels(rig, &building, view.pose, &view.effects);
         let mask = label_mask(rig, &classes);
         watch.go_on()?;
-        match training.add(camera, &view.picture(rig, &building), &mask) {
+        match training.add(camera, &view.render(rig, &building), &mask) {
             // Skip images that are too dark to measure their light.
             Ok(()) | Err(ExampleError::Light(_)) => {}
             Err(cause) => return Err(LearningError::Example { look: look.name, cause }),

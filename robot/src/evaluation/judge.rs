@@ -144,7 +144,7 @@ impl Judge {
         view: RenderedView,
         calibration: Calibration,
     ) -> Result<JudgedView, JudgingError> {
-        let image = view.picture(self.rig(&view, calibration), &view.building());
+        let image = view.render(self.rig(&view, calibration), &view.building());
         self.judged(view, &image)
     }
 
@@ -154,11 +154,11 @@ impl Judge {
     /// Returns an error if a view is not on the floor.
     pub fn visit(
         &self,
-        pictures: Vec<RenderedView>,
+        views: Vec<RenderedView>,
         calibration: Calibration,
         watch: &dyn Watch,
     ) -> Result<Option<JudgedVisit>, JudgingError> {
-        let Some(last) = pictures.last() else { return Ok(None) };
+        let Some(last) = views.last() else { return Ok(None) };
         let Some(Truth::Junction(JunctionTruth { vertex, form: Some(form), .. })) = last.truth()
         else {
             return Err(off_the_floor(last));
@@ -169,21 +169,21 @@ impl Judge {
         let percept = Percept { degree: form.degree(), sighting };
         let building = last.building();
         let rig = self.rig(last, calibration);
-        let mut judged = Vec::with_capacity(pictures.len());
-        for view in pictures {
+        let mut judged = Vec::with_capacity(views.len());
+        for view in views {
             if watch.stop() {
                 return Ok(None);
             }
-            let image = view.picture(rig, &building);
+            let image = view.render(rig, &building);
             judged.push(self.judged(view, &image)?);
         }
-        let pictures = judged;
+        let views = judged;
         let mut visit = JunctionEstimate::default();
-        for picture in &pictures {
-            visit.see(&picture.scene);
+        for view in &views {
+            visit.see(&view.scene);
         }
         let decided = visit.form().zip(visit.percept());
-        Ok(Some(JudgedVisit { pictures, form, percept, decided }))
+        Ok(Some(JudgedVisit { views, form, percept, decided }))
     }
 
     /// The image of a view, its scene, and a picture of each processing stage.
@@ -195,7 +195,7 @@ impl Judge {
         view: &RenderedView,
         calibration: Calibration,
     ) -> Result<(RgbImage, Scene, Stages), JudgingError> {
-        let image = view.picture(self.rig(view, calibration), &view.building());
+        let image = view.render(self.rig(view, calibration), &view.building());
         let (scene, stages) = self.with_sensor(view, |sensor| annotate::stages(sensor, &image))?;
         Ok((image, scene, stages))
     }

@@ -49,7 +49,7 @@ pub struct JudgedView {
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedVisit {
     /// Its views.
-    pub pictures: Vec<JudgedView>,
+    pub views: Vec<JudgedView>,
     /// The true shape of the junction, seen from its entry.
     pub form: JunctionShape,
     /// The true percept.

@@ -52,7 +52,7 @@ impl RenderedView {
 
     /// The image that a rig takes.
     #[must_use]
-    pub fn picture(&self, rig: &Rig, building: &Building) -> RgbImage {
+    pub fn render(&self, rig: &Rig, building: &Building) -> RgbImage {
         render(rig, building, self.pose, &self.effects, self.seeds[1])
     }
 }

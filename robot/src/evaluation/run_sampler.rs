@@ -68,7 +68,7 @@ pub struct JudgedRun {
     /// Simulated time, in seconds.
     pub seconds: f64,
     /// The number of images that were requested.
-    pub pictures: u64,
+    pub frames: u64,
 }
 
 impl JudgedRun {
@@ -97,7 +97,7 @@ impl JudgedRun {
 /// The robot gives up if it knows more than twice the plan's darts and this many.
 const SPARE_DARTS: usize = 20;
 /// The approximate number of images per move, to place faults within a run.
-const PICTURES_A_MOVE: u64 = 16;
+const FRAMES_A_MOVE: u64 = 16;
 
 impl RunSampler {
     /// The runs of a seed in these plans. Plans without an L are left out, because the marker needs
@@ -141,8 +141,8 @@ impl RunSampler {
             let moves = explored(&config.plan, facing, self.method.algorithm(), DEFAULT_DART_BOUND);
             for nth in 0..u64::from(count) {
                 let (kind, ..) = FAULTS[((number + nth * nth) % FAULTS.len() as u64) as usize];
-                let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
-                config.faults.push(RobotFault::at(kind, picture));
+                let frame = chance.random_range(2..=FRAMES_A_MOVE * moves.max(1));
+                config.faults.push(RobotFault::at(kind, frame));
             }
         }
         Some(RunCase { number, plan_name, config })
@@ -187,7 +187,7 @@ fn judged(
         moves: [run.moves, run.explore_moves],
         mapped: run.mapped,
         seconds: run.seconds,
-        pictures: run.pictures,
+        frames: run.frames,
     })
 }
 

@@ -65,7 +65,7 @@ pub struct JudgedTraversal {
     /// Simulated time, in seconds.
     pub seconds: f64,
     /// The number of images that were requested.
-    pub pictures: u64,
+    pub frames: u64,
 }
 
 /// The outcome of a traversal.
@@ -178,7 +178,7 @@ fn judged(
         traversal: case,
         outcome,
         seconds: robot.odometry().time,
-        pictures: robot.pictures(),
+        frames: robot.frames(),
     })
 }
 

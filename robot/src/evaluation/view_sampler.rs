@@ -142,16 +142,16 @@ impl ViewSampler {
         let reach = reach(&view.plan);
         let mut aside = chance.random_range(-reach..=reach);
         let mut before = VISIT[0] - chance.random_range(0.0..STEP[0]);
-        let mut pictures = Vec::new();
+        let mut views = Vec::new();
         while before >= VISIT[1] {
             let turned = chance.random_range(-SWAY..=SWAY);
             let pose = before_junction(&view.plan, entry, before, aside, turned);
             let seeds = [view.seeds[0], chance.next_u64()];
-            pictures.push(RenderedView { pose, seeds, ..view.clone() });
+            views.push(RenderedView { pose, seeds, ..view.clone() });
             before -= chance.random_range(STEP[0]..STEP[1]);
             aside = (aside + chance.random_range(-DRIFT..=DRIFT)).clamp(-reach, reach);
         }
-        Ok(pictures)
+        Ok(views)
     }
 
     /// A view of a junction from which to learn the colours of a look, often with a marker nearby.
@@ -412,9 +412,9 @@ mod tests {
     fn a_visit_comes_from_a_metre_and_a_half_to_the_turning_point() {
         let views = views();
         for number in 0..50 {
-            let pictures = views.visit(number).unwrap();
-            assert!((5..=8).contains(&pictures.len()), "{}", pictures.len());
-            let nearest = pictures.last().unwrap();
+            let visit = views.visit(number).unwrap();
+            assert!((5..=8).contains(&visit.len()), "{}", visit.len());
+            let nearest = visit.last().unwrap();
             let Some(Truth::Junction(junction)) = nearest.truth() else { panic!("{nearest:?}") };
             let distance = junction.distance().unwrap();
             assert!((-0.1..=0.18).contains(&distance), "{distance}");

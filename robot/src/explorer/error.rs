@@ -22,15 +22,15 @@ pub enum ExplorerError {
         /// What happened.
         lost: Lost,
     },
-    /// The camera gives no usable picture.
-    #[error("on move {moves}, {}: {pictures} unusable pictures in a row: {cause}", by_door(*.door))]
-    NoPicture {
+    /// The camera gives no usable image.
+    #[error("on move {moves}, {}: {images} unusable images in a row: {cause}", by_door(*.door))]
+    NoImage {
         /// The number of the move.
         moves: u64,
         /// The door that it took.
         door: Option<Door>,
-        /// The number of pictures.
-        pictures: u32,
+        /// The number of images.
+        images: u32,
         /// What is wrong with the last one.
         cause: String,
     },

@@ -82,7 +82,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     fn seen_junction(&mut self) -> Result<Option<JunctionView>, ExplorerError> {
         let (frame, scene) = match self.look() {
             Ok(seen) => seen,
-            Err(ExplorerError::NoPicture { .. }) => return Ok(None),
+            Err(ExplorerError::NoImage { .. }) => return Ok(None),
             Err(error) => return Err(error),
         };
         self.last = Some(frame.clone());
@@ -116,7 +116,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
                     self.arrive_from_nowhere(standing);
                     return Ok(standing);
                 }
-                Err(ExplorerError::Lost { .. } | ExplorerError::NoPicture { .. }) if !is_last => {}
+                Err(ExplorerError::Lost { .. } | ExplorerError::NoImage { .. }) if !is_last => {}
                 Err(error) => return Err(error),
             }
         }

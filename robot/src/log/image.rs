@@ -1,4 +1,4 @@
-//! Pictures as ROS publishes them: `sensor_msgs/CompressedImage`, and `Image` without compression.
+//! Images as ROS publishes them: `sensor_msgs/CompressedImage`, and `Image` without compression.
 
 use image::RgbImage;
 

@@ -31,13 +31,13 @@ pub const TF: &str = "/tf";
 /// The name of the note with the content of the message [`Run`](messages::Run).
 pub const NOTE: &str = "toposlam";
 
-/// The quality of annotated pictures.
+/// The quality of annotated images.
 const QUALITY: u8 = 85;
 
 /// Writes the events of a run.
 ///
 /// An error stops the run, and [`Recorder::finish`] returns it. Times are the robot's, and never go back.
-/// A message is written at the time of its event; its stamp is the time that it is about, for a picture
+/// A message is written at the time of its event; its stamp is the time that it is about, for an image
 /// the time when it was taken.
 pub struct Recorder<W: Write> {
     out: LogWriter<W>,
@@ -51,7 +51,7 @@ pub struct Recorder<W: Write> {
 }
 
 impl<W: Write> Recorder<W> {
-    /// Begins a log with its head. Pictures are also written annotated if their camera is known.
+    /// Begins a log with its head. Images are also written annotated if their camera is known.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -229,10 +229,10 @@ mod tests {
 
     #[test]
     fn a_log_has_the_run_from_head_to_end_in_the_order_of_time() {
-        let pictures = std::cell::Cell::new(0);
+        let images = std::cell::Cell::new(0);
         let log = messages(&logged(None, |run| {
             assert_eq!((run.mapping.moves(), run.explore_moves), (8, 8));
-            pictures.set(run.pictures as usize);
+            images.set(run.frames as usize);
         }));
         let count = |topic: &str| log.iter().filter(|(found, ..)| found == topic).count();
         assert_eq!((&*log[0].0, &*log[log.len() - 1].0), ("/toposlam/run", "/toposlam/end"));
@@ -241,14 +241,14 @@ mod tests {
         // The start, and six edges.
         assert_eq!(count("/toposlam/map"), 7);
         assert_eq!((count(IMAGE), count(ANNOTATED)), (0, 0));
-        assert_eq!(count("/toposlam/scene"), pictures.get());
-        // All but the last picture of each way are answered with a command.
+        assert_eq!(count("/toposlam/scene"), images.get());
+        // All but the last image of each way are answered with a command.
         assert_eq!(count("/toposlam/scene"), count("/toposlam/command") + 9);
         assert_eq!(count(ODOM), count(TF));
     }
 
     #[test]
-    fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_picture_is_taken() {
+    fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_image_is_taken() {
         let log = messages(&logged(None, |_| {}));
         // The body of a twist: x ahead first, the turn about z last.
         let mut standing = true;

@@ -1,4 +1,4 @@
-//! The messages of ROS 2 that a log holds: pictures, laser scans, commands to the wheels, odometry and the
+//! The messages of ROS 2 that a log holds: images, laser scans, commands to the wheels, odometry and the
 //! frames that it relates. Their fields stand in the order of their definitions, which are in `robot/msgs`.
 //!
 //! x ahead, y to the left, metres, radians counter-clockwise (REP 103); the robot, `base_link`, moves in
@@ -327,7 +327,7 @@ mod tests {
     use crate::log::message::schema;
 
     #[test]
-    fn the_format_of_a_picture_is_that_of_its_first_bytes() {
+    fn the_format_of_a_image_is_that_of_its_first_bytes() {
         let format = |bytes| CompressedImage::new(Stamp::default(), bytes).format;
         assert_eq!(format(&[0xff, 0xd8, 0xff, 0xe0]), "jpeg");
         assert_eq!(format(b"\x89PNG\r\n"), "png");

@@ -253,8 +253,8 @@ mod tests {
         let file = written(|log| {
             for bytes in [600_000, 500_000, 3_000_000, 1000] {
                 let data = image(bytes);
-                let picture = crate::log::standard::CompressedImage::new(Stamp::default(), &data);
-                log.write("/camera", 0, &picture).unwrap();
+                let image = crate::log::standard::CompressedImage::new(Stamp::default(), &data);
+                log.write("/camera", 0, &image).unwrap();
             }
         });
         assert_eq!(Summary::read(&file).unwrap().unwrap().chunk_indexes.len(), 4);

@@ -68,7 +68,7 @@ impl LiveRobot {
         let odometry = node.subscribe(&topics.odometry, read_odometry)?;
         let sensor = match sensor {
             LiveSensor::Camera => {
-                SensorTopics::Camera(node.subscribe(&topics.pictures, read_picture)?)
+                SensorTopics::Camera(node.subscribe(&topics.images, read_image)?)
             }
             LiveSensor::Laser => SensorTopics::Laser {
                 scans: node.subscribe(&topics.scans, read_scan)?,
@@ -79,20 +79,20 @@ impl LiveRobot {
         let base = LiveBase::new(wheels, odometry, patience.max(FIRST), Box::new(stop))?;
         let first = patience.max(FIRST);
         match &sensor {
-            SensorTopics::Camera(pictures) => pictures.wait(first, base.stop(), |_| Some(()))?,
+            SensorTopics::Camera(images) => images.wait(first, base.stop(), |_| Some(()))?,
             SensorTopics::Laser { scans, .. } => scans.wait(first, base.stop(), |_| Some(()))?,
         }
         let base = base.patient(patience);
         Ok(Self { base, sensor, asked: 0, _node: node })
     }
 
-    /// The number of images that were requested.
+    /// The number of images or scans that were requested.
     #[must_use]
-    pub fn pictures(&self) -> u64 {
+    pub fn frames(&self) -> u64 {
         self.asked
     }
 
-    fn picture(&mut self) -> Result<Frame, RobotError> {
+    fn frame(&mut self) -> Result<Frame, RobotError> {
         let WheelReading { time: ended, odometry } = self.base.reading();
         let id = self.asked;
         let mut behind = None;
@@ -102,9 +102,9 @@ impl LiveRobot {
             behind = Some(ended - taken);
             (taken > ended).then_some(Frame { id, taken, odometry, ..Frame::default() })
         };
-        let picture = match &self.sensor {
-            SensorTopics::Camera(pictures) => {
-                pictures.wait(base.patience(), base.stop(), |photograph| {
+        let frame = match &self.sensor {
+            SensorTopics::Camera(images) => {
+                images.wait(base.patience(), base.stop(), |photograph| {
                     let image = Some(CameraImage::encoded(photograph.file));
                     Some(Frame { image, ..is_fresh(photograph.stamp)? })
                 })
@@ -127,9 +127,9 @@ impl LiveRobot {
                 })
             }
         };
-        picture.map_err(|error| match (error, behind) {
-            (RobotError::Silent { .. }, Some(behind)) => RobotError::StalePicture { behind },
-            (RobotError::Silent { .. }, None) => RobotError::NoPicture,
+        frame.map_err(|error| match (error, behind) {
+            (RobotError::Silent { .. }, Some(behind)) => RobotError::StaleImage { behind },
+            (RobotError::Silent { .. }, None) => RobotError::NoImage,
             (error, _) => error,
         })
     }
@@ -143,12 +143,12 @@ const FIRST: Duration = Duration::from_secs(10);
 impl Robot for LiveRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {
         self.asked += 1;
-        let picture = self.picture();
-        match &picture {
+        let frame = self.frame();
+        match &frame {
             Ok(_) => self.base.read(),
             Err(_) => self.base.halt(),
         }
-        picture
+        frame
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {

@@ -89,7 +89,7 @@ pub(super) const ODOMETRY: MessageKind = MessageKind {
 };
 
 /// The file of a photograph.
-pub(super) const PICTURE: MessageKind = MessageKind {
+pub(super) const IMAGE: MessageKind = MessageKind {
     name: "sensor_msgs/CompressedImage",
     definition: concat!("Header header\nstring format\nuint8[] data\n", header!()),
 };
@@ -142,7 +142,7 @@ pub(super) struct Reckoning {
     pub(super) wheels: WheelSpeeds,
 }
 
-/// What is read of a picture.
+/// What is read of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Photograph {
     pub(super) stamp: Nanoseconds,
@@ -250,14 +250,14 @@ pub(super) fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&vec![(header(number, reckoning.stamp, ODOM), BASE, pose(&reckoning.at))])
 }
 
-/// The body of a picture.
-pub(super) fn picture(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
+/// The body of an image.
+pub(super) fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
     let format = if file.starts_with(b"\x89PNG") { "png" } else { "jpeg" };
     write(&(header(number, stamp, CAMERA), format, Bytes(file.to_vec())))
 }
 
-/// A picture; `None` if it is no such message.
-pub(super) fn read_picture(bytes: &[u8]) -> Option<Photograph> {
+/// An image; `None` if it is no such message.
+pub(super) fn read_image(bytes: &[u8]) -> Option<Photograph> {
     let ((_, seconds, nanoseconds, _), _, Bytes(file)) =
         read::<(Header<Bytes>, Bytes, Bytes)>(bytes)?;
     Some(Photograph { stamp: time(seconds, nanoseconds), file })
@@ -354,7 +354,7 @@ mod tests {
         let kinds = [
             (TWIST, "9f195f881246fdfa2798d1d3eebca84a"),
             (ODOMETRY, "cd5e73d190d741a2f92e81eda573aca7"),
-            (PICTURE, "8f7a12909da2c9d3332d540a0977563f"),
+            (IMAGE, "8f7a12909da2c9d3332d540a0977563f"),
             (FRAMES, "94810edda583a504dfda3829e70d7eec"),
             (SCAN, "90c7ef2dc6895d81024acba2ac42f369"),
             (MARKER_POSE, "d3812c3cbc69362b77dc0b19b345f8f5"),
@@ -373,7 +373,7 @@ mod tests {
         let wheels = read_twist(&twist(reckoning().wheels)).unwrap();
         assert!((wheels.speed() - 0.1).abs() < 1e-12 && (wheels.turn_rate() - 0.2).abs() < 1e-12);
         let photograph = Photograph { stamp: 5, file: vec![0xff, 0xd8, 1] };
-        assert_eq!(read_picture(&picture(1, 5, &photograph.file)), Some(photograph));
+        assert_eq!(read_image(&image(1, 5, &photograph.file)), Some(photograph));
         let geometry = ScanGeometry {
             angle_min: -0.5,
             angle_increment: 0.25,
@@ -418,10 +418,10 @@ mod tests {
 
     #[test]
     fn a_length_that_is_not_there_allocates_nothing() {
-        let mut body = picture(1, 5, b"file");
+        let mut body = image(1, 5, b"file");
         let at = body.len() - 8;
         body[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert_eq!(read_picture(&body), None);
+        assert_eq!(read_image(&body), None);
     }
 
     #[test]
@@ -433,7 +433,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_bytes_are_too_strange(bytes in proptest::collection::vec(any::<u8>(), 0..1000)) {
-            let _ = (read_twist(&bytes), read_odometry(&bytes), read_picture(&bytes));
+            let _ = (read_twist(&bytes), read_odometry(&bytes), read_image(&bytes));
         }
 
         #[test]

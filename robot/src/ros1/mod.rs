@@ -22,7 +22,7 @@ pub struct RobotTopics {
     /// Address of the master, as in `http://127.0.0.1:11311`.
     pub master: String,
     /// Topic of the images, `sensor_msgs/CompressedImage`.
-    pub pictures: String,
+    pub images: String,
     /// Topic of the scans of a laser scanner in the robot's centre, `sensor_msgs/LaserScan`.
     pub scans: String,
     /// Topic of the marker in the robot's frame, x along it, `geometry_msgs/PoseStamped`.
@@ -39,7 +39,7 @@ impl RobotTopics {
     pub fn usual(master: &str) -> Self {
         Self {
             master: master.to_owned(),
-            pictures: recorder::IMAGE.to_owned(),
+            images: recorder::IMAGE.to_owned(),
             scans: recorder::SCAN.to_owned(),
             marker: recorder::MARKER.to_owned(),
             odometry: recorder::ODOM.to_owned(),

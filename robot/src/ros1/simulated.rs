@@ -8,8 +8,8 @@ use std::{
 use super::{
     RobotTopics,
     messages::{
-        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SCAN, SECOND, frames,
-        marker, odometry, picture, read_twist, scan,
+        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, IMAGE, Reckoning, SCAN, SECOND, frames,
+        marker, odometry, image, read_twist, scan,
     },
     node::{Node, Publisher, Subscription},
 };
@@ -27,7 +27,7 @@ const TICK: f64 = 0.05;
 const READING: u64 = 2;
 /// Interval between images in seconds, if the camera is fast enough. Rendering takes most of the
 /// time.
-const PICTURE_EVERY: f64 = 1.0;
+const IMAGE_EVERY: f64 = 1.0;
 /// The greatest speed of simulated time relative to real time. At higher speeds a motion would be
 /// over before odometry reports it.
 pub const MOST_SPEED: f64 = 20.0;
@@ -40,7 +40,7 @@ pub struct ServeSummary {
     /// Real time, in seconds.
     pub real_seconds: f64,
     /// The number of images.
-    pub pictures: u64,
+    pub frames: u64,
 }
 
 /// Serves a simulated robot on topics until `stop` returns true.
@@ -62,13 +62,13 @@ pub fn serve(
         commands: node.subscribe(&topics.wheels, read_twist)?,
         odometry: node.advertise(&topics.odometry, ODOMETRY)?,
         frames: node.advertise(recorder::TF, FRAMES)?,
-        pictures: node.advertise(&topics.pictures, PICTURE)?,
+        images: node.advertise(&topics.images, IMAGE)?,
         scans: node.advertise(&topics.scans, SCAN)?,
         markers: node.advertise(&topics.marker, MARKER_POSE)?,
         epoch: now(),
         ignores: false,
         exposed: None,
-        next_picture: 0.0,
+        next_image: 0.0,
         robot,
     };
     let begun = Instant::now();
@@ -82,8 +82,8 @@ pub fn serve(
         due = (due + tick).max(Instant::now());
         thread::sleep(due.saturating_duration_since(Instant::now()));
     }
-    let (seconds, pictures) = (scout.robot.time(), scout.robot.pictures());
-    Ok(ServeSummary { seconds, real_seconds: begun.elapsed().as_secs_f64(), pictures })
+    let (seconds, frames) = (scout.robot.time(), scout.robot.frames());
+    Ok(ServeSummary { seconds, real_seconds: begun.elapsed().as_secs_f64(), frames })
 }
 
 fn now() -> Nanoseconds {
@@ -98,14 +98,14 @@ struct Scout {
     scans: Publisher,
     markers: Publisher,
     frames: Publisher,
-    pictures: Publisher,
+    images: Publisher,
     /// The stamp of its time 0.
     epoch: Nanoseconds,
     /// Whether the present motion is ignored.
     ignores: bool,
     /// An image that is on its way, and its time of arrival.
     exposed: Option<(f64, Frame)>,
-    next_picture: f64,
+    next_image: f64,
     robot: SimulatedRobot,
 }
 
@@ -151,10 +151,10 @@ impl Scout {
     fn photograph(&mut self) -> Result<(), RobotError> {
         let time = self.robot.time();
         if let Some((_, exposed)) = self.exposed.take_if(|(there, _)| *there <= time) {
-            let number = self.robot.pictures() as u32;
+            let number = self.robot.frames() as u32;
             let stamp = self.stamp(exposed.taken);
             if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
-                self.pictures.publish(&picture(number, stamp, file))?;
+                self.images.publish(&image(number, stamp, file))?;
             }
             if let Some(seen) = &exposed.marker {
                 self.markers.publish(&marker(number, stamp, seen))?;
@@ -163,10 +163,10 @@ impl Scout {
                 self.scans.publish(&scan(number, stamp, sweep))?;
             }
         }
-        if time >= self.next_picture {
-            let takes = self.robot.picture_time();
-            self.next_picture = time + takes.max(PICTURE_EVERY);
-            self.exposed = self.robot.expose().map(|picture| (time + takes, picture));
+        if time >= self.next_image {
+            let takes = self.robot.image_time();
+            self.next_image = time + takes.max(IMAGE_EVERY);
+            self.exposed = self.robot.expose().map(|image| (time + takes, image));
         }
         Ok(())
     }

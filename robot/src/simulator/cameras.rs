@@ -38,7 +38,7 @@ use crate::{
 pub trait SimulatedCamera: Debug + Send {
     /// The frame with this number from a pose, overexposed by this many stops. The robot fills in
     /// time and odometry.
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
+    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
 
     /// Turns the lights on or out.
     fn set_lights(&mut self, on: bool);
@@ -122,7 +122,7 @@ impl RenderingCamera {
 }
 
 impl SimulatedCamera for RenderingCamera {
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
+    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
         let lights = if self.dark { OUT } else { 0.0 };
         let exposure = self.effects.exposure - self.less + stops + lights;
         let effects = Effects { exposure, ..self.effects.clone() };
@@ -228,8 +228,8 @@ impl SceneCamera {
 pub struct MarkerDetector(pub SceneCamera);
 
 impl SimulatedCamera for MarkerDetector {
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
-        let frame = self.0.picture(pose, number, stops);
+    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
+        let frame = self.0.frame(pose, number, stops);
         Frame { marker: frame.scene.and_then(|scene| scene.marker), scene: None, ..frame }
     }
 
@@ -312,7 +312,7 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
 }
 
 impl SimulatedCamera for SceneCamera {
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
+    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
         let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
         let mut chance = Chance { numbers, noise: self.noise };
         // Sensing fails on overexposed images.
@@ -358,7 +358,7 @@ mod tests {
         let count = |noise: f64| {
             let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
             let classes: Vec<_> = (0..20_000)
-                .map(|n| SceneClass::of(&camera.picture(pose, n, 0.0).scene.unwrap()))
+                .map(|n| SceneClass::of(&camera.frame(pose, n, 0.0).scene.unwrap()))
                 .collect();
             let unknown = classes.iter().filter(|&&class| class == SceneClass::Unknown).count();
             let wrong =
@@ -401,16 +401,16 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let pose = start_pose(&plan, facing);
         let rig = Arc::new(Rig::new(&camera::Camera::superscout().sized([320, 240])));
-        let burnt = |exposure: f64, pictures: u64| {
+        let burnt = |exposure: f64, frames: u64| {
             let effects = Effects { exposure, ..Effects::plain() };
             let building = Building::new(&plan, &LOOKS[0], None, &effects, 1);
             let mut camera = RenderingCamera::new(rig.clone(), building, effects, 1);
-            let frame = (0..pictures).map(|n| camera.picture(pose, n, 0.0)).last().unwrap();
+            let frame = (0..frames).map(|n| camera.frame(pose, n, 0.0)).last().unwrap();
             let image = frame.image.unwrap();
             let image = image.pixels().unwrap();
             image.pixels().filter(|pixel| pixel.0.contains(&255)).count()
         };
-        let [first, last] = [1, 12].map(|pictures| burnt(3.0, pictures));
+        let [first, last] = [1, 12].map(|frames| burnt(3.0, frames));
         assert!(2 * last < first, "{last} {first}");
         assert_eq!(burnt(0.0, 1), burnt(0.0, 5), "nothing is burnt out");
     }

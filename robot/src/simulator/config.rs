@@ -8,7 +8,7 @@ use super::{faults::RobotFault, motion::MotionNoise};
 use crate::{pose::Pose, truth::angle};
 
 /// The default time to take an image, in seconds.
-pub const PICTURE_TIME: f64 = 0.3;
+pub const IMAGE_TIME: f64 = 0.3;
 
 /// The configuration of a simulated robot.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct SimulationConfig {
     /// multiplies the measured errors of sensing.
     pub noise: f64,
     /// The time to take an image, in seconds.
-    pub picture_time: f64,
+    pub image_time: f64,
     /// The injected faults.
     pub faults: Vec<RobotFault>,
     /// Whether wheel speeds are recorded for [`Robot::track`](crate::robot::Robot::track).
@@ -43,7 +43,7 @@ impl SimulationConfig {
             marker: facing,
             pose,
             noise: 1.0,
-            picture_time: PICTURE_TIME,
+            image_time: IMAGE_TIME,
             faults: Vec::new(),
             keeps_track: false,
             seed,

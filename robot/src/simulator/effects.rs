@@ -12,7 +12,7 @@ pub enum EffectScope {
     /// The building: the effect is the same in all of its images.
     Building,
     /// The robot, its camera and the single image.
-    Picture,
+    Image,
 }
 
 /// An effect's name, meaning and range.
@@ -133,39 +133,39 @@ knobs! {
         "Cables on the floor per 10 m of hallway.";
     dark_rim "dark-rim" Building 0.0 0.0..=1.0, 0.0..=0.0,
         "Share of the rim just inside of which dark furniture is seen.";
-    body "body" Picture 0.0 0.0..=1.0, 1.0..=1.0,
+    body "body" Image 0.0 0.0..=1.0, 1.0..=1.0,
         "Whether the robot's body is visible: 0.5 or more is yes.";
-    laptop "laptop" Picture 0.0 0.0..=0.15, 0.0..=0.0,
+    laptop "laptop" Image 0.0 0.0..=0.15, 0.0..=0.0,
         "How far an open laptop sticks out of the body, in metres; 0 is a closed one.";
-    lens "lens" Picture 0.0 0.0..=0.03, 0.012..=0.016,
+    lens "lens" Image 0.0 0.0..=0.03, 0.012..=0.016,
         "Radius of the camera visible in the middle of the mirror, in metres.";
-    struts "struts" Picture 0.0 0.0..=20.0, 1.5..=4.0,
+    struts "struts" Image 0.0 0.0..=20.0, 1.5..=4.0,
         "Angle hidden by each of the mirror's two struts, in degrees.";
-    strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
+    strut_bearing "strut-bearing" Image 90.0 0.0..=180.0, 0.0..=180.0,
         "Direction of the struts, in degrees from ahead to the left.";
-    strut_width "strut-width" Picture 0.0 0.0..=60.0, 0.0..=0.0,
+    strut_width "strut-width" Image 0.0 0.0..=60.0, 0.0..=0.0,
         "Least width of each strut, in pixels of an image 1280 wide.";
-    holder "holder" Picture 0.03 0.0..=0.2, 0.03..=0.03,
+    holder "holder" Image 0.03 0.0..=0.2, 0.03..=0.03,
         "Width of the dark ring around the mirror, as a share of the mirror's radius.";
-    zoom "zoom" Picture 1.0 0.5..=2.0, 1.0..=1.0,
+    zoom "zoom" Image 1.0 0.5..=2.0, 1.0..=1.0,
         "Magnification; from 1.07 the image crops the mirror. 1.45 is a rim of 0.68 of its height.";
-    off_centre "off-centre" Picture 0.0 -0.2..=0.2, 0.0..=0.0,
+    off_centre "off-centre" Image 0.0 -0.2..=0.2, 0.0..=0.0,
         "How far the mirror is right of the image's middle, as a share of the image's height.";
-    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.3,
+    exposure "exposure" Image 0.0 -5.0..=5.0, -1.2..=0.3,
         "Overexposure, in stops.";
-    cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
+    cast "cast" Image 0.0 0.0..=1.0, 0.0..=0.7,
         "Yellow cast: missing share of blue, and a fifth of it of green. 0.77 halves blue's level.";
-    tint "tint" Picture 0.0 -0.5..=0.5, -0.08..=0.08,
+    tint "tint" Image 0.0 -0.5..=0.5, -0.08..=0.08,
         "Green tint, or magenta below 0: change of green, as a share.";
-    vignetting "vignetting" Picture 0.0 0.0..=1.0, 0.1..=0.5,
+    vignetting "vignetting" Image 0.0 0.0..=1.0, 0.1..=0.5,
         "Share of the light missing at the mirror's rim.";
-    blur "blur" Picture 0.0 0.0..=4.0, 0.3..=1.1,
+    blur "blur" Image 0.0 0.0..=4.0, 0.3..=1.1,
         "Blur: standard deviation in pixels of an image 1280 wide.";
-    glare "glare" Picture 0.0 0.0..=0.5, 0.0..=0.03,
+    glare "glare" Image 0.0 0.0..=0.5, 0.0..=0.03,
         "Share of the light that a dusty mirror spreads over the image.";
-    noise "noise" Picture 0.0 0.0..=0.5, 0.004..=0.02,
+    noise "noise" Image 0.0 0.0..=0.5, 0.004..=0.02,
         "Sensor noise: standard deviation at white, as a share of white.";
-    jpeg_loss "jpeg-loss" Picture 0.0 0.0..=99.0, 5.0..=35.0,
+    jpeg_loss "jpeg-loss" Image 0.0 0.0..=99.0, 5.0..=35.0,
         "JPEG loss: 100 minus quality; 0 is no compression.";
 }
 
@@ -180,9 +180,9 @@ impl Effects {
 
     /// Effects for another image of the same building: only the image's effects are drawn again.
     #[must_use]
-    pub fn of_another_picture(&self, rng: &mut impl Rng) -> Self {
+    pub fn of_another_image(&self, rng: &mut impl Rng) -> Self {
         let mut effects = self.clone();
-        effects.draw(rng, |knob| knob.scope == EffectScope::Picture);
+        effects.draw(rng, |knob| knob.scope == EffectScope::Image);
         effects
     }
 
@@ -318,7 +318,7 @@ mod tests {
     fn another_image_has_the_same_building() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
         let mut effects = Effects::drawn(&mut rng);
-        let mut other = effects.of_another_picture(&mut rng);
+        let mut other = effects.of_another_image(&mut rng);
         let values = effects.values().into_iter().zip(other.values());
         for (knob, (value, other)) in KNOBS.iter().zip(values) {
             let same = value.total_cmp(other).is_eq();

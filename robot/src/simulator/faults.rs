@@ -12,8 +12,8 @@ pub const FOR_EVER: u32 = u32::MAX;
 pub struct RobotFault {
     /// The kind.
     pub kind: FaultKind,
-    /// The number of the first image that it affects, from 1.
-    pub picture: u64,
+    /// The number of the first image or scan that it affects, from 1.
+    pub frame: u64,
     /// The number of images or commands that it affects, if it passes.
     pub lasting: u32,
 }
@@ -47,7 +47,7 @@ kinds! {
 
 /// The fault cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("write NAME@PICTURE or NAME@PICTURE:COUNT, as in dropped@12:3; the faults are {}", names())]
+#[error("write NAME@IMAGE or NAME@IMAGE:COUNT, as in dropped@12:3; the faults are {}", names())]
 pub struct FaultError;
 
 fn names() -> String {
@@ -65,32 +65,32 @@ impl FaultKind {
 impl RobotFault {
     /// A fault of this kind at an image, with its default duration.
     #[must_use]
-    pub fn at(kind: FaultKind, picture: u64) -> Self {
+    pub fn at(kind: FaultKind, frame: u64) -> Self {
         let lasting = FAULTS.iter().find(|(known, ..)| *known == kind).map_or(1, |fault| fault.2);
-        Self { kind, picture, lasting }
+        Self { kind, frame, lasting }
     }
 
     /// Whether it has passed when this image is taken.
-    pub(super) fn has_passed(&self, picture: u64) -> bool {
-        self.lasting < FOR_EVER && picture >= self.picture + u64::from(self.lasting)
+    pub(super) fn has_passed(&self, frame: u64) -> bool {
+        self.lasting < FOR_EVER && frame >= self.frame + u64::from(self.lasting)
     }
 
     /// Whether it affects the image with this number.
-    pub(super) fn spoils(&self, picture: u64) -> bool {
-        self.begins(picture)
-            || picture > self.picture && picture - self.picture < u64::from(self.lasting)
+    pub(super) fn spoils(&self, frame: u64) -> bool {
+        self.begins(frame)
+            || frame > self.frame && frame - self.frame < u64::from(self.lasting)
     }
 
     /// Whether it starts with the image with this number.
-    pub(super) fn begins(&self, picture: u64) -> bool {
-        self.picture == picture
+    pub(super) fn begins(&self, frame: u64) -> bool {
+        self.frame == frame
     }
 }
 
 /// The form that `from_str` parses.
 impl fmt::Display for RobotFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{}@{}", self.kind.name(), self.picture)?;
+        write!(out, "{}@{}", self.kind.name(), self.frame)?;
         if self.lasting == FOR_EVER { Ok(()) } else { write!(out, ":{}", self.lasting) }
     }
 }
@@ -101,13 +101,13 @@ impl FromStr for RobotFault {
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let (name, when) = text.trim().split_once('@').ok_or(FaultError)?;
         let &(kind, ..) = FAULTS.iter().find(|(_, known, ..)| *known == name).ok_or(FaultError)?;
-        let (picture, lasting) = match when.split_once(':') {
-            Some((picture, lasting)) => (picture, Some(lasting)),
+        let (frame, lasting) = match when.split_once(':') {
+            Some((frame, lasting)) => (frame, Some(lasting)),
             None => (when, None),
         };
-        let fault = Self::at(kind, picture.parse().map_err(|_| FaultError)?);
+        let fault = Self::at(kind, frame.parse().map_err(|_| FaultError)?);
         let lasting = lasting.map_or(Ok(fault.lasting), str::parse).map_err(|_| FaultError)?;
-        if fault.picture == 0 || lasting == 0 {
+        if fault.frame == 0 || lasting == 0 {
             Err(FaultError)
         } else {
             Ok(Self { lasting, ..fault })
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_fault_is_parsed_with_its_image_and_its_duration() {
-        let fault = RobotFault { kind: FaultKind::Dropped, picture: 12, lasting: 3 };
+        let fault = RobotFault { kind: FaultKind::Dropped, frame: 12, lasting: 3 };
         assert_eq!("dropped@12".parse(), Ok(fault));
         assert_eq!("dropped@12:9".parse(), Ok(RobotFault { lasting: 9, ..fault }));
         for text in
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_fault_affects_as_many_images_as_it_lasts() {
         let fault: RobotFault = "frozen@5:2".parse().unwrap();
-        let spoilt: Vec<_> = (1..10).filter(|&picture| fault.spoils(picture)).collect();
+        let spoilt: Vec<_> = (1..10).filter(|&frame| fault.spoils(frame)).collect();
         assert_eq!(spoilt, [5, 6]);
     }
 }

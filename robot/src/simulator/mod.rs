@@ -39,7 +39,7 @@ mod world_ray;
 pub use crate::pose::Pose;
 pub use building::Building;
 pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
-pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
+pub use config::{IMAGE_TIME, SimulationConfig, start_pose};
 pub use effects::{EffectScope, EffectSettings, Effects, KNOBS, Knob, KnobError};
 pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
 pub use labels::{label_mask, labels};

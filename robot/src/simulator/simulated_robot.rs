@@ -32,17 +32,17 @@ pub struct SimulatedRobot {
     camera: Box<dyn SimulatedCamera>,
     scanner: Option<LaserScanner>,
     /// The time to take an image, in seconds.
-    picture_time: f64,
+    image_time: f64,
     faults: Vec<RobotFault>,
     seed: u64,
-    pictures: u64,
+    frames: u64,
     last: Option<Frame>,
     /// What a fault has put in its way.
     obstacle: Option<Rectangle>,
 }
 
 /// How much an overexposed image is overexposed, in stops.
-const BURNT_OUT: f64 = 4.0;
+const OVEREXPOSURE: f64 = 4.0;
 /// Distance of an obstacle ahead of the robot's centre, and its depth, in metres.
 const AHEAD: f64 = 1.2;
 const DEEP: f64 = 0.3;
@@ -88,7 +88,7 @@ impl SimulationConfig {
 
 impl SimulatedRobot {
     fn new(config: &SimulationConfig, camera: impl SimulatedCamera + 'static) -> Self {
-        let SimulationConfig { plan, pose, picture_time, faults, seed, .. } = config.clone();
+        let SimulationConfig { plan, pose, image_time, faults, seed, .. } = config.clone();
         let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
         if config.keeps_track {
             base.keep_track();
@@ -100,10 +100,10 @@ impl SimulatedRobot {
             base,
             camera,
             scanner,
-            picture_time,
+            image_time,
             faults,
             seed,
-            pictures: 0,
+            frames: 0,
             last,
             obstacle,
         }
@@ -139,20 +139,20 @@ impl SimulatedRobot {
         self.base.time()
     }
 
-    /// The number of images that were requested.
+    /// The number of images or scans that were requested.
     #[must_use]
-    pub fn pictures(&self) -> u64 {
-        self.pictures
+    pub fn frames(&self) -> u64 {
+        self.frames
     }
 
-    /// The picture of the next number, as it is now, unless it does not come.
+    /// The frame of the next number, as it is now, unless it does not come.
     pub(crate) fn expose(&mut self) -> Option<Frame> {
-        self.pictures += 1;
-        let number = self.pictures;
+        self.frames += 1;
+        let number = self.frames;
         let begin: Vec<RobotFault> =
             self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
         let stays = |fault: &RobotFault| {
-            fault.kind == FaultKind::Blocked && fault.picture < number && !fault.has_passed(number)
+            fault.kind == FaultKind::Blocked && fault.frame < number && !fault.has_passed(number)
         };
         let passes = |fault: &RobotFault| {
             fault.kind == FaultKind::Blocked
@@ -168,14 +168,14 @@ impl SimulatedRobot {
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
         self.camera.set_lights(!spoilt(FaultKind::LightsOut));
         let taken = self.base.time();
-        let stops = if spoilt(FaultKind::OverExposed) { BURNT_OUT } else { 0.0 };
+        let stops = if spoilt(FaultKind::OverExposed) { OVEREXPOSURE } else { 0.0 };
         let odometry = self.base.reading().odometry;
         let frame = match &self.last {
             Some(last) if spoilt(FaultKind::Late) => last.clone(),
             Some(last) if spoilt(FaultKind::Frozen) => Frame { taken, odometry, ..last.clone() },
             _ => {
                 let pose = self.base.pose();
-                let frame = self.camera.picture(pose, number, stops);
+                let frame = self.camera.frame(pose, number, stops);
                 let scan = self.scanner.as_ref().map(|scanner| scanner.scan(pose, number, taken));
                 let scan = scan.and_then(Result::ok).map(Arc::new);
                 let frame = Frame { taken, odometry, scan, ..frame };
@@ -192,8 +192,8 @@ impl SimulatedRobot {
 
     /// The time to take an image, in seconds.
     #[cfg(feature = "ros1")]
-    pub(crate) fn picture_time(&self) -> f64 {
-        self.picture_time
+    pub(crate) fn image_time(&self) -> f64 {
+        self.image_time
     }
 
     /// The base, for a caller that controls the wheels itself.
@@ -211,7 +211,7 @@ impl SimulatedRobot {
                 self.base.put(obstacle);
             }
             FaultKind::Carried => {
-                let pose = elsewhere(&self.plan, self.seed, fault.picture);
+                let pose = elsewhere(&self.plan, self.seed, fault.frame);
                 self.base.carry(pose);
             }
             _ => {}
@@ -222,8 +222,8 @@ impl SimulatedRobot {
 impl Robot for SimulatedRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {
         let frame = self.expose();
-        self.base.wait(self.picture_time);
-        frame.ok_or(RobotError::NoPicture)
+        self.base.wait(self.image_time);
+        frame.ok_or(RobotError::NoImage)
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
@@ -267,8 +267,8 @@ fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
 }
 
 /// A random pose in a hallway, along it.
-fn elsewhere(plan: &FloorPlan, seed: u64, picture: u64) -> Pose {
-    let mut chance = stream(seed, StreamPurpose::Faults, picture as usize);
+fn elsewhere(plan: &FloorPlan, seed: u64, frame: u64) -> Pose {
+    let mut chance = stream(seed, StreamPurpose::Faults, frame as usize);
     let ends = plan
         .hallways()
         .choose(&mut chance)

@@ -23,11 +23,11 @@ const POSES: [Pose; 3] = [
 ];
 
 /// Memory that images and scenes keep after these rounds, and the peak.
-fn taken(sensor: &mut Sensor, pictures: &[RgbImage], rounds: u32) -> (usize, usize) {
+fn taken(sensor: &mut Sensor, images: &[RgbImage], rounds: u32) -> (usize, usize) {
     MEMORY.reset_peak_usage();
     for _ in 0..rounds {
-        for picture in pictures {
-            black_box(sensor.sense(picture).unwrap());
+        for image in images {
+            black_box(sensor.sense(image).unwrap());
         }
     }
     (MEMORY.current_usage(), MEMORY.peak_usage())
@@ -41,8 +41,8 @@ pub(crate) fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 1);
-    let pictures = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
+    let images = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
     let mut sensor = Sensor::new(&camera, &colours);
-    let first = taken(&mut sensor, &pictures, 1);
-    assert_eq!(taken(&mut sensor, &pictures, 33), first);
+    let first = taken(&mut sensor, &images, 1);
+    assert_eq!(taken(&mut sensor, &images, 33), first);
 }

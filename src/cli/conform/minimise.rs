@@ -192,7 +192,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
     log.finish()
 }
 
-/// The head of a shorter log, without the calibration and colours: it has no pictures.
+/// The head of a shorter log, without the calibration and colours: it has no images.
 fn head(judged: &Judged) -> Run {
     let run = judged.opened.run.clone().unwrap_or_default();
     let marker = judged.marker.name().to_owned();

@@ -40,10 +40,10 @@ impl Judged<'_> {
     ) -> LogReport {
         let verdict = self.judgement.verdict();
         let divergence = self.judgement.divergence.as_ref();
-        let picture = divergence.filter(|_| shown).and_then(|divergence| {
+        let image = divergence.filter(|_| shown).and_then(|divergence| {
             let events = &self.judgement.events.events;
             let at = events.get(divergence.event).or(events.last())?;
-            self.opened.picture(at.source.id)
+            self.opened.image(at.source.id)
         });
         let (shorter, command) = shorter.map_or((Vec::new(), None), |shorter| {
             let events = shorter.events.events.iter().map(|event| what(&event.kind));
@@ -62,7 +62,7 @@ impl Judged<'_> {
             tolerated: self.tolerated(quirks),
             shorter,
             command,
-            picture,
+            image,
             folded: if shown { self.folded() } else { None },
             world: self.world().filter(|_| shown),
             twin: self.twin.as_ref().filter(|_| shown).map(OtherWorld::svg),
@@ -164,8 +164,8 @@ impl Judged<'_> {
             Evidence::Recorded => "recorded in the log".to_owned(),
             Evidence::Scenes => "inferred from scenes and odometry".to_owned(),
             Evidence::Pictures => {
-                let pictures = grouped(self.gathered.pictures.into());
-                format!("inferred from {pictures} images and odometry")
+                let images = grouped(self.gathered.pictures.into());
+                format!("inferred from {images} images and odometry")
             }
             Evidence::Laser => {
                 let scans = grouped(self.gathered.scans.into());

@@ -71,14 +71,14 @@ impl DriveArguments {
             }
             None => None,
         };
-        let progress = Progress::endless("exploring", "pictures")?.always_graceful();
+        let progress = Progress::endless("exploring", "images")?.always_graceful();
         // On a terminal the story shows how far the run is.
         let hidden = !self.json && io::stdout().is_terminal();
         let progress = Rc::new(if hidden { progress.hidden() } else { progress });
         let stop = progress.clone();
         let topics = RobotTopics {
             master: self.ros.clone(),
-            pictures: self.image_topic.clone(),
+            images: self.image_topic.clone(),
             scans: self.scan_topic.clone(),
             marker: self.marker_topic.clone(),
             odometry: self.odom_topic.clone(),
@@ -144,14 +144,14 @@ impl DriveArguments {
         let moves = explorer.moves();
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
-        let (seconds, pictures) = (robot.odometry().time, robot.pictures());
+        let (seconds, frames) = (robot.odometry().time, robot.frames());
         // The robot stops before anything else.
         drop(robot);
         progress.clear();
         narrator.story.finish()?;
         logged.map_err(|error| self.unwritten(&error))?;
         let name = world.map_or("", |(world, _)| &world.name);
-        let frames = if self.sensor == SensorChoice::Laser { "scans" } else { "pictures" };
+        let frame_kind = if self.sensor == SensorChoice::Laser { "scans" } else { "images" };
         let result = DriveResult {
             world: name,
             method: settings.method,
@@ -164,7 +164,7 @@ impl DriveArguments {
                 _ => FalsePercepts::BY_IMAGE,
             },
             seconds,
-            pictures,
+            frame_kind,
             frames,
         };
         if self.json {

@@ -31,9 +31,9 @@ pub(super) struct DriveResult<'a> {
     pub(super) percepts: FalsePercepts,
     /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
-    pub(super) pictures: u64,
-    /// What they are called.
-    pub(super) frames: &'static str,
+    pub(super) frames: u64,
+    /// What the frames are called.
+    pub(super) frame_kind: &'static str,
 }
 
 /// What `--json` prints.
@@ -102,7 +102,7 @@ impl DriveResult<'_> {
         if let Ok(mapped) = self.mapped {
             print_safeguards(out, self.method, mapped, self.mapping.map(), self.percepts)?;
         }
-        writeln!(out, "  {:<17} {}", self.frames, grouped(self.pictures.into()))?;
+        writeln!(out, "  {:<17} {}", self.frame_kind, grouped(self.frames.into()))?;
         writeln!(out, "  robot time        {} minutes", tenths(self.seconds / 60.0))?;
         Ok(())
     }
@@ -123,7 +123,7 @@ impl DriveResult<'_> {
             vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),
             seconds: (self.seconds * 1e3).round() / 1e3,
-            frames: self.pictures,
+            frames: self.frames,
         };
         print_line(out, "run", &line)
     }

@@ -94,8 +94,9 @@ impl EvaluateControlArguments {
         writeln!(out, "  gave up  {}", share(gave_up, judged.len()))?;
         let mean = |sum: f64| sum / judged.len().max(1) as f64;
         let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
-        let pictures = mean(judged.iter().map(|traversal| traversal.pictures as f64).sum());
-        writeln!(out, "  {pictures:.1} images and {seconds:.1} s of simulated time per traversal")?;
+        let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
+        let frames = self.robots.frames();
+        writeln!(out, "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal")?;
         let verdict = match outcome {
             Outcome::Incomplete if judged.is_empty() => "incomplete: nothing was measured",
             Outcome::Incomplete => "incomplete, interrupted",

@@ -42,7 +42,7 @@ pub(super) fn write(
     }
     let failed_visits: Vec<_> =
         visits.iter().filter(|visit| visit.decided != Some((visit.form, visit.percept))).collect();
-    for judged in failed_visits.iter().flat_map(|visit| &visit.pictures) {
+    for judged in failed_visits.iter().flat_map(|visit| &visit.views) {
         print_view(&mut lines, judged, calibration, Some(judged.view.number))?;
     }
     let name = match calibration {
@@ -55,7 +55,7 @@ pub(super) fn write(
         write_view(folder, judge, judged, calibration)?;
     }
     for visit in failed_visits.iter().take(MOST).take_while(|_| !must_stop()) {
-        for (nth, judged) in visit.pictures.iter().enumerate() {
+        for (nth, judged) in visit.views.iter().enumerate() {
             let name = format!("visit-{:05}{}-{nth}", judged.view.number, mark(calibration));
             write_steps(&folder.join(name), judge, judged, calibration)?;
         }

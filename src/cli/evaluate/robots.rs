@@ -110,6 +110,11 @@ impl RobotArguments {
         sensors.map(RobotEquipment::Images).map_err(unlearned)
     }
 
+    /// What the robots take at each step.
+    pub(super) fn frames(&self) -> &'static str {
+        if self.sensor == SensorChoice::Laser { "scans" } else { "images" }
+    }
+
     /// How the robots sense, in words.
     pub(super) fn sensing(&self) -> String {
         if self.sensor == SensorChoice::Laser {

@@ -155,11 +155,12 @@ impl EvaluateRunsArguments {
             print_safeguards(method, judged, out)?;
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
-        let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
+        let count: u64 = judged.iter().map(|run| run.frames).sum();
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
-        let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
+        let (moves, count) = (grouped(moves.into()), grouped(count.into()));
+        let frames = self.robots.frames();
         let hours = tenths(hours);
-        writeln!(out, "  {moves} moves, {pictures} images, {hours} hours of simulated time")?;
+        writeln!(out, "  {moves} moves, {count} {frames}, {hours} hours of simulated time")?;
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -187,7 +188,7 @@ impl EvaluateRunsArguments {
         for run in judged {
             let faults = run.case.config.faults.iter();
             let faults: Vec<_> = faults
-                .map(|fault| json!({ "fault": fault.kind.name(), "picture": fault.picture }))
+                .map(|fault| json!({ "fault": fault.kind.name(), "picture": fault.frame }))
                 .collect();
             let line = json!({
                 "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
@@ -197,7 +198,7 @@ impl EvaluateRunsArguments {
                 "cut_off": run.way_to_marker == WayToMarker::None,
                 "narrow": run.way_to_marker == WayToMarker::Narrow,
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
-                "frames": run.pictures,
+                "frames": run.frames,
                 "recoveries": run.mapped.as_ref().map(|mapped| mapped.recoveries),
                 "audit_moves": run.mapped.as_ref().map(|mapped| mapped.audit_moves),
                 "blocked": run.mapped.as_ref().map(|mapped| mapped.blocked.len()),
@@ -308,7 +309,7 @@ fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
 
 fn named(run: &JudgedRun) -> String {
     let faults = run.case.config.faults.iter();
-    let faults = faults.map(|fault| format!("{}@{}", fault.kind.name(), fault.picture));
+    let faults = faults.map(|fault| format!("{}@{}", fault.kind.name(), fault.frame));
     let plan = run.case.plan_name.clone();
     let parts = std::iter::once(plan).chain(faults).collect::<Vec<_>>().join(", ");
     format!("run {}, {parts}", run.case.number)

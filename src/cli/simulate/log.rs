@@ -4,7 +4,7 @@ use std::fs::File;
 
 use toposlam_robot::{
     log::{messages, recorder::Recorder, world_hash, writer::LogWriteError},
-    simulator::PICTURE_TIME,
+    simulator::IMAGE_TIME,
 };
 use toposlam_vision::{
     camera::{Camera, calibration},
@@ -70,7 +70,7 @@ impl SimulateArguments {
         let unless =
             |value: f64, usual: f64| (value.total_cmp(&usual).is_ne()).then(|| value.to_string());
         option("--noise", unless(self.noise, 1.0));
-        option("--picture-time", unless(self.picture_time, PICTURE_TIME));
+        option("--image-time", unless(self.image_time, IMAGE_TIME));
         for fault in &self.fault {
             option("--fault", Some(fault.to_string()));
         }
@@ -121,7 +121,7 @@ mod tests {
         );
         let line = "it's.toml --start a:b --algorithm folding --max-darts 20 --seed 7 --calibration c.toml \
                     --size 1280x960 --colours d.toml --look tiles --effects none --effect noise=0.25 \
-                    --picture-time 0.5 --fault carried@40 --fault dropped@3:9";
+                    --image-time 0.5 --fault carried@40 --fault dropped@3:9";
         let words: Vec<_> = line.split_whitespace().collect();
         let command = command_of(&words);
         let expected = format!("toposlam simulate {}", words.join(" "));

@@ -32,11 +32,11 @@ pub(super) struct SimulationResult<'a> {
     /// How often a percept is false.
     pub(super) percepts: FalsePercepts,
     /// What its frames are called.
-    pub(super) frames: &'static str,
+    pub(super) frame_kind: &'static str,
     pub(super) run: &'a Run<'a>,
-    /// The faults that did not happen: the run ended before their pictures.
+    /// The faults that did not happen: the run ended before their images.
     pub(super) missed: Vec<&'a RobotFault>,
-    /// The result of the off-line version on the same pictures, if it is complete.
+    /// The result of the off-line version on the same images, if it is complete.
     pub(super) replayed: Option<MappingRun>,
     /// How long the off-line version took, in seconds.
     pub(super) compute_seconds: f64,
@@ -140,8 +140,8 @@ impl SimulationResult<'_> {
         for fault in &self.missed {
             let text = format!(
                 "The fault {fault} did not happen: the run ended after {} {}.",
-                grouped(run.pictures.into()),
-                self.frames
+                grouped(run.frames.into()),
+                self.frame_kind
             );
             print_paragraph(out, &text)?;
         }
@@ -156,7 +156,7 @@ impl SimulationResult<'_> {
         writeln!(out, "  edges             {}", grouped(edges as u128))?;
         writeln!(out, "  map               {known}")?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
-        writeln!(out, "  {:<17} {}", self.frames, grouped(run.pictures.into()))?;
+        writeln!(out, "  {:<17} {}", self.frame_kind, grouped(run.frames.into()))?;
         writeln!(out, "  simulated time    {} minutes", tenths(minutes))?;
         // Without images there is almost nothing to compute.
         if self.replayed.is_some() && seconds >= SHOWN {
@@ -190,10 +190,10 @@ impl SimulationResult<'_> {
             divergence_move: divergence.as_ref().map(|divergence| divergence.moves),
             error: run.error.as_ref().map(ToString::to_string),
             faults_missed: self.missed.iter().map(ToString::to_string).collect(),
-            // The control loop counts in quarters of a second, a picture in tenths.
+            // The control loop counts in quarters of a second, an image in tenths.
             simulated_seconds: (run.seconds * 1e3).round() / 1e3,
             compute_seconds: self.compute_seconds,
-            frames: run.pictures,
+            frames: run.frames,
         };
         print_line(out, "run", &line)
     }

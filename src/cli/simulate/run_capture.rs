@@ -28,7 +28,7 @@ use crate::{
 pub(super) struct RunCapture<'o> {
     story: Story<StoryLines<'o>>,
     progress: Progress,
-    pictures: Pictures,
+    images: KeptImages,
     rounds: Vec<FrameEntry>,
     /// The number of frames before each arrival, and the door taken before it.
     arrivals: Vec<(usize, Option<Door>)>,
@@ -36,12 +36,12 @@ pub(super) struct RunCapture<'o> {
     door: Option<Door>,
     maps: Vec<PartialMap>,
     moves: u64,
-    /// The first picture that could not be written.
+    /// The error of the first image that could not be written.
     failure: Option<CliError>,
 }
 
-/// Which annotated pictures are kept.
-pub(super) enum Pictures {
+/// Which annotated images are kept.
+pub(super) enum KeptImages {
     /// None.
     None,
     /// Small ones.
@@ -50,21 +50,21 @@ pub(super) enum Pictures {
     Files { camera: Camera, folder: PathBuf },
 }
 
-/// The width of small pictures, in pixels.
+/// The width of small images, in pixels.
 const SMALL: u32 = 400;
-/// The JPEG quality of small pictures.
+/// The JPEG quality of small images.
 const QUALITY: u8 = 60;
 
 impl<'o> RunCapture<'o> {
     pub(super) fn new(
         story: Story<StoryLines<'o>>,
         progress: Progress,
-        pictures: Pictures,
+        images: KeptImages,
     ) -> Self {
         Self {
             story,
             progress,
-            pictures,
+            images,
             rounds: Vec::new(),
             arrivals: Vec::new(),
             door: None,
@@ -77,7 +77,7 @@ impl<'o> RunCapture<'o> {
     /// What was kept, as a journal whose ending is still empty.
     ///
     /// # Errors
-    /// Returns an error if the story or a picture could not be written.
+    /// Returns an error if the story or an image could not be written.
     pub(super) fn finish(
         self,
         name: &str,
@@ -119,19 +119,19 @@ impl<'o> RunCapture<'o> {
             state: PathState::Unknown,
             scene: frame.scene.as_ref().map(in_words).unwrap_or_default(),
             command: None,
-            picture: self.picture(frame),
+            image: self.annotated(frame),
             story: unwrapped(self.story.out().text()).len(),
             maps: self.maps.len(),
         };
         self.rounds.push(round);
     }
 
-    /// A small annotated picture. A large one is written first if there is a folder for it.
-    fn picture(&mut self, frame: &Frame) -> Option<Vec<u8>> {
-        let (camera, folder) = match &self.pictures {
-            Pictures::None => return None,
-            Pictures::Small { camera } => (camera, None),
-            Pictures::Files { camera, folder } => (camera, Some(folder)),
+    /// A small annotated image. A large one is written first if there is a folder for it.
+    fn annotated(&mut self, frame: &Frame) -> Option<Vec<u8>> {
+        let (camera, folder) = match &self.images {
+            KeptImages::None => return None,
+            KeptImages::Small { camera } => (camera, None),
+            KeptImages::Files { camera, folder } => (camera, Some(folder)),
         };
         let image = frame.image.as_ref()?.pixels().ok()?;
         let image = annotate::over(image, camera, frame.scene.as_ref()?);

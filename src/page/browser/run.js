@@ -1,7 +1,7 @@
 // The run: the slider, the buttons and the keys choose a frame; the page shows the run at that time.
 
 const data = JSON.parse(find("#data").textContent);
-const { rounds, calls, story, pictures } = data;
+const { rounds, calls, story, images } = data;
 /** The most junctions that are marked along the slider one by one. */
 const MARKS = 150;
 
@@ -40,14 +40,14 @@ const write = (selector, text) => {
   find(selector).textContent = text;
 };
 
-/** Nothing if the run has no pictures: then there is no camera on the page. */
-function showCamera({ picture }) {
+/** Nothing if the run has no images: then there is no camera on the page. */
+function showCamera({ image: number }) {
   const image = find(".camera img");
   if (!image) return;
-  const kept = picture !== null;
+  const kept = number !== null;
   image.hidden = !kept;
-  find(".no-picture").hidden = kept;
-  if (kept && image.src !== pictures[picture]) image.src = pictures[picture];
+  find(".no-image").hidden = kept;
+  if (kept && image.src !== images[number]) image.src = images[number];
   image.alt = kept ? `What the camera saw at frame ${at + 1}` : "";
 }
 

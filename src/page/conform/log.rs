@@ -16,7 +16,7 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
     let seen = [
-        picture(report, beneath),
+        image(report, beneath),
         folded(report, beneath),
         world(report, beneath),
         twin(report, beneath),
@@ -185,8 +185,8 @@ fn facts(report: &LogReport, level: Level) -> String {
     panel(level, "late", "What was checked", &table)
 }
 
-fn picture(report: &LogReport, level: Level) -> String {
-    let Some(address) = report.picture.as_deref().and_then(wording::picture_address) else {
+fn image(report: &LogReport, level: Level) -> String {
+    let Some(address) = report.image.as_deref().and_then(wording::image_address) else {
         return String::new();
     };
     let image = format!("<img alt=\"The image of the robot's camera\" src=\"{address}\">\n");

@@ -53,7 +53,7 @@ fn conforming(events: usize) -> LogReport {
         tolerated: Vec::new(),
         shorter: Vec::new(),
         command: None,
-        picture: None,
+        image: None,
         folded: None,
         world: None,
         twin: None,
@@ -75,7 +75,7 @@ fn diverged(events: usize, at: usize) -> LogReport {
         }),
         shorter: vec!["perceives 2 doors".to_owned()],
         command: Some("toposlam conform shorter.mcap --world shape-6.toml".to_owned()),
-        picture: Some(b"\xff\xd8\xff\xe0".to_vec()),
+        image: Some(b"\xff\xd8\xff\xe0".to_vec()),
         world: Some("<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned()),
         ..conforming(events)
     }
@@ -220,9 +220,9 @@ fn what_there_is_not_takes_no_room() {
     for name in ["What the camera saw", "Events before it", "tolerated", "A shorter log"] {
         assert!(!page.contains(name), "{name}");
     }
-    let odd = LogReport { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
+    let odd = LogReport { image: Some(b"GIF89a".to_vec()), ..conforming(2) };
     assert_eq!(page_of(&[odd]), page);
-    let png = LogReport { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
+    let png = LogReport { image: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
     assert!(page_of(&[png]).contains("src=\"data:image/png;base64,"));
 }
 

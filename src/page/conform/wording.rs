@@ -126,7 +126,7 @@ pub(super) fn svg_width(svg: &str) -> Option<u32> {
 }
 
 /// A JPEG or PNG file as the address of an image; `None` if it is neither.
-pub(super) fn picture_address(file: &[u8]) -> Option<String> {
+pub(super) fn image_address(file: &[u8]) -> Option<String> {
     let kind = if file.starts_with(b"\xff\xd8\xff") {
         "jpeg"
     } else if file.starts_with(b"\x89PNG\r\n\x1a\n") {

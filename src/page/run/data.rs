@@ -30,25 +30,25 @@ pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
         "rounds": rounds,
         "calls": journal.calls.iter().map(call).collect::<Vec<_>>(),
         "story": journal.story,
-        "pictures": album.pictures,
+        "images": album.images,
         "body": rounded(BODY * drawn.metre),
         "trail": folding::json(journal),
     }))
 }
 
-/// The distinct pictures, as data URLs.
+/// The distinct images, as data URLs.
 #[derive(Default)]
 struct Album<'a> {
-    pictures: Vec<String>,
+    images: Vec<String>,
     place: HashMap<&'a [u8], usize>,
 }
 
 impl<'a> Album<'a> {
-    /// The index of a picture. It is added if it is new.
+    /// The index of an image. It is added if it is new.
     fn place(&mut self, jpeg: &'a [u8]) -> usize {
         *self.place.entry(jpeg).or_insert_with(|| {
-            self.pictures.push(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)));
-            self.pictures.len() - 1
+            self.images.push(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)));
+            self.images.len() - 1
         })
     }
 }
@@ -64,7 +64,7 @@ fn round<'a>(round: &'a FrameEntry, [x, y]: [f64; 2], album: &mut Album<'a>) -> 
         "state": words::state(round.state),
         "scene": round.scene,
         "command": words::command(round.command),
-        "picture": round.picture.as_ref().map(|jpeg| album.place(jpeg)),
+        "image": round.image.as_ref().map(|jpeg| album.place(jpeg)),
         "story": round.story,
         "maps": round.maps,
     })

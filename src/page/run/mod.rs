@@ -12,7 +12,7 @@ use crate::{
 };
 
 const PAGE: &str = include_str!("../browser/run.html");
-/// The panel of the pictures.
+/// The panel of the images.
 const CAMERA: &str = include_str!("../browser/camera.html");
 /// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 4] = [
@@ -30,9 +30,9 @@ pub fn run_page(journal: &Journal) -> String {
         "title" => escaped(&journal.name),
         "about" => escaped(&words::about(journal)),
         "style" => PAGE_STYLE.to_owned(),
-        "layout" if !has_pictures(journal) => " no-camera".to_owned(),
+        "layout" if !has_images(journal) => " no-camera".to_owned(),
         "plan" => drawn.svg.clone(),
-        "camera" if has_pictures(journal) => CAMERA.to_owned(),
+        "camera" if has_images(journal) => CAMERA.to_owned(),
         "maps" => maps(journal),
         "data" => data::json(journal, &drawn),
         "script" => SCRIPT.concat(),
@@ -40,9 +40,9 @@ pub fn run_page(journal: &Journal) -> String {
     })
 }
 
-/// Whether any frame has a picture.
-fn has_pictures(journal: &Journal) -> bool {
-    journal.rounds.iter().any(|round| round.picture.is_some())
+/// Whether any frame has an image.
+fn has_images(journal: &Journal) -> bool {
+    journal.rounds.iter().any(|round| round.image.is_some())
 }
 
 /// Every map, each in its own element; the page shows one of them.
@@ -91,23 +91,23 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_stays_the_same_is_stored_once() {
+    fn an_image_that_stays_the_same_is_stored_once() {
         let document = run_page(&example::journal());
         let data = data_of(&document);
-        let shown: Vec<_> = (0..7).map(|at| data["rounds"][at]["picture"].clone()).collect();
+        let shown: Vec<_> = (0..7).map(|at| data["rounds"][at]["image"].clone()).collect();
         assert_eq!(Value::from(shown), json!([null, 0, 1, 2, 3, 3, 3]));
-        assert_eq!(data["pictures"][3], "data:image/jpeg;base64,BAQE");
+        assert_eq!(data["images"][3], "data:image/jpeg;base64,BAQE");
         assert_eq!(document.matches("image/jpeg").count(), 4);
     }
 
     #[test]
-    fn a_run_without_pictures_has_no_camera_panel() {
+    fn a_run_without_images_has_no_camera_panel() {
         let mut journal = example::journal();
         let camera = "<figure class=\"panel camera\">";
         assert!(run_page(&journal).contains(camera));
-        journal.rounds.iter_mut().for_each(|round| round.picture = None);
+        journal.rounds.iter_mut().for_each(|round| round.image = None);
         let page = run_page(&journal);
-        assert!(!page.contains(camera) && !page.contains("No picture was kept"));
+        assert!(!page.contains(camera) && !page.contains("No image was kept"));
         assert!(page.contains("<div class=\"run no-camera\">"));
     }
 

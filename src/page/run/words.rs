@@ -41,7 +41,7 @@ pub(super) fn command(command: Option<Command>) -> String {
         (true, true) => format!("{turning}, {going}"),
         (true, false) => turning,
         (false, true) => going,
-        (false, false) => "take another picture".to_owned(),
+        (false, false) => "take another image".to_owned(),
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(text(0.5, 0.5), "turn 29\u{b0} to the left, go 0.50 m ahead");
         assert_eq!(text(-0.5, 0.0), "turn 29\u{b0} to the right");
         assert_eq!(text(0.001, 0.25), "go 0.25 m ahead");
-        assert_eq!(text(0.0, 0.0), "take another picture");
+        assert_eq!(text(0.0, 0.0), "take another image");
         assert_eq!(command(None), "none: the path ends");
     }
 }

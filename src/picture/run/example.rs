@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// Seven frames; the last three pictures are the same, and the third call is wrong.
+/// Seven frames; the last three images are the same, and the third call is wrong.
 pub(crate) fn journal() -> Journal {
     let places = [("corner", [0.0, 0.0]), ("north", [0.0, 4.0]), ("east", [4.0, 0.0])];
     let places = places.map(|(name, place)| (name.to_owned(), place));
@@ -33,18 +33,18 @@ pub(crate) fn journal() -> Journal {
         state: PathState::Hallway,
         scene: format!("scene {number}"),
         command: Some(Command { turn: 0.0, forward: 0.5 }),
-        picture: (number > 0).then(|| vec![number.min(4) as u8; 3]),
+        image: (number > 0).then(|| vec![number.min(4) as u8; 3]),
         story: number / 2,
         maps: 1.min(number),
     };
     let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
     let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
-    let call = |(pictures, degree): (usize, u32)| JunctionCall {
-        rounds: pictures,
-        pose: rounds[pictures - 1].pose,
-        door: (pictures > 1).then_some(Door(0)),
+    let call = |(frames, degree): (usize, u32)| JunctionCall {
+        rounds: frames,
+        pose: rounds[frames - 1].pose,
+        door: (frames > 1).then_some(Door(0)),
         percept: Percept { degree, sighting: Sighting::Nothing },
-        conforms: pictures < 7,
+        conforms: frames < 7,
     };
     Journal {
         name: "two hallways".to_owned(),

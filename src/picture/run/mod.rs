@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn the_line_goes_through_the_place_of_every_picture() {
+    fn the_line_goes_through_the_place_of_every_image() {
         let journal = example::journal();
         let drawn = run_drawing(&journal);
         let document = Document::parse(&drawn.svg).unwrap();

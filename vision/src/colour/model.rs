@@ -44,7 +44,7 @@ pub struct Priors {
 }
 
 impl Priors {
-    /// Equal priors. The stripe is a few hundredths of a picture, the marker less, so priors equal to
+    /// Equal priors. The stripe is a few hundredths of an image, the marker less, so priors equal to
     /// these shares would classify as floor what could be either. But a missed stripe opens a wall,
     /// while a speck of floor that is taken for stripe does not matter.
     pub const EQUAL: Self = Self { floor: 0.25, stripe: 0.25, marker: 0.25, other: 0.25 };

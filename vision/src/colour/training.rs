@@ -16,7 +16,7 @@ use crate::camera::Camera;
 /// The radius of the floor that is learned from, in metres from the robot's centre.
 const RANGE: f64 = 3.0;
 
-/// The best values on rendered pictures of other buildings than those learned from.
+/// The best values on rendered images of other buildings than those learned from.
 const SMOOTHING: Smoothing = Smoothing { colour: 0.7, light: 0.08 };
 /// A class does not have a colour if its share is less.
 const UNKNOWN_BELOW: f64 = 1e-6;

@@ -140,7 +140,7 @@ impl DeadReckoning {
         }
         self.unknowns += 1;
         if self.unknowns >= UNKNOWNS {
-            return Err(LostReason::Unknown { pictures: self.unknowns });
+            return Err(LostReason::Unknown { images: self.unknowns });
         }
         if self.crept > CREEP {
             return Err(LostReason::Crept { metres: self.crept });

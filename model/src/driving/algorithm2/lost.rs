@@ -21,13 +21,13 @@ pub struct Lost {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LostReason {
     /// Too many images in a row show no place where the robot could be.
-    #[error("{pictures} pictures in a row do not show where the robot is")]
+    #[error("{images} images in a row do not show where the robot is")]
     Unknown {
         /// How many.
-        pictures: u32,
+        images: u32,
     },
     /// The robot has gone too far without knowing where it is.
-    #[error("the robot has crept {metres:.2} m without a picture that shows where it is")]
+    #[error("no image of the last {metres:.2} m shows where the robot is")]
     Crept {
         /// How far.
         metres: f64,
@@ -45,7 +45,7 @@ pub enum LostReason {
         times: u32,
     },
     /// The robot looks and turns without getting anywhere.
-    #[error("{rounds} pictures in a row have brought the robot no farther")]
+    #[error("the robot has made no progress in {rounds} images")]
     Idle {
         /// How many.
         rounds: u32,

@@ -1,7 +1,7 @@
 //! Algorithm 2: driving a door sequence. Section 4.3.
 //!
 //! The numbers are those of the printed lines. One call of [`PathExecution::round`] is one round of
-//! the printed loop: a scene in, a command out. Pictures, sensing and motors are the caller's. What
+//! the printed loop: a scene in, a command out. Images, sensing and motors are the caller's. What
 //! odometry says and when to give up is in `dead_reckoning`.
 
 mod dead_reckoning;

@@ -294,7 +294,7 @@ fn a_door_straight_ahead_takes_no_turn() {
 }
 
 #[test]
-fn after_a_turn_a_picture_must_show_the_doors_turned_before_it_leaves() {
+fn after_a_turn_a_image_must_show_the_doors_turned_before_it_leaves() {
     let turning = || {
         let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
         robot.sees(&junction(T_STEM, 0.0, 0.0));
@@ -338,7 +338,7 @@ fn the_entry_door_is_carried_by_odometry_while_the_robot_turns() {
 
 #[test]
 fn the_entry_door_is_the_one_behind_on_arrival() {
-    // By its picture alone this T could have been entered by any of its doors.
+    // By its image alone this T could have been entered by any of its doors.
     for first in 0..3 {
         let mut robot = Robot::before(T_STEM, &[Door(2)]);
         let mut view = view(T_STEM, 0.05, 0.0);
@@ -433,7 +433,7 @@ fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
 fn a_junction_that_the_robot_could_not_leave_is_no_arrival() {
     let mut robot = Robot::at(T_LEFT, &[Door(2)]);
     robot.sees_and_does(0.0, &junction(T_LEFT, 0.0, 0.0));
-    // A picture is mistaken for one of a hallway.
+    // An image is mistaken for one of a hallway.
     robot.sees_and_does(0.0, &hallway(0.0));
     assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT / 2.0));
     assert_eq!(robot.path.state(), PathState::Leaving);
@@ -447,15 +447,15 @@ fn a_junction_that_was_passed_is_not_the_one_just_left() {
     }
     // It is the next one, 3.3 m after the last, and the robot is 3 m after it.
     let past = junction(L_LEFT, -0.3, 0.0);
-    assert_eq!(robot.sees(&past), Command::default(), "another picture");
+    assert_eq!(robot.sees(&past), Command::default(), "another image");
     assert_eq!(robot.path.state(), PathState::Junction);
 }
 
 #[test]
-fn a_junction_is_decided_by_two_pictures() {
+fn a_junction_is_decided_by_two_images() {
     let here = junction(T_STEM, 0.0, 0.0);
     let mut robot = Robot::in_hallway(&[Door(2)]);
-    assert_eq!(robot.sees(&here), Command::default(), "another picture from the same place");
+    assert_eq!(robot.sees(&here), Command::default(), "another image from the same place");
     assert_eq!(robot.arrives(&here).form, JunctionShape([true, true, false, true]));
 
     let mut robot = Robot::in_hallway(&[Door(2), Door(1)]);
@@ -466,7 +466,7 @@ fn a_junction_is_decided_by_two_pictures() {
 }
 
 #[test]
-fn doors_are_not_counted_in_a_picture_of_another_junction() {
+fn doors_are_not_counted_in_a_image_of_another_junction() {
     let queue = [Door(2), Door(1)];
     let mut robot = Robot::come_to(L_RIGHT, &queue);
     // Door 1 would be straight ahead.
@@ -514,7 +514,7 @@ fn at_the_start_the_robot_gets_to_know_its_junction_with_its_back_to_the_marker(
     let odometry = Odometry { position: [3.0, 1.0], heading: 2.0 };
     let mut robot = Robot { path: PathExecution::at_start(&odometry), odometry };
     let here = junction(L_LEFT, 0.0, 0.0);
-    assert_eq!(robot.sees(&here), Command::default(), "it takes two pictures there too");
+    assert_eq!(robot.sees(&here), Command::default(), "it takes two images there too");
     let Standing { percept, entry, .. } = robot.arrives(&here);
     assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
     assert_near(entry, 2.0 - PI);
@@ -559,7 +559,7 @@ fn what_it_turns_about_is_where_it_looked_when_it_last_knew() {
 
 #[test]
 fn after_seven_unknowns_in_a_row_it_gives_up() {
-    let gives_up = (6, LostReason::Unknown { pictures: 7 });
+    let gives_up = (6, LostReason::Unknown { images: 7 });
     assert_eq!(Robot::at(L_LEFT, &[Door(1)]).drives_on(1.0, &unknown()), gives_up);
     assert_eq!(Robot::leaving(&[Door(2)]).drives_on(1.0, &unknown()), gives_up);
     assert_eq!(Robot::before(L_LEFT, &[Door(2)]).drives_on(1.0, &unknown()), gives_up);
@@ -603,7 +603,7 @@ fn what_is_not_carried_out_is_an_error_after_three_tries() {
 }
 
 #[test]
-fn sixteen_pictures_from_the_same_place_are_enough() {
+fn sixteen_images_from_the_same_place_are_enough() {
     // Beside its turning point the robot hides whether the marker lies at an L.
     let mut robot = Robot::in_hallway(&[Door(2)]);
     let (commands, why) = robot.drives_on(1.0, &junction(L_LEFT, 0.0, 0.0));
@@ -648,7 +648,7 @@ fn a_path_is_given_up_in_words() {
         robot.sees(&unknown());
     }
     let lost = robot.round(&unknown()).unwrap_err();
-    let said = "7 pictures in a row do not show where the robot is; in a hallway, 2.00 m after the \
+    let said = "7 images in a row do not show where the robot is; in a hallway, 2.00 m after the \
                 last turn to a door";
     assert_eq!(lost.to_string(), said);
     assert_near(lost.since_turn, robot.path.since_turn());

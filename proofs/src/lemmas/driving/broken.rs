@@ -16,19 +16,19 @@ struct Broken<const FLAW: u8> {
 
 /// A unit is 60 cm.
 const FARTHER: u8 = 0;
-/// One picture decides a visit.
-const ONE_PICTURE: u8 = 1;
+/// One image decides a visit.
+const ONE_IMAGE: u8 = 1;
 /// The first door is not removed from the queue.
 const KEPT: u8 = 2;
 /// The first door is left out.
 const LEFT_OUT: u8 = 3;
-/// It leaves a junction without a picture of the doors turned.
+/// It leaves a junction without an image of the doors turned.
 const AT_ONCE: u8 = 4;
-/// Pictures that show nothing are not counted.
+/// Images that show nothing are not counted.
 const UNKNOWN_FOR_EVER: u8 = 5;
 /// Commands that are not carried out are repeated for ever.
 const STALLED_FOR_EVER: u8 = 6;
-/// Pictures from the same place are not counted.
+/// Images from the same place are not counted.
 const IDLE_FOR_EVER: u8 = 7;
 /// Junctions without a door left are driven through.
 const NO_STOP: u8 = 8;
@@ -50,7 +50,7 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
             (FARTHER, Ok(Step::Go(Command { turn, forward }))) => {
                 Ok(Step::Go(Command { turn, forward: 1.2 * forward }))
             }
-            (ONE_PICTURE, Ok(Step::Go(command))) if command == Command::default() => {
+            (ONE_IMAGE, Ok(Step::Go(command))) if command == Command::default() => {
                 self.path.round(scene, odometry)
             }
             (AT_ONCE, Ok(Step::Go(Command { turn, .. })))
@@ -89,8 +89,8 @@ fn a_unit_of_60_cm_is_noticed() {
 }
 
 #[test]
-fn a_visit_decided_by_one_picture_is_noticed() {
-    assert_eq!(fails(no_false_arrival::<_, Broken<ONE_PICTURE>, 1, 1>), "two pictures agree");
+fn a_visit_decided_by_one_image_is_noticed() {
+    assert_eq!(fails(no_false_arrival::<_, Broken<ONE_IMAGE>, 1, 1>), "two images agree");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_door_that_is_left_out_is_noticed() {
 }
 
 #[test]
-fn a_robot_that_leaves_without_a_picture_is_noticed() {
+fn a_robot_that_leaves_without_a_image_is_noticed() {
     let claim = "it leaves only if it looks there";
     assert_eq!(fails(the_first_door::<_, Broken<AT_ONCE>, 4>), claim);
     let claim = "it leaves when it looks to the door";

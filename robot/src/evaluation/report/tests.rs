@@ -111,7 +111,7 @@ fn views_are_counted_in_their_zones() {
 fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
     let pointing = |door| Sighting::Pointing(Door(door));
     let visit = |sighting, decided: Option<(JunctionShape, Sighting)>| JudgedVisit {
-        pictures: Vec::new(),
+        views: Vec::new(),
         form: L,
         percept: Percept { degree: 2, sighting },
         decided: decided

@@ -15,7 +15,7 @@ pub struct RoleGuess {
 /// For everything that could be carried, all topics with messages that could: those of the project's own
 /// types, also where they have come by way of ROS 1; and those of the types that are usual for it.
 ///
-/// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's. Odometry comes from
+/// Topics of annotated images (`annotated` is a part of the name) are not a camera's. Odometry comes from
 /// transforms, or from the lines of a scanner, if there is no other; `/tf_static` does not move. Whether a tag
 /// or a pose is the marker only a mapping file knows.
 #[must_use]

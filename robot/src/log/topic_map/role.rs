@@ -21,7 +21,7 @@ const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
 /// The role of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
-    /// Pictures of the robot's camera.
+    /// Images of the robot's camera.
     Image,
     /// Scans of the robot's laser scanner.
     Scan,

@@ -24,7 +24,7 @@ use toposlam_model::{
 
 use super::{CheckArguments, write_worst};
 use crate::{
-    cli::{CliError, Outcome, input, output, progress::Progress},
+    cli::{CliError, Outcome, input, output, progress::Progress, text::counted},
     picture::{self, WorldPicture},
 };
 use process::ExplorerCommand;
