@@ -13,8 +13,13 @@ pub use crate::model::counts::{counted, vertices};
 /// The widest line that is printed: the terminal's width, and at most 80 columns.
 pub static WIDTH: LazyLock<usize> = LazyLock::new(|| {
     let terminal = io::stdout().is_terminal().then(terminal_size::terminal_size).flatten();
-    terminal.map_or(MAX_WIDTH, |(width, _)| usize::from(width.0).clamp(MIN_WIDTH, MAX_WIDTH))
+    terminal.map_or(MAX_WIDTH, |(width, _)| readable(width.0))
 });
+
+/// The width of the text on a terminal of this width.
+pub(crate) fn readable(terminal: u16) -> usize {
+    usize::from(terminal).clamp(MIN_WIDTH, MAX_WIDTH)
+}
 
 const MAX_WIDTH: usize = 80;
 /// Narrower text is not readable.

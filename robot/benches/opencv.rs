@@ -18,6 +18,7 @@ use std::{
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::counts::grouped;
 use toposlam_robot::{
     evaluation::{learned, view_sampler::ViewSampler},
     simulator::{Building, BuildingLook, Effects, Pose, Rig, label_mask, labels, render},
@@ -92,9 +93,10 @@ fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64
         times[times.len() / 2]
     };
     let whole = median(&|times| times.iter().sum());
-    println!("{name}: {whole:.0} us a frame, median of {}", times.len());
-    for (number, stage) in stages.iter().enumerate() {
-        println!("  {stage:<22} {:>6.0} us", median(&|times| times[number]));
+    let number = |microseconds: f64| grouped(microseconds.round() as u128);
+    println!("{name}: {} us a frame, median of {}", number(whole), times.len());
+    for (at, stage) in stages.iter().enumerate() {
+        println!("  {stage:<22} {:>6} us", number(median(&|times| times[at])));
     }
     whole
 }

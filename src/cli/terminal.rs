@@ -1,17 +1,23 @@
 //! Standard error: remarks, errors, and their colours.
 //!
 //! `--quiet` leaves out remarks and progress. `--color` decides on colours, or else the environment
-//! (`NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`) and whether standard error is a terminal.
+//! (`NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`) and whether standard error is a terminal. On a terminal the lines are
+//! wrapped; in a file or a pipe each remark and each error stays on one line.
 
 use std::{
     ffi::OsString,
     fmt::Display,
     io::{self, Write},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        LazyLock,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use anstream::AutoStream;
 use clap::{ColorChoice, ValueEnum, builder::Styles};
+
+use crate::text::{readable, wrapped};
 
 /// Options of every verb.
 #[derive(clap::Args)]
@@ -77,15 +83,33 @@ pub(super) fn has_colors() -> bool {
 /// Prints a remark on standard error, unless `--quiet` is given.
 pub(super) fn remark(text: impl Display) {
     if !is_quiet() {
-        print_message(&format!("{text}\n"));
+        print_message(&message_lines(*WIDTH, &text.to_string()));
     }
 }
 
 /// Prints an error.
 pub(super) fn error(message: &str) {
+    const LABEL: &str = "error:";
     let style = Styles::styled();
     let style = style.get_error();
-    print_message(&format!("{style}error:{style:#} {message}\n"));
+    let lines = message_lines(*WIDTH, &format!("{LABEL} {message}"));
+    print_message(&lines.replacen(LABEL, &format!("{style}{LABEL}{style:#}"), 1));
+}
+
+/// The width of standard error, if it is a terminal.
+static WIDTH: LazyLock<Option<usize>> = LazyLock::new(|| {
+    terminal_size::terminal_size_of(io::stderr()).map(|(width, _)| readable(width.0))
+});
+
+/// The lines of a message. With a width, long ones are wrapped.
+fn message_lines(width: Option<usize>, message: &str) -> String {
+    let Some(width) = width else { return format!("{message}\n") };
+    let lines = message.lines().flat_map(|line| {
+        let text = line.trim_start();
+        let indent = line.len() - text.len();
+        wrapped(width, &line[..indent], indent, text)
+    });
+    lines.map(|line| line + "\n").collect()
 }
 
 /// Prints on standard error, also with `--quiet`. If that is closed, there is nobody to read it.
@@ -96,6 +120,15 @@ pub(super) fn print_message(text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_message_is_wrapped_on_a_terminal_only() {
+        let message = "run.txt: this is not a log\n  known are bags and MCAP files";
+        assert_eq!(message_lines(None, message), format!("{message}\n"));
+        let lines = message_lines(Some(20), message);
+        let expected = "run.txt: this is not\na log\n  known are bags and\n  MCAP files\n";
+        assert_eq!(lines, expected);
+    }
 
     #[test]
     fn the_choice_of_colours_is_found_before_the_arguments_are_parsed() {

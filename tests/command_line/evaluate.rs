@@ -84,7 +84,7 @@ fn one_view_is_shown_stage_by_stage() {
     let view = folder.join("view-00005");
     let names = names_in(&view).join(" ");
     let steps = "1-classes.png 2-boundary.png 3-clusters.png 4-lines.png 5-scene.png 6-image.png";
-    assert_eq!(names, format!("0-picture.png {steps} plan.toml view.json"));
+    assert_eq!(names, format!("0-image.png {steps} plan.toml view.json"));
     assert!(read_world(&view.join("plan.toml")).plan.is_some());
     assert_eq!(fs::read_to_string(view.join("view.json")).unwrap(), stdout(&output));
 }

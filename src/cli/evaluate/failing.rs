@@ -92,7 +92,7 @@ fn write_steps(
     output::make_folder(folder)?;
     let (image, _, stages) =
         judge.stages(&judged.view, calibration).map_err(|error| CliError::at("evaluate", error))?;
-    picture_file::write(&folder.join("0-picture.png"), &image)?;
+    picture_file::write(&folder.join("0-image.png"), &image)?;
     for (name, picture) in &stages {
         let path = folder.join(format!("{name}.png"));
         picture_file::write_stage(&path, &annotate::legend(name), picture)?;
