@@ -11,7 +11,7 @@ use toposlam_model::{
     enumerate::Class,
     marker::Directional,
     percept::{Door, Percept, Sighting, retrace},
-    world::{Refused, World},
+    world::{RefusedAction, World},
 };
 
 /// A dart of the map: a vertex, and the index clockwise from the dart by which it was first entered.
@@ -62,7 +62,7 @@ impl DepthFirst {
         mut pose: End,
         turned: &mut Door,
         world: &mut ExplorerWorld,
-    ) -> Result<Option<End>, Refused> {
+    ) -> Result<Option<End>, RefusedAction> {
         let mut trail = Vec::new();
         while let (1.., Some(next)) = (pose.0, self.far(pose.0, 0)) {
             let (door, degree) = (self.door(pose, 0), self.degree(pose));
@@ -81,7 +81,7 @@ impl DepthFirst {
     }
 
     /// Walks from the marker to a vertex, and returns the robot's pose there.
-    fn walk_to(&self, vertex: usize, from: End, world: &mut ExplorerWorld) -> Result<End, Refused> {
+    fn walk_to(&self, vertex: usize, from: End, world: &mut ExplorerWorld) -> Result<End, RefusedAction> {
         match self.far(vertex, 0) {
             Some((parent, index)) if vertex > 0 => {
                 let pose = self.walk_to(parent, from, world)?;

@@ -13,7 +13,7 @@ use toposlam_model::{
     },
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, Refused},
+    world::{GraphWorld, RefusedAction},
 };
 
 use crate::smallest_failure::{more_darts_than, new, of_algorithm};
@@ -67,7 +67,7 @@ impl Broken {
         hypothesis: Dart,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<ValidationResult, MappingError<Refused>> {
+    ) -> Result<ValidationResult, MappingError<RefusedAction>> {
         exploration.set_out();
         let mut pose = hypothesis;
         if matches!(self.0, Flaw::FirstPerceptSuffices) {
@@ -103,7 +103,7 @@ impl OpenChoices for Broken {
         choice: MappingChoice,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         step_with(
             exploration,
             choice,
@@ -137,7 +137,7 @@ impl Algorithm for Broken {
         world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         exploration.begin(world, observer)?;
         while let Some(choice) = exploration.choose(&mut Nearest) {
             self.step(exploration, choice, world, observer)?;

@@ -11,7 +11,7 @@ use toposlam_model::{
         validate_back_link, validate_place,
     },
     marker::Movable,
-    world::{GraphWorld, Refused},
+    world::{GraphWorld, RefusedAction},
 };
 
 use crate::smallest_failure::{more_darts_than, new, of_algorithm};
@@ -59,7 +59,7 @@ impl Broken {
         search: &mut MarkerSearch,
         world: &mut GraphWorld<'g, Movable>,
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<ReachedPlace, MappingError<Refused>> {
+    ) -> Result<ReachedPlace, MappingError<RefusedAction>> {
         match (self.0, search.candidates()) {
             (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(ReachedPlace::New),
             (Flaw::OnlyCandidateIsIt, &[only]) => {
@@ -104,7 +104,7 @@ impl Broken {
         search: &mut MarkerSearch,
         world: &mut GraphWorld<'g, Movable>,
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<Dart, MappingError<Refused>> {
+    ) -> Result<Dart, MappingError<RefusedAction>> {
         if !matches!(self.0, Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed) {
             return validate_back_link(edge, vertex, search, world, observer);
         }
@@ -157,7 +157,7 @@ impl Algorithm for Broken {
         world: &mut GraphWorld<'g, Movable>,
         search: &mut MarkerSearch,
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         search.begin(world, observer)?;
         while let Some(edge) = search.choose_edge(&mut Nearest) {
             search.carry_over(edge, world, observer)?;

@@ -14,7 +14,7 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration, Watch},
     mapping::{Exploration, InvalidStep, MappingChoice, MappingError, Observer, step},
     marker::Directional,
-    world::{GraphWorld, Refused},
+    world::{GraphWorld, RefusedAction},
 };
 
 const ALL_CHOICES: AllChoices<Algorithm1> =
@@ -230,7 +230,7 @@ impl Algorithm for Altered {
         world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         Algorithm1.run(world, exploration, observer)
     }
 }
@@ -242,7 +242,7 @@ impl OpenChoices for Altered {
         choice: MappingChoice,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         let choice = match (self, choice) {
             (Self::OffByOne, MappingChoice::Hypothesis(index)) => {
                 MappingChoice::Hypothesis(index + 1)

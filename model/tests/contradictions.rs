@@ -9,19 +9,19 @@ use toposlam_model::{
         Contradiction, Exploration, Journey, MappingError, MappingEvent, Nearest, map_world,
     },
     percept::{Door, Percept},
-    world::{GraphWorld, Refused, World},
+    world::{GraphWorld, RefusedAction, World},
 };
 
 use crate::scripted_world::{ScriptedWorld, marked, plain};
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl World<Error = Refused>) -> Result<u64, MappingError<Refused>> {
+fn map(world: &mut impl World<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
     let mut exploration = Exploration::new(BOUND);
     map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
 }
 
-fn scripted(percepts: &[Percept]) -> MappingError<Refused> {
+fn scripted(percepts: &[Percept]) -> MappingError<RefusedAction> {
     map(&mut ScriptedWorld::new(percepts)).unwrap_err()
 }
 
@@ -80,7 +80,7 @@ fn a_known_place_that_changed_is_a_contradiction() {
     };
     assert_eq!(scripted(&[marked(2, 0), plain(1), marked(2, 1)]), turned.into());
     assert_eq!(
-        MappingError::<Refused>::from(expected).to_string(),
+        MappingError::<RefusedAction>::from(expected).to_string(),
         "the world contradicts itself: at the known vertex v0, entered by its dart 0, there should \
          be degree 2 with the marker along door 0 but there is degree 3 with the marker along door 0"
     );
@@ -107,15 +107,15 @@ fn a_way_back_that_changed_is_a_contradiction() {
 fn the_worlds_own_error_is_passed_on() {
     struct Closed;
     impl World for Closed {
-        type Error = Refused;
-        fn percept(&mut self) -> Result<Percept, Refused> {
+        type Error = RefusedAction;
+        fn percept(&mut self) -> Result<Percept, RefusedAction> {
             Ok(marked(2, 0))
         }
-        fn traverse(&mut self, door: Door) -> Result<(), Refused> {
-            Err(Refused::NoSuchDoor { door, degree: 0 })
+        fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
+            Err(RefusedAction::NoSuchDoor { door, degree: 0 })
         }
     }
-    let error = Refused::NoSuchDoor { door: Door(0), degree: 0 };
+    let error = RefusedAction::NoSuchDoor { door: Door(0), degree: 0 };
     assert_eq!(map(&mut Closed), Err(MappingError::World(error)));
 }
 

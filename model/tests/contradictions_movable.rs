@@ -10,14 +10,14 @@ use toposlam_model::{
         map_with_movable_marker,
     },
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, Refused, World},
+    world::{MovableMarkerWorld, RefusedAction, World},
 };
 
 use crate::scripted_world::{ScriptedWorld, plain};
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl MovableMarkerWorld<Error = Refused>) -> Result<u64, MappingError<Refused>> {
+fn map(world: &mut impl MovableMarkerWorld<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
     let mut search = MarkerSearch::new(BOUND);
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
@@ -26,7 +26,7 @@ fn lying(degree: u32) -> Percept {
     Percept { degree, sighting: Sighting::Lying(1) }
 }
 
-fn scripted(percepts: &[Percept]) -> MappingError<Refused> {
+fn scripted(percepts: &[Percept]) -> MappingError<RefusedAction> {
     map(&mut ScriptedWorld::new(percepts)).unwrap_err()
 }
 
@@ -41,7 +41,7 @@ fn known_place(
     (vertex, index): (u32, u32),
     expected: Percept,
     perceived: Percept,
-) -> MappingError<Refused> {
+) -> MappingError<RefusedAction> {
     Contradiction::KnownPlace { vertex: Vertex(vertex), index, expected, perceived }.into()
 }
 
@@ -164,25 +164,25 @@ fn a_back_link_that_is_not_there_is_a_contradiction() {
 #[test]
 fn the_worlds_own_error_is_passed_on() {
     /// A world in which something is refused.
-    struct Closed(Refused);
+    struct Closed(RefusedAction);
     impl World for Closed {
-        type Error = Refused;
-        fn percept(&mut self) -> Result<Percept, Refused> {
+        type Error = RefusedAction;
+        fn percept(&mut self) -> Result<Percept, RefusedAction> {
             Ok(lying(2))
         }
-        fn traverse(&mut self, _: Door) -> Result<(), Refused> {
+        fn traverse(&mut self, _: Door) -> Result<(), RefusedAction> {
             Err(self.0)
         }
     }
     impl MovableMarkerWorld for Closed {
-        fn pick_up(&mut self) -> Result<(), Refused> {
-            if self.0 == Refused::NothingToPickUp { Err(self.0) } else { Ok(()) }
+        fn pick_up(&mut self) -> Result<(), RefusedAction> {
+            if self.0 == RefusedAction::NothingToPickUp { Err(self.0) } else { Ok(()) }
         }
-        fn drop(&mut self) -> Result<(), Refused> {
+        fn drop(&mut self) -> Result<(), RefusedAction> {
             Err(self.0)
         }
     }
-    for refused in [Refused::NothingToPickUp, Refused::NoSuchDoor { door: Door(0), degree: 0 }] {
+    for refused in [RefusedAction::NothingToPickUp, RefusedAction::NoSuchDoor { door: Door(0), degree: 0 }] {
         assert_eq!(map(&mut Closed(refused)), Err(MappingError::World(refused)));
     }
 }

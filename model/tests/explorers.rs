@@ -21,7 +21,7 @@ use toposlam_model::{
     mapping::MappingError,
     marker::{Directional, Marker, named},
     percept::Door,
-    world::{Refused, World},
+    world::{RefusedAction, World},
 };
 
 fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
@@ -137,7 +137,7 @@ fn the_sweep_catches_broken_explorers() {
         (Broken::Mirrored, 2, Flaw::WrongMap),
         (Broken::OneMap, 1, Flaw::WrongMap),
         (Broken::NoDart, 1, Flaw::NoSuchDart { dart: 2 }),
-        (Broken::Endless, 1, refused(Refused::OutOfMoves { bound: 10_000 })),
+        (Broken::Endless, 1, refused(RefusedAction::OutOfMoves { bound: 10_000 })),
         (Broken::GivesUp, 1, Flaw::GaveUp("it is dark".to_owned())),
     ] {
         let (edges, found, _) = first_flaw(broken);
@@ -147,7 +147,7 @@ fn the_sweep_catches_broken_explorers() {
         assert!(matches!(first_flaw(broken).1, Flaw::WrongPose { .. }), "{broken:?}");
     }
     let no_door = first_flaw(Broken::NoDoor).1;
-    assert!(matches!(no_door, Flaw::Error(MappingError::World(Refused::NoSuchDoor { .. }))));
+    assert!(matches!(no_door, Flaw::Error(MappingError::World(RefusedAction::NoSuchDoor { .. }))));
     assert_eq!(first_flaw(Broken::Endless).2, Some(10_000));
 }
 

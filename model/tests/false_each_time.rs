@@ -8,7 +8,7 @@ use toposlam_model::{
     isomorphism::Bijection,
     mapping::{DirectionalAlgorithm, FACING, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, Refused, World},
+    world::{GraphWorld, RefusedAction, World},
 };
 
 /// A world in which percepts are false, given the robot's pose, the true percept and the number of moves.
@@ -18,14 +18,14 @@ struct Falsified<'g, F> {
 }
 
 impl<F: FnMut(Dart, Percept, u64) -> Percept> World for Falsified<'_, F> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         let percept = self.world.percept()?;
         Ok((self.falsify)(self.world.pose(), percept, self.world.moves()))
     }
 
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         self.world.traverse(door)
     }
 }

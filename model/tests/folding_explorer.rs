@@ -14,14 +14,14 @@ use toposlam_model::{
         map_by_folding,
     },
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, Refused, World},
+    world::{GraphWorld, RefusedAction, World},
 };
 
 use crate::scripted_world::{ScriptedWorld, marked, plain};
 
 const BOUND: usize = 60;
 
-fn scripted(percepts: &[Percept]) -> Result<(), MappingError<Refused>> {
+fn scripted(percepts: &[Percept]) -> Result<(), MappingError<RefusedAction>> {
     let mut exploration = FoldingExploration::new(BOUND);
     map_by_folding(&mut ScriptedWorld::new(percepts), &mut exploration, &mut ())
 }
@@ -210,13 +210,13 @@ proptest! {
             lie: Percept,
         }
         impl World for Lying<'_> {
-            type Error = Refused;
+            type Error = RefusedAction;
 
-            fn percept(&mut self) -> Result<Percept, Refused> {
+            fn percept(&mut self) -> Result<Percept, RefusedAction> {
                 if self.world.moves() == self.at { Ok(self.lie) } else { self.world.percept() }
             }
 
-            fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+            fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
                 let degree = self.world.sensed().degree;
                 self.world.traverse(Door(door.0 % degree))
             }

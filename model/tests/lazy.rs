@@ -22,7 +22,7 @@ use toposlam_model::{
     enumerate::{Class, Watch},
     marker::{DirectedEdge, Directional, Marker, TwoIdentical},
     percept::Door,
-    world::{MovableMarkerWorld, Refused},
+    world::{MovableMarkerWorld, RefusedAction},
 };
 
 fn lazy<E: StepExplorer + Default>(class: Class, edges: usize) -> LazyCheck {
@@ -88,7 +88,7 @@ impl<M: Marker + Clone> StepExplorer for Walker<M> {
         self.marker.clone()
     }
 
-    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         _: &mut W,
         _: usize,
@@ -97,7 +97,7 @@ impl<M: Marker + Clone> StepExplorer for Walker<M> {
         Ok(if self.most == 0 { StepProgress::Done } else { StepProgress::GoesOn })
     }
 
-    fn step<W: MovableMarkerWorld<Error = Refused>>(
+    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
@@ -268,11 +268,11 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
 }
 
 /// Stops when it has been asked a number of times.
-struct Impatient {
+struct QuestionLimit {
     questions_left: AtomicUsize,
 }
 
-impl Watch for Impatient {
+impl Watch for QuestionLimit {
     fn stop(&self) -> bool {
         let left = self.questions_left.load(Ordering::Relaxed);
         self.questions_left.store(left.saturating_sub(1), Ordering::Relaxed);
@@ -285,7 +285,7 @@ impl Watch for Impatient {
 fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
     let sweep = LazySweep::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();
     let new = || Walker { marker: Directional, moves: 0, most: 0, map: chain(1) };
-    let found = sweep.run(new, &Impatient { questions_left: 1000.into() });
+    let found = sweep.run(new, &QuestionLimit { questions_left: 1000.into() });
     assert!(found.tally.interrupted);
     assert!((1..=2000).contains(&found.tally.starts));
     assert_eq!(found.tally.failed(), found.tally.starts);

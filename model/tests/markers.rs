@@ -9,7 +9,7 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration},
     marker::{MARKERS, Marker, MarkerPart, named},
     percept::{Door, Sighting},
-    world::{Action, GraphWorld, MovableMarkerWorld, Refused, World},
+    world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World},
 };
 
 /// A junction `j` with, clockwise, a way `p` to a dead end `a`, a way `q` to a bend `b`, and a loop.
@@ -111,11 +111,11 @@ fn a_movable_marker_is_picked_up_where_it_lies_and_dropped_where_the_robot_is() 
     let graph = junction();
     let mut world = GraphWorld::with_marker(&graph, named("movable").unwrap(), Dart(2));
     let marked = |world: &mut GraphWorld<'_, _>| world.percept().unwrap().sighting;
-    assert_eq!(MovableMarkerWorld::drop(&mut world), Err(Refused::NothingToDrop));
+    assert_eq!(MovableMarkerWorld::drop(&mut world), Err(RefusedAction::NothingToDrop));
     assert_eq!(world.actions().last(), Some(Action::PickUp));
     world.pick_up().unwrap();
     assert_eq!((marked(&mut world), world.carries()), (Sighting::Nothing, true));
-    assert_eq!(world.pick_up(), Err(Refused::NothingToPickUp));
+    assert_eq!(world.pick_up(), Err(RefusedAction::NothingToPickUp));
     world.traverse(Door(0)).unwrap();
     assert_eq!(world.actions().last(), Some(Action::Drop));
     world.act(Action::Drop).unwrap();
@@ -130,7 +130,7 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
     let graph = junction();
     for marker in MARKERS.into_iter().filter(|marker| !marker.is_movable()) {
         let mut world = GraphWorld::with_marker(&graph, marker, Dart(2));
-        assert_eq!(world.pick_up(), Err(Refused::NothingToPickUp), "{marker:?}");
+        assert_eq!(world.pick_up(), Err(RefusedAction::NothingToPickUp), "{marker:?}");
         assert_eq!(world.actions().count(), 4);
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, Refused, World},
+    world::{GraphWorld, RefusedAction, World},
 };
 
 /// A junction with, clockwise, a way `p` to a dead end, a way `q` to a bend, and a loop. Darts: 0 is
@@ -67,7 +67,7 @@ fn a_directional_marker_shows_the_entry_at_its_vertex() {
 fn a_door_that_is_not_there_cannot_be_taken() {
     let graph = junction();
     let mut world = GraphWorld::new(&graph, Dart(0));
-    let error = Refused::NoSuchDoor { door: Door(1), degree: 1 };
+    let error = RefusedAction::NoSuchDoor { door: Door(1), degree: 1 };
     assert_eq!(world.traverse(Door(1)), Err(error));
     assert_eq!(world.pose(), Dart(0));
     assert_eq!(error.to_string(), "door 1 was taken at a vertex with 1 door");

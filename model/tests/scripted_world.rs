@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, Refused, World},
+    world::{MovableMarkerWorld, RefusedAction, World},
 };
 
 /// A percept without a marker.
@@ -29,24 +29,24 @@ impl<'s> ScriptedWorld<'s> {
 }
 
 impl World for ScriptedWorld<'_> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
     }
 
-    fn traverse(&mut self, _: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, _: Door) -> Result<(), RefusedAction> {
         self.moves += 1;
         Ok(())
     }
 }
 
 impl MovableMarkerWorld for ScriptedWorld<'_> {
-    fn pick_up(&mut self) -> Result<(), Refused> {
+    fn pick_up(&mut self) -> Result<(), RefusedAction> {
         Ok(())
     }
 
-    fn drop(&mut self) -> Result<(), Refused> {
+    fn drop(&mut self) -> Result<(), RefusedAction> {
         Ok(())
     }
 }

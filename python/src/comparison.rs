@@ -14,7 +14,7 @@ use crate::{
     error::{error, interrupted},
     own_marker::OwnMarker,
     percept::Percept,
-    watched::{Watcher, watched},
+    long_work::{Watcher, run_watched},
     world::{CoreWorld, named_marker},
 };
 
@@ -78,7 +78,7 @@ pub(crate) fn compare(
         return Err(error(py, "SizeError", text));
     }
     let on_signal = own.as_ref().map(OwnMarker::stopper);
-    let answer = watched(py, None, on_signal, |watcher| {
+    let answer = run_watched(py, None, on_signal, |watcher| {
         let sides = [(graphs[0], facings[0]), (graphs[1], facings[1])];
         let comparison = Comparison::new(kind, sides[0], sides[1]);
         answer(&comparison, kind, sides[1], facings, watcher)

@@ -29,7 +29,7 @@ use crate::{
     error::{error, interrupted},
     log::{LogReader, shown},
     percept::Percept,
-    watched::{Watcher, watched},
+    long_work::{Watcher, run_watched},
     world::{CoreWorld, named_marker},
 };
 
@@ -110,7 +110,7 @@ pub(crate) fn conform<'py>(
         max_steps,
         max_darts: max_darts.unwrap_or(settings.dart_bound),
     };
-    let checked = watched(py, progress, None, |watcher| {
+    let checked = run_watched(py, progress, None, |watcher| {
         let checked = check(log, question, watcher);
         (checked, toposlam_model::enumerate::Watch::stop(watcher))
     })?;

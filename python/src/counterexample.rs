@@ -12,7 +12,7 @@ use toposlam_model::{
 use crate::{
     error::{error, interrupted},
     own_marker::OwnMarker,
-    watched::{Watcher, watched},
+    long_work::{Watcher, run_watched},
     world::{CoreWorld, named_marker},
 };
 
@@ -51,7 +51,7 @@ pub(crate) fn counterexample(
     let findings = if let Ok(name) = marker.extract::<String>() {
         let kind = named_marker(py, &name)?;
         let search = AmbiguitySearch::new(class, edges, kind).map_err(size)?;
-        watched(py, progress, None, |watcher| search.run(watcher))?
+        run_watched(py, progress, None, |watcher| search.run(watcher))?
     } else {
         let own = OwnMarker::new(marker.clone().unbind());
         let kind: &dyn Marker = &own;
@@ -59,7 +59,7 @@ pub(crate) fn counterexample(
         // The function is called by one thread at a time, and always in the same order.
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|cause| error(py, "InternalError", cause))?;
-        let findings = watched(py, progress, Some(own.stopper()), |watcher| {
+        let findings = run_watched(py, progress, Some(own.stopper()), |watcher| {
             pool.install(|| search.run(&OwnWatch { watcher, marker: &own }))
         })?;
         if let Some(failure) = own.failure() {

@@ -16,12 +16,12 @@ use toposlam_model::{
     },
     marker::Marker,
     percept::{Door, Percept},
-    world::{Action, GraphWorld, MovableMarkerWorld, Refused, World},
+    world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World},
 };
 
 use crate::{
     error::{error, interrupted},
-    watched::{Watcher, watched},
+    long_work::{Watcher, run_watched},
     world::CoreWorld,
 };
 
@@ -48,7 +48,7 @@ enum Halt {
     #[error("interrupted")]
     Stopped,
     #[error(transparent)]
-    Refused(#[from] Refused),
+    RefusedAction(#[from] RefusedAction),
 }
 
 impl<M: Marker> World for StoppableWorld<'_, '_, M> {
@@ -135,7 +135,7 @@ fn run<A: Algorithm>(
     ) -> Result<(), MappingError<Halt>>
     + Sync,
 ) -> PyResult<Explored> {
-    let (mapped, journey, recorder) = watched(py, None, None, |watcher| {
+    let (mapped, journey, recorder) = run_watched(py, None, None, |watcher| {
         let mut state = A::State::new(max_darts);
         let marked = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
         let mut robot = StoppableWorld { world: marked, watcher };
@@ -175,6 +175,6 @@ fn run<A: Algorithm>(
 #[pyfunction]
 pub(crate) fn certificate(py: Python<'_>, world: &CoreWorld, facing: u32) -> PyResult<Vec<u32>> {
     let facing = world.dart(py, facing)?;
-    let walk = watched(py, None, None, |_| folding::certificate(&world.0.graph, facing))?;
+    let walk = run_watched(py, None, None, |_| folding::certificate(&world.0.graph, facing))?;
     Ok(walk.into_iter().map(|door| door.0).collect())
 }

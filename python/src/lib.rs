@@ -11,7 +11,7 @@ mod own_marker;
 mod percept;
 mod robot;
 mod starts;
-mod watched;
+mod long_work;
 mod world;
 
 /// The module `toposlam._core`.

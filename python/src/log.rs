@@ -27,7 +27,7 @@ use toposlam_robot::{
 use crate::{
     error::{error, interrupted},
     percept::Percept,
-    watched::{Watcher, watched},
+    long_work::{Watcher, run_watched},
 };
 
 /// A log that is open for reading.
@@ -75,7 +75,7 @@ impl LogReader {
         let failed = |cause: &dyn std::fmt::Display| {
             error(py, "LogError", format!("{}: {cause}", path.display()))
         };
-        let opened = watched(py, None, None, |_| {
+        let opened = run_watched(py, None, None, |_| {
             let log = Log::open(&path)?;
             let mapping = TopicMap::unambiguous(&log);
             let run = head(&log, &mapping)?;
@@ -144,7 +144,7 @@ impl LogReader {
         py: Python<'py>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let read = watched(py, progress, None, |watcher| self.read(watcher))?;
+        let read = run_watched(py, progress, None, |watcher| self.read(watcher))?;
         let tables = match read {
             Ok(Some(tables)) => tables,
             Ok(None) => return Err(interrupted()),
@@ -306,7 +306,7 @@ impl Tables {
 /// What the scans of a laser log hit, and the robot's way, as an SVG document.
 #[pyfunction]
 pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> PyResult<String> {
-    let drawn = watched(py, None, None, |watcher| {
+    let drawn = run_watched(py, None, None, |watcher| {
         let bound = reader.mapping.only(&[Role::Scan, Role::Odometry]).bind(&reader.log);
         let mut picture = LaserRunPicture { title: title.to_owned(), ..LaserRunPicture::default() };
         for entry in reader.log.entries(&bound.map_err(|cause| cause.to_string())?) {

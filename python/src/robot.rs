@@ -8,7 +8,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
     percept::{Door, Percept as ModelPercept},
-    world::{Action, GraphWorld, Refused, State},
+    world::{Action, GraphWorld, RefusedAction, State},
 };
 
 use crate::{
@@ -95,7 +95,7 @@ impl Robot {
 
     fn act(&mut self, py: Python<'_>, action: Action) -> PyResult<()> {
         if self.actions.len() >= self.bound {
-            let refused = Refused::OutOfMoves { bound: self.bound as u64 };
+            let refused = RefusedAction::OutOfMoves { bound: self.bound as u64 };
             return Err(error(py, class_of(&refused), refused));
         }
         // `with_marker` places the marker; the state is the robot's own.
@@ -110,13 +110,13 @@ impl Robot {
 }
 
 /// The class of the exception for an action that is not possible.
-fn class_of(refused: &Refused) -> &'static str {
+fn class_of(refused: &RefusedAction) -> &'static str {
     match refused {
-        Refused::NoSuchDoor { .. } => "NoSuchDoorError",
-        Refused::NothingToPickUp | Refused::NothingToDrop => "NoMarkerError",
-        Refused::OutOfMoves { .. } => "OutOfMovesError",
+        RefusedAction::NoSuchDoor { .. } => "NoSuchDoorError",
+        RefusedAction::NothingToPickUp | RefusedAction::NothingToDrop => "NoMarkerError",
+        RefusedAction::OutOfMoves { .. } => "OutOfMovesError",
         // Of a world that is decided while a robot explores, which this one is not.
-        Refused::NoWorldLeft => "ExplorerError",
+        RefusedAction::NoWorldLeft => "ExplorerError",
     }
 }
 

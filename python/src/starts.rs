@@ -15,7 +15,7 @@ use toposlam_model::{
 use crate::{
     error::{error, guarded, interrupted},
     robot::Robot,
-    watched::watched,
+    long_work::run_watched,
     world::{CoreWorld, graph_of, named_marker},
 };
 
@@ -169,7 +169,7 @@ pub(crate) fn visit_starts(
 #[pyfunction]
 pub(crate) fn count_starts(py: Python<'_>, class_: &str, edges: usize) -> PyResult<u64> {
     let starts = starts(py, class_, edges)?;
-    let count = watched(py, None, None, |watcher| {
+    let count = run_watched(py, None, None, |watcher| {
         let mut count = 0;
         let end = starts.for_each(&mut |_| {
             count += 1;

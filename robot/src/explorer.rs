@@ -11,7 +11,7 @@ use toposlam_model::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
         scene::Scene,
     },
-    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, Measured},
+    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, ArrivalMeasurement},
     percept::{Door, Percept},
     world::World,
 };
@@ -32,7 +32,7 @@ use obstacle::{DEAD_END, Obstacles, Stall, turning_point};
 
 /// Where the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+enum Standpoint {
     /// At the turning point of a junction.
     Junction(Standing),
     /// In a hallway, before an obstacle. The way back is in this direction, in the frame of odometry.
@@ -49,7 +49,7 @@ pub struct RobotExplorer<R, S, O = ()> {
     robot: R,
     sensor: S,
     observer: O,
-    place: Option<Place>,
+    place: Option<Standpoint>,
     /// The number of doors taken: the number of the last move.
     last_move: u64,
     /// The number of moves that ended at a junction or before an obstacle.
@@ -65,7 +65,7 @@ pub struct RobotExplorer<R, S, O = ()> {
     metres: f64,
     /// The hallway since the last junction, and what was measured on the way to it.
     hallway: Option<MeasuredHallway>,
-    measured: Measured,
+    measured: ArrivalMeasurement,
     /// The last frame that was used.
     last: Option<Frame>,
     /// The number of events so far.
@@ -107,7 +107,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             allowance: Allowance::new(RunBudget::default()),
             metres: 0.0,
             hallway: None,
-            measured: Measured::default(),
+            measured: ArrivalMeasurement::default(),
             last_move: 0,
             moves: 0,
             door: None,
@@ -121,7 +121,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// The same robot, if it is already known where it stands.
     #[must_use]
     pub fn standing_at(mut self, standing: Standing) -> Self {
-        self.place = Some(Place::Junction(standing));
+        self.place = Some(Standpoint::Junction(standing));
         self
     }
 
@@ -140,7 +140,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// Whether the robot stands before an obstacle.
     #[must_use]
     pub fn is_at_obstacle(&self) -> bool {
-        matches!(self.place, Some(Place::Obstacle { .. }))
+        matches!(self.place, Some(Standpoint::Obstacle { .. }))
     }
 
     /// The robot and the observer.
@@ -320,7 +320,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// Where the robot stands. At the very start, it finds out.
     fn standing(&mut self) -> Result<Standing, ExplorerError> {
-        if let Some(Place::Junction(standing)) = self.place {
+        if let Some(Standpoint::Junction(standing)) = self.place {
             return Ok(standing);
         }
         let odometry = self.robot.odometry().odometry;
@@ -351,10 +351,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     }
 
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
-        self.place = Some(Place::Junction(standing));
+        self.place = Some(Standpoint::Junction(standing));
         self.stall = None;
         let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
-        self.measured = Measured { hallway, shape: arrival.form };
+        self.measured = ArrivalMeasurement { hallway, shape: arrival.form };
         self.hallway = Some(MeasuredHallway::from(Some(self.robot.odometry().odometry)));
         self.allow_for(standing.percept);
         self.emit(EventKind::Arrival(arrival));
@@ -366,7 +366,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
 
     fn percept(&mut self) -> Result<Percept, ExplorerError> {
         match self.place {
-            Some(Place::Obstacle { .. }) => Ok(DEAD_END),
+            Some(Standpoint::Obstacle { .. }) => Ok(DEAD_END),
             _ => Ok(self.standing()?.percept),
         }
     }
@@ -375,7 +375,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
         let from = match self.place {
             Some(at) => at,
-            None => Place::Junction(self.standing()?),
+            None => Standpoint::Junction(self.standing()?),
         };
         if let Some(limit) = self.allowance.forbids(door, self.spent()) {
             return Err(ExplorerError::Budget {
@@ -386,7 +386,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         }
         self.allowance.leave(door, self.spent());
         match (&mut self.hallway, &from) {
-            (Some(hallway), Place::Junction(from)) => {
+            (Some(hallway), Standpoint::Junction(from)) => {
                 hallway.leave(direction(from.form, from.entry, door));
             }
             // A way that an obstacle ended is not measured.
@@ -399,8 +399,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         let number = u32::try_from(self.last_move).ok();
         self.emit(EventKind::Door { number, door });
         let driven = match &from {
-            Place::Junction(from) => self.drive(PathExecution::new(&[door], from)),
-            Place::Obstacle { back } => self.go_in_direction(*back),
+            Standpoint::Junction(from) => self.drive(PathExecution::new(&[door], from)),
+            Standpoint::Obstacle { back } => self.go_in_direction(*back),
         };
         match driven {
             Ok(standing) => {
@@ -429,7 +429,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::{record::NoSensor, robot::Reckoned};
+    use crate::{record::NoSensor, robot::TimedOdometry};
 
     /// A robot at the turning point of an L.
     struct Still {
@@ -460,8 +460,8 @@ mod tests {
             Ok(())
         }
 
-        fn odometry(&self) -> Reckoned {
-            Reckoned { time: 2.0, odometry: Odometry::default() }
+        fn odometry(&self) -> TimedOdometry {
+            TimedOdometry { time: 2.0, odometry: Odometry::default() }
         }
     }
 
@@ -489,10 +489,10 @@ mod tests {
         let robot = Still { images: vec![Some(3.0)], asked: 0 };
         let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         explorer.stand_at_obstacle();
-        assert_eq!(explorer.place, Some(super::Place::Obstacle { back: PI }));
+        assert_eq!(explorer.place, Some(super::Standpoint::Obstacle { back: PI }));
         explorer.stall = Some(Stall { back: 3.0, junction: None });
         explorer.stand_at_obstacle();
-        assert_eq!(explorer.place, Some(super::Place::Obstacle { back: 3.0 }));
+        assert_eq!(explorer.place, Some(super::Standpoint::Obstacle { back: 3.0 }));
         assert_eq!(explorer.percept().unwrap(), DEAD_END);
     }
 

@@ -11,7 +11,7 @@ pub mod evaluation;
 pub mod explorer;
 pub mod fuzz;
 pub mod ground_truth_monitor;
-mod judge_cut;
+mod obstacle_judge;
 pub mod log;
 pub mod measured_hallway;
 pub mod pose;

@@ -4,7 +4,7 @@ use toposlam_model::driving::algorithm2::Command;
 
 use crate::{
     record::{Event, EventKind, Frame, RunObserver},
-    robot::{Reckoned, Robot, RobotError},
+    robot::{TimedOdometry, Robot, RobotError},
 };
 
 /// The frames and the commands of a run.
@@ -112,9 +112,9 @@ impl Robot for RecordedRobot<'_> {
     }
 
     /// Where the robot was when the next frame was taken; at the end, where it was at the last.
-    fn odometry(&self) -> Reckoned {
+    fn odometry(&self) -> TimedOdometry {
         let round = self.rounds.get(self.next).or(self.rounds.last());
-        round.map_or(Reckoned::default(), |(frame, _)| Reckoned {
+        round.map_or(TimedOdometry::default(), |(frame, _)| TimedOdometry {
             time: frame.taken,
             odometry: frame.odometry,
         })

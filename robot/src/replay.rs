@@ -20,7 +20,7 @@ use crate::{
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
-    robot::{Reckoned, Robot, RobotError},
+    robot::{TimedOdometry, Robot, RobotError},
     run_settings::RunSettings,
 };
 
@@ -247,9 +247,9 @@ impl Robot for ReplayedRobot<'_> {
         Ok(())
     }
 
-    fn odometry(&self) -> Reckoned {
+    fn odometry(&self) -> TimedOdometry {
         let next = self.next.as_ref();
-        next.map_or(Reckoned::default(), |frame| Reckoned {
+        next.map_or(TimedOdometry::default(), |frame| TimedOdometry {
             time: frame.taken,
             odometry: frame.odometry,
         })

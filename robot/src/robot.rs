@@ -28,7 +28,7 @@ pub trait Robot {
     fn forward(&mut self, distance: f64) -> Result<(), RobotError>;
 
     /// Where the robot is by its wheels, and when.
-    fn odometry(&self) -> Reckoned;
+    fn odometry(&self) -> TimedOdometry;
 
     /// The commands of the wheels and the odometry after each, from the beginning; empty if the robot
     /// does not record them.
@@ -50,12 +50,12 @@ pub struct Sample {
     /// Radians a second, counter-clockwise.
     pub turning: f64,
     /// The odometry after it.
-    pub reckoned: Reckoned,
+    pub reckoned: TimedOdometry,
 }
 
 /// The odometry at some time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reckoned {
+pub struct TimedOdometry {
     /// In seconds since the robot was switched on.
     pub time: f64,
     /// Where the robot is by its wheels.

@@ -16,7 +16,7 @@ use toposlam_model::{
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
-    judge_cut::{TruePlace, judge_cut},
+    obstacle_judge::{TruePlace, judge_with_obstacle},
     record::{FrameSensor, RunObserver},
     recording::Recording,
     robot::Robot as _,
@@ -24,7 +24,7 @@ use crate::{
     simulator::SimulatedRobot,
 };
 
-pub use crate::judge_cut::WayToMarker;
+pub use crate::obstacle_judge::WayToMarker;
 
 /// A whole run, and its checks.
 #[derive(Debug)]
@@ -145,7 +145,7 @@ pub fn run<'p>(
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
-            let judge = |map| judge_cut(plan, facing, (map, mapped.pose), place, robot.obstacle());
+            let judge = |map| judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle());
             map.map_or(Err(Flaw::WrongMap), judge).err()
         } else {
             flaw(plan, facing, &mapping, mapped.pose, monitor.reached())

@@ -1,10 +1,10 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
 mod ci_cases;
-mod expected;
+mod expected_run;
 mod fact_fields;
-mod folded;
-mod judged;
+mod folded_trail;
+mod judged_log;
 mod known_world;
 mod laser_picture;
 mod minimise;
@@ -12,7 +12,7 @@ mod origin;
 mod other_world;
 mod report;
 mod report_lines;
-mod required;
+mod required_coverage;
 mod robot_marker;
 
 use std::{
@@ -36,7 +36,7 @@ use super::{
 };
 use crate::{page, report::LogReport};
 use ci_cases::{ci_case, required_case, unread_case};
-use judged::Judged;
+use judged_log::JudgedLog;
 use robot_marker::RobotMarker;
 
 /// Check logs of runs against the specification
@@ -119,7 +119,7 @@ pub(super) struct ConformArguments {
     #[arg(long, value_name = "N")]
     max_darts: Option<usize>,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = required::cases(),
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = required_coverage::cases(),
         hide_possible_values = true)]
     require_coverage: Vec<String>,
     /// Without --world: write the smallest world that was found: .toml, .json, .dot, or plantri's .ec or .pc
@@ -224,7 +224,7 @@ impl ConformArguments {
         }
         if !self.require_coverage.is_empty() && !reports.is_empty() {
             let required =
-                required::report(out, &self.require_coverage, &all, any_algorithm1, self.json)?;
+                required_coverage::report(out, &self.require_coverage, &all, any_algorithm1, self.json)?;
             logs.add(Ok(((), required)));
             cases.push(required_case(required));
         }
@@ -240,7 +240,7 @@ impl ConformArguments {
         &self,
         out: &mut dyn Write,
         path: &Path,
-        judged: &Judged,
+        judged: &JudgedLog,
         quirks: &Quirks,
     ) -> Result<LogReport, CliError> {
         let shorter = self.shorter(judged)?;

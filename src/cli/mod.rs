@@ -40,7 +40,7 @@ mod picture_file;
 mod play;
 mod progress;
 mod proofs;
-mod renamed;
+mod old_options;
 mod render;
 mod replay;
 mod report_output;
@@ -239,7 +239,7 @@ pub fn run() -> ExitCode {
 /// for or due.
 fn parse() -> CommandLine {
     let command = CommandLine::command().color(terminal::color_choice(env::args_os()));
-    let mut command = renamed::with_old_names(command);
+    let mut command = old_options::with_old_names(command);
     let parsed = command.try_get_matches_from_mut(env::args_os());
     let parsed = parsed.and_then(|matches| CommandLine::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| error.format(&mut command).exit())

@@ -99,7 +99,7 @@ const WALL: &str = "#9aa1ab";
 const PAPER: &str = "#fdfcf9";
 
 /// Visits of one junction.
-struct Place<'v> {
+struct VisitedPlace<'v> {
     visit: &'v DrawnVisit,
     /// The number of each visit, from 1, and the direction in which the robot left.
     numbers: Vec<(usize, Option<f64>)>,
@@ -152,18 +152,18 @@ fn extent(picture: &LaserRunPicture, walls: &BTreeSet<[i32; 2]>) -> Extent {
 }
 
 /// The visits by their junctions, in the order of the first visits.
-fn places(visits: &[DrawnVisit]) -> Vec<Place<'_>> {
-    let mut places: Vec<Place> = Vec::new();
+fn places(visits: &[DrawnVisit]) -> Vec<VisitedPlace<'_>> {
+    let mut places: Vec<VisitedPlace> = Vec::new();
     for (number, visit) in (1..).zip(visits) {
         let [x, y] = visit.centre;
-        let is_here = |place: &&mut Place| {
+        let is_here = |place: &&mut VisitedPlace| {
             let [u, v] = place.visit.centre;
             (x - u).hypot(y - v) < SAME && place.visit.doors.len() == visit.doors.len()
         };
         let exit = visit.exit.and_then(|exit| visit.doors.get(exit).copied());
         match places.iter_mut().find(is_here) {
             Some(place) => place.numbers.push((number, exit)),
-            None => places.push(Place { visit, numbers: vec![(number, exit)] }),
+            None => places.push(VisitedPlace { visit, numbers: vec![(number, exit)] }),
         }
     }
     places
@@ -248,7 +248,7 @@ fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
     page.marker(&[tip, base + across * 5.5, base - across * 5.5]);
 }
 
-impl Place<'_> {
+impl VisitedPlace<'_> {
     fn write(&self, page: &mut Page, at: Point) {
         let Self { visit, numbers } = self;
         for &door in &visit.doors {

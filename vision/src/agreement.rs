@@ -265,21 +265,21 @@ mod tests {
     use super::*;
     use crate::{
         colour::PixelClass,
-        drawn::{self, DrawnPlace},
+        drawn_place::{self, DrawnPlace},
         ground_view::GroundView,
         outline::Square,
         wall::Axis,
     };
 
     const HALF: f64 = 0.8;
-    const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn::TAPE };
+    const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn_place::TAPE };
 
     fn params() -> OutlineParams {
         OutlineParams::default()
     }
 
     fn seen(place: &DrawnPlace) -> Boundary {
-        drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
+        drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
     }
 
     fn held(doors: [bool; 4], boundary: &Boundary) -> OutlineAgreement {
@@ -338,8 +338,8 @@ mod tests {
     fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
         let dead_end = DrawnPlace::junction([false, false, true, false], HALF);
         let view = dead_end.seen_from([-0.8, 0.0], 0.0);
-        let boundary = drawn::bearings().look(&view);
-        let square = Square { middle: [0.8, 0.0], half: HALF - drawn::TAPE };
+        let boundary = drawn_place::bearings().look(&view);
+        let square = Square { middle: [0.8, 0.0], half: HALF - drawn_place::TAPE };
         let l = Outline::junction([false, true, true, false], square, &params());
         let agreement = l.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert!(agreement.against > 60, "{agreement:?}");
@@ -350,7 +350,7 @@ mod tests {
     fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
         let t = DrawnPlace::junction([false, true, true, true], 0.7);
         for before in [0.4, 0.5, 0.55] {
-            let boundary = drawn::bearings().look(&t.seen_from([-before, 0.0], 0.0));
+            let boundary = drawn_place::bearings().look(&t.seen_from([-before, 0.0], 0.0));
             // A little too wide and too near: a camera that is not as calibrated gives such an error.
             let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
@@ -367,12 +367,12 @@ mod tests {
         // Where the wall would be, on both sides of what would be a door.
         for (index, class) in view.classes.iter_mut().enumerate() {
             let [x, y] = GroundView::ground(index);
-            let on_line = x.abs() > 0.3 && (HALF - drawn::TAPE..HALF).contains(&y);
+            let on_line = x.abs() > 0.3 && (HALF - drawn_place::TAPE..HALF).contains(&y);
             if on_line && *class == PixelClass::Floor {
                 *class = PixelClass::Stripe;
             }
         }
-        let boundary = drawn::bearings().look(&view);
+        let boundary = drawn_place::bearings().look(&view);
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
         let agreement = outline.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert!(agreement.door == 0 && agreement.through > 60, "{agreement:?}");
@@ -408,7 +408,7 @@ mod tests {
     fn an_open_direction_is_blank_where_the_floor_is_not_seen_to_go_on() {
         let doors = [false, true, true, true];
         let square = Square { middle: [0.0, 0.0], half: 0.55 };
-        let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn::TAPE));
+        let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn_place::TAPE));
         let blank = |boundary: &Boundary| {
             Outline::junction(doors, square, &params())
                 .agreement(boundary, &WallFrame::along(0.0), 1, &params())

@@ -286,7 +286,7 @@ mod tests {
     use super::*;
     use crate::{
         cluster::clusters,
-        drawn::{self, DrawnPlace},
+        drawn_place::{self, DrawnPlace},
         line::lines,
     };
 
@@ -295,7 +295,7 @@ mod tests {
 
     /// The hallway for a robot at the origin of a place that looks along x.
     fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
-        let boundary = drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
+        let boundary = drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
         let params = SensingParams::default();
         let lines = lines(&clusters(&boundary, &params.cluster), &params.line);
         let frame = WallFrame::of(&lines, &params.wall)?;
@@ -304,7 +304,7 @@ mod tests {
 
     /// A hallway along x with this width between its tapes.
     fn straight(width: f64) -> DrawnPlace {
-        DrawnPlace::junction([true, false, true, false], width / 2.0 + drawn::TAPE)
+        DrawnPlace::junction([true, false, true, false], width / 2.0 + drawn_place::TAPE)
     }
 
     fn wall(along: Axis, offset: f64, from: f64, to: f64) -> WallSegment {

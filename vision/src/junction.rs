@@ -231,14 +231,14 @@ mod tests {
         boundary::{BEARINGS, Sight, bearing},
         cluster::clusters,
         corner::{CornerSource, corners},
-        drawn::{self, DrawnPlace},
+        drawn_place::{self, DrawnPlace},
         line::lines,
     };
 
     const HALF: f64 = 0.8;
 
     fn bearings_of(place: &DrawnPlace, position: [f64; 2]) -> Boundary {
-        drawn::bearings().look(&place.seen_from(position, 0.2))
+        drawn_place::bearings().look(&place.seen_from(position, 0.2))
     }
 
     fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> JunctionSearch {

@@ -43,4 +43,4 @@ pub mod sensing;
 pub mod wall;
 
 #[cfg(test)]
-mod drawn;
+mod drawn_place;

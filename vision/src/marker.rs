@@ -127,7 +127,7 @@ mod tests {
 
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
         let view = floor_with_marker(position, axis);
-        marker(&view, &drawn::bearings().look(&view), junction, &MarkerParams::default())
+        marker(&view, &drawn_place::bearings().look(&view), junction, &MarkerParams::default())
     }
 
     // paper: marker-sense.direction
@@ -155,7 +155,7 @@ mod tests {
                 view.classes[index] = PixelClass::Other;
             }
         }
-        let boundary = drawn::bearings().look(&view);
+        let boundary = drawn_place::bearings().look(&view);
         assert_eq!(marker(&view, &boundary, None, &MarkerParams::default()), None);
     }
 

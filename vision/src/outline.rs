@@ -214,13 +214,13 @@ pub(crate) fn near(range: f64, params: &OutlineParams) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawn::{self, DrawnPlace};
+    use crate::drawn_place::{self, DrawnPlace};
 
     #[test]
     fn a_place_is_moved_turned_and_widened_to_where_its_walls_are_seen() {
         let doors = [true, false, true, true];
         let view = DrawnPlace::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
-        let boundary = drawn::bearings().look(&view);
+        let boundary = drawn_place::bearings().look(&view);
         let mut frame = WallFrame::along(-0.27);
         let params = OutlineParams::default();
         let mut square = Square { middle: [0.16, -0.06], half: 0.78 };
@@ -231,7 +231,7 @@ mod tests {
         let off = [
             square.middle[0] - 0.2,
             square.middle[1] + 0.1,
-            square.half - (0.8 - drawn::TAPE),
+            square.half - (0.8 - drawn_place::TAPE),
             frame.angle() + 0.3,
         ];
         assert!(off.iter().all(|off| off.abs() < 0.005), "{off:?}");

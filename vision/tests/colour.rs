@@ -210,12 +210,12 @@ fn cross_validation_counts_every_labelled_pixel_once() {
 }
 
 /// Stops at the question of this number, from 1.
-struct Impatient {
+struct QuestionLimit {
     at: u64,
     asked: AtomicU64,
 }
 
-impl Watch for Impatient {
+impl Watch for QuestionLimit {
     fn stop(&self) -> bool {
         self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
     }
@@ -226,12 +226,12 @@ impl Watch for Impatient {
 fn cross_validation_ends_at_the_question_at_which_it_is_stopped() {
     let training = trained_without(9);
     for at in 1..=2 + 4 {
-        let watch = Impatient { at, asked: AtomicU64::new(0) };
+        let watch = QuestionLimit { at, asked: AtomicU64::new(0) };
         let stopped = training.cross_validate(2, &watch).unwrap_err();
         assert_eq!(stopped, TrainingError::Interrupted(Interrupted));
         assert_eq!(watch.asked.into_inner(), at);
     }
-    let watch = Impatient { at: 7, asked: AtomicU64::new(0) };
+    let watch = QuestionLimit { at: 7, asked: AtomicU64::new(0) };
     training.cross_validate(2, &watch).unwrap();
 }
 

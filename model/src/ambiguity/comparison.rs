@@ -383,12 +383,12 @@ mod tests {
     }
 
     /// Stops at a question of this number, from 1.
-    struct Impatient {
+    struct QuestionLimit {
         at: u64,
         asked: AtomicU64,
     }
 
-    impl Impatient {
+    impl QuestionLimit {
         fn new(at: u64) -> Self {
             Self { at, asked: AtomicU64::new(0) }
         }
@@ -398,7 +398,7 @@ mod tests {
         }
     }
 
-    impl Watch for Impatient {
+    impl Watch for QuestionLimit {
         fn stop(&self) -> bool {
             self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
         }
@@ -417,13 +417,13 @@ mod tests {
             |comparison, watch| comparison.bisimulation([Dart(0); 2], usize::MAX, watch).is_err(),
         ];
         for is_stopped in searches {
-            let patient = Impatient::new(u64::MAX);
-            assert!(!is_stopped(&comparison(), &patient));
-            assert!(patient.asked() > 0);
-            for at in 1..=patient.asked() {
-                let impatient = Impatient::new(at);
-                assert!(is_stopped(&comparison(), &impatient));
-                assert_eq!(impatient.asked(), at);
+            let unlimited = QuestionLimit::new(u64::MAX);
+            assert!(!is_stopped(&comparison(), &unlimited));
+            assert!(unlimited.asked() > 0);
+            for at in 1..=unlimited.asked() {
+                let limited = QuestionLimit::new(at);
+                assert!(is_stopped(&comparison(), &limited));
+                assert_eq!(limited.asked(), at);
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::{
     embedded_graph::Dart,
     marker::Marker,
     percept::Percept,
-    world::{Action, GraphWorld, Refused, State},
+    world::{Action, GraphWorld, RefusedAction, State},
 };
 
 /// Pairs of states, one of each world, in which two robots that do the same can be: a bisimulation.
@@ -87,7 +87,7 @@ impl Walk {
 pub fn replay<M: Marker>(
     mut world: GraphWorld<'_, M>,
     actions: &[Action],
-) -> Result<Vec<Percept>, Refused> {
+) -> Result<Vec<Percept>, RefusedAction> {
     let mut percepts = vec![world.sensed()];
     for &action in actions {
         world.act(action)?;

@@ -11,7 +11,7 @@ use crate::{
         Nearest, Observer, map_by_folding, map_with_movable_marker, map_world, step,
     },
     marker::{Directional, Marker, Movable},
-    world::{GraphWorld, Refused},
+    world::{GraphWorld, RefusedAction},
 };
 
 /// A mapping algorithm of this crate, or a variant of one. For any other algorithm implement
@@ -42,7 +42,7 @@ pub trait Algorithm: Sync {
         world: &mut GraphWorld<'g, Self::Marker>,
         state: &mut Self::State,
         observer: &mut impl Observer<GraphWorld<'g, Self::Marker>>,
-    ) -> Result<(), MappingError<Refused>>;
+    ) -> Result<(), MappingError<RefusedAction>>;
 
     /// Makes and judges the other runs of a start. There are some with [`AllChoices`](super::AllChoices)
     /// only.
@@ -140,7 +140,7 @@ pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
         choice: MappingChoice,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         step(exploration, choice, world, observer)
     }
 }
@@ -175,7 +175,7 @@ impl Algorithm for Algorithm1 {
         world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         map_world(world, &mut Nearest, exploration, observer)
     }
 }
@@ -228,7 +228,7 @@ impl Algorithm for MovableMarker {
         world: &mut GraphWorld<'g, Movable>,
         search: &mut MarkerSearch,
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         map_with_movable_marker(world, &mut Nearest, search, observer)
     }
 }
@@ -262,7 +262,7 @@ impl Algorithm for Folding {
         world: &mut GraphWorld<'g>,
         exploration: &mut FoldingExploration,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         map_by_folding(world, exploration, observer)
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{MappingError, Observer},
-    world::{GraphWorld, Refused},
+    world::{GraphWorld, RefusedAction},
 };
 
 /// The default number of states of one start that may be explored.
@@ -81,7 +81,7 @@ impl<A: EveryRun> Algorithm for AllChoices<A> {
         world: &mut GraphWorld<'g, A::Marker>,
         state: &mut A::State,
         observer: &mut impl Observer<GraphWorld<'g, A::Marker>>,
-    ) -> Result<(), MappingError<Refused>> {
+    ) -> Result<(), MappingError<RefusedAction>> {
         self.algorithm.run(world, state, observer)
     }
 

@@ -82,7 +82,7 @@ struct Round {
 }
 
 /// A state whose choices are being followed, one after the other.
-struct Frame<'g> {
+struct SearchFrame<'g> {
     line: Line,
     world: GraphWorld<'g>,
     exploration: Exploration,
@@ -126,7 +126,7 @@ struct Search<'g, 'w, A> {
     known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
     /// The rounds that have begun: one for each state at line 4 on the stack.
     rounds: Vec<Round>,
-    stack: Vec<Frame<'g>>,
+    stack: Vec<SearchFrame<'g>>,
     candidate: Candidate,
 }
 
@@ -248,12 +248,12 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
         let bytes = 500 + 100 * exploration.map().dart_count() + 20 * choices.len();
         self.bytes += bytes;
         let choices = choices.into_iter();
-        self.stack.push(Frame { line, world, exploration, choices, moves: 0, futures, bytes });
+        self.stack.push(SearchFrame { line, world, exploration, choices, moves: 0, futures, bytes });
     }
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
     fn leave(&mut self) -> Option<Futures> {
-        let Frame { line, world, exploration, futures, bytes, .. } = self.stack.pop()?;
+        let SearchFrame { line, world, exploration, futures, bytes, .. } = self.stack.pop()?;
         self.bytes -= bytes;
         match line {
             Line::Eight => self.insert_in_round(exploration.hypotheses(), &futures),

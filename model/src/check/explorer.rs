@@ -9,7 +9,7 @@ use crate::{
     isomorphism::Candidate,
     marker::{Directional, Marker},
     percept::{Door, Percept},
-    world::{GraphWorld, MovableMarkerWorld, Refused, World},
+    world::{GraphWorld, MovableMarkerWorld, RefusedAction, World},
 };
 
 /// An explorer: an algorithm that walks through a world and returns a map of it.
@@ -68,26 +68,26 @@ impl<'g, M: Marker> ExplorerWorld<'g, M> {
 }
 
 impl<M: Marker> World for ExplorerWorld<'_, M> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         self.world.percept()
     }
 
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         if self.world.moves() >= self.bound {
-            return Err(Refused::OutOfMoves { bound: self.bound });
+            return Err(RefusedAction::OutOfMoves { bound: self.bound });
         }
         self.world.traverse(door)
     }
 }
 
 impl<M: Marker> MovableMarkerWorld for ExplorerWorld<'_, M> {
-    fn pick_up(&mut self) -> Result<(), Refused> {
+    fn pick_up(&mut self) -> Result<(), RefusedAction> {
         self.world.pick_up()
     }
 
-    fn drop(&mut self) -> Result<(), Refused> {
+    fn drop(&mut self) -> Result<(), RefusedAction> {
         MovableMarkerWorld::drop(&mut self.world)
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     embedded_graph::{Dart, GraphError},
     counts::grouped,
     mapping::MappingError,
-    world::Refused,
+    world::RefusedAction,
 };
 
 /// What is wrong with a run.
@@ -14,7 +14,7 @@ use crate::{
 pub enum Flaw {
     /// It ended with an error: a door that does not exist, a contradiction, the bound.
     #[error(transparent)]
-    Error(#[from] MappingError<Refused>),
+    Error(#[from] MappingError<RefusedAction>),
     /// It ended with unexplored edges.
     #[error("it ended with {unexplored} edge ends unexplored")]
     Unfinished {
@@ -60,8 +60,8 @@ pub enum Flaw {
     },
 }
 
-impl From<Refused> for Flaw {
-    fn from(refused: Refused) -> Self {
+impl From<RefusedAction> for Flaw {
+    fn from(refused: RefusedAction) -> Self {
         Self::Error(MappingError::World(refused))
     }
 }

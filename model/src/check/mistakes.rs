@@ -13,7 +13,7 @@ use crate::{
     isomorphism::Candidate,
     mapping::{FACING, MappingError, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, Refused, State, World},
+    world::{GraphWorld, RefusedAction, State, World},
 };
 
 /// The kind of a mistake.
@@ -150,16 +150,16 @@ impl<'g> FaultyWorld<'g> {
 }
 
 impl World for FaultyWorld<'_> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         match self.mistake.effect {
             MistakeEffect::Perceived(percept) if self.is_now() => Ok(percept),
             _ => self.world.percept(),
         }
     }
 
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         self.world.traverse(door)?;
         self.carry();
         Ok(())
@@ -168,9 +168,9 @@ impl World for FaultyWorld<'_> {
 
 /// A robot that looks for a door that is not there stays where it is.
 impl Relocate for FaultyWorld<'_> {
-    fn relocate(&mut self, error: Refused) -> Result<(), Refused> {
+    fn relocate(&mut self, error: RefusedAction) -> Result<(), RefusedAction> {
         match error {
-            Refused::NoSuchDoor { .. } => self.traverse(Door::BACK),
+            RefusedAction::NoSuchDoor { .. } => self.traverse(Door::BACK),
             error => Err(error),
         }
     }
@@ -394,11 +394,11 @@ impl MistakenRuns {
     }
 
     /// Maps a world, by the method of the check.
-    fn map<W: Relocate<Error = Refused>>(
+    fn map<W: Relocate<Error = RefusedAction>>(
         &self,
         world: &mut W,
         graph: &EmbeddedGraph,
-    ) -> Result<ExploredMap<'static>, MappingError<Refused>> {
+    ) -> Result<ExploredMap<'static>, MappingError<RefusedAction>> {
         let bound = 2 * graph.dart_count() + 20;
         let (run, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
         let pose = mapped?.pose;
@@ -421,13 +421,13 @@ impl<'g> VisitedWorld<'g> {
 }
 
 impl World for VisitedWorld<'_> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         self.world.percept()
     }
 
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         self.world.traverse(door)?;
         self.visits.push((self.world.pose(), self.world.sensed()));
         Ok(())

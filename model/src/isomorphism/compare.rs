@@ -84,16 +84,16 @@ impl fmt::Display for Difference {
 pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijection, Difference> {
     let different = || Difference::between(one, other);
     match by_rare_darts(one, other) {
-        RareDarts::Same(bijection) => Ok(bijection),
-        RareDarts::Different => Err(different()),
-        RareDarts::TooManyCandidates => {
+        RareDartMatch::Same(bijection) => Ok(bijection),
+        RareDartMatch::Different => Err(different()),
+        RareDartMatch::TooManyCandidates => {
             bijection(&canonical(one), &canonical(other)).ok_or_else(different)
         }
     }
 }
 
 /// The result of a comparison by rare darts.
-enum RareDarts {
+enum RareDartMatch {
     Same(Bijection),
     Different,
     TooManyCandidates,
@@ -104,7 +104,7 @@ const CANDIDATES: usize = 16;
 
 /// Darts whose surroundings look alike have the same colour; an isomorphism keeps colours, so a dart
 /// of the rarest one can only go to the few others of it.
-fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDarts {
+fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDartMatch {
     let (of_one, of_other) = (colours(one), colours(other));
     let sorted = |colours: &[u64]| {
         let mut sorted = colours.to_vec();
@@ -113,21 +113,21 @@ fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDarts {
     };
     let all = sorted(&of_one);
     if all != sorted(&of_other) {
-        return RareDarts::Different;
+        return RareDartMatch::Different;
     }
     let rarest = all.chunk_by(|a, b| a == b).min_by_key(|alike| alike.len());
     let Some(alike) = rarest.filter(|alike| alike.len() <= CANDIDATES) else {
-        return RareDarts::TooManyCandidates;
+        return RareDartMatch::TooManyCandidates;
     };
     let Some(from) = one.darts().find(|dart| of_one[dart.at()] == alike[0]) else {
-        return RareDarts::Different;
+        return RareDartMatch::Different;
     };
     other
         .darts()
         .filter(|dart| of_other[dart.at()] == alike[0])
         .map(|to| Bijection::of_starts((one, from), (other, to)))
         .find(|bijection| bijection.verify(one, other))
-        .map_or(RareDarts::Different, RareDarts::Same)
+        .map_or(RareDartMatch::Different, RareDartMatch::Same)
 }
 
 /// A number for each dart that depends only on its surroundings, a few steps deep.
@@ -182,16 +182,16 @@ mod tests {
     #[test]
     fn worlds_with_a_rare_dart_are_compared_by_it() {
         let graph = cycle_with_a_tail(30);
-        assert!(matches!(by_rare_darts(&graph, &graph), RareDarts::Same(_)));
-        assert!(matches!(by_rare_darts(&graph, &cycle_with_a_tail(31)), RareDarts::Different));
+        assert!(matches!(by_rare_darts(&graph, &graph), RareDartMatch::Same(_)));
+        assert!(matches!(by_rare_darts(&graph, &cycle_with_a_tail(31)), RareDartMatch::Different));
         let lists = [("u", vec!["a", "b", "c"]), ("v", vec!["a", "b", "c"])];
         let theta = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&theta, &theta), RareDarts::Same(_)));
+        assert!(matches!(by_rare_darts(&theta, &theta), RareDartMatch::Same(_)));
         let name = |edge: usize| (edge % 30).to_string();
         let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
         let lists: Vec<_> = (0..30).map(around).collect();
         let cycle = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&cycle, &cycle), RareDarts::TooManyCandidates));
+        assert!(matches!(by_rare_darts(&cycle, &cycle), RareDartMatch::TooManyCandidates));
         assert!(isomorphism(&cycle, &cycle).unwrap().verify(&cycle, &cycle));
     }
 }

@@ -177,10 +177,10 @@ mod tests {
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Bijection,
-        mapping::Measured,
+        mapping::ArrivalMeasurement,
         measurement::{HallwayMeasurement, MeasurementNoise},
         percept::{Door, Percept},
-        world::{GraphWorld, Refused, State, World},
+        world::{GraphWorld, RefusedAction, State, World},
     };
 
     fn graph(lists: &[(&str, &str)]) -> EmbeddedGraph {
@@ -315,13 +315,13 @@ mod tests {
     }
 
     impl World for Carried<'_> {
-        type Error = Refused;
+        type Error = RefusedAction;
 
-        fn percept(&mut self) -> Result<Percept, Refused> {
+        fn percept(&mut self) -> Result<Percept, RefusedAction> {
             self.world.percept()
         }
 
-        fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+        fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
             self.world.traverse(door)?;
             let (graph, State { pose, placed }) = (self.world.graph(), self.world.state());
             self.length = Some(5.0 + 2.0 * f64::from(pose.0.min(graph.opposite(pose).0)));
@@ -333,13 +333,13 @@ mod tests {
     }
 
     impl Relocate for Carried<'_> {
-        fn relocate(&mut self, _: Refused) -> Result<(), Refused> {
+        fn relocate(&mut self, _: RefusedAction) -> Result<(), RefusedAction> {
             self.traverse(Door::BACK)
         }
 
-        fn measured(&self) -> Measured {
+        fn measured(&self) -> ArrivalMeasurement {
             let hallway = self.length.map(|length| HallwayMeasurement { length, turn: None });
-            Measured { hallway, shape: None }
+            ArrivalMeasurement { hallway, shape: None }
         }
     }
 

@@ -5,7 +5,7 @@ use crate::{
     embedded_graph::EmbeddedGraph,
     marker::Marker,
     percept::Percept,
-    world::{GraphWorld, Refused, State, World},
+    world::{GraphWorld, RefusedAction, State, World},
 };
 
 /// The possible states of a robot in a known world, event by event.
@@ -131,7 +131,7 @@ fn after(
         }
         TraceEventKind::Door(door) => match world.traverse(door) {
             Ok(()) => Ok(world.state()),
-            Err(Refused::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
+            Err(RefusedAction::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
             Err(_) => Ok(state),
         },
     }

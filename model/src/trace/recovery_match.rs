@@ -8,7 +8,7 @@ use super::{
 use crate::{
     mapping::{
         DirectionalAlgorithm, FoldingEvent, FoldingExploration, Journey, MappingError,
-        MappingEvent, MappingRun, Measured, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+        MappingEvent, MappingRun, ArrivalMeasurement, Observer, RecoveryConfig, Relocate, SafeguardEvent,
         map_with_recovery,
     },
     percept::{Door, Percept},
@@ -19,7 +19,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RecordedVisit {
     /// What was measured on the way to it.
-    pub measured: Measured,
+    pub measured: ArrivalMeasurement,
     /// Whether the robot stands before an obstacle.
     pub is_blocked: bool,
 }
@@ -97,7 +97,7 @@ impl Relocate for RecordedWorld<'_> {
         if self.world.relocate() { Ok(()) } else { Err(error) }
     }
 
-    fn measured(&self) -> Measured {
+    fn measured(&self) -> ArrivalMeasurement {
         self.visit().measured
     }
 

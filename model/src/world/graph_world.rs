@@ -14,7 +14,7 @@ use crate::{
 
 /// The error for an action that is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum Refused {
+pub enum RefusedAction {
     /// It chose a door that its vertex does not have.
     #[error("door {} was taken at a vertex with {}", door.0, counted(*degree as usize, "door"))]
     NoSuchDoor {
@@ -149,7 +149,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
     ///
     /// # Errors
     /// Returns an error if it is not one of them.
-    pub fn act(&mut self, action: Action) -> Result<(), Refused> {
+    pub fn act(&mut self, action: Action) -> Result<(), RefusedAction> {
         match action {
             Action::Take(door) => self.traverse(door),
             Action::PickUp => self.pick_up(),
@@ -209,18 +209,18 @@ impl<'g, M> GraphWorld<'g, M> {
 }
 
 impl<M: Marker> World for GraphWorld<'_, M> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
     #[inline]
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         Ok(self.sensed())
     }
 
     #[inline]
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         let degree = self.graph.degree_around(self.state.pose);
         if door.0 >= degree {
-            return Err(Refused::NoSuchDoor { door, degree });
+            return Err(RefusedAction::NoSuchDoor { door, degree });
         }
         self.state.pose = self.graph.after(self.state.pose, door);
         self.moves += 1;
@@ -229,17 +229,17 @@ impl<M: Marker> World for GraphWorld<'_, M> {
 }
 
 impl<M: Marker> MovableMarkerWorld for GraphWorld<'_, M> {
-    fn pick_up(&mut self) -> Result<(), Refused> {
+    fn pick_up(&mut self) -> Result<(), RefusedAction> {
         if !self.can_pick_up() {
-            return Err(Refused::NothingToPickUp);
+            return Err(RefusedAction::NothingToPickUp);
         }
         self.state.placed = None;
         Ok(())
     }
 
-    fn drop(&mut self) -> Result<(), Refused> {
+    fn drop(&mut self) -> Result<(), RefusedAction> {
         if !self.carries() {
-            return Err(Refused::NothingToDrop);
+            return Err(RefusedAction::NothingToDrop);
         }
         self.state.placed = Some(self.marker.first_alike(self.graph, self.state.pose));
         Ok(())

@@ -2,7 +2,7 @@
 
 mod graph_world;
 
-pub use graph_world::{Action, GraphWorld, Refused, State, UnknownAction};
+pub use graph_world::{Action, GraphWorld, RefusedAction, State, UnknownAction};
 
 use crate::percept::{Door, Percept};
 

@@ -3,7 +3,7 @@
 
 use thiserror::Error;
 use toposlam_model::{
-    mapping::Measured,
+    mapping::ArrivalMeasurement,
     marker::{Marker, NoMarker},
     measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
@@ -185,7 +185,7 @@ impl RunEvents {
                 return RecordedVisit::default();
             };
             RecordedVisit {
-                measured: Measured { hallway: *hallway, shape: arrival.form },
+                measured: ArrivalMeasurement { hallway: *hallway, shape: arrival.form },
                 is_blocked: arrival.is_at_obstacle(),
             }
         };

@@ -27,7 +27,7 @@ use crate::{
         Arrival, Event, EventId, EventKind, Frame, MapRecord, NoSensor, RunEnd, RunEnding,
         RunObserver,
     },
-    robot::Reckoned,
+    robot::TimedOdometry,
     run::run,
     run_settings::RunSettings,
     simulator::SimulationConfig,
@@ -47,7 +47,7 @@ const DARTS: usize = 400;
 #[derive(Clone, Debug, Default)]
 struct Log {
     /// Scenes, arrivals and doors.
-    lines: Vec<(Reckoned, EventKind)>,
+    lines: Vec<(TimedOdometry, EventKind)>,
     /// Of the last frame.
     odometry: Odometry,
 }
@@ -85,7 +85,7 @@ impl Log {
     }
 }
 
-fn source(message: usize, reckoned: &Reckoned) -> EventSource {
+fn source(message: usize, reckoned: &TimedOdometry) -> EventSource {
     let time = (reckoned.time * 1e9).round() as u64;
     EventSource { time, id: EventId(message as u64 + 1), offset: 0 }
 }
@@ -97,7 +97,7 @@ impl RunObserver for Log {
             EventKind::Door { .. } | EventKind::Arrival(_) => {}
             _ => return,
         }
-        let reckoned = Reckoned { time: event.time as f64 / 1e9, odometry: self.odometry };
+        let reckoned = TimedOdometry { time: event.time as f64 / 1e9, odometry: self.odometry };
         self.lines.push((reckoned, event.kind.clone()));
     }
 }

@@ -72,7 +72,7 @@ pub fn learned(
 mod tests {
     use super::*;
     use crate::{
-        evaluation::{LearnedSensors, impatient::Impatient},
+        evaluation::{LearnedSensors, question_limit::QuestionLimit},
         simulator::LOOKS,
     };
 
@@ -81,7 +81,7 @@ mod tests {
     fn learning_ends_at_the_question_at_which_it_is_stopped() {
         let camera = Camera::superscout().sized([640, 480]);
         for at in [1, 2, 5] {
-            let watch = Impatient::at(at);
+            let watch = QuestionLimit::at(at);
             let stopped = LearnedSensors::new(&camera, &[&LOOKS[0]], &watch);
             assert!(matches!(stopped, Err(LearningError::Interrupted(Interrupted))));
             assert_eq!(watch.asked(), at);

@@ -149,7 +149,7 @@ fn is_found(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::{impatient::Impatient, plans, run_sampler::Faults};
+    use crate::evaluation::{question_limit::QuestionLimit, plans, run_sampler::Faults};
 
     fn sampler() -> RunSampler {
         RunSampler::new(plans().unwrap(), 2, Faults::None, 1, 1.0, ALGORITHM)
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_stopped_is_not_measured() {
-        let impatient = Impatient::at(3);
-        assert!(sampler().measured(0..1, &RobotEquipment::Scenes, &impatient).is_empty());
+        let limited = QuestionLimit::at(3);
+        assert!(sampler().measured(0..1, &RobotEquipment::Scenes, &limited).is_empty());
     }
 }

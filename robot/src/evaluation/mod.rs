@@ -8,7 +8,7 @@ mod equipment;
 pub mod failure_groups;
 mod false_percepts;
 #[cfg(test)]
-mod impatient;
+mod question_limit;
 pub mod judge;
 pub mod judged_view;
 pub mod laser;

@@ -29,7 +29,7 @@ impl Quantile {
     }
 }
 
-/// Measured values.
+/// ArrivalMeasurement values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSample {
     /// Ascending.

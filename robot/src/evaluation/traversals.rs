@@ -210,12 +210,12 @@ mod tests {
 
     use super::*;
     use crate::evaluation::{
-        impatient::Impatient,
+        question_limit::QuestionLimit,
         plans,
         run_sampler::{Faults, RunSampler},
     };
 
-    type Count<'a> = &'a dyn Fn(&Impatient) -> usize;
+    type Count<'a> = &'a dyn Fn(&QuestionLimit) -> usize;
 
     /// The watch is asked before a case, and then before each image.
     #[test]
@@ -229,14 +229,14 @@ mod tests {
                 runs.judged(0..1, &RobotEquipment::Scenes, watch).len()
             }];
         for count in counts {
-            let patient = Impatient::never();
-            assert_eq!(count(&patient), 1);
-            let asked = patient.asked();
+            let unlimited = QuestionLimit::never();
+            assert_eq!(count(&unlimited), 1);
+            let asked = unlimited.asked();
             assert!(asked > 4, "{asked}");
             for at in [1, 2, 3, asked] {
-                let impatient = Impatient::at(at);
-                assert_eq!(count(&impatient), 0);
-                assert_eq!(impatient.asked(), at);
+                let limited = QuestionLimit::at(at);
+                assert_eq!(count(&limited), 0);
+                assert_eq!(limited.asked(), at);
             }
         }
     }

@@ -8,7 +8,7 @@ use toposlam_model::{
         odometry::Odometry,
         scene::{Place as ScenePlace, Scene, wrapped},
     },
-    mapping::Measured,
+    mapping::ArrivalMeasurement,
     percept::{Percept, Sighting},
 };
 
@@ -54,7 +54,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.place = Some(Place::Obstacle { back });
         self.moves += 1;
         self.allow_for(DEAD_END);
-        (self.hallway, self.measured) = (None, Measured::default());
+        (self.hallway, self.measured) = (None, ArrivalMeasurement::default());
         let number = Some(u32::try_from(self.last_move).unwrap_or(u32::MAX));
         let Percept { degree, sighting } = DEAD_END;
         let (sighting, form, entry) = (Some(sighting), None, Some(back));

@@ -7,7 +7,7 @@ use toposlam_model::{
         algorithm2::{Command, PathState, Standing, UNIT},
         scene::{JunctionView, Place as ScenePlace, wrapped},
     },
-    mapping::{Measured, Relocate},
+    mapping::{ArrivalMeasurement, Relocate},
 };
 
 use super::{ExplorerError, RobotExplorer, Unusable};
@@ -133,7 +133,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> Relocate for RobotExplorer<R, S, 
         }
     }
 
-    fn measured(&self) -> Measured {
+    fn measured(&self) -> ArrivalMeasurement {
         self.measured
     }
 

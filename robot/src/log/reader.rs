@@ -10,7 +10,7 @@ use super::{
     },
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
     rosbag2::{self, BagFile},
-    skipped::SkippedLines,
+    skipped_lines::SkippedLines,
     source::Source,
     storage::Storage,
     topic::{Topic, Topics},

@@ -189,7 +189,7 @@ mod tests {
         evaluation::{plans, run_sampler::starts_of},
         explorer::{ExplorerError, RobotExplorer},
         record::{CameraImage, DECODED, FrameSensor, NoSensor, SensingError},
-        robot::{Reckoned, Robot, RobotError},
+        robot::{TimedOdometry, Robot, RobotError},
         run::{Run, run},
         run_settings::RunSettings,
         simulator::{FaultKind, RobotFault, SimulatedRobot, SimulationConfig},
@@ -298,7 +298,7 @@ mod tests {
             self.0.forward(distance)
         }
 
-        fn odometry(&self) -> Reckoned {
+        fn odometry(&self) -> TimedOdometry {
             self.0.odometry()
         }
     }

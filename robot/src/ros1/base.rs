@@ -10,7 +10,7 @@ use super::{
     wheels::{Wheels, stands},
 };
 use crate::{
-    robot::{Reckoned, RobotError, Sample},
+    robot::{TimedOdometry, RobotError, Sample},
     superscout::{Base, PERIOD, WheelReading, WheelSpeeds},
 };
 
@@ -87,7 +87,7 @@ impl LiveBase {
 
     fn sample(&mut self, wheels: WheelSpeeds) {
         let WheelReading { time, odometry } = self.reading();
-        let reckoned = Reckoned { time, odometry };
+        let reckoned = TimedOdometry { time, odometry };
         let (speed, turning) = (wheels.speed(), wheels.turn_rate());
         self.track.push(Sample { speed, turning, reckoned });
     }

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     record::{CameraImage, Frame},
-    robot::{Reckoned, Robot, RobotError, Sample},
+    robot::{TimedOdometry, Robot, RobotError, Sample},
     superscout::{Base, Drive, WheelReading},
 };
 
@@ -159,9 +159,9 @@ impl Robot for LiveRobot {
         Drive(&mut self.base).forward(distance)
     }
 
-    fn odometry(&self) -> Reckoned {
+    fn odometry(&self) -> TimedOdometry {
         let reading = self.base.reading();
-        Reckoned { time: reading.time, odometry: reading.odometry }
+        TimedOdometry { time: reading.time, odometry: reading.odometry }
     }
 
     fn track(&self) -> &[Sample] {

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    robot::{Reckoned, RobotError, Sample},
+    robot::{TimedOdometry, RobotError, Sample},
     superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
 };
 
@@ -132,7 +132,7 @@ impl SimulatedBase {
     fn sample(&mut self) {
         if let Some(track) = &mut self.track {
             let WheelReading { time, odometry } = self.reading;
-            let reckoned = Reckoned { time, odometry };
+            let reckoned = TimedOdometry { time, odometry };
             let (speed, turning) = (self.wheels.speed(), self.wheels.turn_rate());
             track.push(Sample { speed, turning, reckoned });
         }

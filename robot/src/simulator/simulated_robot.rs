@@ -20,7 +20,7 @@ use super::{
 use crate::{
     pose::Pose,
     record::Frame,
-    robot::{Reckoned, Robot, RobotError, Sample},
+    robot::{TimedOdometry, Robot, RobotError, Sample},
     superscout::{Base, Drive},
 };
 
@@ -234,9 +234,9 @@ impl Robot for SimulatedRobot {
         if self.base.begin() { Drive(&mut self.base).forward(distance) } else { Ok(()) }
     }
 
-    fn odometry(&self) -> Reckoned {
+    fn odometry(&self) -> TimedOdometry {
         let reading = self.base.reading();
-        Reckoned { time: reading.time, odometry: reading.odometry }
+        TimedOdometry { time: reading.time, odometry: reading.odometry }
     }
 
     fn track(&self) -> &[Sample] {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use toposlam_model::{
     ambiguity::PlacedRobot,
     percept::Percept,
-    world::{Action, Refused, UnknownAction},
+    world::{Action, RefusedAction, UnknownAction},
 };
 
 use super::{
@@ -46,7 +46,7 @@ pub(super) struct JointWalk<'w> {
 struct Stop {
     /// `A` or `B`.
     world: &'static str,
-    cause: Refused,
+    cause: RefusedAction,
 }
 
 impl fmt::Display for Stop {

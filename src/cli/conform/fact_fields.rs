@@ -12,8 +12,8 @@ use toposlam_robot::{
 };
 
 use super::{
-    Judged,
-    folded::{OpenDoor, open_doors},
+    JudgedLog,
+    folded_trail::{OpenDoor, open_doors},
     other_world::{OtherWorld, OtherWorldFields},
     robot_marker::{AddedMarker, AssumedMarkerFields},
 };
@@ -117,8 +117,8 @@ struct Map {
 }
 
 impl<'j> FactFields<'j> {
-    pub(super) fn of(judged: &'j Judged) -> Self {
-        let Judged { opened, gathered, judgement, known, .. } = judged;
+    pub(super) fn of(judged: &'j JudgedLog) -> Self {
+        let JudgedLog { opened, gathered, judgement, known, .. } = judged;
         let run = opened.run.as_ref();
         let smallest = match &judgement.smallest {
             Some(SmallestWorld::World { graph, limit, .. }) => Some(Size {

@@ -17,7 +17,7 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{CliError, expected::ExpectedRun, robot_marker::MarkerStart};
+use super::{CliError, expected_run::ExpectedRun, robot_marker::MarkerStart};
 use crate::cli::input;
 
 /// A known world.

@@ -11,14 +11,14 @@ use toposlam_robot::{
     record::{EventKind, Frame},
 };
 
-use super::{CliError, Judged, robot_marker::AddedMarker};
+use super::{CliError, JudgedLog, robot_marker::AddedMarker};
 use crate::{
     cli::{output, text::counted},
     picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png},
 };
 
 /// Writes the picture of a run as SVG or PNG.
-pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliError> {
+pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), CliError> {
     if judged.gathered.evidence != Evidence::Laser {
         let cause = "this is for events that are inferred from laser scans";
         return Err(CliError::at("--picture", cause));
@@ -51,7 +51,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliE
 }
 
 /// What the scans hit, and the robot's way.
-fn scanned(path: &Path, judged: &Judged) -> Result<LaserRunPicture, CliError> {
+fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError> {
     let failed = |error: &dyn std::error::Error| CliError::in_file(path, error);
     let log = &judged.opened.log;
     let mapping = judged.opened.mapping.only(&[Role::Scan, Role::Odometry]);

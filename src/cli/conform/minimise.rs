@@ -26,7 +26,7 @@ use toposlam_robot::{
     record::Arrival,
 };
 
-use super::{CliError, ConformArguments, Judged};
+use super::{CliError, ConformArguments, JudgedLog};
 use crate::cli::{output, text::quoted};
 
 /// A shorter log.
@@ -41,7 +41,7 @@ const DISTANCE: f64 = 2.0;
 
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
-    pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, CliError> {
+    pub(super) fn shorter(&self, judged: &JudgedLog) -> Result<Option<Minimised>, CliError> {
         let question =
             self.question(judged.known.as_ref(), judged.marker, judged.driver, judged.limits());
         let shorter = shorten_run(&judged.judgement, &question, &());
@@ -82,7 +82,7 @@ impl ConformArguments {
     }
 
     /// The command that checks a shorter log as this one was checked.
-    fn command(&self, path: &Path, judged: &Judged, by_itself: bool) -> String {
+    fn command(&self, path: &Path, judged: &JudgedLog, by_itself: bool) -> String {
         let mut words =
             vec!["toposlam".to_owned(), "conform".to_owned(), quoted(&path.display().to_string())];
         if self.class != Class::Multigraph {
@@ -111,7 +111,7 @@ fn not_written(path: &Path, why: &str) {
     remark!("{}: not written: {why}", path.display());
 }
 
-fn is_marked(judged: &Judged) -> bool {
+fn is_marked(judged: &JudgedLog) -> bool {
     judged.marker.name() == Directional.name()
 }
 
@@ -193,7 +193,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
 }
 
 /// The head of a shorter log, without the calibration and colours: it has no images.
-fn head(judged: &Judged) -> Run {
+fn head(judged: &JudgedLog) -> Run {
     let run = judged.opened.run.clone().unwrap_or_default();
     let marker = judged.marker.name().to_owned();
     Run { marker, calibration: String::new(), colours: String::new(), ..run }

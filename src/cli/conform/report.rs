@@ -19,7 +19,7 @@ use toposlam_robot::{
     record::{Arrival, RunEnding},
 };
 
-use super::{Judged, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
+use super::{JudgedLog, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
 use crate::{
     cli::text::{counted, grouped, moment, vertices},
     picture::{self, WorldPicture},
@@ -29,7 +29,7 @@ use crate::{
 /// A scanner with a field of view of fewer degrees does not see what is behind the robot.
 const ALL_AROUND: f64 = 270.0;
 
-impl Judged<'_> {
+impl JudgedLog<'_> {
     /// The report of a log; with pictures if it is `shown` on a page.
     pub(super) fn report(
         &self,
@@ -206,8 +206,8 @@ impl Judged<'_> {
             _ => facts.push(("world", self.unknown_world())),
         }
         facts.extend(lengths(judgement.measured).map(|lengths| ("lengths", lengths)));
-        if let Some(doors) = folded::open_doors(self) {
-            facts.push(("unique", folded::in_words(&doors)));
+        if let Some(doors) = folded_trail::open_doors(self) {
+            facts.push(("unique", folded_trail::in_words(&doors)));
         } else if let (Some(false), ways) = (judgement.determines_world(), judgement.ways) {
             let ways = format!("the junction of the marker may have been entered in {ways} ways");
             facts.push(("unique", format!("This log does not determine its world: {ways}.")));
@@ -325,7 +325,7 @@ impl Judged<'_> {
     }
 
     fn coverage(&self) -> Vec<CoveredCase> {
-        let Judged { judgement, known, .. } = self;
+        let JudgedLog { judgement, known, .. } = self;
         let default = judgement.algorithm.as_ref().map(|followed| followed.choices)
             == Some(MatchedChoices::Default);
         let run = known.as_ref().filter(|_| default);

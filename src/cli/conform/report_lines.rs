@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_model::{folding::SearchLimit, percept::Sighting};
 use toposlam_robot::conform::{CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents};
 
-use super::{CliError, Judged, fact_fields::FactFields};
+use super::{CliError, JudgedLog, fact_fields::FactFields};
 use crate::{
     cli::{
         json::print_line,
@@ -139,7 +139,7 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
 pub(super) fn json(
     out: &mut dyn Write,
     report: &LogReport,
-    judged: &Judged,
+    judged: &JudgedLog,
 ) -> Result<(), CliError> {
     let divergence = report.divergence.as_ref();
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
@@ -182,7 +182,7 @@ pub(super) fn json(
     print_line(out, "log", &line)
 }
 
-fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
+fn limit(reached: ReachedLimit, judged: &JudgedLog) -> Limit {
     let none = Limit { option: None, value: None, decides: true, event: None };
     let of = |option, value| Limit { option: Some(option), value: Some(value), ..none };
     let search = |limit| match limit {

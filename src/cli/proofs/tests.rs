@@ -319,8 +319,8 @@ fn a_lemma_that_panics_fails_in_that_case() {
 
 #[test]
 fn an_interrupt_does_not_wait_for_the_case() {
-    struct Impatient;
-    impl Watch for Impatient {
+    struct QuestionLimit;
+    impl Watch for QuestionLimit {
         fn stop(&self) -> bool {
             true
         }
@@ -331,7 +331,7 @@ fn an_interrupt_does_not_wait_for_the_case() {
         }
     }
     let endless = lemma("endless", 9, endless, endless);
-    let interrupted = check_lemma(&endless, &Impatient).unwrap();
+    let interrupted = check_lemma(&endless, &QuestionLimit).unwrap();
     assert!(matches!(interrupted.end, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
         (false, "\nincomplete, interrupted: 0 of 1 lemma holds, 0 cases\n"),
@@ -339,7 +339,7 @@ fn an_interrupt_does_not_wait_for_the_case() {
     ] {
         let mut out = Vec::new();
         let mut report = ProofsReport::new(&mut out, json, &[&endless]);
-        report.lemma(&endless, check_lemma(&endless, &Impatient).unwrap()).unwrap();
+        report.lemma(&endless, check_lemma(&endless, &QuestionLimit).unwrap()).unwrap();
         assert_eq!(report.verdict().unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end) && text.contains("interrupted"), "{text}");

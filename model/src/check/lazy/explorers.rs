@@ -12,7 +12,7 @@ use crate::{
         MarkerSearch, Nearest, explore_edge, step,
     },
     marker::{Directional, Marker, Movable},
-    world::{MovableMarkerWorld, Refused, World},
+    world::{MovableMarkerWorld, RefusedAction, World},
 };
 
 /// Whether a run goes on.
@@ -44,7 +44,7 @@ pub trait StepExplorer: Clone {
     ///
     /// # Errors
     /// Returns the explorer's own failure, or the world's refusal of a move.
-    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
         max_darts: usize,
@@ -54,7 +54,7 @@ pub trait StepExplorer: Clone {
     ///
     /// # Errors
     /// Returns the explorer's own failure, or the world's refusal of a move.
-    fn step<W: MovableMarkerWorld<Error = Refused>>(
+    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw>;
@@ -112,7 +112,7 @@ impl Default for Algorithm1Explorer {
 }
 
 impl Algorithm1Explorer {
-    fn choose<W: World<Error = Refused>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+    fn choose<W: World<Error = RefusedAction>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
         self.next = self.exploration.choose(&mut Nearest);
         if let Some(MappingChoice::Edge(edge)) = self.next {
             self.exploration.approach(edge, world, &mut ())?;
@@ -128,7 +128,7 @@ impl StepExplorer for Algorithm1Explorer {
         Directional
     }
 
-    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
         max_darts: usize,
@@ -139,7 +139,7 @@ impl StepExplorer for Algorithm1Explorer {
     }
 
     #[inline]
-    fn step<W: MovableMarkerWorld<Error = Refused>>(
+    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
@@ -174,7 +174,7 @@ impl Default for MovableMarkerExplorer {
 }
 
 impl MovableMarkerExplorer {
-    fn choose<W: MovableMarkerWorld<Error = Refused>>(
+    fn choose<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
@@ -192,7 +192,7 @@ impl StepExplorer for MovableMarkerExplorer {
         Movable
     }
 
-    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
         max_darts: usize,
@@ -202,7 +202,7 @@ impl StepExplorer for MovableMarkerExplorer {
         self.choose(world)
     }
 
-    fn step<W: MovableMarkerWorld<Error = Refused>>(
+    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {
@@ -236,7 +236,7 @@ impl Default for FoldingStepExplorer {
 }
 
 impl FoldingStepExplorer {
-    fn choose<W: World<Error = Refused>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+    fn choose<W: World<Error = RefusedAction>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
         self.next = self.exploration.next_step();
         match self.next {
             Some(step) => {
@@ -256,7 +256,7 @@ impl StepExplorer for FoldingStepExplorer {
         Directional
     }
 
-    fn begin<W: MovableMarkerWorld<Error = Refused>>(
+    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
         max_darts: usize,
@@ -266,7 +266,7 @@ impl StepExplorer for FoldingStepExplorer {
         self.choose(world)
     }
 
-    fn step<W: MovableMarkerWorld<Error = Refused>>(
+    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
         &mut self,
         world: &mut W,
     ) -> Result<StepProgress, Flaw> {

@@ -5,7 +5,7 @@ use crate::{
     enumerate::{Answer, Answers, Draft},
     marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, Refused, State, World},
+    world::{MovableMarkerWorld, RefusedAction, State, World},
 };
 
 /// The facing dart of every start.
@@ -133,7 +133,7 @@ impl<M: Marker> LazyWorld<M> {
 
     /// Decides what is behind a free dart, or the degree of the start vertex.
     #[inline(never)]
-    fn decide(&mut self, dart: Option<Dart>) -> Result<(), Refused> {
+    fn decide(&mut self, dart: Option<Dart>) -> Result<(), RefusedAction> {
         let mut left = self.draft.answers(dart);
         let count = left.count();
         let index = self.decisions.len();
@@ -155,7 +155,7 @@ impl<M: Marker> LazyWorld<M> {
         };
         let Some(answer) = answer else {
             self.dead_end = true;
-            return Err(Refused::NoWorldLeft);
+            return Err(RefusedAction::NoWorldLeft);
         };
         self.draft.decide(dart, answer);
         self.decisions.push(Decision { dart, answer, left, step: self.step });
@@ -163,7 +163,7 @@ impl<M: Marker> LazyWorld<M> {
     }
 
     /// Decides the degree of the start vertex, places the marker, and puts the robot there.
-    pub(super) fn open_start(&mut self) -> Result<(), Refused> {
+    pub(super) fn open_start(&mut self) -> Result<(), RefusedAction> {
         if self.graph().vertex_count() == 0 {
             self.decide(None)?;
         }
@@ -183,7 +183,7 @@ impl<M: Marker> LazyWorld<M> {
 
     /// The other end of a dart's edge. If it is free, that is decided now.
     #[inline]
-    fn reveal(&mut self, dart: Dart) -> Result<Dart, Refused> {
+    fn reveal(&mut self, dart: Dart) -> Result<Dart, RefusedAction> {
         if let Some(far) = self.graph().joined(dart) {
             return Ok(far);
         }
@@ -202,22 +202,22 @@ impl<M: Marker> LazyWorld<M> {
 }
 
 impl<M: Marker> World for LazyWorld<M> {
-    type Error = Refused;
+    type Error = RefusedAction;
 
     #[inline]
-    fn percept(&mut self) -> Result<Percept, Refused> {
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
         let degree = self.graph().degree_around(self.pose());
         Ok(Percept { degree, sighting: self.sighting() })
     }
 
     #[inline]
-    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         if self.robot.moves >= self.bound {
-            return Err(Refused::OutOfMoves { bound: self.bound });
+            return Err(RefusedAction::OutOfMoves { bound: self.bound });
         }
         let degree = self.graph().degree_around(self.pose());
         if door.0 >= degree {
-            return Err(Refused::NoSuchDoor { door, degree });
+            return Err(RefusedAction::NoSuchDoor { door, degree });
         }
         self.robot.state.pose = self.reveal(self.graph().behind(self.pose(), door))?;
         self.robot.moves += 1;
@@ -227,17 +227,17 @@ impl<M: Marker> World for LazyWorld<M> {
 }
 
 impl<M: Marker> MovableMarkerWorld for LazyWorld<M> {
-    fn pick_up(&mut self) -> Result<(), Refused> {
+    fn pick_up(&mut self) -> Result<(), RefusedAction> {
         if !self.marker.is_movable() || self.sighting() == Sighting::Nothing {
-            return Err(Refused::NothingToPickUp);
+            return Err(RefusedAction::NothingToPickUp);
         }
         self.robot.state.placed = None;
         Ok(())
     }
 
-    fn drop(&mut self) -> Result<(), Refused> {
+    fn drop(&mut self) -> Result<(), RefusedAction> {
         if !self.marker.is_movable() || self.robot.state.placed.is_some() {
-            return Err(Refused::NothingToDrop);
+            return Err(RefusedAction::NothingToDrop);
         }
         let placed = self.marker.first_alike(self.graph(), self.pose());
         self.robot.state.placed = Some(placed);

@@ -21,7 +21,7 @@ use std::mem;
 use super::{
     FoldingExploration,
     marker_walk::MarkerWalk,
-    walks::{EarlierWalk, EarlierWalks, Measured, sees_marker},
+    walks::{EarlierWalk, EarlierWalks, ArrivalMeasurement, sees_marker},
 };
 use crate::{
     embedded_graph::Dart,
@@ -49,8 +49,8 @@ pub trait Relocate: World {
     }
 
     /// What the robot has measured on the way to where it is. It is never used to make a map.
-    fn measured(&self) -> Measured {
-        Measured::default()
+    fn measured(&self) -> ArrivalMeasurement {
+        ArrivalMeasurement::default()
     }
 
     /// Whether the robot stands before an obstacle, where its hallway is a dead end.
@@ -106,7 +106,7 @@ struct Remembering<'w, W> {
     /// The walk since the robot last began one.
     walk: EarlierWalk,
     /// What was measured on the way to each of its percepts.
-    measured: Vec<Measured>,
+    measured: Vec<ArrivalMeasurement>,
     moves: u64,
 }
 
@@ -119,7 +119,7 @@ impl<W> Remembering<'_, W> {
 
     /// Begins a walk where the robot stands. It does not matter how it has come there.
     fn begin_walk(&mut self, seen: Percept) -> EarlierWalk {
-        self.measured = vec![Measured::default()];
+        self.measured = vec![ArrivalMeasurement::default()];
         mem::replace(&mut self.walk, EarlierWalk::new(seen, [], false))
     }
 }

@@ -21,7 +21,7 @@ pub struct EarlierWalk {
 
 /// What a robot measures besides its percepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Measured {
+pub struct ArrivalMeasurement {
     /// The hallway by which it came.
     pub hallway: Option<HallwayMeasurement>,
     /// The shape of the junction, if its doors are at right angles and the hallways are straight.
@@ -95,7 +95,7 @@ impl EarlierWalk {
     /// the way to each.
     pub(super) fn visits(
         &self,
-        measured: &[Measured],
+        measured: &[ArrivalMeasurement],
         map: &EmbeddedGraph,
         facing: Dart,
     ) -> Vec<MeasuredVisit> {
@@ -104,7 +104,7 @@ impl EarlierWalk {
             return Vec::new();
         };
         let mut pose = map.behind(facing, along.inverse(*degree));
-        let visit = |(number, measured): (usize, &Measured)| {
+        let visit = |(number, measured): (usize, &ArrivalMeasurement)| {
             let left_by = self.doors.get(number).copied();
             let doors = (0..map.degree_around(pose)).map(Door);
             let visit = MeasuredVisit {

@@ -12,7 +12,7 @@ fn by_anyone() -> ConformConfig<'static> {
 }
 
 /// The first divergence of these lines, with moves that are counted again.
-fn divergence_of(mut lines: Vec<(Reckoned, EventKind)>) -> Option<Divergence> {
+fn divergence_of(mut lines: Vec<(TimedOdometry, EventKind)>) -> Option<Divergence> {
     let mut moves = 0;
     for (_, line) in &mut lines {
         match line {
@@ -65,7 +65,7 @@ fn a_stretch_that_was_cut_out_shows_where_the_percepts_fit() {
         let places = good.places();
         for arrival in (2..places.len().saturating_sub(1)).step_by(2) {
             let cut = places[arrival]..=places[arrival + 1];
-            let keep = |(place, line): (usize, &(Reckoned, EventKind))| {
+            let keep = |(place, line): (usize, &(TimedOdometry, EventKind))| {
                 (!cut.contains(&place)).then(|| line.clone())
             };
             let lines: Vec<_> = good.lines.iter().enumerate().filter_map(keep).collect();
@@ -110,9 +110,9 @@ fn two_spliced_logs_diverge_at_the_splice() {
                 continue;
             }
             let begun = before[one].0.time;
-            let later = |(reckoned, line): &(Reckoned, EventKind)| {
+            let later = |(reckoned, line): &(TimedOdometry, EventKind)| {
                 let time = reckoned.time + begun;
-                (Reckoned { time, ..*reckoned }, line.clone())
+                (TimedOdometry { time, ..*reckoned }, line.clone())
             };
             let lines = before.iter().cloned().chain(after.iter().map(later)).collect();
             splices += 1;

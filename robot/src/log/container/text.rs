@@ -8,7 +8,7 @@ use crate::log::{
     definition::{Definition, Dialect},
     error::{LogError, LogErrorKind, OffsetUnit, Truncation, TruncationKind},
     event_line::{self, Columns, Parsed},
-    skipped::SkippedLines,
+    skipped_lines::SkippedLines,
     source::Source,
 };
 

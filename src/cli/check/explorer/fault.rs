@@ -1,7 +1,7 @@
 //! What can be wrong with a run of an explorer that is another program.
 
 use thiserror::Error;
-use toposlam_model::world::Refused;
+use toposlam_model::world::RefusedAction;
 
 use crate::cli::text::counted;
 
@@ -32,7 +32,7 @@ pub(super) enum ExplorerFault {
     },
     /// An action is not possible.
     #[error("{}", refusal(refused))]
-    Refused { refused: Refused },
+    RefusedAction { refused: RefusedAction },
     /// It gave up.
     #[error("gave up: {reason}")]
     GaveUp { reason: String },
@@ -65,16 +65,16 @@ pub(super) enum ExplorerFault {
     OutOfMoves { limit: u64 },
 }
 
-fn refusal(refused: &Refused) -> String {
+fn refusal(refused: &RefusedAction) -> String {
     match refused {
-        Refused::NoSuchDoor { door, degree } => {
+        RefusedAction::NoSuchDoor { door, degree } => {
             let doors = counted(*degree as usize, "door");
             format!("took door {} at a vertex with {doors}, 0 to {}", door.0, degree - 1)
         }
-        Refused::NothingToPickUp => "picked up a marker where there is none".to_owned(),
-        Refused::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
-        Refused::NoWorldLeft => refused.to_string(),
-        Refused::OutOfMoves { bound } => format!("made more than {}", counted(*bound as usize, "move")),
+        RefusedAction::NothingToPickUp => "picked up a marker where there is none".to_owned(),
+        RefusedAction::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
+        RefusedAction::NoWorldLeft => refused.to_string(),
+        RefusedAction::OutOfMoves { bound } => format!("made more than {}", counted(*bound as usize, "move")),
     }
 }
 
@@ -88,10 +88,10 @@ impl ExplorerFault {
             Self::ExtraLine => "extra-line",
             Self::Ended { failed: true, .. } => "crashed",
             Self::Ended { .. } => "ended",
-            Self::Refused { refused } => match refused {
-                Refused::NoSuchDoor { .. } | Refused::NoWorldLeft => "no-such-door",
-                Refused::NothingToPickUp | Refused::NothingToDrop => "no-such-marker",
-                Refused::OutOfMoves { .. } => "max-moves",
+            Self::RefusedAction { refused } => match refused {
+                RefusedAction::NoSuchDoor { .. } | RefusedAction::NoWorldLeft => "no-such-door",
+                RefusedAction::NothingToPickUp | RefusedAction::NothingToDrop => "no-such-marker",
+                RefusedAction::OutOfMoves { .. } => "max-moves",
             },
             Self::GaveUp { .. } => "gave-up",
             Self::MissingEdge { .. } => "missing-edge",
@@ -108,7 +108,7 @@ impl ExplorerFault {
     pub(super) fn is_limit(&self) -> bool {
         match self {
             Self::TimedOut { .. } | Self::OutOfMoves { .. } => true,
-            Self::Refused { refused } => matches!(refused, Refused::OutOfMoves { .. }),
+            Self::RefusedAction { refused } => matches!(refused, RefusedAction::OutOfMoves { .. }),
             _ => false,
         }
     }
@@ -121,7 +121,7 @@ impl ExplorerFault {
             | Self::LineTooLong { .. }
             | Self::ExtraLine
             | Self::Ended { .. }
-            | Self::Refused { .. }
+            | Self::RefusedAction { .. }
             | Self::TimedOut { .. }
             | Self::OutOfMoves { .. } => true,
             Self::GaveUp { .. }

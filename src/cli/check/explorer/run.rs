@@ -84,7 +84,7 @@ impl ExplorerStart<'_> {
                 last.pop_front();
             }
             if let Err(refused) = world.act(action) {
-                break Err(ExplorerFault::Refused { refused });
+                break Err(ExplorerFault::RefusedAction { refused });
             }
             if let Action::Take(door) = action {
                 doors.push(door);

@@ -182,7 +182,7 @@ fn topics(connection: &Connection) -> Result<Vec<(i64, StoredTopic)>, LogErrorKi
         let (name, type_name, encoding): (String, String, String) =
             (row.get(1)?, row.get(2)?, row.get(3)?);
         let of_file = defined.get(&type_name).filter(|(_, text)| !text.is_empty()).cloned();
-        let published = || Some(("ros2msg".to_owned(), published::definition(&type_name)?));
+        let published = || Some(("ros2msg".to_owned(), published_types::definition(&type_name)?));
         let (schema, definition) = of_file.or_else(published).unwrap_or_default();
         topics.push((row.get(0)?, StoredTopic { name, type_name, encoding, schema, definition }));
     }

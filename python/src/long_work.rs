@@ -58,7 +58,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// Does long work. `progress` is called with the number of cases since the last call. After a signal the work
 /// is stopped, and the exception of the signal is raised. If the work calls functions in Python, the method
 /// `stop` of `calls` ends such a call.
-pub(crate) fn watched<R: Send>(
+pub(crate) fn run_watched<R: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     calls: Option<&Py<PyAny>>,
@@ -69,9 +69,9 @@ pub(crate) fn watched<R: Send>(
     let result = py.detach(|| {
         thread::scope(|scope| {
             let (done, end) = mpsc::channel();
-            let watched = &watcher;
+            let shared = &watcher;
             scope.spawn(move || {
-                let result = catch_unwind(AssertUnwindSafe(|| work(watched)));
+                let result = catch_unwind(AssertUnwindSafe(|| work(shared)));
                 // The caller waits for it.
                 let _ = done.send(result);
             });

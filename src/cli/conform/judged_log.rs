@@ -24,7 +24,7 @@ use super::{
 use crate::cli::{CliError, open_log::OpenLog, progress::Progress};
 
 /// A log and its judgement.
-pub(super) struct Judged<'w> {
+pub(super) struct JudgedLog<'w> {
     pub(super) opened: OpenLog,
     pub(super) gathered: ExtractedRun,
     pub(super) judgement: Judgement,
@@ -45,7 +45,7 @@ pub(super) struct Judged<'w> {
     pub(super) dart_bound: usize,
 }
 
-impl Judged<'_> {
+impl JudgedLog<'_> {
     /// What the robot might spend, and the most darts that the algorithm may know.
     pub(super) fn limits(&self) -> (RunBudget, usize) {
         (self.budget, self.dart_bound)
@@ -71,7 +71,7 @@ impl ConformArguments {
         path: &Path,
         worlds: Option<(&'w NamedWorld, &'w NamedWorld)>,
         quirks: &Quirks,
-    ) -> Result<Judged<'w>, CliError> {
+    ) -> Result<JudgedLog<'w>, CliError> {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = self.evidence(path, &opened)?;
         self.laser.check_used(evidence)?;
@@ -128,7 +128,7 @@ impl ConformArguments {
         progress.finish();
         let judgement = judgement.map_err(|error| not_judged(path, &gathered, error))?;
         let twin = OtherWorld::of(&judgement, known.as_ref(), marker);
-        Ok(Judged {
+        Ok(JudgedLog {
             opened,
             gathered,
             judgement,

@@ -37,7 +37,7 @@ pub(crate) enum TruePlace {
 ///
 /// # Errors
 /// Returns what is wrong.
-pub(crate) fn judge_cut(
+pub(crate) fn judge_with_obstacle(
     plan: &FloorPlan,
     facing: Dart,
     (map, pose): (&EmbeddedGraph, Dart),

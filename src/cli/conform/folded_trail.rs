@@ -7,7 +7,7 @@ use toposlam_model::{
 };
 use toposlam_robot::conform::Judgement;
 
-use super::{Judged, LISTED, known_world::Known};
+use super::{JudgedLog, LISTED, known_world::Known};
 use crate::{
     cli::text::{counted, vertices},
     picture::{OpenGraph, open_svg},
@@ -29,7 +29,7 @@ pub(super) struct OpenDoor {
 }
 
 /// The doors that were never followed; `None` if the log diverges, or if this is not known.
-pub(super) fn open_doors(judged: &Judged) -> Option<Vec<OpenDoor>> {
+pub(super) fn open_doors(judged: &JudgedLog) -> Option<Vec<OpenDoor>> {
     let judgement = &judged.judgement;
     judgement.determines_world()?;
     if judgement.ways > 1 {
@@ -100,7 +100,7 @@ impl OpenDoor {
     }
 }
 
-impl Judged<'_> {
+impl JudgedLog<'_> {
     /// The unknown world of a log, as a fact.
     pub(super) fn unknown_world(&self) -> String {
         let judgement = &self.judgement;

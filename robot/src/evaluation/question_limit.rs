@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use toposlam_model::enumerate::Watch;
 
 /// Stops at the question of this number, from 1, and at each one after it.
-pub(crate) struct Impatient {
+pub(crate) struct QuestionLimit {
     at: u64,
     asked: AtomicU64,
 }
 
-impl Impatient {
+impl QuestionLimit {
     pub(crate) fn at(at: u64) -> Self {
         Self { at, asked: AtomicU64::new(0) }
     }
@@ -26,7 +26,7 @@ impl Impatient {
     }
 }
 
-impl Watch for Impatient {
+impl Watch for QuestionLimit {
     fn stop(&self) -> bool {
         self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
     }
