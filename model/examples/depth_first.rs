@@ -81,7 +81,12 @@ impl DepthFirst {
     }
 
     /// Walks from the marker to a vertex, and returns the robot's pose there.
-    fn walk_to(&self, vertex: usize, from: End, world: &mut ExplorerWorld) -> Result<End, RefusedAction> {
+    fn walk_to(
+        &self,
+        vertex: usize,
+        from: End,
+        world: &mut ExplorerWorld,
+    ) -> Result<End, RefusedAction> {
         match self.far(vertex, 0) {
             Some((parent, index)) if vertex > 0 => {
                 let pose = self.walk_to(parent, from, world)?;

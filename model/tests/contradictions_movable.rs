@@ -17,7 +17,9 @@ use crate::scripted_world::{ScriptedWorld, plain};
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl MovableMarkerWorld<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
+fn map(
+    world: &mut impl MovableMarkerWorld<Error = RefusedAction>,
+) -> Result<u64, MappingError<RefusedAction>> {
     let mut search = MarkerSearch::new(BOUND);
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
@@ -182,7 +184,9 @@ fn the_worlds_own_error_is_passed_on() {
             Err(self.0)
         }
     }
-    for refused in [RefusedAction::NothingToPickUp, RefusedAction::NoSuchDoor { door: Door(0), degree: 0 }] {
+    for refused in
+        [RefusedAction::NothingToPickUp, RefusedAction::NoSuchDoor { door: Door(0), degree: 0 }]
+    {
         assert_eq!(map(&mut Closed(refused)), Err(MappingError::World(refused)));
     }
 }

@@ -59,7 +59,7 @@ fn an_algorithm_is_an_explorer() {
 enum Broken {
     /// It mirrors its map.
     Mirrored,
-    /// It believes to be at the facing dart at the end.
+    /// It believes it is at the facing dart at the end.
     WrongPose,
     /// It takes the next dart for the facing dart.
     WrongFacing,

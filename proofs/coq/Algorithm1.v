@@ -288,7 +288,7 @@ Proof. by case/and4P=> _ _ _ /forallP H d; apply/forallP. Qed.
 Definition drawn_graph (ok : is_drawn) : embedded_graph :=
   EmbeddedGraph (drawn_oppositeK ok) (drawn_opposite_neq ok) (drawn_clockwise_inj ok) (drawn_connected ok).
 
-(** The world that a map describes, if it describes one, and the robot where it believes to be. *)
+(** The world that a map describes, if it describes one, and the robot where it believes it is. *)
 Definition drawn (pose : nat) : option located :=
   match @idP is_drawn, @idP (0 < size S) with
   | ReflectT ok, ReflectT begun =>
@@ -299,7 +299,7 @@ Definition drawn (pose : nat) : option located :=
 
 End Drawn.
 
-(** The answer is a map isomorphic to the world as a start, and the robot is where it believes to be. *)
+(** The answer is a map isomorphic to the world as a start, and the robot is where it believes it is. *)
 Definition right_answer (W : start) (answer : option (partial_map * nat)) (pose : W) :=
   exists S p map, [/\ answer = Some (S, p), p < size S, drawn S p = Some map
     & exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (robot map) = pose]].

@@ -141,7 +141,7 @@ have : connect (fun x y => (y == drawn_opposite x) || (y == drawn_clockwise x)) 
 by apply: connect_trans; apply: connect1.
 Qed.
 
-(** The map is isomorphic to the world as a start, and the robot is where it believes to be. *)
+(** The map is isomorphic to the world as a start, and the robot is where it believes it is. *)
 Lemma drawn_isomorphic pose : pose < size S ->
   exists2 L : located, drawn S pose = Some L
   & exists f : L -> W, [/\ isomorphism f, f (facing L) = facing W & f (robot L) = place pose].

@@ -102,7 +102,7 @@ have [lt' _ _] := wf_other wf dd'.
 rewrite (traverse_known lt dd' same) -(em_doors em lt) door_to_lt //; exact: IH.
 Qed.
 
-(** A robot that has the expected sighting at the marked vertex of the map is where it believes to be. *)
+(** A robot that has the expected sighting at the marked vertex of the map is where it believes it is. *)
 Lemma expected_inj pose (q : W) : pose < size S -> vertex S pose = 0 ->
   perceive directional q = expected S pose -> place pose = q.
 Proof.

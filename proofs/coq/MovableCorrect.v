@@ -243,7 +243,7 @@ have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
 by rewrite -hg back here in seen.
 Qed.
 
-(** The right dart is found, the robot is where it believes to be, and carries the marker. *)
+(** The right dart is found, the robot is where it believes it is, and carries the marker. *)
 Definition linked_well (link : option (nat * nat)) (s : state (handling W)) :=
   exists h p, [/\ link = Some (h, p), h \in unexplored S, h != e, place h = t & p < size S /\ s = (place p, None)].
 
@@ -305,7 +305,7 @@ rewrite !size_with_edge //; split=> //; first exact: embeds_with_edge.
 by rewrite (size_unexplored_with_edge eU hU he) !addnS.
 Qed.
 
-(** The answer is a map in which nothing is unexplored, and the robot is where it believes to be. *)
+(** The answer is a map in which nothing is unexplored, and the robot is where it believes it is. *)
 Definition explored_well (answer : option (partial_map * nat)) (s : state (handling W)) :=
   exists S p (place : nat -> W),
     [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & s = (place p, None)].
@@ -344,7 +344,7 @@ Qed.
 Let begin := first_state (handling W).
 
 (** From the place of the marker, the algorithm ends with a map of the whole world. The robot is where it
-    believes to be, with the marker in hand. *)
+    believes it is, with the marker in hand. *)
 Lemma movable_spec bound : edges W <= bound ->
   always (handling W) (movable allowed bound (sense begin)) begin (fun answer s _ => explored_well answer s).
 Proof.

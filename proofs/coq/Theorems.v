@@ -140,13 +140,13 @@ Section Line4.
 Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
 
 (** When Algorithm 1 first reaches line 4, the known map is a part of the world, and the robot is where it
-    believes to be. Paper: 2.3; Algorithm 1, lines 1 to 3. *)
+    believes it is. Paper: 2.3; Algorithm 1, lines 1 to 3. *)
 Theorem embeds_at_start : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
 Proof. (* paper: alg1.2, alg1.3 *)
 exact: Correct.embeds_at_start.
 Qed.
 
-(** If, at line 4, the known map is a part of the world and the robot is where it believes to be, then so
+(** If, at line 4, the known map is a part of the world and the robot is where it believes it is, then so
     they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
 Theorem embeds_explore (test : hypothesis_test) :
   valid test -> embeds S place -> pose < size S -> unexplored S != [::] ->
@@ -174,7 +174,7 @@ Hypotheses (path_leads : leads S (vertex S h) path 0) (turned_exists : turned < 
 Let once := Validation.validate_spec known test_valid h_known path_leads turned_exists.
 
 (** A confirmed hypothesis is true: the robot came in by the dart of the hypothesis, and it is then where
-    it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
+    it believes it is. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
   always (moving directional W) (validate test S (perceive directional t) turned h path) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
@@ -225,7 +225,7 @@ Qed.
 
 (** In every world, from every start, Algorithm 1 ends, with any choice of an edge at line 5, of a
     hypothesis at line 9, and of paths through the known map at lines 6 and 10, and with any valid test of
-    hypotheses. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
+    hypotheses. Its map is isomorphic to the world, facing to facing, and the robot is where it believes it is.
     As many rounds suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
 Theorem algorithm1_correct (test : hypothesis_test) (W : start) (bound : nat) :
   valid test -> edges W <= bound ->
@@ -302,7 +302,7 @@ Qed.
 
 (** With one marker that can be picked up and dropped, the mapping algorithm of Dudek, Jenkin, Milios and
     Wilkes maps every world without loops and parallel edges, with any choices; the robot is then where it
-    believes to be, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
+    believes it is, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
 Theorem movable_marker_correct (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
   let begin := first_state (handling W) in
@@ -636,7 +636,7 @@ Qed.
 
 (** The folding explorer maps every world from every start, in whatever order it draws its conclusions, whichever
     darts it explores and hypotheses it tests, by any ways through the map and its trail, and whenever its tests
-    become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes to be.
+    become strict. Its map is isomorphic to the world, facing to facing, and the robot is where it believes it is.
     2 m (m + 1) actions suffice. Paper: beyond 2.3. *)
 Theorem folding_explorer_correct (W : start) (patience : partial_map -> nat) (bound : nat) :
   2 * edges W * (edges W + 1) <= bound ->

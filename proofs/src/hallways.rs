@@ -228,8 +228,7 @@ impl HallwayDrive {
         } else {
             self.in_hallway(choose, junction, distance)
         };
-        choose
-            .show(|| Exhibit::Value { name: "image", value: format!("{evidence:?}: {place:?}") });
+        choose.show(|| Exhibit::Value { name: "image", value: format!("{evidence:?}: {place:?}") });
         (Scene { place, marker: None }, evidence)
     }
 

@@ -198,7 +198,7 @@ impl Mapping {
         others.filter(|&end| map.expected(end) == perceived).collect()
     }
 
-    /// Lines 10 to 17: where the robot believes to be, and truly is, at the end of the path to the
+    /// Lines 10 to 17: where the robot believes it is, and truly is, at the end of the path to the
     /// marker; `None` if the percepts do not match, and it has gone back.
     fn try_path(&self, map: &Map, hypothesis: End, mut pose: Dart) -> Option<(End, Dart)> {
         let mut at = hypothesis;
@@ -272,7 +272,7 @@ impl Model for Mapping {
 }
 
 const EMBEDS: &str = "the known map embeds in the world";
-const LOCATED: &str = "the robot is where it believes to be";
+const LOCATED: &str = "the robot is where it believes it is";
 const AS_IT_WAS: &str = "every known place is as it was";
 const ISOMORPHIC: &str = "a finished map is isomorphic to the world";
 const FINISHED: &str = "a map is finished";

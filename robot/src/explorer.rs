@@ -11,7 +11,7 @@ use toposlam_model::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
         scene::Scene,
     },
-    mapping::{Journey, MappedWorld, MappingError, MappingEvent, MappingRun, ArrivalMeasurement},
+    mapping::{ArrivalMeasurement, Journey, MappedWorld, MappingError, MappingEvent, MappingRun},
     percept::{Door, Percept},
     world::World,
 };

@@ -4,7 +4,7 @@ use toposlam_model::driving::algorithm2::Command;
 
 use crate::{
     record::{Event, EventKind, Frame, RunObserver},
-    robot::{TimedOdometry, Robot, RobotError},
+    robot::{Robot, RobotError, TimedOdometry},
 };
 
 /// The frames and the commands of a run.

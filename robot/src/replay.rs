@@ -20,7 +20,7 @@ use crate::{
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
-    robot::{TimedOdometry, Robot, RobotError},
+    robot::{Robot, RobotError, TimedOdometry},
     run_settings::RunSettings,
 };
 

@@ -145,7 +145,9 @@ pub fn run<'p>(
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
-            let judge = |map| judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle());
+            let judge = |map| {
+                judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle())
+            };
             map.map_or(Err(Flaw::WrongMap), judge).err()
         } else {
             flaw(plan, facing, &mapping, mapped.pose, monitor.reached())

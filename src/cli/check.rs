@@ -47,7 +47,7 @@ pub(super) use report::CheckReport;
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
 ///
 /// For each start, a bijection proves that the map is isomorphic to the world, the robot is where it
-/// believes to be, and the number of moves is at most m n + 2 m^2 (n - 1), for m edges and n vertices.
+/// believes it is, and the number of moves is at most m n + 2 m^2 (n - 1), for m edges and n vertices.
 ///
 /// With --marker movable, the algorithm for one movable marker is checked instead, on worlds without
 /// loops and parallel edges. Its bound is 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7) moves.
@@ -139,7 +139,7 @@ pub(super) struct CheckArguments {
     #[command(flatten)]
     estimate: EstimateOptions,
 
-    /// Check larger worlds also after a map was wrong, or after an explorer reached a limit
+    /// Check larger worlds even after a wrong map, or after an explorer reached a limit
     #[arg(long)]
     keep_going: bool,
 

@@ -49,8 +49,8 @@ use robot_marker::RobotMarker;
 /// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes,
 /// images or laser scans, and its odometry. They must fit the known world. Without one, a log diverges at the
 /// first event that no world of any size explains, and the command searches for the smallest world that
-/// explains the log. The doors must be doors that the algorithm takes, or may take: the one that the log
-/// names, or else Algorithm 1.
+/// explains the log. The doors must be those of an algorithm: the one that the log names, or else Algorithm 1
+/// with any of its choices.
 ///
 /// The command also reports whether the log determines its world. If it does not, some doors were never
 /// followed, and different worlds explain the log.
@@ -223,8 +223,13 @@ impl ConformArguments {
             report_lines::together(out, self.logs.len(), &reports, self.json)?;
         }
         if !self.require_coverage.is_empty() && !reports.is_empty() {
-            let required =
-                required_coverage::report(out, &self.require_coverage, &all, any_algorithm1, self.json)?;
+            let required = required_coverage::report(
+                out,
+                &self.require_coverage,
+                &all,
+                any_algorithm1,
+                self.json,
+            )?;
             logs.add(Ok(((), required)));
             cases.push(required_case(required));
         }

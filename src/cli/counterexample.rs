@@ -43,8 +43,8 @@ Examples:
   toposlam counterexample --class corridor --max-edges 9 --json
   toposlam counterexample --marker directional --expect none
                                                 for CI: exit code 1 on a pair
-  toposlam counterexample --marker undirected --class multigraph --max-edges 8
-           --memory 400MB                       sort on disk, in this memory
+  toposlam counterexample --marker undirected --memory 400MB
+                                                sort on disk, in this memory
 
 The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.",
     &[
@@ -55,7 +55,7 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
     ],
 ))]
 pub(super) struct CounterexampleArguments {
-    /// Kind of marker; may be repeated [default: every kind]
+    /// Kind of marker (repeatable) [default: every kind]
     #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
     markers: Vec<&'static dyn Marker>,
 

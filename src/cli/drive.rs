@@ -23,7 +23,7 @@ use super::{
 /// maps as in a simulated run.
 ///
 /// With --sensor laser it reads a laser scanner in the robot's centre that looks ahead. A scanner does not see
-/// the marker: a detector of its own must publish the marker's pose in the robot's frame, x along the marker.
+/// the marker: another detector must publish the marker's pose in the robot's frame, x along the marker.
 ///
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
 /// is a dead end: it maps everything else, and reports the doors that are blocked.

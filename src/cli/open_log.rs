@@ -202,8 +202,7 @@ impl OpenLog {
         }
         let Some(Content::Event(EventKind::Frame(frame))) = last else { return None };
         let taken = frame.image?;
-        if let (Some(file), true) = (taken.file(), annotated.is_some() || self.sensing.is_none())
-        {
+        if let (Some(file), true) = (taken.file(), annotated.is_some() || self.sensing.is_none()) {
             return Some(file.to_vec());
         }
         let image = taken.pixels().ok()?;

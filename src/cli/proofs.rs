@@ -49,7 +49,7 @@ A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and pri
     ],
 ))]
 pub(super) struct ProofsArguments {
-    /// Check the lemma of this name, or all lemmas; may be repeated
+    /// Check the lemma of this name, or all lemmas (repeatable)
     #[arg(long, value_name = "NAME")]
     run: Vec<String>,
 

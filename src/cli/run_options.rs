@@ -25,7 +25,7 @@ pub(super) struct RunOptions {
     allow_blocked: bool,
     #[command(flatten)]
     budget: BudgetOptions,
-    /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands; may be repeated
+    /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands (repeatable)
     #[arg(long, value_name = "LOG", requires = "recover")]
     resume: Vec<PathBuf>,
     /// Stop if the map has more darts

@@ -62,7 +62,7 @@ use run_capture::{KeptImages, RunCapture};
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
 /// is a dead end: it maps everything else, and reports the doors that are blocked.
 ///
-/// With --sensor laser, laser scans take the place of the images, and a detector of its own reports the marker.
+/// With --sensor laser, laser scans take the place of the images, and a separate detector reports the marker.
 /// With --sensor both, the robot drives by its camera, and the log has the scans, too.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
@@ -399,9 +399,8 @@ fn after_help() -> String {
         FOR_EVER => format!("  {name:<14}      {about}\n"),
         lasting => format!("  {name:<14} {lasting:>2}   {about}\n"),
     });
-    let head =
-        "Faults, and for how many images or commands each lasts by default, if it passes:\n"
-            .to_owned();
+    let head = "Faults, and for how many images or commands each lasts by default, if it passes:\n"
+        .to_owned();
     let notes = head
         + &faults.collect::<String>()
         + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \

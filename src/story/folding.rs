@@ -65,7 +65,7 @@ impl<W: Write> Story<W> {
         let moves = counted(cost, "move");
         writeln!(self.out)?;
         let text = format!(
-            "may {edge} and {hypothesis} be the two ends of one edge? Then a walk of {moves} leads to \
+            "may {edge} and {hypothesis} be the two ends of one edge? If so, a walk of {moves} leads to \
              the marker."
         );
         print_hanging(&mut self.out, &format!("Round {round}: "), &text)

@@ -29,9 +29,9 @@ impl<W: Write> Story<W> {
                 print_paragraph(&mut self.out, &text)?;
                 return self.print_doors();
             }
-            SafeguardEvent::Contradicted(contradiction) => format!(
-                "Contradiction{moves}: {contradiction}. The robot looks for the marker."
-            ),
+            SafeguardEvent::Contradicted(contradiction) => {
+                format!("Contradiction{moves}: {contradiction}. The robot looks for the marker.")
+            }
             SafeguardEvent::TooLarge { bound } => format!(
                 "The map would have more than {} darts{moves}. The robot discards it and looks for the \
                  marker.",

@@ -91,7 +91,7 @@ The map is complete after 4 moves: 2 vertices, 3 edges. A run in this world
 takes at least 4 and at most 24 moves.
 It is isomorphic to the world:
   v0 = u, v1 = v
-The robot is where it believes to be: at v0, entered by dart v0.0.
+The robot is where it believes it is: at v0, entered by dart v0.0.
 ";
     assert_eq!(stdout_of(["explore", "worlds/theta-torus.toml"]), story);
 }
@@ -378,7 +378,7 @@ The map is complete after 25 moves: 6 vertices, 6 edges. A run in this world
 takes at least 6 and at most 74 moves.
 It is isomorphic to the world:
   v0 = corner, v1 = tee, v2 = ne, v3 = se, v4 = sw, v5 = end
-The robot is where it believes to be: at v5, entered by dart v5.0.
+The robot is where it believes it is: at v5, entered by dart v5.0.
 It carries its marker.
 ";
     assert_eq!(stdout_of(["explore", "worlds/shape-6.toml", "--marker", "movable"]), story);

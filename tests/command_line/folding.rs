@@ -54,7 +54,7 @@ Round 1: the robot takes v0.0 (1 move) and senses 3 doors.
 
 Round 2: the robot takes v1.1 (1 move) and senses 3 doors.
 
-Round 3: may v1.1 and v1.2 be the two ends of one edge? Then a walk of 1 move
+Round 3: may v1.1 and v1.2 be the two ends of one edge? If so, a walk of 1 move
          leads to the marker.
   Candidate v1.2: rejected on the way: expected 2 doors, marker along door 0,
     sensed 2 doors, no marker (1 move).
@@ -78,7 +78,7 @@ Round 6: the robot takes v4.1 (1 move) and senses 2 doors.
 
 Round 7: the robot takes v5.1 (1 move) and senses 3 doors.
 
-Round 8: may v5.1 and v2.2 be the two ends of one edge? Then a walk of 2 moves
+Round 8: may v5.1 and v2.2 be the two ends of one edge? If so, a walk of 2 moves
          leads to the marker.
   Candidate v2.2: confirmed, the walk leads to the marker (2 moves).
   The marker is here: the trail folds from 9 vertices to 6.
@@ -89,7 +89,7 @@ The map is complete after 10 moves: 6 vertices, 7 edges. A run in this world
 takes at least 10 and at most 1,744 moves.
 It is isomorphic to the world:
   v0 = nw, v1 = w, v2 = e, v3 = ne, v4 = sw, v5 = se
-The robot is where it believes to be: at v0, entered by dart v0.0.
+The robot is where it believes it is: at v0, entered by dart v0.0.
 ";
     let found = stdout_of([&["explore", "worlds/shape-8.toml"], &FOLDING[..]].concat());
     assert_eq!(found, story);

@@ -19,7 +19,9 @@ fn an_audit_detects_what_the_algorithm_alone_does_not() {
         assert!(text.lines().any(|line| line.starts_with("violated: ")), "{text}");
         let (code, text) = mistakes(&[&with[..], &["--audit"]].concat());
         assert_eq!(code, Some(0), "{text}");
-        assert!(text.ends_with("holds: each run ends with the right map, or the mistake is detected\n"));
+        assert!(
+            text.ends_with("holds: each run ends with the right map, or the mistake is detected\n")
+        );
     }
 }
 

@@ -244,7 +244,14 @@ mod tests {
     fn scene(doors: [bool; 4], before: f64, view: usize) -> Place {
         let (half, left, heading) = VIEWS[view % VIEWS.len()];
         let drawn = DrawnPlace::junction(doors, half).seen_from([-before, left], heading);
-        interpreted(&drawn, &drawn_place::bearings(), drawn_place::STRIPE, &SensingParams::default()).0.place
+        interpreted(
+            &drawn,
+            &drawn_place::bearings(),
+            drawn_place::STRIPE,
+            &SensingParams::default(),
+        )
+        .0
+        .place
     }
 
     // paper: sense.junction.type
@@ -307,7 +314,14 @@ mod tests {
         let reason = |class| {
             let mut view = GroundView::unseen();
             view.classes.fill(class);
-            interpreted(&view, &drawn_place::bearings(), drawn_place::STRIPE, &SensingParams::default()).0.place
+            interpreted(
+                &view,
+                &drawn_place::bearings(),
+                drawn_place::STRIPE,
+                &SensingParams::default(),
+            )
+            .0
+            .place
         };
         assert_eq!(reason(PixelClass::Other), Place::Unknown(Reason::NoFloor));
         assert_eq!(reason(PixelClass::Stripe), Place::Unknown(Reason::NoFloor));

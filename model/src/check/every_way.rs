@@ -248,7 +248,15 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
         let bytes = 500 + 100 * exploration.map().dart_count() + 20 * choices.len();
         self.bytes += bytes;
         let choices = choices.into_iter();
-        self.stack.push(SearchFrame { line, world, exploration, choices, moves: 0, futures, bytes });
+        self.stack.push(SearchFrame {
+            line,
+            world,
+            exploration,
+            choices,
+            moves: 0,
+            futures,
+            bytes,
+        });
     }
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.

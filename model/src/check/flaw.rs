@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use crate::{
-    embedded_graph::{Dart, GraphError},
     counts::grouped,
+    embedded_graph::{Dart, GraphError},
     mapping::MappingError,
     world::RefusedAction,
 };

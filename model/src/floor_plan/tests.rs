@@ -96,7 +96,10 @@ fn names_must_be_known_and_stand_once() {
     let (a, b) = (("a", [0.0, 0.0]), ("b", [4.0, 0.0]));
     assert_eq!(message(plan(&[a, a], &[])), "junction `a` is listed twice");
     assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "q")])), "there is no junction `q`");
-    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "a")])), "hallway `b` - `a` is listed twice");
+    assert_eq!(
+        message(plan(&[a, b], &[("a", "b"), ("b", "a")])),
+        "hallway `b` - `a` is listed twice"
+    );
 }
 
 // paper: env.right-angles

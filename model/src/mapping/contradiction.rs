@@ -6,9 +6,9 @@ use std::fmt;
 use thiserror::Error;
 
 use crate::{
+    counts::grouped,
     embedded_graph::{Dart, Vertex},
     folding::ContradictionReason,
-    counts::grouped,
     percept::{Percept, Sighting},
 };
 

@@ -22,7 +22,7 @@ pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
 pub use folding_explorer::{
-    EarlierWalk, FoldingExploration, FoldingStep, HypothesisTest, MappedWorld, ArrivalMeasurement,
+    ArrivalMeasurement, EarlierWalk, FoldingExploration, FoldingStep, HypothesisTest, MappedWorld,
     RecoveryConfig, Relocate, map_by_folding, map_with_recovery,
 };
 pub use journey::{Journey, Observer};

@@ -131,7 +131,9 @@ fn after(
         }
         TraceEventKind::Door(door) => match world.traverse(door) {
             Ok(()) => Ok(world.state()),
-            Err(RefusedAction::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
+            Err(RefusedAction::NoSuchDoor { degree, .. }) => {
+                Err(MisfitReason::NoSuchDoor { degree })
+            }
             Err(_) => Ok(state),
         },
     }

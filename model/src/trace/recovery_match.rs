@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     mapping::{
-        DirectionalAlgorithm, FoldingEvent, FoldingExploration, Journey, MappingError,
-        MappingEvent, MappingRun, ArrivalMeasurement, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+        ArrivalMeasurement, DirectionalAlgorithm, FoldingEvent, FoldingExploration, Journey,
+        MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent,
         map_with_recovery,
     },
     percept::{Door, Percept},

@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use super::{MovableMarkerWorld, World};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
     counts::{counted, grouped},
+    embedded_graph::{Dart, EmbeddedGraph},
     marker::{Directional, Marker},
     percept::{Door, Percept, Sighting},
 };

@@ -23,7 +23,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{CaseResult, Choose, Exhibit, Stop, claim},
-    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, PathDriver, ImageEvidence},
+    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, ImageEvidence, PathDriver},
     lemma::declare,
 };
 

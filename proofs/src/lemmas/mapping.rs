@@ -29,7 +29,7 @@ const LARGER_RUNS: &str = "starts with up to 20 edges, any choices";
 declare! {
     the_map_embeds_in_the_world {
         "After each round the known map embeds in the world: degrees, orders and edges are kept, \
-         dart for dart. The robot is where it believes to be.",
+         dart for dart. The robot is where it believes it is.",
         paper "2.3; Algorithm 1, lines 18 to 23",
         exhaustive EVERY_RUN, RUNS cases:
             the_map_embeds::<_, 1, 4>;
@@ -77,7 +77,7 @@ declare! {
     }
     algorithm_1_maps_the_world {
         "Algorithm 1 ends after at most m n + 2 m^2 (n - 1) moves. Its map is isomorphic to the \
-         world as a start, and the robot is where it believes to be.",
+         world as a start, and the robot is where it believes it is.",
         paper "2.3",
         exhaustive EVERY_RUN, RUNS cases:
             the_theorem::<_, 1, 4>;
@@ -225,7 +225,7 @@ fn embeds(truth: &Truth, journey: &Journey) -> CaseResult {
             claim("edges are kept", image[far.at()] == graph.opposite(here))?;
         }
     }
-    claim("the robot is where it believes to be", image[journey.robot().at()] == *pose)
+    claim("the robot is where it believes it is", image[journey.robot().at()] == *pose)
 }
 
 // paper: alg1.16, alg1.validation
@@ -352,7 +352,7 @@ fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
     };
     claim("the map is the world", code(map, FACING) == code(&graph, FACING))?;
     let believed = truth.image[exploration.robot().at()];
-    claim("the robot is where it believes to be", believed == truth.pose)?;
+    claim("the robot is where it believes it is", believed == truth.pose)?;
     let (m, n) = (graph.edge_count(), graph.vertex_count());
     claim("the moves are within the bound", exploration.moves() <= Algorithm1.move_bound(m, n))
 }

@@ -149,7 +149,7 @@ fn is_found(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::{question_limit::QuestionLimit, plans, run_sampler::Faults};
+    use crate::evaluation::{plans, question_limit::QuestionLimit, run_sampler::Faults};
 
     fn sampler() -> RunSampler {
         RunSampler::new(plans().unwrap(), 2, Faults::None, 1, 1.0, ALGORITHM)

@@ -7,8 +7,6 @@ mod colour_learning;
 mod equipment;
 pub mod failure_groups;
 mod false_percepts;
-#[cfg(test)]
-mod question_limit;
 pub mod judge;
 pub mod judged_view;
 pub mod laser;
@@ -17,6 +15,8 @@ pub mod measured_run;
 mod parallel;
 mod plans;
 pub mod quantile;
+#[cfg(test)]
+mod question_limit;
 pub mod random_plan;
 pub mod rendered_view;
 pub mod report;

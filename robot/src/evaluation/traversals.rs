@@ -210,8 +210,8 @@ mod tests {
 
     use super::*;
     use crate::evaluation::{
-        question_limit::QuestionLimit,
         plans,
+        question_limit::QuestionLimit,
         run_sampler::{Faults, RunSampler},
     };
 

@@ -6,13 +6,13 @@ use toposlam_model::{
     driving::{
         algorithm2::{Command, PathExecution, Standing},
         odometry::Odometry,
-        scene::{Place as ScenePlace, Scene, wrapped},
+        scene::{Place, Scene, wrapped},
     },
     mapping::ArrivalMeasurement,
     percept::{Percept, Sighting},
 };
 
-use super::{ExplorerError, Place, RobotExplorer};
+use super::{ExplorerError, RobotExplorer, Standpoint};
 use crate::{
     record::{Arrival, EventKind, FrameSensor, RunObserver},
     robot::Robot,
@@ -41,7 +41,7 @@ pub(super) struct Stall {
 
 /// The turning point of the junction in a scene, in the frame of odometry; `None` if it shows none.
 pub(super) fn turning_point(scene: &Scene, odometry: Odometry) -> Option<[f64; 2]> {
-    let ScenePlace::Junction(view) = &scene.place else { return None };
+    let Place::Junction(view) = &scene.place else { return None };
     let [x, y] = view.turning_point;
     Some(odometry.moved(y.atan2(x), x.hypot(y)).position)
 }
@@ -51,7 +51,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     pub(super) fn stand_at_obstacle(&mut self) {
         let heading = self.robot.odometry().odometry.heading;
         let back = self.stall.map_or(wrapped(heading + PI), |stall| stall.back);
-        self.place = Some(Place::Obstacle { back });
+        self.place = Some(Standpoint::Obstacle { back });
         self.moves += 1;
         self.allow_for(DEAD_END);
         (self.hallway, self.measured) = (None, ArrivalMeasurement::default());

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState, Standing, UNIT},
-        scene::{JunctionView, Place as ScenePlace, wrapped},
+        scene::{JunctionView, Place, wrapped},
     },
     mapping::{ArrivalMeasurement, Relocate},
 };
@@ -40,7 +40,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             }
             match self.frame() {
                 Ok((frame, scene)) => {
-                    let sees = !matches!(scene.place, ScenePlace::Unknown(_));
+                    let sees = !matches!(scene.place, Place::Unknown(_));
                     self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
                     if sees {
                         return Ok(());
@@ -88,8 +88,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.last = Some(frame.clone());
         self.emit(EventKind::Frame(Frame { scene: Some(scene.clone()), ..frame }));
         Ok(match scene.place {
-            ScenePlace::Junction(junction) => Some(junction),
-            ScenePlace::Hallway(_) | ScenePlace::Unknown(_) => None,
+            Place::Junction(junction) => Some(junction),
+            Place::Hallway(_) | Place::Unknown(_) => None,
         })
     }
 

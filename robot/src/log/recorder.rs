@@ -189,7 +189,7 @@ mod tests {
         evaluation::{plans, run_sampler::starts_of},
         explorer::{ExplorerError, RobotExplorer},
         record::{CameraImage, DECODED, FrameSensor, NoSensor, SensingError},
-        robot::{TimedOdometry, Robot, RobotError},
+        robot::{Robot, RobotError, TimedOdometry},
         run::{Run, run},
         run_settings::RunSettings,
         simulator::{FaultKind, RobotFault, SimulatedRobot, SimulationConfig},

@@ -10,7 +10,7 @@ use super::{
     wheels::{Wheels, stands},
 };
 use crate::{
-    robot::{TimedOdometry, RobotError, Sample},
+    robot::{RobotError, Sample, TimedOdometry},
     superscout::{Base, PERIOD, WheelReading, WheelSpeeds},
 };
 

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     record::{CameraImage, Frame},
-    robot::{TimedOdometry, Robot, RobotError, Sample},
+    robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive, WheelReading},
 };
 
@@ -67,9 +67,7 @@ impl LiveRobot {
         let node = Node::new(&topics.master, "/toposlam")?;
         let odometry = node.subscribe(&topics.odometry, read_odometry)?;
         let sensor = match sensor {
-            LiveSensor::Camera => {
-                SensorTopics::Camera(node.subscribe(&topics.images, read_image)?)
-            }
+            LiveSensor::Camera => SensorTopics::Camera(node.subscribe(&topics.images, read_image)?),
             LiveSensor::Laser => SensorTopics::Laser {
                 scans: node.subscribe(&topics.scans, read_scan)?,
                 markers: node.subscribe(&topics.marker, read_marker)?,

@@ -8,8 +8,8 @@ use std::{
 use super::{
     RobotTopics,
     messages::{
-        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, IMAGE, Reckoning, SCAN, SECOND, frames,
-        marker, odometry, image, read_twist, scan,
+        FRAMES, IMAGE, MARKER_POSE, Nanoseconds, ODOMETRY, Reckoning, SCAN, SECOND, frames, image,
+        marker, odometry, read_twist, scan,
     },
     node::{Node, Publisher, Subscription},
 };

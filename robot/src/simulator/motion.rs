@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    robot::{TimedOdometry, RobotError, Sample},
+    robot::{RobotError, Sample, TimedOdometry},
     superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
 };
 

@@ -20,7 +20,7 @@ use super::{
 use crate::{
     pose::Pose,
     record::Frame,
-    robot::{TimedOdometry, Robot, RobotError, Sample},
+    robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive},
 };
 
@@ -95,18 +95,7 @@ impl SimulatedRobot {
         }
         let camera = Box::new(camera);
         let (scanner, last, obstacle) = (None, None, None);
-        Self {
-            plan,
-            base,
-            camera,
-            scanner,
-            image_time,
-            faults,
-            seed,
-            frames: 0,
-            last,
-            obstacle,
-        }
+        Self { plan, base, camera, scanner, image_time, faults, seed, frames: 0, last, obstacle }
     }
 
     /// The same robot with a laser scanner.

@@ -19,7 +19,7 @@ use toposlam_robot::{
     record::{Arrival, RunEnding},
 };
 
-use super::{JudgedLog, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
+use super::{JudgedLog, LISTED, folded_trail, minimise::Minimised, other_world::OtherWorld};
 use crate::{
     cli::text::{counted, grouped, moment, vertices},
     picture::{self, WorldPicture},

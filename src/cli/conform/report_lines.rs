@@ -295,8 +295,10 @@ fn covered(coverage: &[CoveredCase]) -> String {
     let possible = |covered: &&CoveredCase| covered.count > 0 || covered.reachable != Some(false);
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
-    let listed: Vec<_> =
-        seen.iter().map(|covered| format!("{} {}", covered.case, grouped(covered.count.into()))).collect();
+    let listed: Vec<_> = seen
+        .iter()
+        .map(|covered| format!("{} {}", covered.case, grouped(covered.count.into())))
+        .collect();
     let missed: Vec<_> = coverage
         .iter()
         .filter(possible)

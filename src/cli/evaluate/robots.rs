@@ -112,7 +112,11 @@ impl RobotArguments {
 
     /// What the robots take at each step.
     pub(super) fn frames(&self) -> &'static str {
-        if self.sensor == SensorChoice::Laser { "scans" } else { "images" }
+        match self.sensor {
+            SensorChoice::Laser => "scans",
+            _ if self.images => "images",
+            _ => "scenes",
+        }
     }
 
     /// How the robots sense, in words.

@@ -239,8 +239,11 @@ fn print_safeguards(
     }
     let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
     let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
-    let recoveries =
-        if recoveries == 1 { "1 recovery".to_owned() } else { format!("{} recoveries", number(recoveries.into())) };
+    let recoveries = if recoveries == 1 {
+        "1 recovery".to_owned()
+    } else {
+        format!("{} recoveries", number(recoveries.into()))
+    };
     let text = format!("{text}, {} more for {recoveries}", number(extra));
     print_hanging(out, "  moves    ", &text)?;
     let recovered = || {

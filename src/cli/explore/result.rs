@@ -198,7 +198,7 @@ impl ExploreResult<'_> {
         let robot = explored.robot();
         let (vertex, index) = (journey.map().vertex(robot).0, journey.map().index(robot));
         let pose = format!("at v{vertex}, entered by dart v{vertex}.{index}");
-        print_paragraph(out, &format!("The robot is where it believes to be: {pose}."))?;
+        print_paragraph(out, &format!("The robot is where it believes it is: {pose}."))?;
         if explored.carries {
             print_paragraph(out, "It carries its marker.")?;
         }

@@ -47,7 +47,6 @@ pub(super) fn tally(reports: &[LogReport]) -> String {
     format!("{}: {}", counted(reports.len(), "log"), parts.join(", "))
 }
 
-
 /// A sentence with a capital letter and a full stop.
 pub(super) fn sentence(words: &str) -> String {
     let mut letters = words.trim().chars();

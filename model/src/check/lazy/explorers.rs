@@ -112,7 +112,10 @@ impl Default for Algorithm1Explorer {
 }
 
 impl Algorithm1Explorer {
-    fn choose<W: World<Error = RefusedAction>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+    fn choose<W: World<Error = RefusedAction>>(
+        &mut self,
+        world: &mut W,
+    ) -> Result<StepProgress, Flaw> {
         self.next = self.exploration.choose(&mut Nearest);
         if let Some(MappingChoice::Edge(edge)) = self.next {
             self.exploration.approach(edge, world, &mut ())?;
@@ -236,7 +239,10 @@ impl Default for FoldingStepExplorer {
 }
 
 impl FoldingStepExplorer {
-    fn choose<W: World<Error = RefusedAction>>(&mut self, world: &mut W) -> Result<StepProgress, Flaw> {
+    fn choose<W: World<Error = RefusedAction>>(
+        &mut self,
+        world: &mut W,
+    ) -> Result<StepProgress, Flaw> {
         self.next = self.exploration.next_step();
         match self.next {
             Some(step) => {

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::{
-    counts::{counted, vertices},
+    counts::{self, counted},
     embedded_graph::GraphError,
 };
 
@@ -33,7 +33,7 @@ pub enum PlantriErrorKind {
     #[error("the file ends in the middle of a world")]
     Truncated,
     /// A neighbour is not a vertex.
-    #[error("vertex {vertex} lists the neighbour {neighbour}; the world has {}", vertices(*.vertices))]
+    #[error("vertex {vertex} lists the neighbour {neighbour}; the world has {}", counts::vertices(*.vertices))]
     UnknownNeighbour {
         /// The vertex with the list.
         vertex: usize,

@@ -36,7 +36,7 @@ use crate::{
 };
 use hypotheses::Hypotheses;
 pub use recovery::{MappedWorld, RecoveryConfig, Relocate, map_with_recovery};
-pub use walks::{EarlierWalk, ArrivalMeasurement};
+pub use walks::{ArrivalMeasurement, EarlierWalk};
 use ways::Ways;
 
 /// What the robot does next.

@@ -21,7 +21,7 @@ use std::mem;
 use super::{
     FoldingExploration,
     marker_walk::MarkerWalk,
-    walks::{EarlierWalk, EarlierWalks, ArrivalMeasurement, sees_marker},
+    walks::{ArrivalMeasurement, EarlierWalk, EarlierWalks, sees_marker},
 };
 use crate::{
     embedded_graph::Dart,

@@ -74,7 +74,9 @@ fn refusal(refused: &RefusedAction) -> String {
         RefusedAction::NothingToPickUp => "picked up a marker where there is none".to_owned(),
         RefusedAction::NothingToDrop => "dropped a marker that the robot does not carry".to_owned(),
         RefusedAction::NoWorldLeft => refused.to_string(),
-        RefusedAction::OutOfMoves { bound } => format!("made more than {}", counted(*bound as usize, "move")),
+        RefusedAction::OutOfMoves { bound } => {
+            format!("made more than {}", counted(*bound as usize, "move"))
+        }
     }
 }
 

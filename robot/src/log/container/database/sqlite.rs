@@ -16,7 +16,7 @@ use rusqlite::{Connection, OpenFlags, limits::Limit};
 use super::super::{FileStructure, Listener, Record, Section, rows::put_row};
 use crate::log::{
     error::{LogError, LogErrorKind, OffsetUnit},
-    published,
+    published_types,
     source::Source,
 };
 
