@@ -149,7 +149,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE)?;
         let tally = sweep.run_explorers(DepthFirst::default, &());
         println!(
-            "{edges} edges: {} of {} starts mapped right, with up to {} moves",
+            "{edges} edges: {} of {} starts mapped correctly, with up to {} moves",
             tally.mapped,
             tally.starts,
             tally.moves_max(),

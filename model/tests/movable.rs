@@ -245,7 +245,7 @@ fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
     }
 }
 
-/// That the worlds must be simple is no idle condition: no other one is mapped right, and some are
+/// That the worlds must be simple is no idle condition: no other one is mapped correctly, and some are
 /// mapped wrongly without a sign of it.
 #[test]
 fn no_world_with_loops_or_parallel_edges_is_mapped_right() {

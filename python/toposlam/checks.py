@@ -79,15 +79,15 @@ class SizeReport:
     starts: int = 0
     """The starts that were checked."""
     mapped: int = 0
-    """The starts that were mapped right, by a walk that is not known to be a guess."""
+    """The starts that were mapped correctly, by a walk that is not known to be a guess."""
     unknown: int = 0
     """The starts on which the explorer reached a limit."""
     moves: int = 0
-    """All moves on the starts that were mapped right."""
+    """All moves on the starts that were mapped correctly."""
     most_moves: int = 0
-    """The most moves on a start that was mapped right."""
+    """The most moves on a start that was mapped correctly."""
     certificate: int = 0
-    """The lengths of the certificates of the starts that were mapped right, in moves, added up; 0 if the
+    """The lengths of the certificates of the starts that were mapped correctly, in moves, added up; 0 if the
     marker is not directional."""
 
     def __add__(self, other: SizeReport) -> SizeReport:
@@ -138,7 +138,7 @@ class CheckReport:
 
     @property
     def mapped(self) -> int:
-        """The number of starts that were mapped right."""
+        """The number of starts that were mapped correctly."""
         return sum(size.mapped for size in self.sizes)
 
     @property
@@ -167,23 +167,23 @@ class CheckReport:
 
     @property
     def moves(self) -> int:
-        """All moves on the starts that were mapped right."""
+        """All moves on the starts that were mapped correctly."""
         return sum(size.moves for size in self.sizes)
 
     @property
     def mean_moves(self) -> float | None:
-        """The mean number of moves on the starts that were mapped right."""
+        """The mean number of moves on the starts that were mapped correctly."""
         return self.moves / self.mapped if self.mapped else None
 
     @property
     def most_moves(self) -> int:
-        """The most moves on a start that was mapped right."""
+        """The most moves on a start that was mapped correctly."""
         return max((size.most_moves for size in self.sizes), default=0)
 
     @property
     def vs_certificate(self) -> float | None:
         """The moves divided by those of the certificates. No correct explorer makes fewer moves, so it is
-        never below 1.0. None if the marker is not directional, or no start was mapped right."""
+        never below 1.0. None if the marker is not directional, or no start was mapped correctly."""
         certificate = sum(size.certificate for size in self.sizes)
         return self.moves / certificate if certificate else None
 
@@ -217,7 +217,7 @@ class CheckReport:
 
     def __repr__(self) -> str:
         edges = ", ".join(str(size.edges) for size in self.sizes)
-        text = f"{self.mapped:,} of {self.starts:,} starts mapped right"
+        text = f"{self.mapped:,} of {self.starts:,} starts mapped correctly"
         if self.unknown:
             text += f", {self.unknown:,} not known"
         mean = self.mean_moves

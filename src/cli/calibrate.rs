@@ -27,7 +27,7 @@ use super::{
 ///
 /// Use a few images (PNG or JPEG) that one camera took from different places; often one is enough. The
 /// border of the image may cut off parts of the mirror's rim, and what is seen just inside of the rim may
-/// be as dark as what is outside. If the images leave a doubt, there is no calibration: then take more
+/// be as dark as what is outside. If the rim is not certain, no calibration is written: then take more
 /// images, or set the rim with --rim. The focal length is computed from the rim and from the mirror's
 /// radius and distance, which you measure.
 #[derive(clap::Args)]

@@ -47,7 +47,7 @@ pub struct Tally {
     pub worlds: u64,
     /// Starts run.
     pub starts: u64,
-    /// Starts mapped right.
+    /// Starts mapped correctly.
     pub mapped: u64,
     /// The total of moves of all runs with the default choices.
     pub moves_total: u64,
@@ -56,7 +56,7 @@ pub struct Tally {
     pub certificate_total: u64,
     /// The longest certificate of a start; 0 if the marker is not directional.
     pub certificate_max: u64,
-    /// Starts that were mapped right in fewer moves than their certificate has. The algorithm guessed:
+    /// Starts that were mapped correctly in fewer moves than their certificate has. The algorithm guessed:
     /// there is another world in which it makes the same walk.
     pub below_certificate: u64,
     /// The first start that took the most moves with the default choices.

@@ -24,7 +24,7 @@ use crate::cli::{
     use_threads,
 };
 
-/// Measure whole runs: is every building mapped right, in the specified number of moves?
+/// Measure whole runs: is every building mapped correctly, in the specified number of moves?
 ///
 /// A run is right if the map is isomorphic to the floor plan, the robot's pose in the map is true,
 /// every move and every percept is as specified, and the number of moves is that of `toposlam explore`

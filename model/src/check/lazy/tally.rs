@@ -47,7 +47,7 @@ impl EnumeratedStart {
 pub struct LazyTally {
     /// Starts run.
     pub starts: u64,
-    /// Starts mapped right.
+    /// Starts mapped correctly.
     pub mapped: u64,
     /// The total of moves of the runs that ended with a right map.
     pub moves_total: u64,
@@ -57,7 +57,7 @@ pub struct LazyTally {
     pub certificate_total: u64,
     /// The longest certificate of a start.
     pub certificate_max: u64,
-    /// Starts that were mapped right in fewer moves than their certificate has.
+    /// Starts that were mapped correctly in fewer moves than their certificate has.
     pub below_certificate: u64,
     /// The most moves of a right run, and the first start that took them; none if another part of the
     /// check is known to have a run with more.

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::cli::Outcome;
 
-/// A start that was not mapped right.
+/// A start that was not mapped correctly.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct UnmappedStart {
     pub(super) graph: EmbeddedGraph,
@@ -33,16 +33,16 @@ pub(super) struct ExplorerTally {
     /// Embedded graphs up to isomorphism.
     pub(super) worlds: u64,
     pub(super) starts: u64,
-    /// Starts mapped right.
+    /// Starts mapped correctly.
     pub(super) mapped: u64,
     /// Starts on which a limit was reached.
     pub(super) unknown: u64,
     /// The moves of the runs that mapped their starts right.
     pub(super) moves_total: u64,
-    /// The lengths of the certificates of the starts mapped right; 0 if the marker is not directional.
+    /// The lengths of the certificates of the starts mapped correctly; 0 if the marker is not directional.
     pub(super) certificate_total: u64,
     pub(super) certificate_max: u64,
-    /// The first start that took the most moves, of those mapped right.
+    /// The first start that took the most moves, of those mapped correctly.
     pub(super) worst: Option<WorstStart>,
     /// The first start on which the explorer failed.
     pub(super) failure: Option<UnmappedStart>,
