@@ -50,8 +50,8 @@ impl From<DirectionalAlgorithm> for RunDriver {
     }
 }
 
-/// The algorithm that the doors of a log are compared with. The doors of a robot that went on from earlier runs depend on
-/// logs that are not known here.
+/// The algorithm that the doors of a log are compared with. The doors of a robot that went on from earlier runs
+/// depend on logs that are not known here.
 impl From<RecordedSettings> for RunDriver {
     fn from(recorded: RecordedSettings) -> Self {
         if recorded.is_resumed { Self::Anyone } else { Self::Method(recorded.method) }
