@@ -489,10 +489,10 @@ mod tests {
         let robot = Still { images: vec![Some(3.0)], asked: 0 };
         let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         explorer.stand_at_obstacle();
-        assert_eq!(explorer.place, Some(super::Standpoint::Obstacle { back: PI }));
+        assert_eq!(explorer.place, Some(Standpoint::Obstacle { back: PI }));
         explorer.stall = Some(Stall { back: 3.0, junction: None });
         explorer.stand_at_obstacle();
-        assert_eq!(explorer.place, Some(super::Standpoint::Obstacle { back: 3.0 }));
+        assert_eq!(explorer.place, Some(Standpoint::Obstacle { back: 3.0 }));
         assert_eq!(explorer.percept().unwrap(), DEAD_END);
     }
 

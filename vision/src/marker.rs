@@ -100,7 +100,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        drawn,
+        drawn_place,
         params::{MARKER_LENGTH, MARKER_WIDTH},
     };
 
