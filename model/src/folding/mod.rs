@@ -43,7 +43,7 @@ pub use smallest::{SearchLimit, SmallestWorld, WorldSearch};
 pub use smallest_marked::smallest_world;
 pub use trail::FoldedTrail;
 
-use crate::percept::{Door, Percept};
+use crate::percept::{Door, Percept, WalkEvent};
 
 /// The folded trail of a walk: the percept at the start, and after each door the next percept. A last
 /// door may have no percept.
@@ -53,11 +53,13 @@ use crate::percept::{Door, Percept};
 /// which the trail is too large.
 pub fn fold(percepts: &[Percept], doors: &[Door]) -> Result<FoldedTrail, FoldError> {
     let Some((&first, later)) = percepts.split_first() else { return Ok(FoldedTrail::default()) };
-    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(0))?;
+    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(WalkEvent::Percept(0)))?;
     for (index, &door) in doors.iter().enumerate() {
-        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(2 * index + 1))?;
+        let event = WalkEvent::Door(index);
+        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(event))?;
         if let Some(&percept) = later.get(index) {
-            trail.step(door, percept).map_err(|error| error.at(2 * index + 2))?;
+            let event = WalkEvent::Percept(index + 1);
+            trail.step(door, percept).map_err(|error| error.at(event))?;
         }
     }
     Ok(trail)

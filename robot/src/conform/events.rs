@@ -180,7 +180,7 @@ impl RunEvents {
     /// What is recorded of the visits of a trace of these events, besides their percepts.
     pub(super) fn recorded_visits(&self, trace: &Trace) -> Vec<RecordedVisit> {
         let visit = |number| {
-            let event = self.events.get(trace.event(2 * number).id).map(|event| &event.kind);
+            let event = self.events.get(trace.percept_event(number).id).map(|event| &event.kind);
             let Some(CheckedKind::Arrival { arrival, hallway, .. }) = event else {
                 return RecordedVisit::default();
             };

@@ -227,7 +227,7 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
-            lost: trace.lost().first().map(|percept| trace.event(2 * percept).id),
+            lost: trace.lost().first().map(|&percept| trace.percept_event(percept).id),
             unrecognised: None,
             trail: None,
             poses: None,
