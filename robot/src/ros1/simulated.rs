@@ -8,13 +8,17 @@ use std::{
 use super::{
     RobotTopics,
     messages::{
-        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SCAN, SECOND, frames,
-        marker, odometry, picture, read_twist, scan,
+        Nanoseconds, Reckoning, SECOND, frames, marker, odometry, picture, read_twist, scan,
     },
     node::{Node, Publisher, Subscription},
 };
 use crate::{
-    log::recorder,
+    log::{
+        recorder,
+        standard::{
+            CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped, TFMessage,
+        },
+    },
     record::Frame,
     robot::RobotError,
     simulator::SimulatedRobot,
@@ -60,11 +64,11 @@ pub fn serve(
     let node = Node::new(&topics.master, "/toposlam_simulator")?;
     let mut scout = Scout {
         commands: node.subscribe(&topics.wheels, read_twist)?,
-        odometry: node.advertise(&topics.odometry, ODOMETRY)?,
-        frames: node.advertise(recorder::TF, FRAMES)?,
-        pictures: node.advertise(&topics.pictures, PICTURE)?,
-        scans: node.advertise(&topics.scans, SCAN)?,
-        markers: node.advertise(&topics.marker, MARKER_POSE)?,
+        odometry: node.advertise::<OdometryMessage>(&topics.odometry)?,
+        frames: node.advertise::<TFMessage>(recorder::TF)?,
+        pictures: node.advertise::<CompressedImage<FileBytes>>(&topics.pictures)?,
+        scans: node.advertise::<LaserScanMessage<&[f32]>>(&topics.scans)?,
+        markers: node.advertise::<PoseStamped>(&topics.marker)?,
         epoch: now(),
         ignores: false,
         exposed: None,
