@@ -96,14 +96,22 @@ pub struct RunEvents {
 
 /// An event that is earlier than the one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("event {event} is at {:.3} s, before the one ahead of it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+#[error("the events are out of order: it is of {:.3} s, the one before it of {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
 pub struct OutOfOrder {
-    /// Its number, counted from 1.
-    pub event: usize,
     /// Its time, in nanoseconds.
     pub time: u64,
     /// The time of the event before it.
     pub before: u64,
+}
+
+impl OutOfOrder {
+    /// Checks that an event is not earlier than the one before it.
+    ///
+    /// # Errors
+    /// Returns an error if it is.
+    pub fn check(before: u64, time: u64) -> Result<(), Self> {
+        if time < before { Err(Self { time, before }) } else { Ok(()) }
+    }
 }
 
 /// An arrival that does not record whether the robot saw its marker.
@@ -246,20 +254,6 @@ impl RunEvents {
         // Whoever has turned back at the end has not arrived again.
         events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
         Self { events, may_turn_back: true, ..self.clone() }
-    }
-
-    /// Checks that no event is earlier than the one before it.
-    ///
-    /// # Errors
-    /// Returns the first event that is.
-    pub fn check_order(&self) -> Result<(), OutOfOrder> {
-        for (index, two) in self.events.windows(2).enumerate() {
-            let [before, time] = [two[0].source.time, two[1].source.time];
-            if time < before {
-                return Err(OutOfOrder { event: index + 2, time, before });
-            }
-        }
-        Ok(())
     }
 
     /// The events up to and including one, by its index.
