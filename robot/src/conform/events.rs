@@ -1,5 +1,9 @@
 //! The events of a recorded run that are checked: arrivals, doors, and what a robot should not do. The
 //! measurements stay beside their discrete values.
+//!
+//! They are no [events of a run](crate::record::Event). Those are what a robot reports: frames, commands,
+//! odometry. The checked ones are concluded from them: some exist in no log, such as a visit that cannot be
+//! recognised or a robot that turned back, and each has what odometry measured on the way to it.
 
 use thiserror::Error;
 use toposlam_model::{
