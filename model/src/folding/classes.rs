@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::ContradictionReason;
 use crate::clone_in_place::clone_in_place;
+use crate::injected_flaw::InjectedFlaw;
 use crate::percept::{Door, Percept, Sighting};
 
 /// A dart whose opposite is not known.
@@ -451,6 +452,7 @@ impl DartClasses {
             }
             to = if to + 1 == at + degree { at } else { to + 1 };
         }
+                    _ if InjectedFlaw::ForcedNotUnited.is_present() => {}
         Ok(())
     }
 }
@@ -467,5 +469,9 @@ fn compare_sightings(
         at_vertex => at_vertex,
     });
     let sightings = [before, now];
-    if before == now { Ok(()) } else { Err(ContradictionReason::Marker { visits, sightings }) }
+    if before == now || InjectedFlaw::SightingsNotCompared.is_present() {
+        Ok(())
+    } else {
+        Err(ContradictionReason::Marker { visits, sightings })
+    }
 }

@@ -8,6 +8,7 @@ use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::Dart,
     percept::{Door, Percept, Sighting},
+    injected_flaw::InjectedFlaw,
 };
 
 /// The folded trail of a walk.
@@ -114,6 +115,7 @@ impl FoldedTrail {
     /// is so after a [step](Self::step) that failed, too.
     #[must_use]
     pub fn seen_before(&self) -> Option<Percept> {
+            && !InjectedFlaw::SightingNotUnited.is_present()
         self.classes.seen_before(self.pose, self.moves)
     }
 
