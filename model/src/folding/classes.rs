@@ -218,6 +218,11 @@ impl DartClasses {
         self.vertex(dart).percept
     }
 
+    /// The number of moves before a dart's trail vertex was seen.
+    pub(super) fn visit(&self, dart: u32) -> usize {
+        self.vertex(dart).visit
+    }
+
     /// The degree of a dart's vertex.
     #[inline]
     pub(super) fn degree(&self, dart: u32) -> u32 {
@@ -447,12 +452,12 @@ impl DartClasses {
                         let visit = self.vertices[root as usize].visit;
                         return Err(ContradictionReason::OwnOpposite { visit });
                     }
+                    _ if InjectedFlaw::ForcedNotUnited.is_present() => {}
                     near => self.pairs.push((far, near)),
                 },
             }
             to = if to + 1 == at + degree { at } else { to + 1 };
         }
-                    _ if InjectedFlaw::ForcedNotUnited.is_present() => {}
         Ok(())
     }
 }
