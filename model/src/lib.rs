@@ -50,6 +50,7 @@ pub mod enumerate;
 pub mod floor_plan;
 pub mod folding;
 pub mod format;
+mod injected_flaw;
 pub mod isomorphism;
 pub mod mapping;
 pub mod marker;

@@ -1,7 +1,7 @@
 //! Folding: what a walk proves about its world.
 //!
 //! A *trail* has one vertex for each percept of a walk, joined by the edges that were traversed. All
-//! sightings of the directional marker are one pose, so these poses are identified; identified poses
+//! sightings of the directional marker are one pose, and so are those of an arrow on an edge in one sense, so these poses are identified; identified poses
 //! have identified neighbours behind the same doors; and so on, until nothing changes. This is
 //! Stallings folding ("Topology of finite graphs", 1983), and it is congruence closure.
 //!
@@ -14,12 +14,16 @@
 //!   the folded trail is a tree; if none of its darts is open, it is the world: a finite tree covers no
 //!   other graph. So a walk determines its world exactly if no dart is open.
 //!
-//! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
-//! another marker that lies at a vertex is compared where vertices are identified for another reason,
-//! because the robot returned along known edges. A mark on an edge is not compared. With these
-//! markers a contradiction is still a proof, and its absence proves nothing. An undirected marker lies at one
-//! vertex, so that its sightings can be identified in [several ways](MarkedTrails).
+//! That is exact for the markers [`Directional`](crate::marker::Directional), [`DirectedEdge`](crate::marker::DirectedEdge)
+//! and [`NoMarker`](crate::marker::NoMarker): [`Pointing`](crate::percept::Sighting::Pointing),
+//! [`PassedAlong`](crate::percept::Sighting::PassedAlong) and
+//! [`PassedAgainst`](crate::percept::Sighting::PassedAgainst) identify poses. A sighting of another marker that
+//! lies at a vertex is compared where vertices are identified for another reason, because the robot returned
+//! along known edges. A mark on an edge without a sense is not compared. With these markers a contradiction is
+//! still a proof, and its absence proves nothing. An undirected marker lies at one vertex, so that its sightings
+//! can be identified in [several ways](MarkedTrails).
 
+mod arrow;
 mod certificate;
 mod classes;
 mod closed;
