@@ -1,19 +1,19 @@
 //! Deterministic topological SLAM that can be trusted.
 //!
 //! This package contains the command line, one verb a file in `cli/`, and what it draws and writes: pictures of
-//! worlds and runs ([`picture`]), pages for a browser ([`page`]), the trace of the paper ([`paper`]), the record of
-//! a simulated run ([`journal`]), the story of a mapping run ([`story`]) and the conformance report of a log
-//! ([`report`]). The specification is [`model`].
+//! worlds and runs ([`picture`]), pages for a browser ([`page`]), what the page of a simulated run shows
+//! ([`run_page_data`]), the trace of the paper ([`paper`]), the story of a mapping run ([`story`]) and the
+//! conformance report of a log ([`report`]). The specification is [`model`].
 
 #![warn(clippy::print_stderr, reason = "--quiet is obeyed in `cli/terminal.rs`")]
 
 mod cli;
-pub mod journal;
 pub mod moment;
 pub mod page;
 pub mod paper;
 pub mod picture;
 pub mod report;
+pub mod run_page_data;
 pub mod story;
 pub mod text;
 

@@ -1,5 +1,5 @@
-//! The structure of the workspace, read from its source: no circles of modules, no forbidden imports, no
-//! public type name twice.
+//! The structure of the workspace, read from its source: no circles of modules, no forbidden imports, the order
+//! of modules that the documents state, no public type name twice.
 //!
 //! A module is a file. It depends on the files that its `use` items and its paths name; a name that a
 //! module only re-exports counts for the file that defines it. A file is part of its ancestors, so that
@@ -11,8 +11,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The crates of the workspace, lowest first: name, folder of the source, and the crates that it may use.
-const CRATES: [(&str, &str, &[&str]); 6] = [
+/// The crates, lowest first: name, folder of the source, and the crates that it may use.
+const CRATES: [(&str, &str, &[&str]); 7] = [
     ("toposlam_model", "model/src", &[]),
     ("toposlam_vision", "vision/src", &["toposlam_model"]),
     ("toposlam_robot", "robot/src", &["toposlam_model", "toposlam_vision"]),
@@ -29,32 +29,16 @@ const CRATES: [(&str, &str, &[&str]); 6] = [
             "toposlam_cluster",
         ],
     ),
+    // The extension module of the Python package, a workspace of its own.
+    ("_core", "python/src", &["toposlam_model", "toposlam_vision", "toposlam_robot", "toposlam"]),
 ];
 
-/// In the robot's crate, modules that must not depend on others, even through other modules.
-const INDEPENDENT: [(&[&str], &[&str]); 4] = [
-    (
-        &[
-            "conform",
-            "explorer",
-            "ground_truth_monitor",
-            "log",
-            "record",
-            "recording",
-            "replay",
-            "robot",
-            "ros1::live",
-            "superscout",
-        ],
-        &["evaluation", "simulator"],
-    ),
-    (&["simulator"], &["evaluation"]),
-    (&["record"], &["log"]),
-    (&["explorer"], &["log"]),
-];
+/// In the robot's crate, the modules that simulate. No other module depends on them, even through other modules.
+const SIMULATES: [&str; 4] = ["evaluation", "ros1::simulated", "run", "simulator"];
 
-/// In the robot's crate, the modules that may import the simulator.
-const SIMULATES: [&str; 5] = ["evaluation", "recovered_run", "ros1::simulated", "run", "simulator"];
+/// In the robot's crate, a module and one on which it must not depend, even through other modules.
+const INDEPENDENT: [(&str, &str); 4] =
+    [("run", "evaluation"), ("simulator", "evaluation"), ("record", "log"), ("explorer", "log")];
 
 /// A token of Rust source; of literals only that there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -551,36 +535,97 @@ fn crates_use_only_crates_below_them() {
     }
 }
 
+/// The ways from modules to others on which they must not depend.
+fn forbidden<'c>(
+    krate: &Crate,
+    edges: &Edges<'c>,
+    from: impl Fn(&[String]) -> bool,
+    to: impl Fn(&[String]) -> bool,
+) -> Vec<String> {
+    let mut forbidden = Vec::new();
+    for &module in edges.keys().filter(|module| from(module)) {
+        let before = reached(edges, module);
+        if let Some(other) = before.keys().find(|other| to(other)) {
+            forbidden.push(way(krate, &before, module, other));
+        }
+    }
+    forbidden
+}
+
 #[test]
 fn only_evaluation_and_simulated_robots_use_the_simulator() {
     let crates = crates();
     let (robot, _) = crates.iter().find(|(krate, _)| krate.name == "toposlam_robot").unwrap();
     let edges = robot.edges();
-    let mut forbidden = Vec::new();
-    for (&from, targets) in &edges {
-        let allowed = SIMULATES.iter().any(|prefix| starts_with(from, prefix));
-        for &to in targets.iter().filter(|to| !allowed && starts_with(to, "simulator")) {
-            forbidden.push(format!("{} uses {}", robot.file(from), robot.file(to)));
-        }
+    let simulates = |module: &[String]| SIMULATES.iter().any(|name| starts_with(module, name));
+    // A module that only hands on what is in a module below it.
+    let contains_one = |module: &[String]| {
+        SIMULATES.iter().any(|name| name.starts_with(&format!("{}::", module.join("::"))))
+    };
+    let mut found =
+        forbidden(robot, &edges, |from| !simulates(from) && !contains_one(from), simulates);
+    for (module, other) in INDEPENDENT {
+        found.extend(forbidden(
+            robot,
+            &edges,
+            |from| starts_with(from, module),
+            |to| starts_with(to, other),
+        ));
     }
-    for (modules, others) in INDEPENDENT {
-        let apart = |from: &[String]| modules.iter().any(|prefix| starts_with(from, prefix));
-        for &from in edges.keys().filter(|from| apart(from)) {
-            let before = reached(&edges, from);
-            let wrong = |to: &&&[String]| others.iter().any(|prefix| starts_with(to, prefix));
-            if let Some(to) = before.keys().find(wrong) {
-                forbidden.push(way(robot, &before, from, to));
+    assert!(found.is_empty(), "forbidden imports:\n{}", found.join("\n"));
+    let named = INDEPENDENT.into_iter().flat_map(|(one, other)| [one, other]).chain(SIMULATES);
+    for name in named {
+        let exists = robot.modules.keys().any(|module| starts_with(module, name));
+        assert!(exists, "there is no module {name}");
+    }
+}
+
+/// The modules that the documentation of a crate lists, in its order.
+fn listed_modules(source: &str) -> Vec<&str> {
+    let listed = source.lines().filter_map(|line| line.strip_prefix("//! * [`"));
+    listed.filter_map(|line| line.split('`').next()).collect()
+}
+
+#[test]
+fn the_modules_of_the_model_import_only_from_those_that_are_listed_before_them() {
+    let crates = crates();
+    let (model, _) = crates.iter().find(|(krate, _)| krate.name == "toposlam_model").unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let source = fs::read_to_string(root.join("model/src/lib.rs")).unwrap();
+    let order = listed_modules(&source);
+    let public: BTreeSet<_> = source
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'))
+        .collect();
+    assert_eq!(order.iter().copied().collect::<BTreeSet<_>>(), public, "model/src/lib.rs");
+    // What is not listed is private, and below all others.
+    let place = |module: &[String]| {
+        let name = module.first()?;
+        Some(order.iter().position(|listed| listed == name).map_or(0, |place| place + 1))
+    };
+    for (from, targets) in model.edges() {
+        for to in targets {
+            if from.first() != to.first() && place(from).is_some() {
+                let (file, other) = (model.file(from), model.file(to));
+                assert!(place(to) <= place(from), "{file} uses {other}, which is listed after it");
             }
         }
     }
-    assert!(forbidden.is_empty(), "forbidden imports:\n{}", forbidden.join("\n"));
+
+    let text = fs::read_to_string(root.join("CONTRIBUTING.md")).unwrap();
+    let (_, text) = text.split_once("The modules of `model/src`, bottom up:").unwrap();
+    let (list, _) = text.split_once('.').unwrap();
+    let named: Vec<_> = list.split('`').skip(1).step_by(2).collect();
+    assert_eq!(named, order, "CONTRIBUTING.md");
 }
 
 #[test]
 fn no_public_type_name_is_used_twice() {
     let crates = crates();
     let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for module in crates.iter().flat_map(|(krate, _)| krate.modules.values()) {
+    // The classes of Python have the names of what they wrap.
+    let rust = crates.iter().filter(|(krate, _)| krate.name != "_core");
+    for module in rust.flat_map(|(krate, _)| krate.modules.values()) {
         for name in &module.types {
             places.entry(name).or_default().push(relative(&module.file));
         }

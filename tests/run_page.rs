@@ -9,7 +9,7 @@ use toposlam::{
     picture::{png, run_svg},
 };
 
-use crate::{browser, journal};
+use crate::{browser, run_page_data};
 
 /// A few small images.
 fn images() -> Vec<Vec<u8>> {
@@ -25,20 +25,20 @@ fn images() -> Vec<Vec<u8>> {
 
 #[test]
 fn the_picture_of_a_run_shows_its_whole_path_and_every_call() {
-    let journal = journal::journal("shape-6", Vec::new());
-    assert_eq!(journal.ending, "the map is right");
-    let svg = run_svg(&journal);
+    let run_data = run_page_data::run_page_data("shape-6", Vec::new());
+    assert_eq!(run_data.ending, "the map is right");
+    let svg = run_svg(&run_data);
     let lists = svg.split(" points=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
     let points: Vec<_> = lists.map(|list| list.split(' ').count()).collect();
     // Two pieces of the path share a point.
-    assert_eq!(points.iter().sum::<usize>(), journal.rounds.len() + points.len() - 1);
-    assert_eq!(svg.matches("class=\"call\"").count(), journal.calls.len());
+    assert_eq!(points.iter().sum::<usize>(), run_data.rounds.len() + points.len() - 1);
+    assert_eq!(svg.matches("class=\"call\"").count(), run_data.calls.len());
     assert_eq!(svg.matches("class=\"call wrong\"").count(), 0);
-    for junction in journal.plan.junctions() {
+    for junction in run_data.plan.junctions() {
         assert!(svg.contains(&format!(">{}</text>", junction.name)));
     }
     assert!(svg.contains(">the map is right</text>"));
-    assert_eq!(svg, run_svg(&journal::journal("shape-6", Vec::new())), "the same seed");
+    assert_eq!(svg, run_svg(&run_page_data::run_page_data("shape-6", Vec::new())), "the same seed");
     assert!(png(&svg).is_ok());
 }
 
@@ -50,7 +50,7 @@ fn the_page_of_a_run_follows_it_to_its_end() {
         fs::write(&file, page).unwrap();
         file
     };
-    let run = journal::journal("shape-6", images());
+    let run = run_page_data::run_page_data("shape-6", images());
     let mut wrong = run.clone();
     wrong.calls[3].conforms = false;
     let mut empty = run.clone();
@@ -58,11 +58,11 @@ fn the_page_of_a_run_follows_it_to_its_end() {
     empty.calls.clear();
     let mut blind = run.clone();
     blind.rounds.iter_mut().for_each(|round| round.image = None);
-    let large = journal::journal("building-25", Vec::new());
+    let large = run_page_data::run_page_data("building-25", Vec::new());
     let pages =
         [("right", run), ("wrong", wrong), ("blind", blind), ("large", large), ("empty", empty)]
-            .map(|(name, journal)| {
-                format!("{name}={}", write(name, &run_page(&journal)).display())
+            .map(|(name, run_data)| {
+                format!("{name}={}", write(name, &run_page(&run_data)).display())
             });
     browser::open("run_page.mjs", &pages);
 }

@@ -20,81 +20,88 @@ pub(crate) type End = (usize, u32);
 /// The map: the far end of each dart, if known. Dart 0 of a vertex leads home.
 #[derive(Default)]
 pub(crate) struct DepthFirst {
-    map: Vec<Vec<Option<End>>>,
+    far: Vec<Vec<Option<End>>>,
 }
 
 impl DepthFirst {
-    fn degree(&self, (vertex, _): End) -> u32 {
-        self.map[vertex].len() as u32
+    fn degree(&self, vertex: usize) -> u32 {
+        self.far[vertex].len() as u32
     }
 
-    fn door(&self, pose: End, index: u32) -> Door {
-        Door::between(pose.1, index, self.degree(pose))
+    fn unexplored(&self) -> Vec<End> {
+        let darts = |vertex| (0..self.degree(vertex)).map(move |index| (vertex, index));
+        let all = (0..self.far.len()).flat_map(darts);
+        all.filter(|&(vertex, index)| self.far[vertex][index as usize].is_none()).collect()
+    }
+
+    /// The door to a dart of the vertex, for a robot that came in by `pose`.
+    fn door(&self, (vertex, entry): End, index: u32) -> Door {
+        Door::between(entry, index, self.degree(vertex))
     }
 
     fn expected(&self, pose: End) -> Percept {
         let pointing = Sighting::Pointing(self.door(pose, 0));
         let sighting = if pose.0 == 0 { pointing } else { Sighting::Nothing };
-        Percept { degree: self.degree(pose), sighting }
+        Percept { degree: self.degree(pose.0), sighting }
     }
 
-    fn far(&self, vertex: usize, index: u32) -> Option<End> {
-        self.map[vertex][index as usize]
-    }
-
-    fn join(&mut self, one: End, other: End) {
-        self.map[one.0][one.1 as usize] = Some(other);
-        self.map[other.0][other.1 as usize] = Some(one);
-    }
-
-    fn unexplored(&self) -> impl Iterator<Item = End> {
-        let ends = |vertex: usize| (0..self.degree((vertex, 0))).map(move |index| (vertex, index));
-        (0..self.map.len())
-            .flat_map(ends)
-            .filter(|&(vertex, index)| self.far(vertex, index).is_none())
-    }
-
-    /// Walks home as if the robot had come in by `pose`, and returns its pose at the marker; or, if
-    /// that is wrong, goes back and returns nothing. `turned` is the door by which the robot really
-    /// came in, counted from `pose`.
+    /// Walks home as if the robot had come in by `pose`, and returns its pose there. If a percept
+    /// shows that this is wrong, it goes back and returns nothing.
     fn walk_home(
         &self,
         mut pose: End,
-        turned: &mut Door,
         world: &mut ExplorerWorld,
     ) -> Result<Option<End>, RefusedAction> {
-        let mut trail = Vec::new();
-        while let (1.., Some(next)) = (pose.0, self.far(pose.0, 0)) {
-            let (door, degree) = (self.door(pose, 0), self.degree(pose));
-            let entry = if trail.is_empty() { *turned } else { Door::BACK };
-            world.traverse(door.seen_from(entry, degree))?;
-            trail.push((door, degree));
+        let mut way = Vec::new();
+        while let (1.., Some(next)) = (pose.0, self.far[pose.0][0]) {
+            way.push((self.door(pose, 0), self.degree(pose.0)));
+            world.traverse(self.door(pose, 0))?;
             if world.percept()? != self.expected(next) {
-                *turned = trail[0].0;
-                return retrace(trail.into_iter())
-                    .try_for_each(|door| world.traverse(door))
-                    .map(|()| None);
+                retrace(way.into_iter()).try_for_each(|door| world.traverse(door))?;
+                return Ok(None);
             }
             pose = next;
         }
         Ok(Some(pose))
     }
 
-    /// Walks from the marker to a vertex, and returns the robot's pose there.
-    fn walk_to(
+    /// Walks from `home`, the robot's pose at the marker, to a vertex, and takes a dart of it.
+    fn take(
         &self,
-        vertex: usize,
-        from: End,
+        (vertex, index): End,
+        home: End,
         world: &mut ExplorerWorld,
-    ) -> Result<End, RefusedAction> {
-        match self.far(vertex, 0) {
-            Some((parent, index)) if vertex > 0 => {
-                let pose = self.walk_to(parent, from, world)?;
-                world.traverse(self.door(pose, index))?;
-                Ok((vertex, 0))
-            }
-            _ => Ok(from),
+    ) -> Result<(), RefusedAction> {
+        let mut pose = home;
+        if let (1.., Some(parent)) = (vertex, self.far[vertex][0]) {
+            self.take(parent, home, world)?;
+            pose = (vertex, 0);
         }
+        world.traverse(self.door(pose, index))
+    }
+
+    /// Looks for the dart by which the robot came to a known vertex, and returns it and the robot's
+    /// pose after that. If there is none, the robot is at a new vertex.
+    fn recognise(
+        &mut self,
+        edge: End,
+        world: &mut ExplorerWorld,
+    ) -> Result<(End, End), RefusedAction> {
+        let degree = world.percept()?.degree;
+        // The index of the dart by which it came in last, counted from that by which it arrived.
+        let mut turned = 0;
+        for (vertex, index) in self.unexplored() {
+            let pose = (vertex, (index + turned) % self.degree(vertex));
+            if (vertex, index) != edge && self.expected(pose) == world.percept()? {
+                if let Some(home) = self.walk_home(pose, world)? {
+                    return Ok(((vertex, index), home));
+                }
+                turned = Door(index).inverse(degree).0;
+            }
+        }
+        self.far.push(vec![None; degree as usize]);
+        let vertex = self.far.len() - 1;
+        Ok(((vertex, 0), (vertex, turned)))
     }
 }
 
@@ -106,40 +113,18 @@ impl Explorer for DepthFirst {
     }
 
     fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-        self.map = vec![vec![None; world.percept()?.degree as usize]];
-        // The pose in the map, and the door by which the robot really came in.
-        let (mut robot, mut turned) = ((0, 0), Door::BACK);
-        'explore: while let Some(edge) = self.unexplored().last() {
+        self.far = vec![vec![None; world.percept()?.degree as usize]];
+        let mut pose = (0, 0);
+        while let Some(&edge) = self.unexplored().last() {
             let lost = || Flaw::GaveUp("a known way does not lead home".to_owned());
-            let home = self.walk_home(robot, &mut turned, world)?.ok_or_else(lost)?;
-            let pose = self.walk_to(edge.0, home, world)?;
-            world.traverse(self.door(pose, edge.1))?;
-            turned = Door::BACK;
-            let arrival = world.percept()?;
-            let alike = |&end: &End| end != edge && self.expected(end) == arrival;
-            for end in self.unexplored().filter(alike).collect::<Vec<_>>() {
-                if let Some(home) = self.walk_home(end, &mut turned, world)? {
-                    (robot, turned) = (home, Door::BACK);
-                    self.join(edge, end);
-                    continue 'explore;
-                }
-            }
-            robot = (self.map.len(), 0);
-            self.map.push(vec![None; arrival.degree as usize]);
-            self.join(edge, robot);
+            let home = self.walk_home(pose, world)?.ok_or_else(lost)?;
+            self.take(edge, home, world)?;
+            let (end, now) = self.recognise(edge, world)?;
+            self.far[edge.0][edge.1 as usize] = Some(end);
+            self.far[end.0][end.1 as usize] = Some(edge);
+            pose = now;
         }
-        let robot = (robot.0, (robot.1 + turned.0) % self.degree(robot));
-        let first = |vertex| self.map[..vertex].iter().map(Vec::len).sum::<usize>() as u32;
-        let number = |(vertex, index): End| first(vertex) + index;
-        let ends = || {
-            (0..self.map.len())
-                .flat_map(|vertex| (0..self.degree((vertex, 0))).map(move |index| (vertex, index)))
-        };
-        let opposite: Vec<_> =
-            ends().filter_map(|(vertex, index)| self.far(vertex, index)).map(number).collect();
-        let clockwise: Vec<_> =
-            ends().map(|end| number((end.0, (end.1 + 1) % self.degree(end)))).collect();
-        ExploredMap::from_permutations(&opposite, &clockwise, 0, number(robot))
+        ExploredMap::from_far_ends(&self.far, pose)
     }
 }
 

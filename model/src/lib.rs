@@ -3,19 +3,21 @@
 //!
 //! The modules, bottom up. Each imports only from those above it in this list:
 //!
+//! * [`similar`]: the known name that is most like an unknown one;
+//! * [`counts`]: numbers and counts in messages;
 //! * [`embedded_graph`]: darts, `opposite`, `clockwise` (Section 2.1);
 //! * [`percept`]: degrees, doors, sightings, door sequences (Section 2.1);
-//! * [`folding`]: what a walk proves about its world;
 //! * [`isomorphism`]: codes of starts, canonical forms, bijections as witnesses;
+//! * [`enumerate`]: every start and every world of a size, once;
+//! * [`folding`]: what a walk proves about its world;
 //! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
-//! * [`enumerate`]: every start and every world of a size, once;
 //! * [`world`]: the trait with everything that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
 //! * [`ambiguity`]: worlds that a marker does not distinguish, with witnesses (Section 2.2);
-//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
 //! * [`measurement`]: lengths and turns of hallways by odometry, which contradict each other or not;
+//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;
 //! * [`trace`]: checks recorded explorations.
 //!
@@ -50,6 +52,7 @@ pub mod enumerate;
 pub mod floor_plan;
 pub mod folding;
 pub mod format;
+mod injected_flaw;
 pub mod isomorphism;
 pub mod mapping;
 pub mod marker;

@@ -1,7 +1,7 @@
 //! What a robot perceives at a vertex and how it moves: degrees, doors, sightings, door sequences
 //! and the way back. Section 2.1, "Robot motion and perception".
 
-use std::fmt;
+use std::{cmp::Ordering, fmt};
 
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
@@ -113,6 +113,54 @@ impl Percept {
     }
 }
 
+/// An event of a walk. Percepts and doors take turns: percept 0 at the start, door 0, percept 1, door 1 and so on.
+/// Events are ordered as they happen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WalkEvent {
+    /// The percept after this many moves.
+    Percept(usize),
+    /// The door that is taken after this many moves.
+    Door(usize),
+}
+
+impl WalkEvent {
+    /// The event with this index among all events of the walk, counted from 0.
+    #[must_use]
+    pub fn at(index: usize) -> Self {
+        let moves = index / 2;
+        if index.is_multiple_of(2) { Self::Percept(moves) } else { Self::Door(moves) }
+    }
+
+    /// The index of the event among all events of the walk, counted from 0.
+    #[must_use]
+    pub fn index(self) -> usize {
+        match self {
+            Self::Percept(moves) => 2 * moves,
+            Self::Door(moves) => 2 * moves + 1,
+        }
+    }
+
+    /// The number of moves before the event.
+    #[must_use]
+    pub fn moves(self) -> usize {
+        match self {
+            Self::Percept(moves) | Self::Door(moves) => moves,
+        }
+    }
+}
+
+impl Ord for WalkEvent {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.index().cmp(&other.index())
+    }
+}
+
+impl PartialOrd for WalkEvent {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
 impl EmbeddedGraph {
     /// The dart behind a door, for a robot that came in by the dart `pose`; doors are counted
     /// modulo the degree. This is also the dart by which the robot leaves.
@@ -161,6 +209,17 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_events_of_a_walk_take_turns() {
+        use WalkEvent::{Door, Percept};
+        let events = [Percept(0), Door(0), Percept(1), Door(1), Percept(2)];
+        assert!(events.is_sorted());
+        for (index, event) in events.into_iter().enumerate() {
+            assert_eq!((WalkEvent::at(index), event.index()), (event, index));
+        }
+        assert_eq!(events.map(WalkEvent::moves), [0, 0, 1, 1, 2]);
+    }
 
     fn k4() -> EmbeddedGraph {
         EmbeddedGraph::from_neighbour_lists(&[

@@ -41,6 +41,18 @@ fn a_depth_first_explorer_maps_every_start_right() {
     }
 }
 
+/// A map of one edge, and maps that are none.
+#[test]
+fn a_map_is_made_from_the_far_ends_of_its_darts() {
+    let [here, there] = [Some((0, 0)), Some((1, 0))];
+    let edge = ExploredMap::from_far_ends(&[vec![there], vec![here]], (1, 0)).unwrap();
+    assert_eq!(edge, ExploredMap::from_permutations(&[1, 0], &[0, 1], 0, 1).unwrap());
+    let of = |far: &[Vec<Option<(usize, u32)>>], pose| ExploredMap::from_far_ends(far, pose);
+    assert_eq!(of(&[vec![there], vec![None]], (0, 0)), Err(Flaw::Unfinished { unexplored: 1 }));
+    assert!(matches!(of(&[vec![there], vec![Some((7, 0))]], (0, 0)), Err(Flaw::NoGraph(_))));
+    assert!(matches!(of(&[vec![there], vec![here]], (1, 1)), Err(Flaw::NoSuchDart { .. })));
+}
+
 /// A sweep of explorers and one of algorithms judge an algorithm alike.
 #[test]
 fn an_algorithm_is_an_explorer() {

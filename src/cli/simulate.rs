@@ -44,8 +44,8 @@ use super::{
     text::capital,
 };
 use crate::{
-    journal::Journal,
     page, picture,
+    run_page_data::RunPageData,
     story::{Story, StoryDetail},
 };
 use result::SimulationResult;
@@ -319,7 +319,7 @@ impl SimulateArguments {
         let observer = (&mut log, (&mut recording, &mut capture));
         let run = run(plan, facing, robot, sensor.clone(), observer, settings);
         let logged = log.map_or(Ok(()), Recorder::finish);
-        let mut journal = capture.finish(&world.name, plan, facing, &run)?;
+        let mut run_data = capture.finish(&world.name, plan, facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
         let stop = StoppedBy(&StopSignal);
@@ -347,12 +347,16 @@ impl SimulateArguments {
         } else {
             result.print(out)?;
         }
-        journal.ending = capital(&result.in_words());
-        self.write_files(&journal, &result)?;
+        run_data.ending = capital(&result.in_words());
+        self.write_files(&run_data, &result)?;
         Ok(result.outcome())
     }
 
-    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), CliError> {
+    fn write_files(
+        &self,
+        run_data: &RunPageData,
+        result: &SimulationResult,
+    ) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
@@ -361,10 +365,10 @@ impl SimulateArguments {
         }
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
         if let Some(path) = &self.svg {
-            write(path, picture::run_svg(journal))?;
+            write(path, picture::run_svg(run_data))?;
         }
         if let Some(path) = &self.html {
-            write(path, page::run_page(journal))?;
+            write(path, page::run_page(run_data))?;
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use serde::Deserialize;
+use toposlam_model::format::document::{self, DocumentError};
 
 /// Something that the paper defines, claims, prescribes or reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,7 +49,7 @@ impl Requirement {
 pub enum TableError {
     /// It is not TOML, or not of this form.
     #[error(transparent)]
-    Toml(#[from] toml::de::Error),
+    Toml(#[from] DocumentError),
     /// It has no requirement.
     #[error("the table has no requirement")]
     Empty,
@@ -88,7 +89,7 @@ pub enum TableError {
 ///
 /// Returns an error if the text is not such a table, or contradicts itself: see [`TableError`].
 pub fn requirements(text: &str) -> Result<Vec<Requirement>, TableError> {
-    let table: Table = toml::from_str(text)?;
+    let table: Table = document::from_toml(text.as_bytes())?;
     let requirements = table
         .requirement
         .into_iter()

@@ -258,11 +258,21 @@ fn bad_input_is_one_message_and_exit_code_2() {
     fs::write(&quirks, "[[quirk]]\nname = \"x\"\ncause = \"door\"\nreason = \"y\"\n").unwrap();
     let mapping = folder.join("mapping.toml");
     fs::write(&mapping, "[percept]\ntopic = \"/nowhere\"\n").unwrap();
-    let [text, quirks, mapping] = [&text, &quirks, &mapping].map(|path| path.to_str().unwrap());
+    let misspelt = folder.join("misspelt.toml");
+    fs::write(&misspelt, "[[quirk]]\nname = \"x\"\ncuase = \"percept\"\nreason = \"y\"\n").unwrap();
+    let laser = folder.join("laser.toml");
+    fs::write(&laser, "[corner]\n[arm]\nmin = 2.0\n").unwrap();
+    let files = [&text, &quirks, &mapping, &misspelt, &laser];
+    let [text, quirks, mapping, misspelt, laser] = files.map(|path| path.to_str().unwrap());
     for (arguments, cause) in [
         (&["missing.mcap"][..], "missing.mcap: "),
         (&[text], "text.mcap: "),
         (&[log, "--quirks", quirks], "cannot be tolerated"),
+        (&[log, "--quirks", misspelt], "misspelt.toml: line 3, column 1: quirk[0].cuase: unknown"),
+        (
+            &[log, "--events", "laser", "--laser-params", laser],
+            "laser.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ",
+        ),
         (&[log, "--mapping", mapping], "/nowhere"),
         (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
@@ -304,7 +314,7 @@ fn events_out_of_order_are_an_error() {
     assert_eq!(output.status.code(), Some(2));
     let stdout_of = stderr(&output);
     assert!(
-        stdout_of.contains("message 2: the events are out of order: it is of 1.000 s"),
+        stdout_of.contains("message 2: the events are out of order: this one is at 1.000 s"),
         "{stdout_of}"
     );
 }

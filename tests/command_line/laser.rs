@@ -70,8 +70,8 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
         (&laser, &["--size", "640x480"], "--size: has no effect with --sensor laser"),
         (&laser, &["--look", "vinyl"], "--look: has no effect with --sensor laser"),
         (&laser, &["--effect", "blur=1"], "--effect: has no effect with --sensor laser"),
-        (&laser, &["--scanner", &unknown], "unknown field `noises`"),
-        (&laser, &["--scanner", &far], "`range` is 1000; it must be from 3 to 100"),
+        (&laser, &["--scanner", &unknown], "unknown.toml: line 1, column 1: noises: unknown key"),
+        (&laser, &["--scanner", &far], "far.toml: line 1, column 9: range: 1000 is out of range"),
         (
             &["evaluate", "control", "--sensor", "laser"],
             &["--images"],

@@ -9,9 +9,10 @@
 //! * **views**: chosen on rendered views, where it meets the targets of `toposlam evaluate vision`
 //!   (`docs/sensing.md`).
 //!
-//! Not here: the resolution of the ground view and of the bearings, which sizes tables
-//! ([`GroundView`](crate::ground_view::GroundView), [`boundary`](crate::boundary)), and what a colour
-//! model shares between training and sensing ([`colour`](crate::colour)).
+//! Not here: the resolution and the range of the ground view and of the bearings and the number of edges on one,
+//! which size tables ([`GroundView`](crate::ground_view::GroundView), [`boundary`](crate::boundary)), and what is
+//! shared by other work: [`colour::params`](crate::colour::params) by training and sensing,
+//! [`camera::params`](crate::camera::params) by calibrations, and [`laser::params`](crate::laser::params).
 
 /// Structs whose fields have the given defaults; the docs of each field show its default.
 macro_rules! params {
@@ -27,9 +28,14 @@ macro_rules! params {
             )*
         }
 
+        impl $name {
+            /// The defaults.
+            pub const DEFAULT: Self = Self { $($field: $default,)* };
+        }
+
         impl Default for $name {
             fn default() -> Self {
-                Self { $($field: $default,)* }
+                Self::DEFAULT
             }
         }
     )*};
@@ -48,23 +54,23 @@ params! {
         /// of the 720 bearings.
         min_floor_bearings: usize = 144,
         /// Where the floor ends.
-        boundary: BoundaryParams = BoundaryParams::default(),
+        boundary: BoundaryParams = BoundaryParams::DEFAULT,
         /// Clusters of boundary points.
-        cluster: ClusterParams = ClusterParams::default(),
+        cluster: ClusterParams = ClusterParams::DEFAULT,
         /// Straight lines in clusters.
-        line: LineParams = LineParams::default(),
+        line: LineParams = LineParams::DEFAULT,
         /// Walls at right angles to each other.
-        wall: WallParams = WallParams::default(),
+        wall: WallParams = WallParams::DEFAULT,
         /// Corners of walls.
-        corner: CornerParams = CornerParams::default(),
+        corner: CornerParams = CornerParams::DEFAULT,
         /// Outlines of places, compared with what is seen.
-        outline: OutlineParams = OutlineParams::default(),
+        outline: OutlineParams = OutlineParams::DEFAULT,
         /// Hallways.
-        hallway: HallwayParams = HallwayParams::default(),
+        hallway: HallwayParams = HallwayParams::DEFAULT,
         /// Junctions.
-        junction: JunctionParams = JunctionParams::default(),
+        junction: JunctionParams = JunctionParams::DEFAULT,
         /// The marker.
-        marker: MarkerParams = MarkerParams::default(),
+        marker: MarkerParams = MarkerParams::DEFAULT,
     }
 
     /// Where floor ends at a stripe, on one bearing.

@@ -58,6 +58,9 @@ impl FoldedTrail {
         let numbered = |dart: Dart| Dart(number[dart.at()]);
         let [start, pose] = [self.start(), self.pose()].map(numbered);
         let marker = self.marker().or(self.marked_vertex()).map(numbered);
+        // The arrow comes from what is behind an open dart.
+        let [_, head] = self.arrow_ends();
+        let marker = marker.or_else(|| Some(graph.opposite(numbered(head?))));
         (ClosedTrail { graph, marker, pose }, start)
     }
 }

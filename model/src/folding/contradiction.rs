@@ -4,15 +4,15 @@ use thiserror::Error;
 
 use crate::{
     counts::{counted, grouped},
-    percept::Sighting,
+    percept::{Sighting, WalkEvent},
 };
 
 /// The first event that no world of any size explains together with the events before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{reason}")]
 pub struct TrailContradiction {
-    /// The index of the event: `2 i` is the percept after `i` moves, `2 i + 1` the door of the next move.
-    pub event: usize,
+    /// The event.
+    pub event: WalkEvent,
     /// The reason.
     pub reason: ContradictionReason,
 }
@@ -26,8 +26,8 @@ pub enum FoldError {
     /// The trail is too large. Nothing is proved.
     #[error("the junctions on the walk have more than {} doors together", grouped(MAX_DARTS as u128))]
     TooManyDarts {
-        /// The index of the percept.
-        event: usize,
+        /// The percept.
+        event: WalkEvent,
     },
 }
 
@@ -47,7 +47,7 @@ pub enum TrailError {
 
 impl TrailError {
     /// The error with the event at which it occurred.
-    pub(super) fn at(self, event: usize) -> FoldError {
+    pub(super) fn at(self, event: WalkEvent) -> FoldError {
         match self {
             Self::Contradiction(reason) => TrailContradiction { event, reason }.into(),
             Self::TooManyDarts => FoldError::TooManyDarts { event },

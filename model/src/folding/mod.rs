@@ -1,7 +1,7 @@
 //! Folding: what a walk proves about its world.
 //!
 //! A *trail* has one vertex for each percept of a walk, joined by the edges that were traversed. All
-//! sightings of the directional marker are one pose, so these poses are identified; identified poses
+//! sightings of the directional marker are one pose, and so are those of an arrow on an edge in one sense, so these poses are identified; identified poses
 //! have identified neighbours behind the same doors; and so on, until nothing changes. This is
 //! Stallings folding ("Topology of finite graphs", 1983), and it is congruence closure.
 //!
@@ -14,12 +14,16 @@
 //!   the folded trail is a tree; if none of its darts is open, it is the world: a finite tree covers no
 //!   other graph. So a walk determines its world exactly if no dart is open.
 //!
-//! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
-//! another marker that lies at a vertex is compared where vertices are identified for another reason,
-//! because the robot returned along known edges. A mark on an edge is not compared. With these
-//! markers a contradiction is still a proof, and its absence proves nothing. An undirected marker lies at one
-//! vertex, so that its sightings can be identified in [several ways](MarkedTrails).
+//! That is exact for the markers [`Directional`](crate::marker::Directional), [`DirectedEdge`](crate::marker::DirectedEdge)
+//! and [`NoMarker`](crate::marker::NoMarker): [`Pointing`](crate::percept::Sighting::Pointing),
+//! [`PassedAlong`](crate::percept::Sighting::PassedAlong) and
+//! [`PassedAgainst`](crate::percept::Sighting::PassedAgainst) identify poses. A sighting of another marker that
+//! lies at a vertex is compared where vertices are identified for another reason, because the robot returned
+//! along known edges. A mark on an edge without a sense is not compared. With these markers a contradiction is
+//! still a proof, and its absence proves nothing. An undirected marker lies at one vertex, so that its sightings
+//! can be identified in [several ways](MarkedTrails).
 
+mod arrow;
 mod certificate;
 mod classes;
 mod closed;
@@ -43,7 +47,7 @@ pub use smallest::{SearchLimit, SmallestWorld, WorldSearch};
 pub use smallest_marked::smallest_world;
 pub use trail::FoldedTrail;
 
-use crate::percept::{Door, Percept};
+use crate::percept::{Door, Percept, WalkEvent};
 
 /// The folded trail of a walk: the percept at the start, and after each door the next percept. A last
 /// door may have no percept.
@@ -53,11 +57,13 @@ use crate::percept::{Door, Percept};
 /// which the trail is too large.
 pub fn fold(percepts: &[Percept], doors: &[Door]) -> Result<FoldedTrail, FoldError> {
     let Some((&first, later)) = percepts.split_first() else { return Ok(FoldedTrail::default()) };
-    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(0))?;
+    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(WalkEvent::Percept(0)))?;
     for (index, &door) in doors.iter().enumerate() {
-        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(2 * index + 1))?;
+        let event = WalkEvent::Door(index);
+        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(event))?;
         if let Some(&percept) = later.get(index) {
-            trail.step(door, percept).map_err(|error| error.at(2 * index + 2))?;
+            let event = WalkEvent::Percept(index + 1);
+            trail.step(door, percept).map_err(|error| error.at(event))?;
         }
     }
     Ok(trail)

@@ -10,7 +10,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Each, EnumeratedGraph, Enumeration},
     isomorphism::code,
-    marker::NoMarker,
+    marker::{DirectedEdge, Directional, Marker, NoMarker},
     percept::Sighting,
     world::{GraphWorld, State, World},
 };
@@ -22,7 +22,17 @@ fn walk(
     pose: Dart,
     turns: &[u8],
 ) -> (Vec<Percept>, Vec<Door>, Vec<Dart>) {
-    let world = GraphWorld::new(graph, facing);
+    walk_with(Directional, graph, facing, pose, turns)
+}
+
+fn walk_with<M: Marker + Copy>(
+    marker: M,
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    pose: Dart,
+    turns: &[u8],
+) -> (Vec<Percept>, Vec<Door>, Vec<Dart>) {
+    let world = GraphWorld::with_marker(graph, marker, facing);
     let mut world = world.clone().at(State { pose, ..world.state() });
     let (mut percepts, mut doors, mut poses) = (vec![world.sensed()], vec![], vec![pose]);
     for &turn in turns {
@@ -119,8 +129,13 @@ fn forced_equivalence(percepts: &[Percept], doors: &[Door]) -> Option<(usize, us
     Some((vertices.len(), all.len() - joined.len()))
 }
 
-/// Whether a walk fits a world, with the marker along a dart or with none, from any pose.
-fn explains(graph: &EmbeddedGraph, percepts: &[Percept], doors: &[Door]) -> bool {
+/// Whether a walk fits a world, with the marker by any facing dart or with none, from any pose.
+fn explains<M: Marker + Copy>(
+    marker: M,
+    graph: &EmbeddedGraph,
+    percepts: &[Percept],
+    doors: &[Door],
+) -> bool {
     let fits = |sensed: &dyn Fn(Dart) -> Percept, start: Dart| {
         let mut pose = start;
         percepts.iter().enumerate().all(|(moves, &percept)| {
@@ -139,17 +154,22 @@ fn explains(graph: &EmbeddedGraph, percepts: &[Percept], doors: &[Door]) -> bool
     let bare = GraphWorld::with_marker(graph, NoMarker, Dart(0));
     anywhere(&|pose| bare.clone().at(State { pose, ..bare.state() }).sensed())
         || graph.darts().any(|facing| {
-            let world = GraphWorld::new(graph, facing);
+            let world = GraphWorld::with_marker(graph, marker, facing);
             anywhere(&|pose| world.clone().at(State { pose, ..world.state() }).sensed())
         })
 }
 
 /// Whether a world with at most this number of edges explains a walk.
-fn some_world_explains(most: usize, percepts: &[Percept], doors: &[Door]) -> bool {
+fn some_world_explains<M: Marker + Copy>(
+    marker: M,
+    most: usize,
+    percepts: &[Percept],
+    doors: &[Door],
+) -> bool {
     (1..=most).any(|edges| {
         let worlds = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
         let mut visit = |found: EnumeratedGraph| {
-            if explains(found.graph, percepts, doors) {
+            if explains(marker, found.graph, percepts, doors) {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())
@@ -167,7 +187,9 @@ fn percept(degree: u32, door: Option<u32>) -> Percept {
 fn reason(percepts: &[Percept], doors: &[u32]) -> (usize, ContradictionReason) {
     let doors: Vec<Door> = doors.iter().copied().map(Door).collect();
     match fold(percepts, &doors) {
-        Err(FoldError::Contradiction(TrailContradiction { event, reason })) => (event, reason),
+        Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
+            (event.index(), reason)
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -220,6 +242,58 @@ fn each_contradiction_has_its_reason() {
     assert_eq!(reason(&[there, corner, back], &[1, 0]), (4, turned));
 }
 
+/// A robot that starts at the marked edge of a ring with its back to it passes the arrow after a whole round.
+#[test]
+fn an_arrow_on_an_edge_of_a_ring_closes_it() {
+    let corner = |sighting| Percept { degree: 2, sighting };
+    let [plain, against, along] =
+        [Sighting::Nothing, Sighting::PassedAgainst, Sighting::PassedAlong].map(corner);
+    let trail = fold(&[against, plain, plain], &[Door(1); 2]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count(), trail.is_complete()), (3, 2, false));
+    let trail = fold(&[against, plain, plain, against], &[Door(1); 3]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count(), trail.is_complete()), (3, 0, true));
+    assert_eq!(trail.marker(), Some(Dart(0)));
+    // The other way round.
+    let trail = fold(&[against, along, plain], &[Door(0), Door(1)]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.marker()), (3, Some(Dart(0))));
+    let trail = fold(&[against, along, plain, plain], &[Door(0), Door(1), Door(1)]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count()), (4, 2));
+    // From the other end of the marked edge.
+    let trail = fold(&[along, plain, plain, along], &[Door(1); 3]).unwrap();
+    assert!(trail.is_complete());
+    assert_eq!(trail.marker(), trail.opposite(Dart(0)));
+}
+
+#[test]
+fn an_arrow_that_is_there_once_and_not_again_is_a_contradiction() {
+    use Sighting::{Nothing, PassedAgainst, PassedAlong};
+    let marker = |visits, sightings| ContradictionReason::Marker { visits, sightings };
+    let corner = |sighting| Percept { degree: 2, sighting };
+    let walked = |sightings: &[Sighting], doors: &[u32]| {
+        let percepts: Vec<_> = sightings.iter().copied().map(corner).collect();
+        reason(&percepts, doors)
+    };
+    // There and back.
+    assert_eq!(
+        walked(&[Nothing, PassedAlong, Nothing], &[1, 0]),
+        (4, marker([0, 2], [PassedAgainst, Nothing]))
+    );
+    assert_eq!(
+        walked(&[Nothing, Nothing, PassedAlong], &[1, 0]),
+        (4, marker([0, 2], [Nothing, PassedAlong]))
+    );
+    // It starts on the edge, and is not seen when the robot goes back over it.
+    assert_eq!(
+        walked(&[PassedAgainst, Nothing], &[0]),
+        (2, marker([1, 1], [PassedAlong, Nothing]))
+    );
+    // A loop on which the robot comes in against the arrow, whichever way it goes.
+    assert_eq!(
+        walked(&[PassedAgainst, PassedAgainst], &[0]).1,
+        ContradictionReason::OwnOpposite { visit: 0 }
+    );
+}
+
 #[test]
 fn a_rotation_of_a_vertex_is_a_contradiction() {
     let mut trail = FoldedTrail::new(percept(3, None)).unwrap();
@@ -230,7 +304,10 @@ fn a_rotation_of_a_vertex_is_a_contradiction() {
 #[test]
 fn a_trail_with_too_many_darts_is_refused_and_proves_nothing() {
     let huge = percept(u32::MAX, None);
-    assert_eq!(fold(&[huge], &[]).unwrap_err(), FoldError::TooManyDarts { event: 0 });
+    assert_eq!(
+        fold(&[huge], &[]).unwrap_err(),
+        FoldError::TooManyDarts { event: WalkEvent::Percept(0) }
+    );
 }
 
 /// Every function of a trail that a union could change.
@@ -292,7 +369,7 @@ proptest! {
             prop_assert!(images[marker.at()].is_none_or(|image| image == facing));
         }
         let ClosedTrail { graph: closed, marker, .. } = trail.closed().unwrap();
-        prop_assert!(explains(&closed, &percepts, &doors));
+        prop_assert!(explains(Directional, &closed, &percepts, &doors));
         if trail.is_complete() {
             prop_assert_eq!(code(&closed, marker.unwrap()), code(&graph, facing));
         }
@@ -335,7 +412,55 @@ proptest! {
             Err(_) => 5,
         };
         if most <= 5 {
-            prop_assert_eq!(folded.is_ok(), some_world_explains(most, &percepts, &doors));
+            prop_assert_eq!(folded.is_ok(), some_world_explains(Directional, most, &percepts, &doors));
+        }
+    }
+
+    #[test]
+    fn a_trail_that_is_folded_by_an_arrow_explains_the_walk_and_is_the_world_if_it_is_complete(
+        graph in any_graph(Class::Multigraph, 9),
+        facing in any::<prop::sample::Index>(),
+        start in any::<prop::sample::Index>(),
+        turns in prop::collection::vec(any::<u8>(), 0..60),
+    ) {
+        let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
+        let (facing, start) = (dart(facing), dart(start));
+        let (percepts, doors, _) = walk_with(DirectedEdge, &graph, facing, start, &turns);
+        let trail = fold(&percepts, &doors).unwrap();
+        let ClosedTrail { graph: closed, marker, .. } = trail.closed().unwrap();
+        prop_assert!(explains(DirectedEdge, &closed, &percepts, &doors));
+        let seen = percepts.iter().any(|percept| percept.sighting != Sighting::Nothing);
+        prop_assert_eq!(marker.is_some(), seen);
+        if trail.is_complete() {
+            prop_assert_eq!(code(&closed, marker.unwrap()), code(&graph, facing));
+        }
+    }
+
+    #[test]
+    fn an_arrow_is_reported_as_a_contradiction_exactly_if_no_world_explains_the_walk(
+        graph in any_graph(Class::Multigraph, 3),
+        facing in any::<prop::sample::Index>(),
+        start in any::<prop::sample::Index>(),
+        turns in prop::collection::vec(0_u8..4, 0..4),
+        wrong in any::<prop::sample::Index>(),
+        lie in (1_u32..4, 0_usize..3),
+    ) {
+        let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
+        let (mut percepts, mut doors, _) =
+            walk_with(DirectedEdge, &graph, dart(facing), dart(start), &turns);
+        let wrong = wrong.index(percepts.len());
+        let sightings = [Sighting::Nothing, Sighting::PassedAlong, Sighting::PassedAgainst];
+        percepts[wrong] = Percept { degree: lie.0, sighting: sightings[lie.1] };
+        percepts.truncate(wrong + 1);
+        doors.truncate(wrong);
+        let folded = fold(&percepts, &doors);
+        let most = match &folded {
+            Ok(trail) => trail.closed().unwrap().graph.edge_count(),
+            Err(_) => 5,
+        };
+        if most <= 5 {
+            let explained = some_world_explains(DirectedEdge, most, &percepts, &doors);
+            prop_assert_eq!(folded.is_ok(), explained);
         }
     }
 

@@ -2,11 +2,13 @@
 
 use super::{
     ContradictionReason, MAX_DARTS, TrailError,
+    arrow::{Arrow, Sense},
     classes::{DartClasses, OPEN},
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::Dart,
+    injected_flaw::InjectedFlaw,
     percept::{Door, Percept, Sighting},
 };
 
@@ -17,15 +19,17 @@ use crate::{
 /// a class, which is represented by the darts of one of them, its root.
 #[derive(Debug, Default)]
 pub struct FoldedTrail {
-    classes: DartClasses,
-    /// The dart along which the marker points.
+    pub(super) classes: DartClasses,
+    /// The dart along which the directional marker points.
     marker: Option<Dart>,
+    /// The arrow on an edge.
+    pub(super) arrow: Arrow,
     /// The dart by which the robot has come in.
-    pose: u32,
-    moves: usize,
+    pub(super) pose: u32,
+    pub(super) moves: usize,
 }
 
-clone_in_place!(FoldedTrail { classes, marker, pose, moves });
+clone_in_place!(FoldedTrail { classes, marker, arrow, pose, moves });
 
 impl FoldedTrail {
     /// Begins another walk. Memory is kept.
@@ -34,8 +38,9 @@ impl FoldedTrail {
     /// Returns an error if no vertex has the percept, or if it has too many darts.
     pub fn restart(&mut self, percept: Percept) -> Result<(), TrailError> {
         self.classes.clear();
-        (self.marker, self.pose, self.moves) = (None, 0, 0);
-        self.add_vertex(percept).map(|_| ())
+        (self.marker, self.arrow, self.pose, self.moves) = (None, Arrow::default(), 0, 0);
+        self.add_vertex(percept)?;
+        self.identify_marker(percept)
     }
 
     /// The trail of a walk that begins with a percept.
@@ -93,16 +98,24 @@ impl FoldedTrail {
             pose => {
                 self.pose = pose;
                 self.classes.compare(pose, percept, self.moves)?;
+                self.compare_arrow(percept)?;
             }
         }
         Ok(())
     }
 
-    /// All sightings of the marker are one pose. The robot has come in by the first dart of a new vertex.
+    /// All sightings of the directional marker are one pose. The robot has come in by the first dart of a new
+    /// vertex.
     #[inline]
     fn identify_marker(&mut self, percept: Percept) -> Result<(), TrailError> {
+        match percept.sighting {
+            Sighting::PassedAlong => return self.identify_arrow(Sense::Along),
+            Sighting::PassedAgainst => return self.identify_arrow(Sense::Against),
+            _ => self.compare_arrow(percept)?,
+        }
         if let (Sighting::Pointing(Door(door)), Some(marker)) = (percept.sighting, self.marker)
             && marker.0 != self.pose + door
+            && !InjectedFlaw::SightingNotUnited.is_present()
         {
             self.classes.unite(marker.0, self.pose + door)?;
             self.classes.flatten();
@@ -122,7 +135,7 @@ impl FoldedTrail {
     /// # Errors
     /// Returns an error if no world of any size has them as one dart. Nothing is then changed.
     pub fn unite(&mut self, one: Dart, other: Dart) -> Result<(), ContradictionReason> {
-        let united = self.classes.unite(one.0, other.0);
+        let united = self.classes.unite(one.0, other.0).and_then(|()| self.check_arrow());
         if united.is_err() {
             self.classes.undo();
         }
@@ -140,7 +153,7 @@ impl FoldedTrail {
         other: Dart,
         compute: impl FnOnce(&Self) -> T,
     ) -> Result<T, ContradictionReason> {
-        let united = self.classes.suppose(one.0, other.0);
+        let united = self.classes.suppose(one.0, other.0).and_then(|()| self.check_arrow());
         let computed = united.map(|()| compute(&*self));
         self.classes.undo();
         computed
@@ -200,10 +213,12 @@ impl FoldedTrail {
         Dart(self.classes.find(self.pose))
     }
 
-    /// The dart along which the marker points, as a dart of a root, if it was seen.
+    /// The dart along which the marker, or an arrow on an edge, points, as a dart of a root. If the arrow was only
+    /// seen where its edge ends, and the edge was not traversed, there is none.
     #[must_use]
     pub fn marker(&self) -> Option<Dart> {
-        self.marker.map(|dart| self.root_of(dart))
+        let [tail, _] = self.arrow_ends();
+        self.marker.map(|dart| self.root_of(dart)).or(tail)
     }
 
     /// The number of trail vertices, folded or not.
@@ -272,7 +287,7 @@ impl FoldedTrail {
     /// Whether the walk determines its world: no dart is open, and the marker was seen.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.open_count() == 0 && self.marker.is_some()
+        self.open_count() == 0 && self.marker().is_some()
     }
 
     /// The dart of a root that stands for a dart.

@@ -1,7 +1,7 @@
 //! TOML and JSON documents in which every value has a place.
 //!
-//! World files, camera calibrations, colour files and topic maps are read through this module. Whatever
-//! is wrong with a value, the error names its line, its column and its key.
+//! World files, camera calibrations, colour files, topic maps, quirks and parameters are read through this
+//! module. Whatever is wrong with a value, the error names its line, its column and its key.
 
 #![expect(
     clippy::missing_errors_doc,
@@ -10,12 +10,14 @@
 
 mod json;
 mod toml_text;
+mod typed;
 mod value;
 
 use std::{borrow::Cow, fmt};
 
 use thiserror::Error;
 
+pub use typed::from_toml;
 pub use value::{DocumentEntry, DocumentTable, DocumentValue};
 
 /// A place in a document.
@@ -71,6 +73,9 @@ pub enum DocumentErrorKind {
     /// The text is neither TOML nor JSON.
     #[error("{0}")]
     Syntax(String),
+    /// A value that its type does not allow.
+    #[error("{0}")]
+    Invalid(String),
     /// A key that is not expected here.
     #[error("unknown key; expected one of: {known}")]
     UnknownKey {
@@ -132,7 +137,7 @@ enum Content<'t> {
     Text(Cow<'t, str>),
     Whole(i64),
     Number(f64),
-    Truth,
+    Truth(bool),
     Date,
     Null,
 }
@@ -147,6 +152,12 @@ impl<'t> Document<'t> {
     /// Parses TOML.
     pub fn parse_toml(bytes: &'t [u8]) -> Result<Self, DocumentError> {
         let text = text_of(bytes)?;
+        Ok(Self { text, root: toml_text::parse(text)? })
+    }
+
+    /// Parses TOML that may be empty, because every key may be missing.
+    pub fn parse_settings(bytes: &'t [u8]) -> Result<Self, DocumentError> {
+        let text = utf8(bytes)?;
         Ok(Self { text, root: toml_text::parse(text)? })
     }
 
@@ -174,16 +185,17 @@ impl<'t> Document<'t> {
 }
 
 fn text_of(bytes: &[u8]) -> Result<&str, DocumentError> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) if text.trim().is_empty() => {
-            Err(DocumentErrorKind::Empty.at(TextPosition::default()))
-        }
-        Ok(text) => Ok(text),
-        Err(error) => {
-            let position = TextPosition::at_byte(bytes, error.valid_up_to());
-            Err(DocumentErrorKind::NotText.at(position))
-        }
+    let text = utf8(bytes)?;
+    if text.trim().is_empty() {
+        return Err(DocumentErrorKind::Empty.at(TextPosition::default()));
     }
+    Ok(text)
+}
+
+fn utf8(bytes: &[u8]) -> Result<&str, DocumentError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        DocumentErrorKind::NotText.at(TextPosition::at_byte(bytes, error.valid_up_to()))
+    })
 }
 
 /// Appends the path from a node to a node in it; whether it is there.

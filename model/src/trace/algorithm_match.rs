@@ -12,7 +12,7 @@ use crate::{
     mapping::{
         DirectionalAlgorithm, Exploration, MappingChoice, MappingError, MappingRun, Nearest, step,
     },
-    percept::Percept,
+    percept::{Percept, WalkEvent},
 };
 
 /// How far an algorithm follows a trace.
@@ -155,7 +155,7 @@ fn match_choices(
         has_begun: false,
     };
     let mut search = Search::new(claim, bound);
-    let mut amended_before = 0;
+    let mut amended_before = WalkEvent::Percept(0);
     let (run, found) = loop {
         let (run, before) = default.go_on(&trace, amend.is_some());
         let reached = match &run {
@@ -190,16 +190,18 @@ fn match_choices(
             _ => None,
         };
         let (Some(percept), Some(before)) = (amended, before) else { break (run, end) };
-        trace.to_mut().percepts[search.farthest() / 2] = percept;
+        trace.to_mut().percepts[search.farthest().moves()] = percept;
         // No percept is replaced twice.
-        amended_before = search.farthest() + 1;
+        amended_before = WalkEvent::Door(search.farthest().moves());
         default = before;
     };
     let (trace, moves) = (&*trace, default.moves);
     // If the default choices match the whole trace, they differ after its end.
     let from = match run {
-        Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * moves,
-        _ => 2 * moves + 1,
+        Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => {
+            WalkEvent::Percept(moves).index()
+        }
+        _ => WalkEvent::Door(moves).index(),
     };
     let from = (from < trace.len()).then(|| trace.event(from).id);
     let (reached, script) = found;

@@ -5,7 +5,10 @@ use super::{
     match_algorithm,
     match_end::{AllowedStep, RunStop, StepPurpose},
 };
-use crate::mapping::{DirectionalAlgorithm, FACING, MappingError, MappingRun, audit};
+use crate::{
+    mapping::{DirectionalAlgorithm, FACING, MappingError, MappingRun, audit},
+    percept::WalkEvent,
+};
 
 /// Matches a trace with an algorithm with the default choices, and then with audits of its map. If the map is
 /// not complete before the end of the trace, it is a match with the algorithm. At most `bound` darts may
@@ -42,7 +45,7 @@ pub fn match_audited(
         Ok(()) if moves == trace.doors().len() => MatchEnd::Mapped,
         Ok(()) => {
             let allowed = AllowedStep { door: None, purpose: StepPurpose::Audited };
-            RunStop::Departure { event: 2 * moves + 1, allowed }.end(algorithm, trace)
+            RunStop::Departure { event: WalkEvent::Door(moves), allowed }.end(algorithm, trace)
         }
     };
     AlgorithmMatch { algorithm, choices: MatchedChoices::Default, reached, run, coverage }

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     embedded_graph::Dart,
     mapping::{DirectionalAlgorithm, Exploration, MappingChoice, PartialMap, step},
+    percept::WalkEvent,
 };
 
 /// What a trace claims to be.
@@ -51,14 +52,14 @@ pub(super) struct Search {
     /// The choices of the first run that matches the trace without completing the map.
     part: Option<Vec<MappingChoice>>,
     seen: HashSet<Known>,
-    /// The index of the first event that none of the longest runs has,
-    farthest: usize,
+    /// The first event that none of the longest runs has,
+    farthest: WalkEvent,
     /// what they have instead,
     allowed: Vec<AllowedStep>,
     /// and the choices of the first of them.
     script: Vec<MappingChoice>,
-    /// Of the longest run that reached the bound on known darts: the index of the event, and the choices.
-    bound: Option<(usize, Vec<MappingChoice>)>,
+    /// Of the longest run that reached the bound on known darts: the event, and the choices.
+    bound: Option<(WalkEvent, Vec<MappingChoice>)>,
     /// The runs that a percept contradicts at that event, before the step to it.
     stuck: Vec<Way>,
     /// The largest number of darts that may become known.
@@ -71,7 +72,7 @@ impl Search {
             claim,
             part: None,
             seen: HashSet::new(),
-            farthest: 0,
+            farthest: WalkEvent::Percept(0),
             allowed: Vec::new(),
             script: Vec::new(),
             bound: None,
@@ -80,8 +81,8 @@ impl Search {
         }
     }
 
-    /// The index of the first event that none of the longest runs has.
-    pub(super) fn farthest(&self) -> usize {
+    /// The first event that none of the longest runs has.
+    pub(super) fn farthest(&self) -> WalkEvent {
         self.farthest
     }
 
@@ -133,7 +134,7 @@ impl Search {
                     return Some((MatchEnd::Mapped, way.script));
                 }
                 let allowed = AllowedStep { door: None, purpose: StepPurpose::Done };
-                let event = 2 * way.moves + 1;
+                let event = WalkEvent::Door(way.moves);
                 self.ended(RunStop::Departure { event, allowed }, way.script.clone());
             }
             // The first choice is tried first.
@@ -213,12 +214,12 @@ impl Search {
     /// the longest runs.
     pub(super) fn end(&self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
         if let Some((event, script)) = &self.bound {
-            let (event, bound) = (trace.event(*event), self.dart_bound);
+            let (event, bound) = (trace.event(event.index()), self.dart_bound);
             return (MatchEnd::Bound { event, bound }, script.clone());
         }
         let departure = Departure {
             algorithm: DirectionalAlgorithm::Algorithm1,
-            event: trace.event(self.farthest),
+            event: trace.event(self.farthest.index()),
             allowed: self.allowed.clone(),
         };
         (MatchEnd::Departure(departure), self.script.clone())

@@ -4,8 +4,9 @@ use super::{
     Trace, TraceWorld, TraceWorldError,
     match_end::{AllowedStep, MapDart, MatchEnd, RunStop, StepPurpose},
 };
-use crate::mapping::{
-    DirectionalAlgorithm, FoldingExploration, FoldingStep, InvalidStep, MappingError,
+use crate::{
+    mapping::{DirectionalAlgorithm, FoldingExploration, FoldingStep, InvalidStep, MappingError},
+    percept::WalkEvent,
 };
 
 /// How far the folding explorer follows a trace, and its state at that point.
@@ -20,7 +21,7 @@ pub(super) fn follow(trace: &Trace, bound: usize) -> (MatchEnd, FoldingExplorati
         Ok(()) if moves == trace.doors().len() => return (MatchEnd::Mapped, exploration),
         Ok(()) => {
             let allowed = AllowedStep { door: None, purpose: StepPurpose::NoOpenDart };
-            RunStop::Departure { event: 2 * moves + 1, allowed }
+            RunStop::Departure { event: WalkEvent::Door(moves), allowed }
         }
     };
     (stop.end(DirectionalAlgorithm::Folding, trace), exploration)

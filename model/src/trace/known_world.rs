@@ -4,7 +4,7 @@ use super::{Trace, TraceEvent, TraceEventKind};
 use crate::{
     embedded_graph::EmbeddedGraph,
     marker::Marker,
-    percept::Percept,
+    percept::{Percept, WalkEvent},
     world::{GraphWorld, RefusedAction, State, World},
 };
 
@@ -79,7 +79,8 @@ pub fn poses_amended(
     let mut left = Vec::with_capacity(trace.len());
     let mut alone = Vec::with_capacity(trace.len());
     for (index, event) in trace.events().enumerate() {
-        if index.is_multiple_of(2) && trace.relocations().binary_search(&(index / 2)).is_ok() {
+        let at = WalkEvent::at(index);
+        if matches!(at, WalkEvent::Percept(number) if trace.is_relocation(number)) {
             states = relocated(graph, &states);
         }
         let judged = |&state: &State| (state, after(graph, marker, state, event.kind));
@@ -89,7 +90,7 @@ pub fn poses_amended(
             let why =
                 |(state, after): (State, Result<State, MisfitReason>)| Some((state, after.err()?));
             let candidates = judged.into_iter().filter_map(why).collect();
-            let misfit = Misfit { event, moves: index / 2, candidates };
+            let misfit = Misfit { event, moves: at.moves(), candidates };
             if let Some(expected) = amend(&misfit) {
                 let expects =
                     |(_, why): &&(State, MisfitReason)| *why == MisfitReason::Percept { expected };

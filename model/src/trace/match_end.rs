@@ -7,7 +7,7 @@ use super::{Trace, TraceEvent, TraceWorldError};
 use crate::{
     embedded_graph::Dart,
     mapping::{Contradiction, DirectionalAlgorithm, InvalidStep, MappingError, PartialMap},
-    percept::Door,
+    percept::{Door, WalkEvent},
 };
 
 /// How far an algorithm follows a trace.
@@ -145,15 +145,15 @@ impl fmt::Display for AllowedStep {
     }
 }
 
-/// Why a run along a trace ended. Events are given by index.
+/// Why a run along a trace ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunStop {
     /// The trace has no further event.
     EndOfTrace,
     /// The run has something else than this event.
-    Departure { event: usize, allowed: AllowedStep },
+    Departure { event: WalkEvent, allowed: AllowedStep },
     /// What the run would do after this event is not known.
-    Bound { event: usize, bound: usize },
+    Bound { event: WalkEvent, bound: usize },
 }
 
 impl RunStop {
@@ -163,18 +163,18 @@ impl RunStop {
         moves: usize,
         purpose: StepPurpose,
     ) -> Self {
-        let event = 2 * moves;
+        let event = WalkEvent::Percept(moves);
         let contradicted =
             |purpose| Self::Departure { event, allowed: AllowedStep { door: None, purpose } };
         match error {
             MappingError::World(TraceWorldError::End) => Self::EndOfTrace,
             MappingError::World(TraceWorldError::Lost) => {
                 let allowed = AllowedStep { door: None, purpose: StepPurpose::Lost };
-                Self::Departure { event: event + 2, allowed }
+                Self::Departure { event: WalkEvent::Percept(moves + 1), allowed }
             }
             MappingError::World(TraceWorldError::Door { asked, .. }) => {
                 let allowed = AllowedStep { door: Some(*asked), purpose };
-                Self::Departure { event: event + 1, allowed }
+                Self::Departure { event: WalkEvent::Door(moves), allowed }
             }
             MappingError::Contradiction(contradiction) => {
                 contradicted(StepPurpose::Contradicted(*contradiction))
@@ -190,10 +190,12 @@ impl RunStop {
             Self::EndOfTrace => MatchEnd::EndOfTrace,
             Self::Departure { event, allowed } => MatchEnd::Departure(Departure {
                 algorithm,
-                event: trace.event(event),
+                event: trace.event(event.index()),
                 allowed: vec![allowed],
             }),
-            Self::Bound { event, bound } => MatchEnd::Bound { event: trace.event(event), bound },
+            Self::Bound { event, bound } => {
+                MatchEnd::Bound { event: trace.event(event.index()), bound }
+            }
         }
     }
 }

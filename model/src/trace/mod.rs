@@ -26,7 +26,7 @@ pub use recovery_match::{RecordedVisit, match_recovering};
 pub use shorten::shortened;
 pub use trace_world::{TraceWorld, TraceWorldError};
 
-use crate::percept::{Door, Percept};
+use crate::percept::{Door, Percept, WalkEvent};
 
 /// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start. A robot that
 /// got lost and [recovers](crate::mapping::Relocate) may have come to a vertex by any way.
@@ -118,9 +118,11 @@ impl Trace {
     /// events of their percepts; other ids are ignored.
     #[must_use]
     pub fn with_relocations(self, ids: impl IntoIterator<Item = usize>) -> Self {
-        let number = |id| self.ids.binary_search(&id).ok().filter(|index| index.is_multiple_of(2));
-        let mut relocations: Vec<_> =
-            ids.into_iter().filter_map(number).map(|index| index / 2).collect();
+        let number = |id| match WalkEvent::at(self.ids.binary_search(&id).ok()?) {
+            WalkEvent::Percept(number) => Some(number),
+            WalkEvent::Door(_) => None,
+        };
+        let mut relocations: Vec<_> = ids.into_iter().filter_map(number).collect();
         relocations.sort_unstable();
         relocations.dedup();
         Self { relocations, ..self }
@@ -133,6 +135,12 @@ impl Trace {
         &self.relocations
     }
 
+    /// Whether a percept, by its number from 0, is at a vertex to which the robot came after it got lost.
+    #[must_use]
+    pub fn is_relocation(&self, percept: usize) -> bool {
+        self.relocations.binary_search(&percept).is_ok()
+    }
+
     /// Those of [`Self::relocations`] at which the robot got lost in this run: without the first percept.
     #[must_use]
     pub fn lost(&self) -> &[usize] {
@@ -143,7 +151,7 @@ impl Trace {
     #[must_use]
     pub fn before_relocation(&self) -> Self {
         match self.lost().first() {
-            Some(percept) => self.up_to(2 * percept - 1),
+            Some(percept) => self.up_to(WalkEvent::Door(percept - 1).index()),
             None => self.clone(),
         }
     }
@@ -175,8 +183,11 @@ impl Trace {
     /// The trace up to and including an event.
     #[must_use]
     pub fn up_to(&self, index: usize) -> Self {
-        let percepts = self.percepts.len().min(index / 2 + 1);
-        let doors = self.doors.len().min(index.div_ceil(2));
+        let (percepts, doors) = match WalkEvent::at(index) {
+            WalkEvent::Percept(moves) => (moves + 1, moves),
+            WalkEvent::Door(moves) => (moves + 1, moves + 1),
+        };
+        let (percepts, doors) = (self.percepts.len().min(percepts), self.doors.len().min(doors));
         Self {
             percepts: self.percepts[..percepts].to_vec(),
             doors: self.doors[..doors].to_vec(),
@@ -194,12 +205,23 @@ impl Trace {
     #[must_use]
     pub fn event(&self, index: usize) -> TraceEvent {
         let index = index.min(self.len() - 1);
-        let kind = if index.is_multiple_of(2) {
-            TraceEventKind::Percept(self.percepts[index / 2])
-        } else {
-            TraceEventKind::Door(self.doors[index / 2])
+        let kind = match WalkEvent::at(index) {
+            WalkEvent::Percept(moves) => TraceEventKind::Percept(self.percepts[moves]),
+            WalkEvent::Door(moves) => TraceEventKind::Door(self.doors[moves]),
         };
         TraceEvent { id: self.ids[index], kind }
+    }
+
+    /// The percept after some moves; the last event if there are fewer.
+    #[must_use]
+    pub fn percept_event(&self, moves: usize) -> TraceEvent {
+        self.event(WalkEvent::Percept(moves).index())
+    }
+
+    /// The door that was taken after some moves; the last event if there are fewer.
+    #[must_use]
+    pub fn door_event(&self, moves: usize) -> TraceEvent {
+        self.event(WalkEvent::Door(moves).index())
     }
 
     /// The index of the first event with this id or a larger one.
@@ -212,7 +234,8 @@ impl Trace {
     fn without(&self, from: usize, to: usize) -> Self {
         let percepts = [&self.percepts[..from], &self.percepts[to..]].concat();
         let doors = [&self.doors[..from], &self.doors[to..]].concat();
-        let ids = [&self.ids[..2 * from], &self.ids[2 * to..]].concat();
+        let [before, after] = [from, to].map(|moves| WalkEvent::Percept(moves).index());
+        let ids = [&self.ids[..before], &self.ids[after..]].concat();
         let (before, left_out) = (self.relocations_below(from), self.relocations_below(to).len());
         let after = self.relocations[left_out..].iter().map(|percept| percept - (to - from));
         let relocations = before.iter().copied().chain(after).collect();

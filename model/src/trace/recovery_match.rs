@@ -11,7 +11,7 @@ use crate::{
         MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent,
         map_with_recovery,
     },
-    percept::{Door, Percept},
+    percept::{Door, Percept, WalkEvent},
     world::World,
 };
 
@@ -43,7 +43,7 @@ pub fn match_recovering(
     let is_end = moves == trace.doors().len();
     let gone_on = |purpose| {
         let allowed = AllowedStep { door: None, purpose };
-        RunStop::Departure { event: 2 * moves + 1, allowed }
+        RunStop::Departure { event: WalkEvent::Door(moves), allowed }
     };
     let stop = match mapped {
         Ok(_) if is_end => None,
@@ -109,8 +109,8 @@ impl Relocate for RecordedWorld<'_> {
 /// What the robot is doing.
 struct StepObserver {
     purpose: StepPurpose,
-    /// The index of the event at which more darts than the bound would be known, the first time.
-    too_large: Option<usize>,
+    /// The event at which more darts than the bound would be known, the first time.
+    too_large: Option<WalkEvent>,
 }
 
 impl Default for StepObserver {
@@ -136,7 +136,7 @@ impl Observer<RecordedWorld<'_>> for StepObserver {
             MappingEvent::Safeguard(BlockedRetried { .. }) => StepPurpose::TryBlocked,
             MappingEvent::Safeguard(Contradicted(_) | Relocated) => StepPurpose::FindMarker,
             MappingEvent::Safeguard(TooLarge { .. }) => {
-                self.too_large.get_or_insert(2 * world.world.moves());
+                self.too_large.get_or_insert(WalkEvent::Percept(world.world.moves()));
                 StepPurpose::FindMarker
             }
             MappingEvent::Safeguard(AuditPassed { .. }) => StepPurpose::Audited,

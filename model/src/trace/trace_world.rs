@@ -68,7 +68,7 @@ impl World for TraceWorld<'_> {
         match self.trace.doors().get(self.moves) {
             None => Err(TraceWorldError::End),
             Some(&recorded) if recorded != asked => Err(TraceWorldError::Door { recorded, asked }),
-            Some(_) if self.trace.relocations.binary_search(&(self.moves + 1)).is_ok() => {
+            Some(_) if self.trace.is_relocation(self.moves + 1) => {
                 self.is_lost = true;
                 Err(TraceWorldError::Lost)
             }

@@ -1,6 +1,9 @@
 //! A robot with a budget turns back before it is over: then it goes to its marker by the way by which it came.
 
-use toposlam_model::trace::{AlgorithmMatch, AllowedStep, Departure, MatchEnd, StepPurpose, Trace};
+use toposlam_model::{
+    percept::WalkEvent,
+    trace::{AlgorithmMatch, AllowedStep, Departure, MatchEnd, StepPurpose, Trace},
+};
 
 use super::events::RunEvents;
 use crate::{
@@ -22,7 +25,8 @@ pub(super) fn within_budget(
         MatchEnd::Departure(departure) => Some(departure),
         _ => None,
     };
-    let last = departed.map_or(trace.doors().len(), |it| trace.index_of(it.event.id) / 2);
+    let moves_before = |id| WalkEvent::at(trace.index_of(id)).moves();
+    let last = departed.map_or(trace.doors().len(), |it| moves_before(it.event.id));
     let moves_alone = RunBudget { moves: budget.moves, ..RunBudget::default() };
     let mut allowance = Allowance::new(moves_alone);
     for (number, &door) in trace.doors().iter().enumerate() {
@@ -56,7 +60,7 @@ fn spent(moves: usize) -> Spent {
 
 /// The robot stands where it was after some moves.
 fn arrive(allowance: &mut Allowance, trace: &Trace, number: usize) {
-    if trace.relocations().binary_search(&number).is_ok() {
+    if trace.is_relocation(number) {
         allowance.lose_way();
     }
     if let Some(percept) = trace.percepts().get(number) {
@@ -98,7 +102,7 @@ fn departing(
 ) -> AlgorithmMatch {
     let departure = Departure {
         algorithm: followed.algorithm,
-        event: trace.event(2 * number + 1),
+        event: trace.door_event(number),
         allowed: vec![allowed],
     };
     AlgorithmMatch { reached: MatchEnd::Departure(departure), ..followed }

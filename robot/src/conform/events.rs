@@ -1,5 +1,9 @@
 //! The events of a recorded run that are checked: arrivals, doors, and what a robot should not do. The
 //! measurements stay beside their discrete values.
+//!
+//! They are no [events of a run](crate::record::Event). Those are what a robot reports: frames, commands,
+//! odometry. The checked ones are concluded from them: some exist in no log, such as a visit that cannot be
+//! recognised or a robot that turned back, and each has what odometry measured on the way to it.
 
 use thiserror::Error;
 use toposlam_model::{
@@ -96,14 +100,22 @@ pub struct RunEvents {
 
 /// An event that is earlier than the one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("event {event} is at {:.3} s, earlier than the event before it, at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+#[error("the events are out of order: this one is at {:.3} s, the one before it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
 pub struct OutOfOrder {
-    /// Its number, counted from 1.
-    pub event: usize,
     /// Its time, in nanoseconds.
     pub time: u64,
     /// The time of the event before it.
     pub before: u64,
+}
+
+impl OutOfOrder {
+    /// Checks that an event is not earlier than the one before it.
+    ///
+    /// # Errors
+    /// Returns an error if it is.
+    pub fn check(before: u64, time: u64) -> Result<(), Self> {
+        if time < before { Err(Self { time, before }) } else { Ok(()) }
+    }
 }
 
 /// An arrival that does not record whether the robot saw its marker.
@@ -180,7 +192,7 @@ impl RunEvents {
     /// What is recorded of the visits of a trace of these events, besides their percepts.
     pub(super) fn recorded_visits(&self, trace: &Trace) -> Vec<RecordedVisit> {
         let visit = |number| {
-            let event = self.events.get(trace.event(2 * number).id).map(|event| &event.kind);
+            let event = self.events.get(trace.percept_event(number).id).map(|event| &event.kind);
             let Some(CheckedKind::Arrival { arrival, hallway, .. }) = event else {
                 return RecordedVisit::default();
             };
@@ -246,20 +258,6 @@ impl RunEvents {
         // A robot that has turned back at the end has not arrived again.
         events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
         Self { events, may_turn_back: true, ..self.clone() }
-    }
-
-    /// Checks that no event is earlier than the one before it.
-    ///
-    /// # Errors
-    /// Returns the first event that is.
-    pub fn check_order(&self) -> Result<(), OutOfOrder> {
-        for (index, two) in self.events.windows(2).enumerate() {
-            let [before, time] = [two[0].source.time, two[1].source.time];
-            if time < before {
-                return Err(OutOfOrder { event: index + 2, time, before });
-            }
-        }
-        Ok(())
     }
 
     /// The events up to and including one, by its index.

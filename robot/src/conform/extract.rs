@@ -17,7 +17,7 @@ use toposlam_vision::{
 
 use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
-    events::{CheckedEvent, CheckedKind, EventSource, RunEvents, UndecidedCause},
+    events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
@@ -130,14 +130,12 @@ pub enum ExtractError {
         cause: SensingError,
     },
     /// The time of a percept or door is before that of the last one.
-    #[error("message {message}: the events are out of order: it is of {:.3} s, the one before it of {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+    #[error("message {message}: {order}")]
     OutOfOrder {
         /// The number of the message.
         message: u64,
-        /// Its time, in nanoseconds.
-        time: u64,
-        /// The time of the last one.
-        before: u64,
+        /// The times.
+        order: OutOfOrder,
     },
 }
 
@@ -388,9 +386,8 @@ impl<W: SensingProgress> Extraction<'_, W> {
         };
         if matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. }) {
             let before = std::mem::replace(&mut self.last, stamp);
-            if stamp < before {
-                return Err(ExtractError::OutOfOrder { message: id.0, time: stamp, before });
-            }
+            OutOfOrder::check(before, stamp)
+                .map_err(|order| ExtractError::OutOfOrder { message: id.0, order })?;
         }
         self.recorded.observe(source, &kind);
         match kind {

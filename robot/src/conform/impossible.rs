@@ -6,7 +6,7 @@ use toposlam_model::{
     enumerate::Class,
     folding::{ContradictionReason, FoldError, FoldedTrail, TrailContradiction, fold},
     marker::{Directional, Marker, NoMarker, Undirected},
-    percept::{Percept, Sighting},
+    percept::{Percept, Sighting, WalkEvent},
     trace::Trace,
 };
 
@@ -92,11 +92,14 @@ impl FoldedTrace {
         let (mut trail, walk) = match fold(folded.percepts(), folded.doors()) {
             Ok(trail) => (Some(trail), None),
             Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
-                (None, Some((event, Impossibility::Walk(reason))))
+                (None, Some((event.index(), Impossibility::Walk(reason))))
             }
             Err(FoldError::TooManyDarts { .. }) => (None, None),
         };
-        let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
+        let first = |is: &dyn Fn(&Percept) -> bool| {
+            let moves = trace.percepts().iter().position(is)?;
+            Some(WalkEvent::Percept(moves).index())
+        };
         let bare = marker.name() == NoMarker.name();
         let marked = first(&|percept| bare && percept.sighting != Sighting::Nothing);
         let crowded = first(&|percept| percept.degree > class.max_degree());
@@ -133,11 +136,12 @@ pub(super) fn first_percept(
     let (mut low, mut high) = (0, moves);
     while low < high {
         let middle = usize::midpoint(low, high);
-        if folded_before(trace, 2 * middle + 1).is_some_and(|trail| holds(&trail)) {
+        if folded_before(trace, WalkEvent::Door(middle).index()).is_some_and(|trail| holds(&trail))
+        {
             high = middle;
         } else {
             low = middle + 1;
         }
     }
-    2 * low
+    WalkEvent::Percept(low).index()
 }

@@ -174,7 +174,7 @@ impl InferredEvents {
     }
 
     /// Adds the percept of a visit, and returns the junction's shape and the direction of its entry. If
-    /// the pictures do not decide the percept, adds that as an event and returns `None`.
+    /// the images do not decide the percept, adds that as an event and returns `None`.
     fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
         let Approach { visit, entry, visited, way, onwards, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
@@ -351,7 +351,7 @@ mod tests {
         let seen = seen(&[long, visit(), vec![aside]].concat());
         let events = infer_events(&seen, false);
         let least = shorten_frames(&seen, events.last().unwrap()).unwrap();
-        // Two pictures of the junction, and where the robot went.
+        // Two images of the junction, and where the robot went.
         assert_eq!(least.len(), 3);
         assert!(matches!(
             infer_events(least, false).last().unwrap().kind,

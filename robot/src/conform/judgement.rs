@@ -108,9 +108,14 @@ pub enum JudgeError {
     /// There is no event.
     #[error("it has neither a percept nor a visit to a junction")]
     Empty,
-    /// The events are out of order.
-    #[error(transparent)]
-    OutOfOrder(#[from] OutOfOrder),
+    /// An event is earlier than the one before it.
+    #[error("event {event}: {order}")]
+    OutOfOrder {
+        /// Its number, counted from 1.
+        event: usize,
+        /// The times.
+        order: OutOfOrder,
+    },
     /// The percepts do not record the marker.
     #[error(transparent)]
     Marker(#[from] MarkerNotRecorded),
@@ -153,7 +158,7 @@ pub fn judge(
     quirks: &Quirks,
     watch: &dyn Watch,
 ) -> Result<Judgement, JudgeError> {
-    events.check_order()?;
+    check_order(&events)?;
     events.complete_sightings(question.marker)?;
     let marker = question.marker.name();
     if let Some(algorithm) = question.driver.algorithm()
@@ -174,6 +179,14 @@ pub fn judge(
             return Ok(Judgement { tolerated: tolerance.finish(), ..judgement });
         }
     }
+}
+
+fn check_order(events: &RunEvents) -> Result<(), JudgeError> {
+    for (index, two) in events.events.windows(2).enumerate() {
+        OutOfOrder::check(two[0].source.time, two[1].source.time)
+            .map_err(|order| JudgeError::OutOfOrder { event: index + 2, order })?;
+    }
+    Ok(())
 }
 
 /// What a walk shows of its world if all sightings of an undirected marker are of one vertex.
@@ -227,7 +240,7 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
-            lost: trace.lost().first().map(|percept| trace.event(2 * percept).id),
+            lost: trace.lost().first().map(|&percept| trace.percept_event(percept).id),
             unrecognised: None,
             trail: None,
             poses: None,

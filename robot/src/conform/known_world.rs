@@ -5,7 +5,7 @@ use toposlam_model::{
     isomorphism::code,
     mapping::FACING,
     marker::Marker,
-    percept::Percept,
+    percept::{Percept, WalkEvent},
     trace::{Misfit, MisfitReason, Trace, TraceEventKind, poses},
     world::State,
 };
@@ -65,7 +65,8 @@ const AHEAD: usize = 12;
 /// The trace after some moves, with another first percept.
 fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
     let first = TraceEventKind::Percept(first);
-    let rest = trace.events().skip(2 * moves + 1).take(AHEAD).map(|event| event.kind);
+    let rest = trace.events().skip(WalkEvent::Door(moves).index());
+    let rest = rest.take(AHEAD).map(|event| event.kind);
     // They take turns as before, whatever the first percept is.
     Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
 }

@@ -7,7 +7,7 @@ use toposlam_model::{
     measurement::{
         ContradictoryMeasurement, MeasuredVisit, MeasurementCheck, MeasurementContradiction,
     },
-    percept::{Door, Percept},
+    percept::{Door, Percept, WalkEvent},
     trace::{Poses, Trace},
 };
 
@@ -103,7 +103,7 @@ fn unplaced_visits(events: &RunEvents, trace: &Trace) -> Vec<MeasuredVisit> {
             return MeasuredVisit::default();
         };
         // A robot that got lost has not come through one hallway.
-        let is_lost = |number: usize| trace.relocations().binary_search(&number).is_ok();
+        let is_lost = |number: usize| trace.is_relocation(number);
         MeasuredVisit {
             darts: Vec::new(),
             shape: arrival.form,
@@ -130,8 +130,8 @@ fn by_trail(visits: &[MeasuredVisit], trace: &Trace, trail: &FoldedTrail) -> Vec
 /// The visits with the vertices of a known world, where only one pose is possible.
 fn by_poses(visits: &[MeasuredVisit], graph: &EmbeddedGraph, poses: &Poses) -> Vec<MeasuredVisit> {
     let mut placed = visits.to_vec();
-    for (visit, state) in placed.iter_mut().zip(poses.alone.iter().step_by(2)) {
-        if let Some(state) = state {
+    for (moves, visit) in placed.iter_mut().enumerate() {
+        if let Some(Some(state)) = poses.alone.get(WalkEvent::Percept(moves).index()) {
             let doors = 0..graph.degree_around(state.pose);
             let darts = doors.map(|door| graph.behind(state.pose, Door(door)));
             visit.darts = darts.collect::<Vec<Dart>>();
@@ -142,7 +142,7 @@ fn by_poses(visits: &[MeasuredVisit], graph: &EmbeddedGraph, poses: &Poses) -> V
 
 /// The event of a visit.
 fn event_of(trace: &Trace, visit: usize) -> usize {
-    trace.event(2 * visit).id
+    trace.percept_event(visit).id
 }
 
 /// The divergence of a measurement that contradicts others.

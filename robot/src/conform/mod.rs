@@ -48,6 +48,6 @@ pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
 };
 pub use measured_hallways::MeasuredHallways;
-pub use quirks::{Quirk, QuirkError, Quirks};
+pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
 pub use recorded_events::RecordedEvents;
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

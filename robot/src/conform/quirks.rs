@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use thiserror::Error;
+use toposlam_model::format::document::{Document, DocumentError, DocumentErrorKind, TextPosition};
 
 use super::divergence::{Divergence, NAMES};
 
@@ -27,11 +28,22 @@ pub struct Quirk {
 }
 
 /// Why quirks cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum QuirkError {
-    /// The file has another form.
-    #[error("{}", .0.trim_end())]
-    Form(String),
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{position}{kind}")]
+pub struct QuirkError {
+    /// Where.
+    pub position: TextPosition,
+    /// What is wrong there.
+    #[source]
+    pub kind: QuirkErrorKind,
+}
+
+/// What is wrong at a place of a file of quirks.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum QuirkErrorKind {
+    /// A key or a value of the file is not as it should be.
+    #[error(transparent)]
+    Document(DocumentErrorKind),
     /// The cause is unknown.
     #[error("quirk `{name}`: unknown cause `{cause}`; the causes are {}", tolerable().join(", "))]
     Cause {
@@ -66,11 +78,26 @@ fn tolerable() -> Vec<&'static str> {
     NAMES.into_iter().filter(|name| !INTOLERABLE.contains(name)).collect()
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    quirk: Vec<Quirk>,
+impl From<DocumentError> for QuirkError {
+    fn from(DocumentError { position, kind }: DocumentError) -> Self {
+        Self { position, kind: QuirkErrorKind::Document(kind) }
+    }
+}
+
+impl Quirk {
+    /// Checks what it says. An error names the key with the wrong value.
+    fn check(&self) -> Result<(), (&'static str, QuirkErrorKind)> {
+        let (name, cause) = (self.name.clone(), self.cause.clone());
+        if self.reason.trim().is_empty() {
+            Err(("reason", QuirkErrorKind::NoReason { name }))
+        } else if INTOLERABLE.contains(&&*cause) {
+            Err(("cause", QuirkErrorKind::Intolerable { name, cause }))
+        } else if !NAMES.contains(&&*cause) {
+            Err(("cause", QuirkErrorKind::Cause { name, cause }))
+        } else {
+            Ok(())
+        }
+    }
 }
 
 impl Quirks {
@@ -79,21 +106,19 @@ impl Quirks {
     /// # Errors
     /// Returns an error if it is not a quirk file, or a quirk in it is invalid.
     pub fn read(text: &str) -> Result<Self, QuirkError> {
-        let file: File =
-            toml::from_str(text).map_err(|error| QuirkError::Form(error.to_string()))?;
-        for Quirk { name, reason, cause, .. } in &file.quirk {
-            let (name, cause) = (name.clone(), cause.clone());
-            if reason.trim().is_empty() {
-                return Err(QuirkError::NoReason { name });
+        let document = Document::parse_settings(text.as_bytes())?;
+        let table = document.root().table(&["quirk"])?;
+        let Some(list) = table.get("quirk") else { return Ok(Self::default()) };
+        let mut quirks = Vec::new();
+        for value in list.list("a list of quirks")? {
+            let quirk: Quirk = value.read()?;
+            if let Err((key, kind)) = quirk.check() {
+                let position = value.any_table()?.need(key)?.position();
+                return Err(QuirkError { position, kind });
             }
-            if INTOLERABLE.contains(&&*cause) {
-                return Err(QuirkError::Intolerable { name, cause });
-            }
-            if !NAMES.contains(&&*cause) {
-                return Err(QuirkError::Cause { name, cause });
-            }
+            quirks.push(quirk);
         }
-        Ok(Self { quirks: file.quirk })
+        Ok(Self { quirks })
     }
 
     /// All of them, in the order of their file.
@@ -123,11 +148,34 @@ mod tests {
             Quirks::read(&text).map(|quirks| quirks.all().len()).map_err(|error| error.to_string())
         };
         assert_eq!(quirk("percept", "glare"), Ok(1));
-        assert_eq!(quirk("percept", " ").unwrap_err(), "quirk `x` has no reason");
+        assert_eq!(
+            quirk("percept", " ").unwrap_err(),
+            "line 4, column 10: quirk[0].reason: quirk `x` has no reason"
+        );
         assert!(quirk("door", "why").unwrap_err().contains("cannot be tolerated"));
-        assert!(quirk("glare", "why").unwrap_err().contains("the causes are number, form, aside"));
-        let unknown = Quirks::read("[[quirk]]\nname = \"x\"\ncuase = \"percept\"").unwrap_err();
-        assert!(unknown.to_string().contains("line 3"), "{unknown}");
+        let unknown = quirk("glare", "why").unwrap_err();
+        assert!(
+            unknown
+                .starts_with("line 3, column 9: quirk[0].cause: quirk `x`: unknown cause `glare`")
+        );
+        assert!(unknown.contains("the causes are number, form, aside"));
         assert_eq!(Quirks::read("").unwrap(), Quirks::default());
+    }
+
+    #[test]
+    fn the_error_of_a_file_of_another_form_is_one_line_with_its_place() {
+        let message = |text: &str| Quirks::read(text).unwrap_err().to_string();
+        assert_eq!(
+            message("[[quirk]]\nname = \"x\"\ncuase = \"percept\""),
+            "line 3, column 1: quirk[0].cuase: unknown key; expected one of: name, reason, cause, event"
+        );
+        assert_eq!(
+            message("[[quirk]]\nname = 1"),
+            "line 2, column 8: quirk[0].name: expected a text, found a whole number"
+        );
+        assert_eq!(
+            message("[[quirks]]"),
+            "line 1, column 3: quirks: unknown key; expected one of: quirk"
+        );
     }
 }

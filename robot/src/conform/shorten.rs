@@ -5,7 +5,7 @@ use std::mem::discriminant;
 use toposlam_model::{
     enumerate::Watch,
     folding::WorldSearch,
-    percept::Percept,
+    percept::{Percept, WalkEvent},
     trace::{MisfitReason, Trace, TraceEvent, TraceEventKind, shortened},
 };
 
@@ -147,18 +147,18 @@ impl ConformConfig<'_> {
 /// Events of percepts and doors alone, a second apart, in a log like that of a whole run.
 fn of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
     let event = |(index, event): (usize, TraceEvent)| {
-        let moves = index as u32 / 2;
+        let moves = WalkEvent::at(index).moves();
         let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
         let kind = match event.kind {
             TraceEventKind::Percept(percept) => {
                 let Percept { degree, sighting } = percept;
-                let is_lost = trace.relocations().binary_search(&(index / 2)).is_ok();
-                let (number, sighting) = (Some(moves).filter(|_| !is_lost), Some(sighting));
+                let number = Some(moves as u32).filter(|_| !trace.is_relocation(moves));
+                let sighting = Some(sighting);
                 let arrival = Arrival { number, degree, sighting, form: None, entry: None };
                 CheckedKind::Arrival { arrival, entry_off: None, hallway: None }
             }
             TraceEventKind::Door(door) => {
-                CheckedKind::Door { door, number: Some(moves + 1), off: None }
+                CheckedKind::Door { door, number: Some(moves as u32 + 1), off: None }
             }
         };
         CheckedEvent { source, kind }

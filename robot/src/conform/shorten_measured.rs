@@ -9,7 +9,7 @@ use toposlam_model::{
     enumerate::Watch,
     folding::fold,
     measurement::ContradictoryMeasurement,
-    percept::{Percept, Sighting},
+    percept::{Percept, Sighting, WalkEvent},
     trace::Trace,
 };
 
@@ -69,7 +69,7 @@ impl<'j> MeasuredWalk<'j> {
                     return Some((visits, events));
                 }
                 // The events up to the first that shows it may show it sooner.
-                visits.truncate(found.event / 2 + 1);
+                visits.truncate(WalkEvent::at(found.event).moves() + 1);
             }
         };
         let all: Vec<usize> = (0..self.poses.len()).collect();
@@ -111,7 +111,7 @@ impl<'j> MeasuredWalk<'j> {
 
     /// The arrival of a visit, by its index among the events.
     fn arrival(&self, visit: usize) -> usize {
-        self.trace.event(2 * visit).id
+        self.trace.percept_event(visit).id
     }
 
     /// The direction of the entry door of a visit, in the frame of odometry.
@@ -133,7 +133,7 @@ impl<'j> MeasuredWalk<'j> {
                 if let Some((now, then)) = self.entry(before).zip(self.entry(visit - 1)) {
                     turned += now - then;
                 }
-                let door = self.trace.event(2 * visit - 1).id;
+                let door = self.trace.door_event(visit - 1).id;
                 let mut door = self.events.events[door].clone();
                 if let CheckedKind::Door { number, .. } = &mut door.kind {
                     *number = moves;
@@ -158,7 +158,9 @@ impl<'j> MeasuredWalk<'j> {
     /// same measurement.
     fn is_shown_by(&self, visits: &[usize], found: &Divergence) -> bool {
         // Arrivals and doors alternate.
-        let whole = |event: usize| visits.get(event / 2).map(|&visit| self.arrival(visit));
+        let whole = |event: usize| {
+            visits.get(WalkEvent::at(event).moves()).map(|&visit| self.arrival(visit))
+        };
         let same_end =
             |shorter: [usize; 2], longer: [usize; 2]| whole(shorter[1]) == Some(longer[1]);
         let (

@@ -331,7 +331,7 @@ fn divergence_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usiz
     let mut events = log.recorded();
     events.end.as_mut().unwrap().moves = moves;
     match judge(events, question, &Quirks::default(), &()) {
-        Err(JudgeError::OutOfOrder(out)) => Some(out.event - 1),
+        Err(JudgeError::OutOfOrder { event, .. }) => Some(event - 1),
         Err(JudgeError::Empty) => Some(0),
         Err(error) => panic!("{error}"),
         Ok(judgement) => judgement.divergence.map(|divergence| divergence.event),

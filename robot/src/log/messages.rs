@@ -1,10 +1,10 @@
 //! The messages of the project. `robot/msgs/toposlam_msgs` defines each of them and documents its fields;
 //! the fields here have the same order.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A time, in seconds and nanoseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Stamp {
     /// Whole seconds.
     pub sec: i32,

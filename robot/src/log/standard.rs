@@ -1,10 +1,11 @@
-//! The messages of ROS 2 that a log holds: images, laser scans, commands to the wheels, odometry and the
-//! frames that it relates. Their fields stand in the order of their definitions, which are in `robot/msgs`.
+//! The messages of ROS that logs hold and that live robots exchange: images, laser scans, commands to the
+//! wheels, odometry and the frames that it relates. Their fields have the order of their definitions, which are
+//! in `robot/msgs`. The texts of a message that is written are `&'static str`; another type reads any bytes.
 //!
 //! x ahead, y to the left, metres, radians counter-clockwise (REP 103); the robot, `base_link`, moves in
 //! the frame `odom` (REP 105).
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use toposlam_model::driving::odometry;
 use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
@@ -27,33 +28,42 @@ const QUATERNION: TypeDefinition = definition!("geometry_msgs", "Quaternion");
 const TWIST: TypeDefinition = definition!("geometry_msgs", "Twist");
 
 /// When, and in which frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Header {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header<T = &'static str> {
     /// When it was so.
     pub stamp: Stamp,
     /// The frame in which it is so.
-    pub frame_id: &'static str,
+    pub frame_id: T,
+}
+
+/// The bytes of a file. They are written as one piece, not one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileBytes<'a>(pub &'a [u8]);
+
+impl Serialize for FileBytes<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(self.0)
+    }
 }
 
 /// The file of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct CompressedImage<'a> {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CompressedImage<D, T = &'static str> {
     /// When it was taken, and by which camera.
-    pub header: Header,
+    pub header: Header<T>,
     /// `jpeg` or `png`.
-    pub format: &'static str,
+    pub format: T,
     /// The file.
-    #[serde(serialize_with = "bytes")]
-    pub data: &'a [u8],
+    pub data: D,
 }
 
-impl Message for CompressedImage<'_> {
+impl Message for CompressedImage<FileBytes<'_>> {
     const TYPE: &'static str = "sensor_msgs/msg/CompressedImage";
     const DEFINITION: &'static str = definition!("sensor_msgs", "CompressedImage").text;
     const USES: &'static [TypeDefinition] = &[HEADER, TIME];
 }
 
-impl<'a> CompressedImage<'a> {
+impl<'a> CompressedImage<FileBytes<'a>> {
     /// An image; its first bytes determine its format, which is empty if it is not known.
     #[must_use]
     pub fn new(taken: Stamp, data: &'a [u8]) -> Self {
@@ -62,15 +72,16 @@ impl<'a> CompressedImage<'a> {
             [0x89, b'P', b'N', b'G', ..] => "png",
             _ => "",
         };
-        Self { header: Header { stamp: taken, frame_id: CAMERA }, format, data }
+        let header = Header { stamp: taken, frame_id: CAMERA };
+        Self { header, format, data: FileBytes(data) }
     }
 }
 
 /// A sweep of a laser scanner in the robot's centre.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct LaserScanMessage<'a> {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LaserScanMessage<L, T = &'static str> {
     /// When it was taken, and by which scanner.
-    pub header: Header,
+    pub header: Header<T>,
     /// The angle of the first range, in radians counter-clockwise from ahead.
     pub angle_min: f32,
     /// That of the last one.
@@ -86,18 +97,18 @@ pub struct LaserScanMessage<'a> {
     /// Longer ranges are invalid, in metres.
     pub range_max: f32,
     /// In metres; infinite without a return.
-    pub ranges: &'a [f32],
+    pub ranges: L,
     /// None.
-    pub intensities: &'a [f32],
+    pub intensities: L,
 }
 
-impl Message for LaserScanMessage<'_> {
+impl Message for LaserScanMessage<&[f32]> {
     const TYPE: &'static str = "sensor_msgs/msg/LaserScan";
     const DEFINITION: &'static str = definition!("sensor_msgs", "LaserScan").text;
     const USES: &'static [TypeDefinition] = &[HEADER, TIME];
 }
 
-impl<'a> LaserScanMessage<'a> {
+impl<'a> LaserScanMessage<&'a [f32]> {
     /// A scan.
     #[must_use]
     pub fn new(taken: Stamp, scan: &'a Scan) -> Self {
@@ -119,13 +130,8 @@ impl<'a> LaserScanMessage<'a> {
     }
 }
 
-/// Bytes as one piece, not one by one.
-fn bytes<S: Serializer>(data: &&[u8], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_bytes(data)
-}
-
 /// A vector, or a point.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vector3 {
     /// Ahead.
     pub x: f64,
@@ -136,7 +142,7 @@ pub struct Vector3 {
 }
 
 /// A rotation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quaternion {
     /// About ahead.
     pub x: f64,
@@ -169,7 +175,7 @@ impl Quaternion {
 }
 
 /// How fast something moves and turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Twist {
     /// Metres a second.
     pub linear: Vector3,
@@ -196,7 +202,7 @@ impl Twist {
 pub type Covariance = [[f64; 6]; 6];
 
 /// A position and orientation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PoseMessage {
     /// Its place.
     pub position: Vector3,
@@ -204,8 +210,42 @@ pub struct PoseMessage {
     pub orientation: Quaternion,
 }
 
+impl PoseMessage {
+    /// A pose on the floor.
+    #[must_use]
+    pub fn on_floor(at: &odometry::Odometry) -> Self {
+        let [x, y] = at.position;
+        Self { position: Vector3 { x, y, z: 0.0 }, orientation: Quaternion::turn(at.heading) }
+    }
+
+    /// The pose on the floor. `None` if a number is not finite or there is no orientation.
+    #[must_use]
+    pub fn to_floor(self) -> Option<odometry::Odometry> {
+        let Vector3 { x, y, .. } = self.position;
+        let heading = self.orientation.heading()?;
+        let is_finite = x.is_finite() && y.is_finite();
+        is_finite.then_some(odometry::Odometry { position: [x, y], heading })
+    }
+}
+
+/// A pose in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoseStamped<T = &'static str> {
+    /// When, in which frame.
+    pub header: Header<T>,
+    /// The pose.
+    pub pose: PoseMessage,
+}
+
+impl Message for PoseStamped {
+    const TYPE: &'static str = "geometry_msgs/msg/PoseStamped";
+    const DEFINITION: &'static str = definition!("geometry_msgs", "PoseStamped").text;
+    const USES: &'static [TypeDefinition] =
+        &[HEADER, TIME, definition!("geometry_msgs", "Pose"), POINT, QUATERNION];
+}
+
 /// A pose with its covariance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PoseWithCovariance {
     /// The pose.
     pub pose: PoseMessage,
@@ -214,7 +254,7 @@ pub struct PoseWithCovariance {
 }
 
 /// A velocity with its covariance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TwistWithCovariance {
     /// How fast.
     pub twist: Twist,
@@ -223,12 +263,12 @@ pub struct TwistWithCovariance {
 }
 
 /// The robot's odometry.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct OdometryMessage {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OdometryMessage<T = &'static str> {
     /// When, in which frame.
-    pub header: Header,
+    pub header: Header<T>,
     /// The frame that is there, and in which the twist is.
-    pub child_frame_id: &'static str,
+    pub child_frame_id: T,
     /// Where it is.
     pub pose: PoseWithCovariance,
     /// How fast it moves.
@@ -255,9 +295,7 @@ impl OdometryMessage {
     /// Odometry with a velocity.
     #[must_use]
     pub fn new(stamp: Stamp, at: &odometry::Odometry, twist: Twist) -> Self {
-        let [x, y] = at.position;
-        let position = Vector3 { x, y, z: 0.0 };
-        let pose = PoseMessage { position, orientation: Quaternion::turn(at.heading) };
+        let pose = PoseMessage::on_floor(at);
         let covariance = Covariance::default();
         Self {
             header: Header { stamp, frame_id: ODOM },
@@ -377,8 +415,9 @@ mod tests {
 
     #[test]
     fn every_definition_comes_with_those_that_it_uses_and_no_others() {
-        closed::<CompressedImage>();
-        closed::<LaserScanMessage>();
+        closed::<CompressedImage<FileBytes>>();
+        closed::<LaserScanMessage<&[f32]>>();
+        closed::<PoseStamped>();
         closed::<Twist>();
         closed::<OdometryMessage>();
         closed::<TFMessage>();

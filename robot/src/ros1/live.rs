@@ -6,13 +6,14 @@ use super::{
     RobotTopics,
     base::LiveBase,
     messages::{
-        LiveMarker, LiveScan, Nanoseconds, Photograph, TWIST, read_marker, read_odometry,
-        read_picture, read_scan,
+        LiveImage, LiveMarker, LiveScan, Nanoseconds, read_marker, read_odometry, read_picture,
+        read_scan,
     },
     node::{Node, Subscription},
     wheels::Wheels,
 };
 use crate::{
+    log::standard::Twist,
     record::{CameraImage, Frame},
     robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive, WheelReading},
@@ -46,7 +47,7 @@ pub enum LiveSensor {
 
 /// The topics of a sensor.
 enum SensorTopics {
-    Camera(Subscription<Photograph>),
+    Camera(Subscription<LiveImage>),
     Laser { scans: Subscription<LiveScan>, markers: Subscription<LiveMarker> },
 }
 
@@ -73,7 +74,7 @@ impl LiveRobot {
                 markers: node.subscribe(&topics.marker, read_marker)?,
             },
         };
-        let wheels = Wheels::new(node.advertise(&topics.wheels, TWIST)?, odometry.clone());
+        let wheels = Wheels::new(node.advertise::<Twist>(&topics.wheels)?, odometry.clone());
         let base = LiveBase::new(wheels, odometry, patience.max(FIRST), Box::new(stop))?;
         let first = patience.max(FIRST);
         match &sensor {

@@ -5,6 +5,7 @@
 //! Both are nodes of one master and have no other connection.
 
 mod base;
+mod definition;
 mod live;
 mod messages;
 mod node;

@@ -13,8 +13,8 @@ use tokio::{
     time::timeout,
 };
 
-use super::messages::MessageKind;
-use crate::robot::RobotError;
+use super::definition::{definition, type_name};
+use crate::{log::message::Message, robot::RobotError};
 
 /// The longest time until the master answers.
 const ANSWER: Duration = Duration::from_secs(10);
@@ -55,15 +55,11 @@ impl Node {
     }
 
     /// Advertises a topic.
-    pub(super) fn advertise(
-        &self,
-        topic: &str,
-        kind: MessageKind,
-    ) -> Result<Publisher, RobotError> {
+    pub(super) fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let advertised = async {
-            let MessageKind { name, definition } = kind;
-            timeout(ANSWER, handle.advertise_any(topic, name, definition, UNDER_WAY, false)).await
+            let (name, text) = (type_name::<M>(), definition::<M>());
+            timeout(ANSWER, handle.advertise_any(topic, &name, &text, UNDER_WAY, false)).await
         };
         let publisher = match self.runner.block_on(advertised) {
             Ok(Ok(publisher)) => publisher,

@@ -7,14 +7,16 @@ use std::{
 
 use super::{
     RobotTopics,
-    messages::{
-        FRAMES, IMAGE, MARKER_POSE, Nanoseconds, ODOMETRY, Reckoning, SCAN, SECOND, frames, image,
-        marker, odometry, read_twist, scan,
-    },
+    messages::{Nanoseconds, Reckoning, SECOND, frames, image, marker, odometry, read_twist, scan},
     node::{Node, Publisher, Subscription},
 };
 use crate::{
-    log::recorder,
+    log::{
+        recorder,
+        standard::{
+            CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped, TFMessage,
+        },
+    },
     record::Frame,
     robot::RobotError,
     simulator::SimulatedRobot,
@@ -60,11 +62,11 @@ pub fn serve(
     let node = Node::new(&topics.master, "/toposlam_simulator")?;
     let mut scout = Scout {
         commands: node.subscribe(&topics.wheels, read_twist)?,
-        odometry: node.advertise(&topics.odometry, ODOMETRY)?,
-        frames: node.advertise(recorder::TF, FRAMES)?,
-        images: node.advertise(&topics.images, IMAGE)?,
-        scans: node.advertise(&topics.scans, SCAN)?,
-        markers: node.advertise(&topics.marker, MARKER_POSE)?,
+        odometry: node.advertise::<OdometryMessage>(&topics.odometry)?,
+        frames: node.advertise::<TFMessage>(recorder::TF)?,
+        images: node.advertise::<CompressedImage<FileBytes>>(&topics.images)?,
+        scans: node.advertise::<LaserScanMessage<&[f32]>>(&topics.scans)?,
+        markers: node.advertise::<PoseStamped>(&topics.marker)?,
         epoch: now(),
         ignores: false,
         exposed: None,

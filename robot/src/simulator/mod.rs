@@ -50,7 +50,7 @@ pub use renderer::render;
 pub use rig::Rig;
 pub use scanner::{
     ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
-    ScannerParams, ScannerParamsError, WallSurface,
+    ScannerParams, WallSurface,
 };
 pub use simulated_robot::SimulatedRobot;
 pub use walls::{BuildingWall, walls};

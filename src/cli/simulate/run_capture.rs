@@ -21,7 +21,7 @@ use toposlam_vision::{annotate, camera::Camera};
 use super::{CliError, Story};
 use crate::{
     cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines},
-    journal::{FrameEntry, Journal, JunctionCall},
+    run_page_data::{PageArrival, PageFrame, RunPageData},
 };
 
 /// Observes a simulated run, and keeps what its page and its picture show.
@@ -29,7 +29,7 @@ pub(super) struct RunCapture<'o> {
     story: Story<StoryLines<'o>>,
     progress: Progress,
     images: KeptImages,
-    rounds: Vec<FrameEntry>,
+    rounds: Vec<PageFrame>,
     /// The number of frames before each arrival, and the door taken before it.
     arrivals: Vec<(usize, Option<Door>)>,
     /// The latest door.
@@ -74,7 +74,7 @@ impl<'o> RunCapture<'o> {
         }
     }
 
-    /// What was kept, as a journal whose ending is still empty.
+    /// What was kept. The ending is still empty.
     ///
     /// # Errors
     /// Returns an error if the story or an image could not be written.
@@ -84,21 +84,21 @@ impl<'o> RunCapture<'o> {
         plan: &Arc<FloorPlan>,
         facing: Dart,
         run: &Run,
-    ) -> Result<Journal, CliError> {
+    ) -> Result<RunPageData, CliError> {
         self.progress.finish();
         let story = self.story.finish()?.into_text();
         if let Some(failure) = self.failure {
             return Err(failure);
         }
         let calls = self.arrivals.into_iter().zip(run.monitor.arrivals());
-        let calls = calls.map(|((rounds, door), arrival)| JunctionCall {
+        let calls = calls.map(|((rounds, door), arrival)| PageArrival {
             rounds,
             pose: arrival.pose,
             door,
             percept: arrival.perceived,
             conforms: arrival.conforms(),
         });
-        Ok(Journal {
+        Ok(RunPageData {
             name: name.to_owned(),
             plan: plan.clone(),
             facing,
@@ -112,7 +112,7 @@ impl<'o> RunCapture<'o> {
 
     fn frame(&mut self, frame: &Frame, pose: Pose) {
         self.progress.part_done(1);
-        let round = FrameEntry {
+        let round = PageFrame {
             time: frame.taken,
             pose,
             moves: self.moves,

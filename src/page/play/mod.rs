@@ -15,7 +15,6 @@ use crate::{
 };
 
 const PAGE: &str = include_str!("../browser/play.html");
-const STYLE: &str = include_str!("../browser/play.css");
 /// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 7] = [
     PAGE_SCRIPT,
@@ -34,7 +33,7 @@ pub fn play_page(world: &NamedWorld, facing: Dart) -> String {
     let start = Some(facing);
     let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
     filled(PAGE, |place| match place {
-        "style" => [PAGE_STYLE, STYLE].concat(),
+        "style" => PAGE_STYLE.to_owned(),
         "name" => escaped(&world.name),
         "picture" => svg(&drawn),
         "marker" => escaped(&drawn.marker_place().unwrap_or_default()),

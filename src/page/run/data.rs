@@ -7,32 +7,32 @@ use serde_json::{Value, json};
 
 use super::{folding, rounded, words};
 use crate::{
-    journal::{FrameEntry, Journal, JunctionCall},
     moment::clock,
     page::template::in_script,
     picture::Drawn,
+    run_page_data::{PageArrival, PageFrame, RunPageData},
 };
 
 /// The radius of the robot's body, in metres.
 const BODY: f64 = 0.41 / 2.0;
 
 /// The data as JSON that can stand inside a `script` element.
-pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
+pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
     let mut album = Album::default();
-    let rounds = journal.rounds.iter().zip(&drawn.places);
+    let rounds = run_data.rounds.iter().zip(&drawn.places);
     let mut rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
     if let Some(last) = rounds.last_mut() {
         // The last frame shows the end of the run.
-        last["story"] = json!(journal.story.len());
-        last["maps"] = json!(journal.maps.len());
+        last["story"] = json!(run_data.story.len());
+        last["maps"] = json!(run_data.maps.len());
     }
     in_script(&json!({
         "rounds": rounds,
-        "calls": journal.calls.iter().map(call).collect::<Vec<_>>(),
-        "story": journal.story,
+        "calls": run_data.calls.iter().map(call).collect::<Vec<_>>(),
+        "story": run_data.story,
         "images": album.images,
         "body": rounded(BODY * drawn.metre),
-        "trail": folding::json(journal),
+        "trail": folding::json(run_data),
     }))
 }
 
@@ -53,7 +53,7 @@ impl<'a> Album<'a> {
     }
 }
 
-fn round<'a>(round: &'a FrameEntry, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
+fn round<'a>(round: &'a PageFrame, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
     json!({
         "time": clock(round.time),
         "x": rounded(x),
@@ -70,7 +70,7 @@ fn round<'a>(round: &'a FrameEntry, [x, y]: [f64; 2], album: &mut Album<'a>) -> 
     })
 }
 
-fn call(call: &JunctionCall) -> Value {
+fn call(call: &PageArrival) -> Value {
     json!({
         "rounds": call.rounds,
         "percept": call.percept.to_string(),

@@ -10,13 +10,13 @@ use serde_json::{Value, json};
 
 use super::rounded;
 use crate::{
-    journal::Journal,
     model::{
         embedded_graph::Dart,
         folding::{FoldedTrail, fold},
         percept::{Door, Percept},
     },
     picture::{OpenGraph, open_layout},
+    run_page_data::RunPageData,
 };
 
 /// How far a layer is to the right of the one before, and above it, in radii of a disc.
@@ -45,9 +45,9 @@ struct Stage {
 }
 
 /// The data; `null` if there is no arrival.
-pub(super) fn json(journal: &Journal) -> Value {
-    let percepts: Vec<Percept> = journal.calls.iter().map(|call| call.percept).collect();
-    let doors: Vec<Door> = journal.calls.iter().filter_map(|call| call.door).collect();
+pub(super) fn json(run_data: &RunPageData) -> Value {
+    let percepts: Vec<Percept> = run_data.calls.iter().map(|call| call.percept).collect();
+    let doors: Vec<Door> = run_data.calls.iter().filter_map(|call| call.door).collect();
     let moves = explained_moves(&percepts, &doors);
     let Some((vertices, stages, last)) = grown(&percepts, &doors[..moves.unwrap_or(0)]) else {
         return Value::Null;
@@ -220,20 +220,20 @@ mod tests {
 
     #[test]
     fn a_contradiction_ends_the_trail() {
-        let data = json(&example::journal());
+        let data = json(&example::run_page_data());
         // The robot comes back to the corner, and perceives a door more.
         assert_eq!(data["stages"].as_array().unwrap().len(), 2);
         assert_eq!(data["contradicted"], true);
-        let mut journal = example::journal();
-        journal.calls.pop();
-        assert_eq!(json(&journal)["contradicted"], false);
-        journal.calls.clear();
-        assert_eq!(json(&journal), Value::Null);
+        let mut run_data = example::run_page_data();
+        run_data.calls.pop();
+        assert_eq!(json(&run_data)["contradicted"], false);
+        run_data.calls.clear();
+        assert_eq!(json(&run_data), Value::Null);
     }
 
     #[test]
     fn each_number_of_the_data_is_one_of_its_parts() {
-        let data = json(&example::journal());
+        let data = json(&example::run_page_data());
         let count = |key: &str| data[key].as_array().unwrap().len();
         let [places, darts, vertices] = ["places", "curves", "vertices"].map(count);
         assert_eq!((places, darts, vertices, count("stubs")), (2, 3, 2, 3));

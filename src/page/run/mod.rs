@@ -7,8 +7,8 @@ mod words;
 
 use super::{PAGE_SCRIPT, PAGE_STYLE, template::filled};
 use crate::{
-    journal::Journal,
     picture::{escaped, growth, run_drawing},
+    run_page_data::RunPageData,
 };
 
 const PAGE: &str = include_str!("../browser/run.html");
@@ -24,31 +24,31 @@ const SCRIPT: [&str; 4] = [
 
 /// The page of a run as an HTML document. The same run gives the same bytes.
 #[must_use]
-pub fn run_page(journal: &Journal) -> String {
-    let drawn = run_drawing(journal);
+pub fn run_page(run_data: &RunPageData) -> String {
+    let drawn = run_drawing(run_data);
     filled(PAGE, |place| match place {
-        "title" => escaped(&journal.name),
-        "about" => escaped(&words::about(journal)),
+        "title" => escaped(&run_data.name),
+        "about" => escaped(&words::about(run_data)),
         "style" => PAGE_STYLE.to_owned(),
-        "layout" if !has_images(journal) => " no-camera".to_owned(),
+        "layout" if !has_images(run_data) => " no-camera".to_owned(),
         "plan" => drawn.svg.clone(),
-        "camera" if has_images(journal) => CAMERA.to_owned(),
-        "maps" => maps(journal),
-        "data" => data::json(journal, &drawn),
+        "camera" if has_images(run_data) => CAMERA.to_owned(),
+        "maps" => maps(run_data),
+        "data" => data::json(run_data, &drawn),
         "script" => SCRIPT.concat(),
         _ => String::new(),
     })
 }
 
 /// Whether any frame has an image.
-fn has_images(journal: &Journal) -> bool {
-    journal.rounds.iter().any(|round| round.image.is_some())
+fn has_images(run_data: &RunPageData) -> bool {
+    run_data.rounds.iter().any(|round| round.image.is_some())
 }
 
 /// Every map, each in its own element; the page shows one of them.
-fn maps(journal: &Journal) -> String {
+fn maps(run_data: &RunPageData) -> String {
     let of = |svg: &String| format!("<div class=\"stage\" hidden>\n{svg}</div>\n");
-    growth(&journal.maps).iter().map(of).collect()
+    growth(&run_data.maps).iter().map(of).collect()
 }
 
 /// Rounded to tenths.
@@ -75,13 +75,13 @@ mod tests {
 
     #[test]
     fn names_are_escaped_everywhere() {
-        let mut journal = example::journal();
-        for text in [&mut journal.name, &mut journal.ending] {
+        let mut run_data = example::run_page_data();
+        for text in [&mut run_data.name, &mut run_data.ending] {
             NASTY.clone_into(text);
         }
-        journal.story = vec![NASTY.to_owned(); 4];
-        journal.rounds.iter_mut().for_each(|round| NASTY.clone_into(&mut round.scene));
-        let document = run_page(&journal);
+        run_data.story = vec![NASTY.to_owned(); 4];
+        run_data.rounds.iter_mut().for_each(|round| NASTY.clone_into(&mut round.scene));
+        let document = run_page(&run_data);
         assert_escaped(&document);
         let data = data_of(&document);
         assert_eq!(
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn an_image_that_stays_the_same_is_stored_once() {
-        let document = run_page(&example::journal());
+        let document = run_page(&example::run_page_data());
         let data = data_of(&document);
         let shown: Vec<_> = (0..7).map(|at| data["rounds"][at]["image"].clone()).collect();
         assert_eq!(Value::from(shown), json!([null, 0, 1, 2, 3, 3, 3]));
@@ -102,19 +102,19 @@ mod tests {
 
     #[test]
     fn a_run_without_images_has_no_camera_panel() {
-        let mut journal = example::journal();
+        let mut run_data = example::run_page_data();
         let camera = "<figure class=\"panel camera\">";
-        assert!(run_page(&journal).contains(camera));
-        journal.rounds.iter_mut().for_each(|round| round.image = None);
-        let page = run_page(&journal);
+        assert!(run_page(&run_data).contains(camera));
+        run_data.rounds.iter_mut().for_each(|round| round.image = None);
+        let page = run_page(&run_data);
         assert!(!page.contains(camera) && !page.contains("No image was kept"));
         assert!(page.contains("<div class=\"run no-camera\">"));
     }
 
     #[test]
     fn the_data_has_each_frame() {
-        let journal = example::journal();
-        let data = data_of(&run_page(&journal));
+        let run_data = example::run_page_data();
+        let data = data_of(&run_page(&run_data));
         let round = &data["rounds"][1];
         let field = |key: &str| round[key].clone();
         assert_eq!(field("time"), "0:02.5");
@@ -124,15 +124,15 @@ mod tests {
         assert_eq!((field("moves"), field("story"), field("maps")), (json!(1), json!(0), json!(1)));
         assert_eq!(data["calls"][2], json!({"rounds": 7, "percept": "3 doors", "conforms": false}));
         // The last frame has the whole story, with what came after it.
-        assert_eq!(data["rounds"][6]["story"], journal.story.len());
-        assert_eq!(data["rounds"][6]["maps"], journal.maps.len());
+        assert_eq!(data["rounds"][6]["story"], run_data.story.len());
+        assert_eq!(data["rounds"][6]["maps"], run_data.maps.len());
     }
 
     #[test]
     fn the_same_run_gives_the_same_page_with_all_its_maps() {
-        let journal = example::journal();
-        let document = run_page(&journal);
-        assert_eq!(document, run_page(&journal));
-        assert_eq!(document.matches("class=\"stage\"").count(), journal.maps.len());
+        let run_data = example::run_page_data();
+        let document = run_page(&run_data);
+        assert_eq!(document, run_page(&run_data));
+        assert_eq!(document.matches("class=\"stage\"").count(), run_data.maps.len());
     }
 }

@@ -1,19 +1,19 @@
 //! The words of the page of a run.
 
 use crate::{
-    journal::Journal,
     model::driving::algorithm2::{Command, PathState},
     moment::clock,
+    run_page_data::RunPageData,
 };
 
 /// The result and the length of the run.
-pub(super) fn about(journal: &Journal) -> String {
-    let ending = journal.ending.trim_end_matches('.');
-    let frames = match journal.rounds.len() {
+pub(super) fn about(run_data: &RunPageData) -> String {
+    let ending = run_data.ending.trim_end_matches('.');
+    let frames = match run_data.rounds.len() {
         1 => "1 frame".to_owned(),
         count => format!("{count} frames"),
     };
-    let Some(last) = journal.rounds.last() else {
+    let Some(last) = run_data.rounds.last() else {
         return format!("{ending}. {frames}.");
     };
     format!("{ending}. {frames}, {} of simulated time.", clock(last.time))

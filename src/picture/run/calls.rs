@@ -10,7 +10,7 @@ use super::{
     },
     ground::{Ground, along},
 };
-use crate::{journal::JunctionCall, model::embedded_graph::Vertex};
+use crate::{model::embedded_graph::Vertex, run_page_data::PageArrival};
 
 /// The radius of a badge, and the distance between two badges.
 const BADGE: f64 = 8.0;
@@ -28,8 +28,8 @@ struct Badge {
 }
 
 impl Badges {
-    pub(super) fn of(ground: &Ground, calls: &[JunctionCall]) -> Self {
-        let mut counted: BTreeMap<_, BTreeMap<_, JunctionCall>> = BTreeMap::new();
+    pub(super) fn of(ground: &Ground, calls: &[PageArrival]) -> Self {
+        let mut counted: BTreeMap<_, BTreeMap<_, PageArrival>> = BTreeMap::new();
         for (number, call) in calls.iter().enumerate() {
             // What is at no junction stands for itself.
             let place = junction(ground, call).ok_or(number);
@@ -43,7 +43,7 @@ impl Badges {
                     Ok(vertex) => beside(ground, *vertex, number as f64),
                     Err(_) => ground.at(call.pose.position) + Point::new(1.0, -1.0) * (1.4 * BADGE),
                 };
-                let JunctionCall { rounds, percept, conforms, .. } = *call;
+                let PageArrival { rounds, percept, conforms, .. } = *call;
                 badges.push(Badge { at, degree: percept.degree, conforms, rounds });
             }
         }
@@ -77,7 +77,7 @@ impl Badges {
 }
 
 /// Draws where the robot stood at each call.
-pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[JunctionCall], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[PageArrival], shift: Point) {
     for call in calls {
         let at = ground.at(call.pose.position) + shift;
         let (x, y, rounds) = (short(at.x), short(at.y), call.rounds);
@@ -97,7 +97,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[JunctionCall], sh
 }
 
 /// The junction at which the robot stood.
-fn junction(ground: &Ground, call: &JunctionCall) -> Option<Vertex> {
+fn junction(ground: &Ground, call: &PageArrival) -> Option<Vertex> {
     let at = ground.at(call.pose.position);
     let off = |vertex: Vertex| {
         let off = at - ground.turning_point(vertex);

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use toposlam_robot::pose::Pose;
 
 use crate::{
-    journal::{FrameEntry, Journal, JunctionCall},
     model::{
         driving::algorithm2::{Command, PathState},
         embedded_graph::Dart,
@@ -15,10 +14,11 @@ use crate::{
         percept::{Door, Percept, Sighting},
         world::GraphWorld,
     },
+    run_page_data::{PageArrival, PageFrame, RunPageData},
 };
 
 /// Seven frames; the last three images are the same, and the third call is wrong.
-pub(crate) fn journal() -> Journal {
+pub(crate) fn run_page_data() -> RunPageData {
     let places = [("corner", [0.0, 0.0]), ("north", [0.0, 4.0]), ("east", [4.0, 0.0])];
     let places = places.map(|(name, place)| (name.to_owned(), place));
     let hallways = [("corner", "north"), ("corner", "east")];
@@ -26,7 +26,7 @@ pub(crate) fn journal() -> Journal {
     let plan = Arc::new(FloorPlan::new(1.6, &places, &hallways).unwrap());
     let facing = Dart(0);
     let maps = maps(&plan, facing);
-    let round = |(number, y): (usize, f64)| FrameEntry {
+    let round = |(number, y): (usize, f64)| PageFrame {
         time: 2.5 * number as f64,
         pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
         moves: number.div_ceil(3) as u64,
@@ -39,14 +39,14 @@ pub(crate) fn journal() -> Journal {
     };
     let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
     let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
-    let call = |(frames, degree): (usize, u32)| JunctionCall {
+    let call = |(frames, degree): (usize, u32)| PageArrival {
         rounds: frames,
         pose: rounds[frames - 1].pose,
         door: (frames > 1).then_some(Door(0)),
         percept: Percept { degree, sighting: Sighting::Nothing },
         conforms: frames < 7,
     };
-    Journal {
+    RunPageData {
         name: "two hallways".to_owned(),
         calls: [(1, 2), (4, 1), (7, 3)].map(call).to_vec(),
         plan,

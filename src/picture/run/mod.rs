@@ -15,7 +15,7 @@ use super::{
     geometry::{Extent, Point},
     svg::{NORTH, Page, Sheet},
 };
-use crate::journal::Journal;
+use crate::run_page_data::RunPageData;
 pub(super) use trajectory::{pieces, ramp};
 
 use calls::Badges;
@@ -23,19 +23,19 @@ use ground::Ground;
 
 /// The picture of a run as an SVG document. The same run gives the same bytes.
 #[must_use]
-pub fn run_svg(journal: &Journal) -> String {
-    let drawing = RunDrawing::of(journal);
+pub fn run_svg(run_data: &RunPageData) -> String {
+    let drawing = RunDrawing::of(run_data);
     let extent = drawing.extent();
     let metre = Some(drawing.ground.metre);
-    let (title, caption) = (&journal.name, &journal.ending);
+    let (title, caption) = (&run_data.name, &run_data.ending);
     let sheet = Sheet { title, caption, extent, metre, up: NORTH };
-    let legend = sheet.legend(legend(journal));
+    let legend = sheet.legend(legend(run_data));
     sheet.document(&legend, None, |page, shift| drawing.write(page, shift))
 }
 
 /// The drawing alone, with the positions of the frames.
-pub(crate) fn run_drawing(journal: &Journal) -> Drawn {
-    let drawing = RunDrawing::of(journal);
+pub(crate) fn run_drawing(run_data: &RunPageData) -> Drawn {
+    let drawing = RunDrawing::of(run_data);
     let extent = drawing.extent();
     let sheet = Sheet { title: "", caption: "", extent, metre: None, up: NORTH };
     let mut moved = Point::default();
@@ -43,7 +43,7 @@ pub(crate) fn run_drawing(journal: &Journal) -> Drawn {
         moved = shift;
         drawing.write(page, shift);
     });
-    let places = journal.rounds.iter().map(|round| {
+    let places = run_data.rounds.iter().map(|round| {
         let at = drawing.ground.at(round.pose.position) + moved;
         [at.x, at.y]
     });
@@ -62,16 +62,16 @@ pub(crate) struct Drawn {
 
 /// Draws everything.
 struct RunDrawing<'a> {
-    journal: &'a Journal,
+    run_data: &'a RunPageData,
     ground: Ground<'a>,
     badges: Badges,
 }
 
 impl<'a> RunDrawing<'a> {
-    fn of(journal: &'a Journal) -> Self {
-        let ground = Ground::of(&journal.plan);
-        let badges = Badges::of(&ground, &journal.calls);
-        Self { journal, ground, badges }
+    fn of(run_data: &'a RunPageData) -> Self {
+        let ground = Ground::of(&run_data.plan);
+        let badges = Badges::of(&ground, &run_data.calls);
+        Self { run_data, ground, badges }
     }
 
     fn extent(&self) -> Extent {
@@ -79,31 +79,31 @@ impl<'a> RunDrawing<'a> {
         for badge in self.badges.extents() {
             extent.join(badge);
         }
-        for round in &self.journal.rounds {
+        for round in &self.run_data.rounds {
             extent.include(self.ground.at(round.pose.position));
         }
         extent
     }
 
     fn write(&self, page: &mut Page, shift: Point) {
-        let Self { journal, ground, badges } = self;
+        let Self { run_data, ground, badges } = self;
         ground.write(page, shift);
-        passes::write(page, ground, &journal.rounds, shift);
-        trajectory::write(page, ground, &journal.rounds, shift);
-        ground.write_marker(page, journal.facing, shift);
-        calls::write(page, ground, &journal.calls, shift);
+        passes::write(page, ground, &run_data.rounds, shift);
+        trajectory::write(page, ground, &run_data.rounds, shift);
+        ground.write_marker(page, run_data.facing, shift);
+        calls::write(page, ground, &run_data.calls, shift);
         badges.write(page, shift);
     }
 }
 
 /// The meaning of the signs.
-fn legend(journal: &Journal) -> Vec<String> {
+fn legend(run_data: &RunPageData) -> Vec<String> {
     let mut lines = vec![
         "line: the robot's path, from light at the start to dark at the end".to_owned(),
         "along a hallway: the numbers of the moves through it".to_owned(),
         "in a circle: the number of doors that the robot counted there".to_owned(),
     ];
-    if journal.calls.iter().any(|call| !call.conforms) {
+    if run_data.calls.iter().any(|call| !call.conforms) {
         lines.push("a red cross: not as specified".to_owned());
     }
     lines
@@ -133,8 +133,8 @@ mod tests {
 
     #[test]
     fn the_line_goes_through_the_place_of_every_image() {
-        let journal = example::journal();
-        let drawn = run_drawing(&journal);
+        let run_data = example::run_page_data();
+        let drawn = run_drawing(&run_data);
         let document = Document::parse(&drawn.svg).unwrap();
         let mut way = Vec::new();
         for line in of_class(&document, "trajectory") {
@@ -143,7 +143,7 @@ mod tests {
             assert!(way.pop().is_none_or(|end| end == piece[0]));
             way.extend(piece);
         }
-        assert_eq!(way.len(), journal.rounds.len());
+        assert_eq!(way.len(), run_data.rounds.len());
         for (on_line, [x, y]) in way.iter().zip(&drawn.places) {
             assert!(on_line.distance(Point::new(*x, *y)) < 0.1);
         }
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn every_call_is_marked_and_the_wrong_ones_with_a_cross() {
-        let svg = run_svg(&example::journal());
+        let svg = run_svg(&example::run_page_data());
         let document = Document::parse(&svg).unwrap();
         let rounds = |class| {
             let signs = of_class(&document, class);
@@ -165,7 +165,7 @@ mod tests {
         let degrees: Vec<_> = degrees.iter().filter_map(Node::text).collect();
         assert_eq!(degrees, ["2", "3", "1"], "at the corner twice, rightly and wrongly");
         assert!(svg.contains("a red cross"));
-        let mut right = example::journal();
+        let mut right = example::run_page_data();
         right.calls.iter_mut().for_each(|call| call.conforms = true);
         assert!(!run_svg(&right).contains("a red cross"));
     }
@@ -173,8 +173,8 @@ mod tests {
     #[test]
     fn the_marker_lies_on_the_turning_point_and_points_along_its_hallway() {
         for (facing, ahead) in [(Dart(0), Point::new(0.0, -1.0)), (Dart(1), Point::new(1.0, 0.0))] {
-            let journal = Journal { facing, ..example::journal() };
-            let drawn = run_drawing(&journal);
+            let run_data = RunPageData { facing, ..example::run_page_data() };
+            let drawn = run_drawing(&run_data);
             let document = Document::parse(&drawn.svg).unwrap();
             let signs = of_class(&document, "marker");
             let shape = |sign: usize| points(signs[sign].attribute("d").unwrap());
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn the_numbers_of_moves_are_on_the_right_of_the_path() {
-        let drawn = run_drawing(&example::journal());
+        let drawn = run_drawing(&example::run_page_data());
         let document = Document::parse(&drawn.svg).unwrap();
         let east_of_hallway =
             |text: &Node| text.attribute("x").unwrap().parse::<f64>().unwrap() > drawn.places[0][0];
@@ -207,10 +207,13 @@ mod tests {
     #[test]
     fn the_same_run_gives_the_same_bytes_and_any_name_is_text() {
         let nasty = "<i>&\"";
-        let journal =
-            Journal { name: nasty.to_owned(), ending: nasty.to_owned(), ..example::journal() };
-        let svg = run_svg(&journal);
-        assert_eq!(svg, run_svg(&journal.clone()));
+        let run_data = RunPageData {
+            name: nasty.to_owned(),
+            ending: nasty.to_owned(),
+            ..example::run_page_data()
+        };
+        let svg = run_svg(&run_data);
+        assert_eq!(svg, run_svg(&run_data.clone()));
         let document = Document::parse(&svg).unwrap();
         for class in ["title", "caption"] {
             assert_eq!(of_class(&document, class)[0].text(), Some(nasty));
@@ -219,14 +222,14 @@ mod tests {
 
     #[test]
     fn a_run_that_never_began_is_drawn() {
-        let journal = Journal {
+        let run_data = RunPageData {
             rounds: Vec::new(),
             calls: Vec::new(),
             story: Vec::new(),
             maps: Vec::new(),
-            ..example::journal()
+            ..example::run_page_data()
         };
-        let svg = run_svg(&journal);
+        let svg = run_svg(&run_data);
         assert!(Document::parse(&svg).is_ok());
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }

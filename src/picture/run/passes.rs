@@ -10,7 +10,7 @@ use super::{
     },
     ground::{Ground, along},
 };
-use crate::{journal::FrameEntry, model::embedded_graph::Dart};
+use crate::{model::embedded_graph::Dart, run_page_data::PageFrame};
 
 /// The font size of the numbers, and the height of a line.
 const SIZE: f64 = 9.5;
@@ -19,7 +19,7 @@ const LINE: f64 = 11.5;
 const CLEAR: f64 = 6.0;
 
 /// Draws the numbers of all moves.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame], shift: Point) {
     let graph = ground.plan.graph();
     let mut through = vec![Vec::new(); graph.dart_count()];
     for of_move in rounds.chunk_by(|one, other| one.moves == other.moves) {
@@ -35,9 +35,9 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shi
 }
 
 /// The dart by which the robot left, if it reached the other end of the hallway.
-fn passed(ground: &Ground, rounds: &[FrameEntry]) -> Option<Dart> {
+fn passed(ground: &Ground, rounds: &[PageFrame]) -> Option<Dart> {
     let graph = ground.plan.graph();
-    let near = |round: &FrameEntry, dart: Dart| {
+    let near = |round: &PageFrame, dart: Dart| {
         let at = ground.at(round.pose.position);
         at.distance(ground.turning_point(graph.vertex(dart))) < ground.half()
     };

@@ -9,7 +9,7 @@ use super::{
     },
     ground::Ground,
 };
-use crate::journal::FrameEntry;
+use crate::run_page_data::PageFrame;
 
 /// The most colours of the line.
 const COLOURS: usize = 40;
@@ -17,7 +17,7 @@ const COLOURS: usize = 40;
 const RAMP: [[f64; 3]; 3] = [[126.0, 187.0, 234.0], [44.0, 116.0, 186.0], [9.0, 32.0, 66.0]];
 
 /// Draws the line: one piece for each colour, each from the end of the last.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame], shift: Point) {
     page.line(
         "<g fill=\"none\" stroke-width=\"1.7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
     );

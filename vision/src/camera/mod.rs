@@ -14,6 +14,7 @@ mod mei;
 mod morphology;
 mod ocam;
 mod optics_file;
+pub mod params;
 pub mod rim;
 mod root;
 mod spherical;

@@ -15,6 +15,7 @@ use thiserror::Error;
 use super::{
     Mask, length,
     morphology::{Colours, close, dilate, open, pieces, smooth},
+    params::UnchangingParams,
     rim::Rim,
 };
 
@@ -25,7 +26,7 @@ pub enum UnchangingError {
     #[error(
         "{0} images are too few to find what never changes; take at least {least}, from different \
          places",
-        least = FEWEST
+        least = UNCHANGING.fewest
     )]
     TooFew(usize),
     /// The images are all the same.
@@ -36,11 +37,8 @@ pub enum UnchangingError {
     Still,
 }
 
-/// The least number of images.
-pub const FEWEST: usize = 4;
-
-/// The longest side in pixels. Larger images are reduced.
-const LONGEST: u32 = 640;
+/// The parameters.
+const UNCHANGING: UnchangingParams = UnchangingParams::DEFAULT;
 
 /// The mask of the pixels inside the rim that change: they can show floor or walls.
 ///
@@ -50,11 +48,11 @@ const LONGEST: u32 = 640;
 /// # Errors
 /// Returns an error if there are too few images, or if they are all the same.
 pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, UnchangingError> {
-    if images.len() < FEWEST {
+    if images.len() < UNCHANGING.fewest {
         return Err(UnchangingError::TooFew(images.len()));
     }
     let (width, height) = images[0].dimensions();
-    let factor = width.max(height).div_ceil(LONGEST);
+    let factor = width.max(height).div_ceil(UNCHANGING.longest);
     let disc = Disc {
         centre: rim.centre.map(|at| (at + 0.5) / f64::from(factor) - 0.5),
         radius: rim.radius / f64::from(factor),
@@ -102,22 +100,15 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     let all = std::f64::consts::PI * disc.radius * disc.radius;
     let alive = |piece: usize| {
         let size = f64::from(sizes[piece]);
-        piece > 0 && size > SMALL * all && f64::from(changing[piece]) > LEAST_CHANGING * size
+        piece > 0
+            && size > UNCHANGING.small * all
+            && f64::from(changing[piece]) > UNCHANGING.least_changing * size
     };
     let seen = binary(width, height, |u, v| alive(pieces.get_pixel(u, v)[0] as usize));
     let seen = open(&close(&seen, 1), 2);
     let count = seen.pixels().filter(|pixel| pixel[0] > 0).count() as f64;
-    if count < LEAST_SEEN * all { Err(UnchangingError::Still) } else { Ok(seen) }
+    if count < UNCHANGING.least_seen * all { Err(UnchangingError::Still) } else { Ok(seen) }
 }
-
-/// The least share of a piece's pixels that change in some image.
-const LEAST_CHANGING: f64 = 0.04;
-
-/// Pieces with a smaller share of the mirror are ignored.
-const SMALL: f64 = 0.01;
-
-/// The least share of the mirror that must be seen.
-const LEAST_SEEN: f64 = 0.3;
 
 fn binary(width: u32, height: u32, is: impl Fn(u32, u32) -> bool) -> GrayImage {
     GrayImage::from_fn(width, height, |u, v| Luma([if is(u, v) { 255 } else { 0 }]))
@@ -136,19 +127,15 @@ struct Slopes {
 
 impl Slopes {
     fn of(image: &RgbImage, factor: u32) -> Self {
-        /// Added to the brightness, so that its logarithm is finite.
-        const BLACK: f32 = 8.0;
-        /// The sigma of the smoothing, in pixels.
-        const SIGMA: f32 = 1.0;
         let image = shrunk(image, factor);
         let (width, height) = image.dimensions();
         // The noise of a slope after smoothing, from the noise before it; there are six slopes.
-        let share =
-            6.0_f32.sqrt() * noise(&image) / (SIGMA * SIGMA * (8.0 * std::f32::consts::PI).sqrt());
+        let share = 6.0_f32.sqrt() * noise(&image)
+            / (UNCHANGING.sigma * UNCHANGING.sigma * (8.0 * std::f32::consts::PI).sqrt());
         let logarithms = ImageBuffer::from_fn(width, height, |u, v| {
-            Rgb(image.get_pixel(u, v).0.map(|channel| (channel + BLACK).ln()))
+            Rgb(image.get_pixel(u, v).0.map(|channel| (channel + UNCHANGING.black).ln()))
         });
-        let smooth = smooth(&logarithms, SIGMA);
+        let smooth = smooth(&logarithms, UNCHANGING.sigma);
         let at = |u: u32, v: u32| smooth.get_pixel(u.min(width - 1), v.min(height - 1)).0;
         let rise = |(u, v): (u32, u32)| {
             let (right, left) = (at(u + 1, v), at(u.max(1) - 1, v));
@@ -168,7 +155,7 @@ impl Slopes {
     fn across(&self, bearing: usize, disc: &Disc) -> [f32; 3] {
         let angle = std::f64::consts::TAU * (bearing as f64 + 0.5) / Struts::BEARINGS as f64;
         let (sine, cosine) = angle.sin_cos();
-        let [first, last] = Struts::REACH.map(|share| (share * disc.radius) as u32);
+        let [first, last] = UNCHANGING.strut_radii.map(|share| (share * disc.radius) as u32);
         let (mut sum, mut count) = ([0.0; 3], 0.0_f32);
         for radius in first..last {
             let out = [cosine, sine].map(|along| f64::from(radius) * along);
@@ -231,10 +218,6 @@ struct Struts {
 
 impl Struts {
     const BEARINGS: usize = 2048;
-    /// The radii at which they are searched for, as shares of the rim's.
-    const REACH: [f64; 2] = [0.25, 0.97];
-    /// The most bearings that one strut hides: about seven degrees.
-    const WIDEST: usize = 40;
 
     /// The struts that are in most of the images.
     fn in_all(slopes: &[Slopes], disc: &Disc) -> Self {
@@ -262,7 +245,7 @@ impl Struts {
         let steep = (8.0 * sizes[sizes.len() / 2]).max(0.004);
         // It gets darker and then as bright again, or the other way round.
         for (from, &rise) in rises.iter().enumerate().filter(|(_, rise)| rise.abs() > steep) {
-            let back = (1..=Self::WIDEST)
+            let back = (1..=UNCHANGING.widest_strut)
                 .rev()
                 .find(|step| -rise.signum() * rises[(from + step) % Self::BEARINGS] > steep);
             // With a margin on both sides.
@@ -290,8 +273,6 @@ struct Changes {
 
 impl Changes {
     fn between(slopes: &[Slopes]) -> Self {
-        /// The least slope of an edge.
-        const STEEP: f32 = 0.05;
         let (width, height) = (slopes[0].width, slopes[0].height);
         let share = 1.0 / slopes.len() as f32;
         let mut along = vec![0.0; slopes.len()];
@@ -313,12 +294,12 @@ impl Changes {
             // One image in five may differ.
             along.sort_by(f32::total_cmp);
             let low = along[slopes.len() / 5];
-            if steep > STEEP.max(4.0 * noise * share.sqrt()) && low > 0.4 * steep {
+            if steep > UNCHANGING.steep.max(4.0 * noise * share.sqrt()) && low > 0.4 * steep {
                 stays.0 = [255];
             }
             let moving = |slopes: &Slopes| {
                 let off = size(std::array::from_fn(|part| slopes.rises[at][part] - mean[part]));
-                off > (1.5 * STEEP).max(5.0 * slopes.noise[at]) && off > steep
+                off > (1.5 * UNCHANGING.steep).max(5.0 * slopes.noise[at]) && off > steep
             };
             if slopes.iter().any(moving) {
                 moves.0 = [255];

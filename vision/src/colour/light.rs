@@ -1,12 +1,9 @@
 //! The light of an image, from the floor beside the robot's body.
-//!
-//! The constants are those of the colour model, not of [`SensingParams`](crate::params::SensingParams):
-//! training and sensing must use the same.
 
 use image::RgbImage;
 use thiserror::Error;
 
-use super::Gain;
+use super::{Gain, params::LightParams};
 use crate::camera::Camera;
 
 /// A ring of samples beside the robot's body, evenly spread in bearing and range. There is floor
@@ -18,21 +15,19 @@ pub struct FloorRing {
     pixels: Vec<usize>,
 }
 
-/// The inner and the outer radius of the ring, in metres. The body hides what is nearer; farther away
-/// there may be walls.
-const RING: [f64; 2] = [0.34, 0.50];
-const BEARINGS: u32 = 240;
-const RANGES: u32 = 12;
+/// The parameters.
+const LIGHT: LightParams = LightParams::DEFAULT;
 
 impl FloorRing {
     /// The ring in the images of a camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
-        let samples = (0..RANGES).flat_map(|nth| {
-            let range = RING[0] + (RING[1] - RING[0]) * f64::from(nth) / f64::from(RANGES - 1);
-            (0..BEARINGS).map(move |nth| {
-                let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(BEARINGS);
+        let samples = (0..LIGHT.ranges).flat_map(|nth| {
+            let range = LIGHT.ring[0]
+                + (LIGHT.ring[1] - LIGHT.ring[0]) * f64::from(nth) / f64::from(LIGHT.ranges - 1);
+            (0..LIGHT.bearings).map(move |nth| {
+                let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(LIGHT.bearings);
                 [range * bearing.cos(), range * bearing.sin()]
             })
         });
@@ -76,17 +71,6 @@ pub enum LightError {
     Mixed,
 }
 
-/// From this level on, a channel may be saturated.
-const BURNT: u8 = 250;
-/// Below this level of the brightest channel, single levels are too coarse to be multiplied.
-const DARK: f64 = 16.0;
-/// Levels below this are noise.
-const NOISE: f64 = 4.0;
-/// Samples of the floor differ from its colour by at most this factor.
-const SPREAD: f64 = 1.35;
-/// At least this share of the samples is floor.
-const AGREEING: f64 = 0.3;
-
 /// The colour of the floor in a ring of samples.
 ///
 /// It starts with the median of each channel and continues with the mean of the samples near it in all
@@ -94,8 +78,11 @@ const AGREEING: f64 = 0.3;
 /// they are less than half of the samples; then they are left out and do not move the mean. If the light
 /// changes around the robot, the mean is in the middle; a mode would be at one end.
 pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
-    let lit: Vec<_> =
-        ring.iter().copied().filter(|colour| colour.iter().all(|&level| level < BURNT)).collect();
+    let lit: Vec<_> = ring
+        .iter()
+        .copied()
+        .filter(|colour| colour.iter().all(|&level| level < LIGHT.burnt))
+        .collect();
     if ring.is_empty() {
         return Err(LightError::Unseen);
     }
@@ -118,9 +105,9 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
         }
         share = f64::from(count) / ring.len() as f64;
     }
-    if floor.into_iter().fold(0.0, f64::max) < DARK {
+    if floor.into_iter().fold(0.0, f64::max) < LIGHT.dark {
         Err(LightError::TooDark)
-    } else if share < AGREEING {
+    } else if share < LIGHT.agreeing {
         Err(LightError::Mixed)
     } else {
         Ok(floor)
@@ -129,8 +116,8 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
 
 fn is_near(floor: [f64; 3], colour: [u8; 3]) -> bool {
     floor.into_iter().zip(colour).all(|(floor, level)| {
-        let (floor, level) = (floor.max(NOISE), f64::from(level).max(NOISE));
-        level <= floor * SPREAD + NOISE && level >= floor / SPREAD - NOISE
+        let (floor, level) = (floor.max(LIGHT.noise), f64::from(level).max(LIGHT.noise));
+        level <= floor * LIGHT.spread + LIGHT.noise && level >= floor / LIGHT.spread - LIGHT.noise
     })
 }
 
@@ -151,7 +138,7 @@ fn median(colours: &[[u8; 3]]) -> [f64; 3] {
 
 /// The gain that changes the floor of an image from one colour to another.
 pub(super) fn gain(from: [f64; 3], to: [f64; 3]) -> Gain {
-    Gain::between(from.map(|level| level.max(NOISE)), to.map(|level| level.max(NOISE)))
+    Gain::between(from.map(|level| level.max(LIGHT.noise)), to.map(|level| level.max(LIGHT.noise)))
 }
 
 #[cfg(test)]

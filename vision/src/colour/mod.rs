@@ -12,6 +12,7 @@ mod hsv;
 mod labels;
 mod light;
 mod model;
+pub mod params;
 mod table;
 mod training;
 

@@ -9,17 +9,13 @@ use super::{
     hsv::{BINS, Bin},
     light::{self, LightError},
     model::Histogram,
+    params::TrainingParams,
     table::{self, CELLS},
 };
 use crate::camera::Camera;
 
-/// The radius of the floor that is learned from, in metres from the robot's centre.
-const RANGE: f64 = 3.0;
-
-/// The best values on rendered images of other buildings than those learned from.
-const SMOOTHING: Smoothing = Smoothing { colour: 0.7, light: 0.08 };
-/// A class does not have a colour if its share is less.
-const UNKNOWN_BELOW: f64 = 1e-6;
+/// The parameters.
+const TRAINING: TrainingParams = TrainingParams::DEFAULT;
 
 /// The pixels of a camera that are learned from.
 #[derive(Clone, Debug)]
@@ -37,7 +33,7 @@ impl TrainingView {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
             let ground = camera.pixel_to_ground(pixel.map(f64::from));
-            ground.is_some_and(|[x, y]| x.hypot(y) <= RANGE) && camera.sees(pixel)
+            ground.is_some_and(|[x, y]| x.hypot(y) <= TRAINING.range) && camera.sees(pixel)
         };
         let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
         let ground = pixels
@@ -123,10 +119,6 @@ impl Alike {
     }
 }
 
-/// The number of mixed pixels that count as one pure pixel. A floor in the shade has the colour of a
-/// mixture of lit floor and dark stripe, and is floor. If no pure pixel has the colour, it is a mixture.
-const MIXED: u64 = 256;
-
 impl Example {
     /// An image with its labels.
     ///
@@ -188,7 +180,7 @@ pub enum TrainingError {
     #[error("there is no image to learn from")]
     NoImage,
     /// There is no pixel of a class.
-    #[error("no pixel within 3 m is labelled as {}", class.name())]
+    #[error("no pixel within {} m is labelled as {}", TRAINING.range, class.name())]
     NoPixel {
         /// The class.
         class: PixelClass,
@@ -342,8 +334,11 @@ impl Training {
             stripe: self.stripe,
             floor,
             priors: Priors::EQUAL,
-            smoothing: SMOOTHING,
-            unknown_below: UNKNOWN_BELOW,
+            smoothing: Smoothing {
+                colour: TRAINING.colour_smoothing,
+                light: TRAINING.light_smoothing,
+            },
+            unknown_below: TRAINING.unknown_below,
             histograms,
         })
     }
@@ -370,7 +365,7 @@ fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
             let counts = cells.iter_mut().filter(|(learned, _)| *learned == alike.class);
             counts.for_each(|(_, counts)| {
                 counts[table::index(&offsets, alike.colour)] +=
-                    MIXED * u64::from(alike.pure) + u64::from(alike.mixed);
+                    TRAINING.mixed * u64::from(alike.pure) + u64::from(alike.mixed);
             });
         }
     }

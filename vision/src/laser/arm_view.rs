@@ -5,6 +5,7 @@
 use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
+    params::ArmViewParams,
     plane::{direction, distance},
 };
 
@@ -23,21 +24,8 @@ pub(super) enum ArmView {
     },
 }
 
-/// Lines of sight begin this far behind the walls of the junction, and are directed along the arm between
-/// there and this far behind them, in metres.
-const MOUTH: f64 = 0.3;
-const AHEAD: f64 = 2.0;
-/// Lines of sight: their greatest angle to the arm and the angle between two, in radians; how far beside its
-/// middle they begin, in metres.
-const FAN: i32 = 8;
-const STEP: f64 = 0.035;
-const ASIDE: [f64; 3] = [-0.3, 0.0, 0.3];
-/// Walls are looked for up to this far on a line of sight and beside it, at points this far apart, in metres.
-const FAR: f64 = 10.0;
-const BESIDE: f64 = 3.0;
-const APART: f64 = 0.3;
-/// A wall is straight where it is this near to its usual distance from the line, in metres.
-const STRAIGHT: f64 = 0.25;
+/// The parameters.
+const VIEW: ArmViewParams = ArmViewParams::DEFAULT;
 
 /// A ray on the local map.
 #[derive(Clone, Copy)]
@@ -60,16 +48,16 @@ impl ArmView {
                 |(point, _): &&([f64; 2], f64)| distance(*point, meet) >= clearance + least;
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
-        let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
+        let Some((mouth, towards)) = behind(VIEW.mouth).zip(behind(VIEW.ahead)) else {
             return Self::Near { depth: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
         let (sine, cosine) = ahead.sin_cos();
-        let starts = ASIDE.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
+        let starts = VIEW.aside.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
-        for number in (0..=FAN).flat_map(|number| [number, -number]) {
-            let angle = ahead + STEP * f64::from(number);
+        for number in (0..=VIEW.fan).flat_map(|number| [number, -number]) {
+            let angle = ahead + VIEW.step * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
@@ -97,17 +85,17 @@ impl Ray {
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
     fn walled(&self, length: f64, side: f64, grid: &Grid, clearances: &Clearances) -> f64 {
-        let points = ((length.min(FAR) / APART) as u32).max(1);
+        let points = ((length.min(VIEW.far) / VIEW.apart) as u32).max(1);
         let across = self.angle + side * std::f64::consts::FRAC_PI_2;
         let beside = |point: u32| {
-            let from = self.at(APART * f64::from(point));
-            let (off, cell) = clearances.sight(grid, from, across, BESIDE);
+            let from = self.at(VIEW.apart * f64::from(point));
+            let (off, cell) = clearances.sight(grid, from, across, VIEW.beside);
             (cell == Cell::Occupied).then_some(off)
         };
         let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();
         walls.sort_by(f64::total_cmp);
         let Some(&usual) = walls.get(walls.len() / 2) else { return 0.0 };
-        let straight = walls.iter().filter(|&&off| (off - usual).abs() < STRAIGHT);
+        let straight = walls.iter().filter(|&&off| (off - usual).abs() < VIEW.straight);
         straight.count() as f64 / f64::from(points)
     }
 }

@@ -2,7 +2,12 @@
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
-use super::{matching::ScanMatcher, params::LaserParams, plane::distance, scan::Scan};
+use super::{
+    matching::ScanMatcher,
+    params::{DriftParams, LaserParams},
+    plane::distance,
+    scan::Scan,
+};
 
 /// Measures the drift of the heading of odometry.
 #[derive(Clone, Debug)]
@@ -20,11 +25,9 @@ pub struct DriftMeter {
 }
 
 /// The rounds of matching with which drift is measured and corrected.
-pub const ROUNDS: usize = 8;
-/// Drift is measured on stretches of the way of this length, in metres.
-const STRETCH: f64 = 10.0;
-/// Fewer stretches do not show a drift.
-const LEAST: usize = 3;
+pub const ROUNDS: usize = DRIFT.rounds;
+/// The parameters.
+const DRIFT: DriftParams = DriftParams::DEFAULT;
 
 impl DriftMeter {
     /// A meter that has seen nothing yet.
@@ -51,8 +54,9 @@ impl DriftMeter {
         self.matcher.see(scan, odometry, self.way, self.way - params.memory);
         let correction = self.matcher.correction().turn;
         let (begun, before) = *self.begun.get_or_insert((self.way, correction));
-        if self.way - begun >= STRETCH {
-            self.changes.push(wrapped(correction - before).abs() * STRETCH / (self.way - begun));
+        if self.way - begun >= DRIFT.stretch {
+            self.changes
+                .push(wrapped(correction - before).abs() * DRIFT.stretch / (self.way - begun));
             self.begun = Some((self.way, correction));
         }
     }
@@ -62,6 +66,6 @@ impl DriftMeter {
     pub fn finish(mut self) -> Option<f64> {
         self.changes.retain(|change| change.is_finite());
         self.changes.sort_by(f64::total_cmp);
-        (self.changes.len() >= LEAST).then(|| self.changes[self.changes.len() / 2])
+        (self.changes.len() >= DRIFT.least).then(|| self.changes[self.changes.len() / 2])
     }
 }

@@ -1,7 +1,8 @@
 //! The parameters of sensing with a laser scanner, in one place.
 //!
-//! Lengths are in metres and angles in radians. The defaults are for buildings with corridors, and come
-//! from:
+//! Lengths are in metres and angles in radians. A file sets those of [`LaserParams`]
+//! ([`params_file`](super::params_file)); the others are the same for all buildings. The defaults are for buildings
+//! with corridors, and come from:
 //!
 //! * **geometry**: the robot, the scanner or the building gives the value;
 //! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them;
@@ -13,15 +14,15 @@ params! {
     /// All parameters of sensing with a laser scanner.
     LaserParams {
         /// Where scans were taken.
-        matching: MatchingParams = MatchingParams::default(),
+        matching: MatchingParams = MatchingParams::DEFAULT,
         /// The local map.
-        map: LocalMapParams = LocalMapParams::default(),
+        map: LocalMapParams = LocalMapParams::DEFAULT,
         /// The arms of a junction.
-        arm: ArmParams = ArmParams::default(),
+        arm: ArmParams = ArmParams::DEFAULT,
         /// Corners and dead ends.
-        corner: CornerParams = CornerParams::default(),
+        corner: CornerParams = CornerParams::DEFAULT,
         /// Visits of junctions.
-        visit: VisitParams = VisitParams::default(),
+        visit: VisitParams = VisitParams::DEFAULT,
     }
 
     /// Scan matching: where a scan was taken, by odometry and by the walls of earlier scans.
@@ -97,6 +98,8 @@ params! {
         small_obstacle: f64 = 1.0,
         /// A gap narrower than this is no way. Geometry: the doors of rooms.
         min_width: f64 = 1.2,
+        /// The robot is at most this far from a way that is wide enough for it. Geometry: half of a corridor.
+        beside_robot: f64 = 1.5,
     }
 
     /// The arms of a junction.
@@ -190,5 +193,71 @@ params! {
         agree: f64 = 0.4,
         /// ... and the visit is undecided if the part is as near as this to it. Logs.
         doubt: f64 = 0.02,
+    }
+
+    /// What is seen along an arm of a junction.
+    ArmViewParams {
+        /// Lines of sight begin this far behind the walls of the junction. Geometry: two cells of the local map.
+        mouth: f64 = 0.3,
+        /// They are directed along the middle line of the arm, from there to this far behind the walls. Geometry: the
+        /// width of a corridor.
+        ahead: f64 = 2.0,
+        /// The number of lines of sight to each side of this direction. Geometry: 16 degrees.
+        fan: i32 = 8,
+        /// The angle between two of them. Geometry: 2 degrees.
+        step: f64 = 0.035,
+        /// How far to the left of the middle line they begin. Geometry: two cells.
+        aside: [f64; 3] = [-0.3, 0.0, 0.3],
+        /// Walls are looked for up to this far on a line of sight, ... Geometry: [`ArmParams::min_arm`].
+        far: f64 = 10.0,
+        /// ... up to this far beside it, ... Geometry: more than the width of a corridor.
+        beside: f64 = 3.0,
+        /// ... and at points this far apart. Geometry: two cells.
+        apart: f64 = 0.3,
+        /// A wall is straight where it is this near to its usual distance from the line. Logs.
+        straight: f64 = 0.25,
+    }
+
+    /// How the drift of the heading of odometry is measured.
+    DriftParams {
+        /// The rounds of matching with which drift is measured and corrected. Geometry: see
+        /// [`MatchingParams::rounds`].
+        rounds: usize = 8,
+        /// It is measured on stretches of the way of this length. Geometry: drift is given in 10 m.
+        stretch: f64 = 10.0,
+        /// Fewer stretches do not show a drift. Geometry: their median is used.
+        least: usize = 3,
+    }
+
+    /// The place of a robot in a building with right angles ([`scene`](super::scene)).
+    PlaceParams {
+        /// A scan is remembered if the robot has driven this far since the last one that is, or has turned by
+        /// [`Self::every_turn`]. Simulated buildings.
+        every: f64 = 0.2,
+        /// See [`Self::every`]. Simulated buildings.
+        every_turn: f64 = 0.2,
+        /// The number of scans that are remembered. Geometry: the robot has driven a few metres since.
+        remembered: usize = 24,
+        /// The hits of two successive readings are on one wall if their ranges differ by less than this, and ...
+        /// Geometry: half a degree before a gap there is no wall.
+        step: f64 = 0.15,
+        /// ... by less than this part. Geometry.
+        step_part: f64 = 0.1,
+        /// A robot is at most this far past the turning point of a dead end. Geometry: half of a hallway's width less
+        /// its radius.
+        past_dead_end: f64 = 0.45,
+        /// A hallway whose walls are hidden goes on for at most this far. Simulated buildings.
+        hidden: f64 = 5.0,
+        /// What is beside the robot is at most this much farther than the wall. Simulated buildings.
+        wall_slack: f64 = 0.25,
+        /// A robot needs this much free space ahead, ... Geometry: twice its length.
+        free_ahead: f64 = 0.8,
+        /// ... and this much on both sides of its middle. Geometry: more than its radius.
+        free_aside: f64 = 0.3,
+        /// The confidence in a hallway whose walls are hidden, from 0 to 1. Half: it is neither sure nor impossible.
+        hidden_confidence: f64 = 0.5,
+        /// Successive readings are neighbours if their bearings differ by less than this. Geometry: scanners have a
+        /// reading at least every 2 degrees.
+        next: f64 = 0.06,
     }
 }

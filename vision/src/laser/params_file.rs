@@ -1,30 +1,9 @@
 //! Files with parameters of sensing with a laser scanner: TOML, one table for each struct of
 //! [`params`](super::params). What is not in the file has its default.
 
-use thiserror::Error;
-use toml::{Table, Value};
+use toposlam_model::format::document::{Document, DocumentError, DocumentTable};
 
 use super::params::LaserParams;
-
-/// A file that does not have usable parameters.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum LaserParamsError {
-    /// It is not TOML, or has other keys or types.
-    #[error("{0}")]
-    Form(String),
-    /// A number is out of its range.
-    #[error("{key} = {value}: expected a number from {least} to {most}")]
-    Number {
-        /// The tables and the key, with dots between them.
-        key: String,
-        /// The number.
-        value: String,
-        /// The least one that is allowed.
-        least: String,
-        /// The greatest one.
-        most: String,
-    },
-}
 
 /// Least and greatest values; a local map of more cells would need too much memory.
 const CELL: [f64; 2] = [0.02, 1.0];
@@ -38,11 +17,11 @@ impl LaserParams {
     ///
     /// # Errors
     /// Returns an error if a key is not known, or a number is not one that the parameter can have.
-    pub fn read(text: &str) -> Result<Self, LaserParamsError> {
-        let form = |error: toml::de::Error| LaserParamsError::Form(error.to_string());
-        let table: Table = toml::from_str(text).map_err(form)?;
-        check(&table, "")?;
-        toml::from_str(text).map_err(form)
+    pub fn read(text: &str) -> Result<Self, DocumentError> {
+        let document = Document::parse_settings(text.as_bytes())?;
+        let params = document.root().read()?;
+        check(&document.root().any_table()?, "")?;
+        Ok(params)
     }
 
     /// The parameters as TOML, with all tables and keys.
@@ -54,28 +33,23 @@ impl LaserParams {
 }
 
 /// Checks the numbers of a table.
-fn check(table: &Table, path: &str) -> Result<(), LaserParamsError> {
-    for (name, value) in table {
-        let key = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-        let (number, range) = match value {
-            Value::Table(table) => {
-                check(table, &key)?;
-                continue;
-            }
-            Value::Float(number) => (*number, ANY),
-            Value::Integer(number) => (*number as f64, COUNT),
-            _ => continue,
-        };
-        let [least, most] = match &*key {
-            "map.cell" => CELL,
-            "map.reach" => REACH,
-            "matching.rounds" => ROUNDS,
-            _ => range,
-        };
-        if !(least..=most).contains(&number) {
-            let [value, least, most] = [number, least, most].map(|number| number.to_string());
-            return Err(LaserParamsError::Number { key, value, least, most });
+fn check(table: &DocumentTable, path: &str) -> Result<(), DocumentError> {
+    for entry in table.entries() {
+        let (key, value) = (entry.key, entry.value);
+        if let Ok(table) = value.any_table() {
+            check(&table, key)?;
         }
+        if value.number().is_err() {
+            continue;
+        }
+        let [least, most] = match (path, key) {
+            ("map", "cell") => CELL,
+            ("map", "reach") => REACH,
+            ("matching", "rounds") => ROUNDS,
+            _ if value.whole().is_ok() => COUNT,
+            _ => ANY,
+        };
+        value.number_in("this parameter", least..=most)?;
     }
     Ok(())
 }
@@ -103,18 +77,34 @@ mod tests {
 
     #[test]
     fn unknown_keys_and_impossible_numbers_are_errors() {
-        for text in ["[arm]\nmin = 2.0", "min_arm = 2.0", "[arm]\nmin_arm = \"far\"", "[arm"] {
-            assert!(matches!(LaserParams::read(text), Err(LaserParamsError::Form(_))), "{text}");
-        }
-        for text in [
-            "[arm]\nmin_arm = -1.0",
-            "[arm]\nmin_arm = nan",
-            "[map]\ncell = 0.0001",
-            "[map]\nreach = inf",
-            "[visit]\nviews = 0",
+        let message = |text: &str| LaserParams::read(text).unwrap_err().to_string();
+        let unknown = message("[corner]\n[arm]\nmin = 2.0");
+        assert!(
+            unknown
+                .starts_with("line 3, column 1: arm.min: unknown key; expected one of: min_arm, "),
+            "{unknown}"
+        );
+        assert_eq!(
+            message("min_arm = 2.0"),
+            "line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit"
+        );
+        assert_eq!(
+            message("[arm]\nmin_arm = \"far\""),
+            "line 2, column 11: arm.min_arm: expected a number, found a text"
+        );
+        for (text, place, range) in [
+            ("[arm]\nmin_arm = -1.0", "line 2, column 11: arm.min_arm: -1 ", "0 and 1000"),
+            ("[arm]\nmin_arm = nan", "line 2, column 11: arm.min_arm: NaN ", "0 and 1000"),
+            ("[map]\ncell = 0.0001", "line 2, column 8: map.cell: 0.0001 ", "0.02 and 1"),
+            ("[map]\nreach = inf", "line 2, column 9: map.reach: inf ", "2 and 40"),
+            ("[visit]\nviews = 0", "line 2, column 9: visit.views: 0 ", "1 and 1000"),
         ] {
-            let error = LaserParams::read(text);
-            assert!(matches!(error, Err(LaserParamsError::Number { .. })), "{text}: {error:?}");
+            let range = format!("{place}is out of range; this parameter lies between {range}");
+            assert_eq!(message(text), range);
+        }
+        for text in ["[arm", "[corner]\ncorners = yes"] {
+            let message = message(text);
+            assert!(message.starts_with("line ") && !message.contains('\n'), "{message}");
         }
     }
 }

@@ -13,7 +13,10 @@ use toposlam_model::driving::{
     scene::{HallwayStatus, HallwayView, JunctionView, Place, Reason, Unclear, wrapped},
 };
 
-use super::scan::{Reading, Scan};
+use super::{
+    params::PlaceParams,
+    scan::{Reading, Scan},
+};
 use crate::{
     boundary::{BEARINGS, Boundary, Sight},
     params::SensingParams,
@@ -40,30 +43,8 @@ struct SensedHallway {
     width: f64,
 }
 
-/// A scan is remembered if the robot has driven this far since the last one that is, in metres, or has
-/// turned this far, in radians.
-const EVERY: f64 = 0.2;
-const EVERY_TURN: f64 = 0.2;
-/// The number of scans that are remembered: the robot has driven a few metres since.
-const REMEMBERED: usize = 24;
-/// The hits of two successive readings are on one wall if their ranges differ by less than this, in metres,
-/// and by less than this part. Half a degree before a gap there is no wall.
-const STEP: f64 = 0.15;
-const STEP_PART: f64 = 0.1;
-/// A robot is at most this far past the turning point of a dead end, in metres: half of a hallway's width
-/// less its radius.
-const PAST_DEAD_END: f64 = 0.45;
-/// A hallway whose walls are hidden goes on for at most this far, in metres.
-const HIDDEN: f64 = 5.0;
-/// What is beside the robot is at most this much farther than the wall, in metres.
-const WALL_SLACK: f64 = 0.25;
-/// A robot needs this much free space ahead, in metres, and on both sides of its middle.
-const FREE_AHEAD: f64 = 0.8;
-const FREE_ASIDE: f64 = 0.3;
-/// The confidence in a hallway whose walls are hidden.
-const HIDDEN_CONFIDENCE: f64 = 0.5;
-/// Successive readings are neighbours if their bearings differ by less than this, in radians.
-const NEXT: f64 = 0.06;
+/// The parameters.
+const PLACE: PlaceParams = PlaceParams::DEFAULT;
 
 impl ScanPlaceSensor {
     /// Sensing with other parameters than the defaults.
@@ -103,12 +84,12 @@ impl ScanPlaceSensor {
     /// and the way ahead is free.
     fn hidden_hallway(&self, scan: &Scan, odometry: &Odometry) -> Option<HallwayView> {
         let SensedHallway { odometry: then, view, width } =
-            self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < HIDDEN)?;
+            self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < PLACE.hidden)?;
         let heading = wrapped(view.heading + then.heading - odometry.heading);
         // How far the robot has come to the left.
         let aside = across(seen(&then, odometry.position), view.heading);
         let (left, right) = (view.left - aside, view.right + aside);
-        let slack = WALL_SLACK + width - view.left - view.right;
+        let slack = PLACE.wall_slack + width - view.left - view.right;
         let mut beside = [0, 0];
         for (bearing, reading) in scan.readings() {
             let aside = wrapped(bearing - heading);
@@ -117,7 +98,8 @@ impl ScanPlaceSensor {
                 Reading::Hit(range) => {
                     let point = scan.point(bearing, range);
                     let (ahead, across) = (along(point, heading), across(point, heading));
-                    let is_in_way = (0.0..FREE_AHEAD).contains(&ahead) && across.abs() < FREE_ASIDE;
+                    let is_in_way =
+                        (0.0..PLACE.free_ahead).contains(&ahead) && across.abs() < PLACE.free_aside;
                     let is_open = is_beside && (across > left + slack || -across > right + slack);
                     if is_in_way || is_open {
                         return None;
@@ -133,7 +115,7 @@ impl ScanPlaceSensor {
             left,
             right,
             status: HallwayStatus::Unclear(Unclear::ClustersAhead),
-            confidence: HIDDEN_CONFIDENCE,
+            confidence: PLACE.hidden_confidence,
         })
     }
 
@@ -165,7 +147,7 @@ impl ScanPlaceSensor {
         let next = readings.iter().cycle().skip(1);
         for (&(from, near), &(to, far)) in readings.iter().zip(next) {
             let turn = wrapped(to - from);
-            if !(0.0..NEXT).contains(&turn) {
+            if !(0.0..PLACE.next).contains(&turn) {
                 continue;
             }
             let first = (from.rem_euclid(TAU) / TAU * BEARINGS as f64).ceil() as usize;
@@ -184,10 +166,10 @@ impl ScanPlaceSensor {
         // What is seen all around needs no memory.
         let covered = scan.geometry().angle_increment * scan.ranges().len() as f64;
         let moved = self.last.back().is_none_or(|(last, _)| {
-            last.distance(odometry) > EVERY
-                || wrapped(last.heading - odometry.heading).abs() > EVERY_TURN
+            last.distance(odometry) > PLACE.every
+                || wrapped(last.heading - odometry.heading).abs() > PLACE.every_turn
         });
-        if !moved || covered > 2.0 * PI - NEXT {
+        if !moved || covered > 2.0 * PI - PLACE.next {
             return;
         }
         let (sine, cosine) = odometry.heading.sin_cos();
@@ -195,7 +177,7 @@ impl ScanPlaceSensor {
         let place =
             |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
         self.last.push_back((*odometry, scan.hits().map(place).collect()));
-        while self.last.len() > REMEMBERED {
+        while self.last.len() > PLACE.remembered {
             self.last.pop_front();
         }
     }
@@ -204,14 +186,16 @@ impl ScanPlaceSensor {
 /// Whether a robot at a junction would stand behind its wall: furniture along a corridor looks like the end of a
 /// narrow one.
 fn is_behind_its_wall(junction: &JunctionView) -> bool {
-    junction.doors.len() == 1 && junction.distance() < -PAST_DEAD_END
+    junction.doors.len() == 1 && junction.distance() < -PLACE.past_dead_end
 }
 
 /// What is seen between two readings. A reading without a return shows nothing.
 fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
     let nearest = if share < 0.5 { near } else { far };
     let range = match (near, far) {
-        (Some(one), Some(other)) if (one - other).abs() < STEP + STEP_PART * one.min(other) => {
+        (Some(one), Some(other))
+            if (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other) =>
+        {
             // The inverse of the range of a straight wall hardly bends in such an angle.
             Some(1.0 / (1.0 / one + share * (1.0 / other - 1.0 / one)))
         }
@@ -302,7 +286,7 @@ mod tests {
     }
 
     fn is_hidden(place: &Place) -> bool {
-        matches!(place, Place::Hallway(hallway) if hallway.confidence == HIDDEN_CONFIDENCE)
+        matches!(place, Place::Hallway(hallway) if hallway.confidence == PLACE.hidden_confidence)
     }
 
     #[test]
@@ -332,7 +316,7 @@ mod tests {
         let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0), &crate_ahead].concat(), 3.3);
         assert!(places.iter().any(|(_, place)| is_hidden(place)));
         for (x, place) in places {
-            assert!(!is_hidden(&place) || x < 3.4 - FREE_AHEAD, "after {x} m");
+            assert!(!is_hidden(&place) || x < 3.4 - PLACE.free_ahead, "after {x} m");
         }
     }
 }

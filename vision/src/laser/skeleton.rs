@@ -19,9 +19,6 @@ pub struct Skeleton {
     pub ends: Vec<End>,
 }
 
-/// The robot stands at most this far from a place that is wide enough for it, in metres.
-const BESIDE: f64 = 1.5;
-
 impl Skeleton {
     /// The skeleton of the ways from a robot at a point; `None` if there is none.
     #[must_use]
@@ -36,7 +33,7 @@ impl Skeleton {
             grid.cells[at] == Cell::Free && f64::from(clearances.wall[at]) >= radius * radius
         };
         let mut cells: Vec<bool> = (0..grid.cells.len()).map(is_way).collect();
-        let start = nearest(&cells, grid, robot, BESIDE)?;
+        let start = nearest(&cells, grid, robot, params.map.beside_robot)?;
         let lengths = way_lengths(&mut cells, grid, start);
         let ways: Vec<usize> = (0..cells.len()).filter(|&at| cells[at]).collect();
         let ends = ends(&ways, &lengths, clearances, grid, params);

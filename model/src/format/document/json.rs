@@ -158,8 +158,8 @@ impl<'t, 'de> Visitor<'de> for JsonVisitor<'t> {
         Ok(Content::Number(number))
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<Content<'t>, E> {
-        Ok(Content::Truth)
+    fn visit_bool<E>(self, truth: bool) -> Result<Content<'t>, E> {
+        Ok(Content::Truth(truth))
     }
 
     fn visit_unit<E>(self) -> Result<Content<'t>, E> {

@@ -53,7 +53,7 @@ fn node(value: toml::Spanned<DeValue<'_>>) -> Result<Node<'_>, (usize, &'static 
             }
             _ => return Err((at, "this number is too large")),
         },
-        DeValue::Boolean(_) => Content::Truth,
+        DeValue::Boolean(truth) => Content::Truth(truth),
         DeValue::Datetime(_) => Content::Date,
     };
     Ok(Node { at: Some(at), content })

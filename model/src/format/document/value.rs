@@ -8,7 +8,7 @@ use super::{Content, Document, DocumentError, DocumentErrorKind, Key, Node, Text
 #[derive(Clone, Copy, Debug)]
 pub struct DocumentValue<'d> {
     document: &'d Document<'d>,
-    node: &'d Node<'d>,
+    pub(super) node: &'d Node<'d>,
 }
 
 impl<'d> DocumentValue<'d> {
@@ -23,7 +23,7 @@ impl<'d> DocumentValue<'d> {
         self.document.position(self.node, self.node.at)
     }
 
-    fn error(self, kind: DocumentErrorKind) -> DocumentError {
+    pub(super) fn error(self, kind: DocumentErrorKind) -> DocumentError {
         kind.at(self.position())
     }
 
@@ -37,7 +37,7 @@ impl<'d> DocumentValue<'d> {
             Content::Text(_) => "a text",
             Content::Whole(_) => "a whole number",
             Content::Number(_) => "a decimal number",
-            Content::Truth => "true or false",
+            Content::Truth(_) => "true or false",
             Content::Date => "a date",
             Content::Null => "null",
         };
@@ -139,6 +139,14 @@ impl<'d> DocumentValue<'d> {
         }
         let (&low, &high) = (range.start(), range.end());
         Err(self.error(DocumentErrorKind::OutOfRange { what, found, low, high }))
+    }
+
+    /// True or false.
+    pub fn truth(self) -> Result<bool, DocumentError> {
+        match self.node.content {
+            Content::Truth(truth) => Ok(truth),
+            _ => Err(self.expected("true or false")),
+        }
     }
 
     /// A whole number.

@@ -3,7 +3,10 @@
 use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
 
 use super::{FoldingExploration, HypothesisTest, Pending};
-use crate::{embedded_graph::Dart, folding::FoldedTrail, mapping::partial_map::START};
+use crate::{
+    embedded_graph::Dart, folding::FoldedTrail, injected_flaw::InjectedFlaw,
+    mapping::partial_map::START,
+};
 
 impl FoldingExploration {
     /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
@@ -76,7 +79,7 @@ impl FoldingExploration {
         }
         let hypothesis = Some(test.hypothesis.0);
         let forced = trail.with_united(open, leaving, |united| united.number(far) == hypothesis);
-        forced == Ok(true)
+        forced == Ok(true) || InjectedFlaw::ProofByOtherWalk.is_present()
     }
 
     /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as

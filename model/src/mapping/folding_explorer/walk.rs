@@ -6,6 +6,7 @@ use super::{FoldingExploration, HypothesisTest};
 use crate::{
     embedded_graph::Dart,
     folding::TrailError,
+    injected_flaw::InjectedFlaw,
     mapping::{Contradiction, FoldingEvent, MappingError, MappingEvent, Observer},
     percept::{Door, Percept},
     world::World,
@@ -48,6 +49,9 @@ impl FoldingExploration {
             }
             let Some((door, next)) = self.to_marker.toward_root(self.map(), believed) else {
                 self.report(FoldingEvent::Confirmed { edge, hypothesis }, world, observer);
+                if InjectedFlaw::ProofByOtherWalk.is_present() {
+                    self.believe(test)?;
+                }
                 break;
             };
             let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
@@ -56,6 +60,18 @@ impl FoldingExploration {
             believed = next;
         }
         self.report_folding(before, world, observer);
+        Ok(())
+    }
+
+    /// Takes a hypothesis as true, as an [`InjectedFlaw`].
+    pub(super) fn believe(&mut self, test: HypothesisTest) -> Result<(), TrailError> {
+        let HypothesisTest { edge, hypothesis, .. } = test;
+        let [edge, hypothesis] = [edge, hypothesis].map(|dart| self.in_trail[dart.at()]);
+        if let Some(far) = self.trail.opposite(edge) {
+            self.trail.unite(far, hypothesis)?;
+            self.from_robot.clear();
+            self.find_robot();
+        }
         Ok(())
     }
 

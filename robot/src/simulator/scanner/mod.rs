@@ -14,7 +14,7 @@ use toposlam_model::driving::scene::wrapped;
 use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry, ScannerPose};
 
 pub use corridors::{Corridor, CorridorPlan, Lobby};
-pub use params::{ScannerParams, ScannerParamsError};
+pub use params::ScannerParams;
 pub use polygon::ConvexPolygon;
 pub use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
 

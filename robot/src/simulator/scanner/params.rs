@@ -1,7 +1,7 @@
 //! The parameters of a simulated laser scanner, and of what makes its scans harder to read.
 
 use serde::Deserialize;
-use thiserror::Error;
+use toposlam_model::format::document::{Document, DocumentError};
 
 macro_rules! scanner_params {
     ($($(#[$doc:meta])* $field:ident = $default:literal, $least:literal ..= $greatest:literal;)*) => {
@@ -55,26 +55,6 @@ scanner_params! {
     people = 1.0, 0.0..=20.0;
 }
 
-/// Why parameters cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum ScannerParamsError {
-    /// The file is not TOML, or has an unknown key.
-    #[error("{0}")]
-    Toml(String),
-    /// A value is out of its range.
-    #[error("`{name}` is {value}; it must be from {least} to {greatest}")]
-    OutOfRange {
-        /// The parameter.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its least value.
-        least: f64,
-        /// Its greatest value.
-        greatest: f64,
-    },
-}
-
 impl ScannerParams {
     /// A scanner without noise in an empty building.
     pub const PLAIN: Self = Self {
@@ -95,12 +75,13 @@ impl ScannerParams {
     ///
     /// # Errors
     /// Returns an error if the text is not TOML, if a key is unknown, or if a value is out of its range.
-    pub fn from_toml(text: &str) -> Result<Self, ScannerParamsError> {
-        let read = toml::from_str::<Self>(text);
-        let params = read.map_err(|error| ScannerParamsError::Toml(error.to_string()))?;
-        for (name, value, [least, greatest]) in params.all() {
-            if !(least..=greatest).contains(&value) {
-                return Err(ScannerParamsError::OutOfRange { name, value, least, greatest });
+    pub fn from_toml(text: &str) -> Result<Self, DocumentError> {
+        let document = Document::parse_settings(text.as_bytes())?;
+        let params: Self = document.root().read()?;
+        let table = document.root().any_table()?;
+        for (name, _, [least, greatest]) in params.all() {
+            if let Some(value) = table.get(name) {
+                value.number_in("this parameter", least..=greatest)?;
             }
         }
         Ok(params)
@@ -132,9 +113,22 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_named() {
         let message = |text: &str| ScannerParams::from_toml(text).unwrap_err().to_string();
-        assert_eq!(message("noise = 3.0"), "`noise` is 3; it must be from 0 to 0.2");
-        assert_eq!(message("dropouts = nan"), "`dropouts` is NaN; it must be from 0 to 0.5");
-        assert!(message("glas = 1.0").contains("unknown field `glas`"), "{}", message("glas = 1"));
-        assert!(message("noise = \"much\"").contains("invalid type"));
+        assert_eq!(
+            message("people = 2\nnoise = 3.0"),
+            "line 2, column 9: noise: 3 is out of range; this parameter lies between 0 and 0.2"
+        );
+        assert_eq!(
+            message("dropouts = nan"),
+            "line 1, column 12: dropouts: NaN is out of range; this parameter lies between 0 and 0.5"
+        );
+        assert_eq!(
+            message("glas = 1.0"),
+            "line 1, column 1: glas: unknown key; expected one of: field_of_view, angular_step, \
+             least_range, range, noise, dropouts, glass, black, doors, furniture, people"
+        );
+        assert_eq!(
+            message("noise = \"much\""),
+            "line 1, column 9: noise: expected a number, found a text"
+        );
     }
 }

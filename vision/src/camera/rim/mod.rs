@@ -28,6 +28,8 @@ use brightness::Brightness;
 use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 
+use super::params::RimParams;
+
 /// A mirror's rim in images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
@@ -85,7 +87,7 @@ pub enum RimError {
     /// The arcs that are seen do not determine the circle.
     #[error(
         "the rim is not certain: an edge is seen along {:.0} % of a circle of radius {:.0}, which does \
-         not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * CERTAIN
+         not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * RIM.certain
     )]
     Uncertain {
         /// The radius, in pixels.
@@ -95,46 +97,8 @@ pub enum RimError {
     },
 }
 
-/// The least share of the full circle that must be seen.
-const LEAST_SEEN: f64 = 0.14;
-
-/// The least share of the circle in the image that must be seen.
-const LEAST_OF_VISIBLE: f64 = 0.45;
-
-/// The least part of the edges that must be brighter inside than outside.
-const LEAST_FALLS: f64 = 0.15;
-
-/// Another circle must have less than this part of the rim's score.
-const LEAD: f64 = 0.6;
-
-/// Circles that differ by less, as a part of the radius, are the same.
-const SAME: f64 = 0.02;
-
-/// The greatest change of centre and radius if a part of what is seen is left out, as a part of the
-/// radius.
-const CERTAIN: f64 = 0.01;
-
-/// The number of directions in which other circles that share an arc are tried.
-const SIDES: usize = 12;
-
-/// The number of parts of which each is left out once.
-const PARTS: usize = 8;
-
-/// The steepest edge must be within this many units of the circle, among those within [`REACH`].
-const NEAR: f64 = 1.0;
-const REACH: f64 = 8.0;
-
-/// A dark ring around the mirror is at most this part of the outer radius wide.
-const WIDEST_RING: f64 = 0.12;
-
-/// The inner border of a dark ring is seen on at least this part of the bearings of the outer one.
-const LEAST_INNER: f64 = 0.25;
-
-/// Smaller differences of brightness are noise, at a mean brightness of 64.
-const NOISE: f64 = 6.0;
-
-/// Many circles are compared on one bearing in this many.
-const EVERY: usize = 4;
+/// The parameters.
+const RIM: RimParams = RimParams::DEFAULT;
 
 /// The rim in images of one camera.
 ///
@@ -154,20 +118,20 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
         return Err(RimError::NoRim);
     }
     let rim = best.inside_of_ring(&mean).unwrap_or_else(|| best.clone());
-    if rim.falls() < LEAST_FALLS {
+    if rim.falls() < RIM.least_falls {
         return Err(RimError::NoRim);
     }
     let is_ring = rim.circle != best.circle;
     // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
     // Of a narrow ring, both borders are near enough.
-    let is_narrow = rim.circle.is_near(&best.circle, SAME);
-    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
+    let is_narrow = rim.circle.is_near(&best.circle, RIM.same);
+    if is_ring && !is_narrow && rim.seen < RIM.least_seen {
         return Err(ambiguous(&best.circle, &rim.circle));
     }
     let is_other = |fit: &CircleFit| {
-        !fit.circle.is_near(&rim.circle, SAME)
-            && !fit.circle.is_near(&best.circle, SAME)
-            && fit.score() > LEAD * best.score()
+        !fit.circle.is_near(&rim.circle, RIM.same)
+            && !fit.circle.is_near(&best.circle, RIM.same)
+            && fit.score() > RIM.lead * best.score()
             && !fit.is_outside_of_ring(&mean, &rim.circle)
     };
     if let Some(other) = fits.iter().find(|fit| is_other(fit)) {
@@ -198,7 +162,7 @@ pub fn given(images: &[GrayImage], centre: [f64; 2], radius: f64) -> Result<Rim,
     let circle = Circle { centre, radius };
     // What is given by hand is not exact.
     let near = 0.01 * radius;
-    let edges = CircleEdges::near(&mean, &circle, (near / unit(&circle)).max(REACH), 1);
+    let edges = CircleEdges::near(&mean, &circle, (near / unit(&circle)).max(RIM.reach), 1);
     let seen = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
     Ok(CircleFit::of(circle, seen.collect()).rim())
 }
@@ -222,7 +186,7 @@ impl CircleFit {
 
     /// The circle through the edges near a circle; on some of the bearings only.
     fn near(image: &Brightness, circle: Circle) -> Self {
-        Self::fitted(image, circle, EVERY)
+        Self::fitted(image, circle, RIM.every)
     }
 
     /// The circle through the edges near a circle.
@@ -238,7 +202,7 @@ impl CircleFit {
         let mut fit = Self::on(image, circle, every);
         // Once more, without the edges that are not on the circle.
         let places: Vec<_> = fit.edges.iter().map(|edge| edge.at).collect();
-        if places.len() >= PARTS {
+        if places.len() >= RIM.parts {
             fit = Self::on(image, circle.through(&places), every);
         }
         fit
@@ -246,8 +210,8 @@ impl CircleFit {
 
     /// A circle and the edges on it, on one bearing in `every`.
     fn on(image: &Brightness, circle: Circle, every: usize) -> Self {
-        let found = CircleEdges::near(image, &circle, REACH, every);
-        let near = NEAR * unit(&circle);
+        let found = CircleEdges::near(image, &circle, RIM.reach, every);
+        let near = RIM.near * unit(&circle);
         let on = found.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near);
         let edges: Vec<CircleEdge> = on.collect();
         let all = (BEARINGS / every) as f64;
@@ -265,12 +229,12 @@ impl CircleFit {
     }
 
     fn is_seen(&self) -> bool {
-        self.seen >= LEAST_SEEN && self.seen >= LEAST_OF_VISIBLE * self.visible
+        self.seen >= RIM.least_seen && self.seen >= RIM.least_of_visible * self.visible
     }
 
     /// How well it is seen: on many bearings, and on most of those on which it is in the image.
     fn score(&self) -> f64 {
-        self.seen * self.seen / self.visible.max(LEAST_SEEN)
+        self.seen * self.seen / self.visible.max(RIM.least_seen)
     }
 
     /// The part of its edges that are brighter inside than outside.
@@ -285,10 +249,10 @@ impl CircleFit {
     fn inside_of_ring(&self, image: &Brightness) -> Option<Self> {
         let outer = self.circle.radius;
         let widths =
-            (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= WIDEST_RING);
+            (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= RIM.widest_ring);
         let inner = widths.filter_map(|part| {
             let circle = Circle { radius: outer * (1.0 - part), ..self.circle };
-            let edges = CircleEdges::near(image, &circle, 3.0, EVERY).edges;
+            let edges = CircleEdges::near(image, &circle, 3.0, RIM.every).edges;
             let mut off: Vec<f64> = edges
                 .iter()
                 .filter(|edge| edge.fall > 0.0)
@@ -296,10 +260,10 @@ impl CircleFit {
                 .collect();
             off.sort_by(f64::total_cmp);
             let radius = circle.radius + off.get(off.len() / 2)?;
-            let fit = Self::on(image, Circle { radius, ..circle }, EVERY);
+            let fit = Self::on(image, Circle { radius, ..circle }, RIM.every);
             let apart = outer - radius > 4.0 * unit(&circle);
             let is_inner = apart
-                && fit.seen >= LEAST_INNER * self.seen
+                && fit.seen >= RIM.least_inner * self.seen
                 && fit.falls() >= 0.6
                 && is_dark_between(image, &fit.circle, &self.circle);
             is_inner.then_some(fit)
@@ -312,9 +276,9 @@ impl CircleFit {
     fn is_outside_of_ring(&self, image: &Brightness, inner: &Circle) -> bool {
         let [across, down] = [0, 1].map(|axis| self.circle.centre[axis] - inner.centre[axis]);
         let width = self.circle.radius - inner.radius;
-        crate::camera::length([across, down]) <= SAME * inner.radius
+        crate::camera::length([across, down]) <= RIM.same * inner.radius
             && width > 0.0
-            && width <= WIDEST_RING * self.circle.radius
+            && width <= RIM.widest_ring * self.circle.radius
             && is_dark_between(image, inner, &self.circle)
     }
 
@@ -323,15 +287,19 @@ impl CircleFit {
     fn beside(&self, image: &Brightness) -> Vec<Self> {
         let Circle { centre: [u, v], radius } = self.circle;
         let mut fits = Vec::new();
-        for side in 0..SIDES {
-            let (sine, cosine) = (std::f64::consts::TAU * side as f64 / SIDES as f64).sin_cos();
+        for side in 0..RIM.sides {
+            let (sine, cosine) = (std::f64::consts::TAU * side as f64 / RIM.sides as f64).sin_cos();
             for step in 1..=6 {
                 for sign in [-1.0, 1.0] {
                     // Half of the difference between the borders, and the same arc on this side.
                     let shift = 0.01 * f64::from(step) * radius * sign;
                     let centre = [u - shift * cosine, v - shift * sine];
                     let circle = Circle { centre, radius: radius + shift };
-                    fits.push(Self::on(image, Self::fitted(image, circle, EVERY).circle, EVERY));
+                    fits.push(Self::on(
+                        image,
+                        Self::fitted(image, circle, RIM.every).circle,
+                        RIM.every,
+                    ));
                 }
             }
         }
@@ -341,11 +309,11 @@ impl CircleFit {
     /// Whether centre and radius stay the same if any part of the edges is left out.
     fn is_certain(&self) -> bool {
         let count = self.edges.len();
-        (0..PARTS).all(|part| {
-            let (from, to) = (part * count / PARTS, (part + 1) * count / PARTS);
+        (0..RIM.parts).all(|part| {
+            let (from, to) = (part * count / RIM.parts, (part + 1) * count / RIM.parts);
             let rest = self.edges[..from].iter().chain(&self.edges[to..]);
             let places: Vec<_> = rest.map(|edge| edge.at).collect();
-            self.circle.through(&places).is_near(&self.circle, CERTAIN)
+            self.circle.through(&places).is_near(&self.circle, RIM.certain)
         })
     }
 
@@ -366,7 +334,7 @@ impl CircleFit {
 /// dark, and not brighter than what is outside of it.
 fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
     let (mut rings, mut darker) = (Vec::new(), 0_usize);
-    for bearing in (0..BEARINGS).step_by(EVERY) {
+    for bearing in (0..BEARINGS).step_by(RIM.every) {
         let (sine, cosine) = (std::f64::consts::TAU * bearing as f64 / BEARINGS as f64).sin_cos();
         let at = |radius: f64| {
             image.at([outer.centre[0] + radius * cosine, outer.centre[1] + radius * sine])
@@ -375,12 +343,12 @@ fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
         let samples = [0.5, 1.5].map(|part| at(inner.radius + part * width));
         if let [Some(ring), Some(outside)] = samples {
             rings.push(ring);
-            darker += usize::from(ring < outside + NOISE);
+            darker += usize::from(ring < outside + RIM.noise);
         }
     }
     rings.sort_by(f64::total_cmp);
     let median = rings.get(rings.len() / 2).copied().unwrap_or_default();
-    let even = |ring: &&f64| (**ring - median).abs() < NOISE + 0.25 * median;
+    let even = |ring: &&f64| (**ring - median).abs() < RIM.noise + 0.25 * median;
     let most = |count: usize| count as f64 > 0.75 * rings.len() as f64;
     most(darker) && most(rings.iter().filter(even).count())
 }

@@ -5,23 +5,7 @@
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
-use super::{brightness::Brightness, circle::Circle};
-
-/// The longest side of the small image, in pixels.
-const COARSE: usize = 160;
-
-/// The number of circles of the small image that are followed, and of those that are returned.
-const FOLLOWED: usize = 40;
-const KEPT: usize = 20;
-
-/// The greatest edge that counts, over two pixels, at a mean brightness of 64.
-const STEEP: f32 = 24.0;
-
-/// Edges of this height count half.
-const HALF: f32 = 6.0;
-
-/// The least part of a circle that must be in the image.
-const LEAST_INSIDE: f32 = 0.2;
+use super::{RIM, brightness::Brightness, circle::Circle};
 
 /// The number of bearings on which circles of larger images are compared.
 const BEARINGS: usize = 240;
@@ -35,7 +19,7 @@ static DIRECTIONS: LazyLock<[[f64; 2]; BEARINGS]> = LazyLock::new(|| {
 
 /// The circles of an image that may be a mirror's rim.
 pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
-    let mut factor = image.width.max(image.height).div_ceil(COARSE);
+    let mut factor = image.width.max(image.height).div_ceil(RIM.coarse);
     let mut slopes = Slopes::of(&image.shrunk(factor));
     let mut circles = slopes.circles();
     for circle in &mut circles {
@@ -51,7 +35,7 @@ pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
     }
     circles.sort_by(|one, other| slopes.score(other).total_cmp(&slopes.score(one)));
     circles.dedup_by(|one, other| one.is_near(other, 1e-3));
-    circles.truncate(KEPT);
+    circles.truncate(RIM.kept);
     circles
 }
 
@@ -95,7 +79,7 @@ impl Slopes {
                 let size = right.hypot(down);
                 if size > 2.0 {
                     let fall = [right / size, down / size];
-                    let weights = [size.min(STEEP), size / (size + HALF)];
+                    let weights = [size.min(RIM.steep), size / (size + RIM.half)];
                     edges.push(([u as f32, v as f32], fall, weights));
                 }
             }
@@ -135,7 +119,7 @@ impl Slopes {
                 if !kept.iter().any(is_near) {
                     kept.push(at);
                 }
-                if kept.len() == FOLLOWED / 2 {
+                if kept.len() == RIM.followed / 2 {
                     break;
                 }
             }
@@ -160,7 +144,7 @@ impl Slopes {
             let inside = self.share_inside([u, v], radius);
             let sum: f32 = (radius - 1..=radius + 1).map(&ring).sum();
             // Scaled to the whole circle, but with a preference for whole circles over arcs.
-            if inside < LEAST_INSIDE { 0.0 } else { sum / (radius as f32 * inside.sqrt()) }
+            if inside < RIM.least_inside { 0.0 } else { sum / (radius as f32 * inside.sqrt()) }
         };
         let scores: Vec<f32> = (least..most).map(score).collect();
         for (number, &score) in scores.iter().enumerate() {
@@ -216,7 +200,7 @@ impl Slopes {
             }
             let [right, down] = self.falls[v as usize * self.width + u as usize];
             let fall = (right * *cosine as f32 + down * *sine as f32).abs();
-            sum += f64::from(fall / (fall + HALF));
+            sum += f64::from(fall / (fall + RIM.half));
             visible += 1;
         }
         sum / f64::from(visible).max(0.1 * BEARINGS as f64).sqrt()

@@ -1,8 +1,8 @@
-//! The journal of a run: a simulated robot maps a floor plan from simulated scenes, without images.
+//! What the page of a run shows: a simulated robot maps a floor plan from simulated scenes, without images.
 
 use std::{fs, path::Path, sync::Arc};
 
-use toposlam::journal::{FrameEntry, Journal, JunctionCall};
+use toposlam::run_page_data::{PageArrival, PageFrame, RunPageData};
 use toposlam_model::{
     driving::{algorithm2::PathState, scene::Place},
     embedded_graph::Dart,
@@ -20,7 +20,7 @@ use toposlam_robot::{
 
 /// Records a run.
 struct Keeper {
-    journal: Journal,
+    run_data: RunPageData,
     moves: u64,
     door: Option<Door>,
     /// A few images. Each is used for as many rounds as there are images, then a round has none.
@@ -29,13 +29,13 @@ struct Keeper {
 
 impl RunObserver for Keeper {
     fn event(&mut self, event: &Event) {
-        let journal = &mut self.journal;
-        let rounds = journal.rounds.len();
+        let run_data = &mut self.run_data;
+        let rounds = run_data.rounds.len();
         let pose = event.truth.unwrap();
         match &event.kind {
             EventKind::Frame(frame) => {
                 let turn = rounds / self.images.len().max(1) % (self.images.len() + 1);
-                journal.rounds.push(FrameEntry {
+                run_data.rounds.push(PageFrame {
                     time: event.time as f64 / 1e9,
                     pose,
                     moves: self.moves,
@@ -43,12 +43,12 @@ impl RunObserver for Keeper {
                     scene: in_words(&frame.scene.as_ref().unwrap().place),
                     command: None,
                     image: self.images.get(turn).cloned(),
-                    story: journal.story.len(),
-                    maps: journal.maps.len(),
+                    story: run_data.story.len(),
+                    maps: run_data.maps.len(),
                 });
             }
             EventKind::Command { state, command } => {
-                let last = journal.rounds.last_mut().unwrap();
+                let last = run_data.rounds.last_mut().unwrap();
                 (last.state, last.command) = (*state, *command);
             }
             EventKind::Door { door, .. } => {
@@ -58,16 +58,16 @@ impl RunObserver for Keeper {
             EventKind::Arrival(arrival) => {
                 let percept = arrival.percept().unwrap();
                 let door = self.door;
-                journal.calls.push(JunctionCall { rounds, pose, door, percept, conforms: true });
+                run_data.calls.push(PageArrival { rounds, pose, door, percept, conforms: true });
             }
             _ => {}
         }
     }
 
     fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
-        self.journal.story.push(format!("{event:?}"));
+        self.run_data.story.push(format!("{event:?}"));
         if event.grows_map() {
-            self.journal.maps.push(journey.map().clone());
+            self.run_data.maps.push(journey.map().clone());
         }
     }
 }
@@ -91,14 +91,14 @@ fn in_words(place: &Place) -> String {
     }
 }
 
-/// The journal of a run in one of the worlds of this repository, with these images.
-pub(crate) fn journal(world: &str, images: Vec<Vec<u8>>) -> Journal {
+/// What the page of a run shows, of a run in one of the worlds of this repository, with these images.
+pub(crate) fn run_page_data(world: &str, images: Vec<Vec<u8>>) -> RunPageData {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(format!("{world}.toml"));
     let world = world_file::read(&fs::read(path).unwrap()).unwrap();
     let plan = Arc::new(world.plan.unwrap());
     let is_l = |dart: &Dart| plan.junction(plan.graph().vertex(*dart)).kind == JunctionKind::L;
     let facing = world.start.filter(is_l).or_else(|| plan.graph().darts().find(is_l)).unwrap();
-    let journal = Journal {
+    let run_data = RunPageData {
         name: world.name,
         plan: plan.clone(),
         facing,
@@ -109,14 +109,14 @@ pub(crate) fn journal(world: &str, images: Vec<Vec<u8>>) -> Journal {
         ending: String::new(),
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-    let mut keeper = Keeper { journal, moves: 0, door: None, images };
+    let mut keeper = Keeper { run_data, moves: 0, door: None, images };
     let algorithm = DirectionalAlgorithm::Algorithm1;
     let settings = RunSettings::new(algorithm, DEFAULT_DART_BOUND);
     let run = run(&plan, facing, robot, NoSensor, &mut keeper, &settings);
-    let mut journal = keeper.journal;
-    journal.ending = run.outcome().to_string();
-    for (call, arrival) in journal.calls.iter_mut().zip(run.monitor.arrivals()) {
+    let mut run_data = keeper.run_data;
+    run_data.ending = run.outcome().to_string();
+    for (call, arrival) in run_data.calls.iter_mut().zip(run.monitor.arrivals()) {
         call.conforms = arrival.conforms();
     }
-    journal
+    run_data
 }

@@ -1,5 +1,6 @@
-//! What a person sees of a simulated run: every frame, every junction that the robot called, the map as
-//! it grew, and the story of the mapping algorithm. Section 6, Figure 11.
+//! What the page and the picture of a simulated run show: every frame, every junction at which the robot
+//! arrived, the map as it grew, and the story of the mapping algorithm. It is made from the events of the run,
+//! and has its true poses and texts. Section 6, Figure 11.
 
 use std::sync::Arc;
 
@@ -12,9 +13,9 @@ use toposlam_model::{
 };
 use toposlam_robot::pose::Pose;
 
-/// A run.
+/// A run, as its page and its picture show it.
 #[derive(Clone, Debug)]
-pub struct Journal {
+pub struct RunPageData {
     /// The plan's name.
     pub name: String,
     /// The plan.
@@ -22,9 +23,9 @@ pub struct Journal {
     /// The dart along which the marker lies. At the start the robot has its back to its hallway.
     pub facing: Dart,
     /// The frames, in order.
-    pub rounds: Vec<FrameEntry>,
+    pub rounds: Vec<PageFrame>,
     /// The junctions that the robot came to, in order; the start first.
-    pub calls: Vec<JunctionCall>,
+    pub calls: Vec<PageArrival>,
     /// The story of the mapping algorithm, line by line.
     pub story: Vec<String>,
     /// The map whenever it grew, in order.
@@ -35,7 +36,7 @@ pub struct Journal {
 
 /// A frame, and the robot's answer to it.
 #[derive(Clone, Debug)]
-pub struct FrameEntry {
+pub struct PageFrame {
     /// When it was taken, in seconds of simulated time.
     pub time: f64,
     /// The robot's true pose.
@@ -58,7 +59,7 @@ pub struct FrameEntry {
 
 /// What the robot perceived at a junction.
 #[derive(Clone, Debug)]
-pub struct JunctionCall {
+pub struct PageArrival {
     /// The number of frames before it.
     pub rounds: usize,
     /// The robot's true pose.

@@ -1,0 +1,62 @@
+//! Flaws that a test puts into folding and into the folding explorer, to see that the check reports them.
+//!
+//! Outside of this crate's tests none is present, and the compiler removes the conditions.
+
+/// A flaw that a test can inject.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InjectedFlaw {
+    /// A sighting of the marker is not united with the first.
+    SightingNotUnited,
+    /// What a union forces is not united.
+    ForcedNotUnited,
+    /// A hypothesis that contradicts itself is alive.
+    ContradictionIgnored,
+    /// The sightings of two places are not compared.
+    SightingsNotCompared,
+    /// A place joins the map although a hypothesis about it is alive.
+    PlaceAddedTooEarly,
+    /// Only the first hypothesis about a place is examined.
+    OneHypothesisExamined,
+    /// A hypothesis is taken as confirmed without a test.
+    NotTested,
+    /// A walk that does not confirm a hypothesis is made, and its success is taken as proof.
+    ProofByOtherWalk,
+}
+
+impl InjectedFlaw {
+    /// Whether a test of this thread has injected the flaw.
+    #[cfg(not(test))]
+    #[inline]
+    #[expect(clippy::unused_self, reason = "tests use it")]
+    pub(crate) const fn is_present(self) -> bool {
+        false
+    }
+}
+
+#[cfg(test)]
+pub(crate) use injection::inject;
+
+#[cfg(test)]
+mod injection {
+    use std::cell::Cell;
+
+    use super::InjectedFlaw;
+
+    thread_local! {
+        static PRESENT: Cell<Option<InjectedFlaw>> = const { Cell::new(None) };
+    }
+
+    impl InjectedFlaw {
+        pub(crate) fn is_present(self) -> bool {
+            PRESENT.get() == Some(self)
+        }
+    }
+
+    /// Runs something with a flaw. Only this thread has it.
+    pub(crate) fn inject<T>(flaw: Option<InjectedFlaw>, run: impl FnOnce() -> T) -> T {
+        PRESENT.set(flaw);
+        let result = run();
+        PRESENT.set(None);
+        result
+    }
+}
