@@ -2,7 +2,10 @@
 //! move along the arrow are one pose, all poses after a move against it are another one, and the two are the
 //! ends of one edge. Every other edge that was traversed is without an arrow.
 
-use super::{ContradictionReason, FoldedTrail, TrailError, classes::OPEN};
+use super::{
+    ContradictionReason, TrailError,
+    classes::{DartClasses, OPEN},
+};
 use crate::{
     embedded_graph::Dart,
     percept::{Percept, Sighting},
@@ -22,15 +25,6 @@ pub(super) struct Arrow {
     against: Option<Dart>,
 }
 
-impl Arrow {
-    fn pose_after(&mut self, sense: Sense) -> &mut Option<Dart> {
-        match sense {
-            Sense::Along => &mut self.along,
-            Sense::Against => &mut self.against,
-        }
-    }
-}
-
 /// What a sighting shows of an arrow.
 fn of_arrow(sighting: Sighting) -> Sighting {
     match sighting {
@@ -39,60 +33,78 @@ fn of_arrow(sighting: Sighting) -> Sighting {
     }
 }
 
-impl FoldedTrail {
-    /// The robot has passed the arrow.
-    pub(super) fn identify_arrow(&mut self, sense: Sense) -> Result<(), TrailError> {
-        let pose = *self.arrow.pose_after(sense).get_or_insert(Dart(self.pose));
-        self.classes.unite(pose.0, self.pose)?;
+impl Arrow {
+    fn pose_after(&mut self, sense: Sense) -> &mut Option<Dart> {
+        match sense {
+            Sense::Along => &mut self.along,
+            Sense::Against => &mut self.against,
+        }
+    }
+
+    /// The robot has passed the arrow, and has come in by the dart `pose` after some moves.
+    pub(super) fn pass(
+        &mut self,
+        sense: Sense,
+        (pose, moves): (u32, usize),
+        classes: &mut DartClasses,
+    ) -> Result<(), TrailError> {
+        let first = *self.pose_after(sense).get_or_insert(Dart(pose));
+        classes.unite(first.0, pose)?;
         let other = match sense {
-            Sense::Along => self.arrow.against,
-            Sense::Against => self.arrow.along,
+            Sense::Along => self.against,
+            Sense::Against => self.along,
         };
         if let Some(other) = other {
-            let [pose, other] = [pose, other].map(|dart| self.classes.find(dart.0));
-            match [pose, other].map(|dart| self.classes.opposite(dart)) {
+            let [pose, other] = [first, other].map(|dart| classes.find(dart.0));
+            match [pose, other].map(|dart| classes.opposite(dart)) {
                 [OPEN, OPEN] if pose == other => {
-                    return Err(ContradictionReason::OwnOpposite { visit: self.moves }.into());
+                    return Err(ContradictionReason::OwnOpposite { visit: moves }.into());
                 }
-                [OPEN, OPEN] => self.classes.join(pose, other),
-                [OPEN, far] => self.classes.unite(pose, far)?,
-                [far, _] => self.classes.unite(far, other)?,
+                [OPEN, OPEN] => classes.join(pose, other),
+                [OPEN, far] => classes.unite(pose, far)?,
+                [far, _] => classes.unite(far, other)?,
             }
         }
-        self.classes.flatten();
-        Ok(self.check_arrow()?)
+        classes.flatten();
+        Ok(self.check(moves, classes)?)
     }
 
     /// The ends of the edge with the arrow, as darts of roots: the one from which it points, and the other one.
-    pub(super) fn arrow_ends(&self) -> [Option<Dart>; 2] {
-        let Arrow { along, against } = self.arrow;
+    pub(super) fn ends(&self, classes: &DartClasses) -> [Option<Dart>; 2] {
         let end = |entered: Option<Dart>, other: Option<Dart>| {
-            let known = entered.map(|dart| self.root_of(dart));
-            known.or_else(|| self.opposite(other?))
+            let known = entered.map(|dart| classes.find(dart.0));
+            let far = || Some(classes.opposite(classes.find(other?.0))).filter(|&far| far != OPEN);
+            known.or_else(far).map(Dart)
         };
-        [end(against, along), end(along, against)]
+        [end(self.against, self.along), end(self.along, self.against)]
     }
 
     /// What a robot sees of the arrow if it comes in by a dart of an edge that was traversed.
-    fn arrow_seen_by(&self, pose: Dart) -> Sighting {
-        let pose = Some(self.root_of(pose));
-        match self.arrow_ends() {
+    fn seen_by(&self, pose: u32, classes: &DartClasses) -> Sighting {
+        let pose = Some(Dart(classes.find(pose)));
+        match self.ends(classes) {
             [tail, _] if tail == pose => Sighting::PassedAgainst,
             [_, head] if head == pose => Sighting::PassedAlong,
             _ => Sighting::Nothing,
         }
     }
 
-    /// Compares what the robot has just seen with what is known of the edge by which it came.
+    /// Compares what the robot has just seen, when it came in by the dart `pose` after some moves, with what is known of
+    /// that edge.
     #[inline]
-    pub(super) fn compare_arrow(&self, percept: Percept) -> Result<(), ContradictionReason> {
+    pub(super) fn compare(
+        &self,
+        percept: Percept,
+        (pose, moves): (u32, usize),
+        classes: &DartClasses,
+    ) -> Result<(), ContradictionReason> {
         let seen = of_arrow(percept.sighting);
-        if self.arrow == Arrow::default() && seen == Sighting::Nothing {
+        if *self == Self::default() && seen == Sighting::Nothing {
             return Ok(());
         }
-        let pose = self.pose();
-        let before = self.arrow_seen_by(pose);
-        let visits = [self.classes.visit(pose.0), self.moves];
+        let pose = classes.find(pose);
+        let before = self.seen_by(pose, classes);
+        let visits = [classes.visit(pose), moves];
         if before == seen {
             Ok(())
         } else {
@@ -102,16 +114,20 @@ impl FoldedTrail {
 
     /// Compares what the robot saw each time it traversed an edge for the first time.
     #[inline]
-    pub(super) fn check_arrow(&self) -> Result<(), ContradictionReason> {
-        if self.arrow == Arrow::default() {
+    pub(super) fn check(
+        &self,
+        moves: usize,
+        classes: &DartClasses,
+    ) -> Result<(), ContradictionReason> {
+        if *self == Self::default() {
             return Ok(());
         }
-        for vertex in 0..self.trail_vertex_count() as u32 {
-            let pose = self.classes.first(vertex);
-            let seen = of_arrow(self.classes.percept(pose).sighting);
-            let other = self.arrow_seen_by(Dart(pose));
+        for vertex in 0..classes.trail_vertex_count() as u32 {
+            let pose = classes.first(vertex);
+            let seen = of_arrow(classes.percept(pose).sighting);
+            let other = self.seen_by(pose, classes);
             if seen != other {
-                let visits = [self.classes.visit(pose), self.moves];
+                let visits = [classes.visit(pose), moves];
                 return Err(ContradictionReason::Marker { visits, sightings: [seen, other] });
             }
         }

@@ -59,7 +59,7 @@ impl FoldedTrail {
         let [start, pose] = [self.start(), self.pose()].map(numbered);
         let marker = self.marker().or(self.marked_vertex()).map(numbered);
         // The arrow comes from what is behind an open dart.
-        let [_, head] = self.arrow_ends();
+        let [_, head] = self.arrow.ends(&self.classes);
         let marker = marker.or_else(|| Some(graph.opposite(numbered(head?))));
         (ClosedTrail { graph, marker, pose }, start)
     }

@@ -1,9 +1,10 @@
 //! Folding: what a walk proves about its world.
 //!
 //! A *trail* has one vertex for each percept of a walk, joined by the edges that were traversed. All
-//! sightings of the directional marker are one pose, and so are those of an arrow on an edge in one sense, so these poses are identified; identified poses
-//! have identified neighbours behind the same doors; and so on, until nothing changes. This is
-//! Stallings folding ("Topology of finite graphs", 1983), and it is congruence closure.
+//! sightings of the directional marker are one pose, and so are those of an arrow on an edge in one
+//! sense, so these poses are identified; identified poses have identified neighbours behind the same
+//! doors; and so on, until nothing changes. This is Stallings folding ("Topology of finite graphs",
+//! 1983), and it is congruence closure.
 //!
 //! * If the folding contradicts itself, no world of any size explains the walk.
 //! * Otherwise the folded trail maps, locally one to one, into every world that explains the walk. An

@@ -109,8 +109,8 @@ impl FoldedTrail {
     #[inline]
     fn identify_marker(&mut self, percept: Percept) -> Result<(), TrailError> {
         match percept.sighting {
-            Sighting::PassedAlong => return self.identify_arrow(Sense::Along),
-            Sighting::PassedAgainst => return self.identify_arrow(Sense::Against),
+            Sighting::PassedAlong => return self.pass_arrow(Sense::Along),
+            Sighting::PassedAgainst => return self.pass_arrow(Sense::Against),
             _ => self.compare_arrow(percept)?,
         }
         if let (Sighting::Pointing(Door(door)), Some(marker)) = (percept.sighting, self.marker)
@@ -121,6 +121,15 @@ impl FoldedTrail {
             self.classes.flatten();
         }
         Ok(())
+    }
+
+    fn pass_arrow(&mut self, sense: Sense) -> Result<(), TrailError> {
+        self.arrow.pass(sense, (self.pose, self.moves), &mut self.classes)
+    }
+
+    #[inline]
+    fn compare_arrow(&self, percept: Percept) -> Result<(), ContradictionReason> {
+        self.arrow.compare(percept, (self.pose, self.moves), &self.classes)
     }
 
     /// What a robot with this pose saw at its place before, if it came there along edges that it knew. That
@@ -135,7 +144,10 @@ impl FoldedTrail {
     /// # Errors
     /// Returns an error if no world of any size has them as one dart. Nothing is then changed.
     pub fn unite(&mut self, one: Dart, other: Dart) -> Result<(), ContradictionReason> {
-        let united = self.classes.unite(one.0, other.0).and_then(|()| self.check_arrow());
+        let united = self
+            .classes
+            .unite(one.0, other.0)
+            .and_then(|()| self.arrow.check(self.moves, &self.classes));
         if united.is_err() {
             self.classes.undo();
         }
@@ -153,7 +165,10 @@ impl FoldedTrail {
         other: Dart,
         compute: impl FnOnce(&Self) -> T,
     ) -> Result<T, ContradictionReason> {
-        let united = self.classes.suppose(one.0, other.0).and_then(|()| self.check_arrow());
+        let united = self
+            .classes
+            .suppose(one.0, other.0)
+            .and_then(|()| self.arrow.check(self.moves, &self.classes));
         let computed = united.map(|()| compute(&*self));
         self.classes.undo();
         computed
@@ -217,7 +232,7 @@ impl FoldedTrail {
     /// seen where its edge ends, and the edge was not traversed, there is none.
     #[must_use]
     pub fn marker(&self) -> Option<Dart> {
-        let [tail, _] = self.arrow_ends();
+        let [tail, _] = self.arrow.ends(&self.classes);
         self.marker.map(|dart| self.root_of(dart)).or(tail)
     }
 

@@ -185,8 +185,8 @@ fn a_divergence_is_shown_with_the_events_before_it_and_what_is_allowed() {
     for part in [
         "<b>Perceives 4 doors.</b>",
         "<span class=\"chip\">perception</span>",
-        "<a href=\"#event-1-7\">Event 7 of 9</a> \u{b7} 0:03.5 min \u{b7} message 4711 of the log, \
-         byte 1234567 \u{b7} cause <code>percept</code>",
+        "<a href=\"#event-1-7\">Event 7 of 9</a> \u{b7} 0:03.5 min \u{b7} message 4,711 of the log, \
+         byte 1,234,567 \u{b7} cause <code>percept</code>",
         "<li>3 doors, at tee</li>",
         "src=\"data:image/jpeg;base64,/9j/4A==\"",
         "src=\"data:image/svg+xml;base64,",
