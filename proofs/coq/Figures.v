@@ -1,6 +1,6 @@
 (** The worlds of the figures, as lists from their world files, and facts about them that are checked by
-    computation: Figure 1 of the paper, the smallest simple pair, two cycles, and a pair for marks on an edge
-    and for two markers that look alike. *)
+    computation: Figure 1 of the paper, the smallest simple pair, those of degree at most three and in the plane,
+    two cycles, and a pair for marks on an edge and for two markers that look alike. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Markers Walks Bisimulation.
@@ -346,6 +346,79 @@ Proof. by split; apply: world_simple. Qed.
 
 Lemma smallest_simple : simple smallest_a /\ simple smallest_b.
 Proof. by split; apply: world_simple. Qed.
+
+(** * Pairs of degree at most three, and in the plane *)
+
+(** Four vertices, each joined to each, in the plane and on the torus. They are undirected-corridor-1 and -2 in
+    the atlas. *)
+Definition corridor_a_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 2; 3];
+      (* 2 *) [:: 0; 3; 1];
+      (* 3 *) [:: 0; 1; 2]].
+
+Definition corridor_b_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3];
+      (* 1 *) [:: 0; 3; 2];
+      (* 2 *) [:: 0; 1; 3];
+      (* 3 *) [:: 0; 2; 1]].
+
+(** Two triangles and two dead ends at the marked vertex, all in the plane: the triangles side by side, or one
+    around the other. They are undirected-planar-1 and -2 in the atlas. *)
+Definition planar_a_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3; 4; 5; 6];
+      (* 1 *) [:: 0; 2];
+      (* 2 *) [:: 0; 1];
+      (* 3 *) [:: 0];
+      (* 4 *) [:: 0; 5];
+      (* 5 *) [:: 0; 4];
+      (* 6 *) [:: 0]].
+
+Definition planar_b_file : world_file :=
+  [:: (* 0 *) [:: 1; 2; 3; 4; 5; 6];
+      (* 1 *) [:: 0; 5];
+      (* 2 *) [:: 0; 4];
+      (* 3 *) [:: 0];
+      (* 4 *) [:: 0; 2];
+      (* 5 *) [:: 0; 1];
+      (* 6 *) [:: 0]].
+
+Lemma corridor_a_sound : sound corridor_a_file. Proof. by vm_compute. Qed.
+Lemma corridor_b_sound : sound corridor_b_file. Proof. by vm_compute. Qed.
+Lemma planar_a_sound : sound planar_a_file. Proof. by vm_compute. Qed.
+Lemma planar_b_sound : sound planar_b_file. Proof. by vm_compute. Qed.
+
+(** At vertex 0, facing vertex 1. *)
+Definition corridor_a : start := start_at corridor_a_sound (erefl : (0, 1) \in names corridor_a_file).
+Definition corridor_b : start := start_at corridor_b_sound (erefl : (0, 1) \in names corridor_b_file).
+Definition planar_a : start := start_at planar_a_sound (erefl : (0, 1) \in names planar_a_file).
+Definition planar_b : start := start_at planar_b_sound (erefl : (0, 1) \in names planar_b_file).
+
+Lemma corridor_simple : simple corridor_a /\ simple corridor_b.
+Proof. by split; apply: world_simple. Qed.
+
+Lemma corridor_degree : (forall d : corridor_a, degree d = 3) /\ (forall d : corridor_b, degree d = 3).
+Proof.
+have three file (ok : sound file) :
+    all (fun x => size (neighbours file x.1) == 3) (names file) -> forall d : world ok, degree d = 3.
+  by move=> /allP all_3 d; rewrite world_degree; apply/eqP/all_3/(ssvalP d).
+by split; apply: three; vm_compute.
+Qed.
+
+Lemma planar_simple : simple planar_a /\ simple planar_b.
+Proof. by split; apply: world_simple. Qed.
+
+Lemma corridor_not_isomorphic : ~ isomorphic corridor_a corridor_b.
+Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 2]); vm_compute. Qed.
+
+Lemma planar_not_isomorphic : ~ isomorphic planar_a planar_b.
+Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
+
+Lemma corridor_bisimilar : bisimilar (moving undirected) corridor_a corridor_b.
+Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 24); vm_compute. Qed.
+
+Lemma planar_bisimilar : bisimilar (moving undirected) planar_a planar_b.
+Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 32); vm_compute. Qed.
 
 (** * A pair for two more kinds of markers *)
 

@@ -12,6 +12,7 @@ From toposlam Require Moves Trail Unfolding Determined Simulation Identifying Co
   CertificateAttained.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b, edge_a, edge_b).
+Import Figures(corridor_a, corridor_b, planar_a, planar_b).
 Import Multigraphs(theta_plane, theta_torus, two_loops_plane, two_loops_torus, paths_a, paths_b).
 Import Tours(chain_2, chain_3).
 Import Embedding(embeds).
@@ -410,6 +411,30 @@ Qed.
 Theorem coprime_degree_determines (V W : start) :
   coprime (degree (facing W)) #|W| -> indistinguishable undirected V W -> isomorphic_starts V W.
 Proof. exact: Coprime.coprime_degree_determines. Qed.
+
+(** An undirected marker does not suffice in worlds without loops and parallel edges whose degrees are at most
+    three: two such worlds with 6 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)
+Theorem undirected_corridor_impossible (robot : strategy embedded_graph) :
+  [/\ simple corridor_a /\ simple corridor_b,
+      (forall d : corridor_a, degree d = 3) /\ (forall d : corridor_b, degree d = 3),
+      ~ isomorphic corridor_a corridor_b, bisimilar (moving undirected) corridor_a corridor_b
+    & ~ (maps (moving undirected) robot corridor_a /\ maps (moving undirected) robot corridor_b)].
+Proof.
+have same := Figures.corridor_bisimilar; have differ := Figures.corridor_not_isomorphic.
+split=> //; [exact: Figures.corridor_simple | exact: Figures.corridor_degree |].
+exact: Impossible.bisimilar_impossible same differ robot.
+Qed.
+
+(** Nor does it in worlds without loops and parallel edges in the plane, by two such worlds with 8 edges. That they
+    are in the plane is not stated. Paper: beyond 2.2. *)
+Theorem undirected_planar_impossible (robot : strategy embedded_graph) :
+  [/\ simple planar_a, simple planar_b, ~ isomorphic planar_a planar_b,
+      bisimilar (moving undirected) planar_a planar_b
+    & ~ (maps (moving undirected) robot planar_a /\ maps (moving undirected) robot planar_b)].
+Proof.
+have [simple_a simple_b] := Figures.planar_simple; have same := Figures.planar_bisimilar.
+have differ := Figures.planar_not_isomorphic; split=> //; exact: Impossible.bisimilar_impossible same differ robot.
+Qed.
 
 (** A mark on an edge does not suffice, not even in worlds without loops and parallel edges: two such worlds
     with 7 edges are bisimilar, and no robot maps both. Paper: beyond 2.2. *)

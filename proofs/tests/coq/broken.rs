@@ -71,6 +71,62 @@ fn what_always_holds_includes_that_each_action_is_possible() {
     assert_matters("possible", "Program.v", "possible s e /\\", "true /\\");
 }
 
+/// Without an allowed choice anything would hold for all of them.
+#[test]
+fn what_always_holds_includes_that_a_choice_is_allowed() {
+    assert_matters("default", "Program.v", "allowed default /\\ forall x", "true /\\ forall x");
+}
+
+#[test]
+fn what_always_holds_counts_the_actions() {
+    assert_matters("count", "Program.v", "Q a s' actions.+1)", "Q a s' actions)");
+}
+
+#[test]
+fn a_program_goes_on_with_the_percept_after_its_action() {
+    let after = "always (go (sense (next_state s e)))";
+    assert_matters("after", "Program.v", after, "always (go (sense s))");
+}
+
+#[test]
+fn a_robot_that_obeys_a_program_uses_each_percept_once() {
+    let later = "then obey (go seen) later else";
+    assert_matters("obeys/later", "Program.v", later, "then obey (go seen) past else");
+    // The program depends on the first one.
+    assert_matters("obeys/first", "Program.v", "(behead past).", "past.");
+}
+
+#[test]
+fn a_history_has_the_percepts_after_the_actions() {
+    let after = "rcons past (sense (next_state s e))";
+    assert_matters("history", "Spec.v", after, "rcons past (sense s)");
+}
+
+#[test]
+fn every_action_preserves_a_bisimulation() {
+    let every = "forall e, R (next_state s e)";
+    assert_matters("bisimulation", "Spec.v", every, "exists e, R (next_state s e)");
+}
+
+#[test]
+fn isomorphic_starts_have_the_same_facing_dart_not_only_the_same_vertex() {
+    let dart = "isomorphism f /\\ f (facing V) = facing W.";
+    let vertex = "isomorphism f /\\ same_vertex (f (facing V)) (facing W).";
+    assert_matters("facing", "Spec.v", dart, vertex);
+}
+
+#[test]
+fn a_marker_is_picked_up_only_where_it_lies() {
+    let here = "(pose, if same_vertex pose spot then None else lying)";
+    assert_matters("picked-up", "MovableMarker.v", here, "(pose, None)");
+}
+
+#[test]
+fn a_marker_that_was_dropped_at_a_new_vertex_has_to_be_fetched() {
+    let fetched = "      pick_up ;;\n      Return NewPlace";
+    assert_matters("fetched", "MovableMarker.v", fetched, "      Return NewPlace");
+}
+
 #[test]
 fn a_marker_without_a_direction_is_not_enough() {
     let pointing = "Pointing (findex clockwise pose (facing W))";
@@ -100,6 +156,18 @@ fn a_robot_that_confirms_a_hypothesis_counts_its_turns() {
 fn a_folded_trail_with_an_open_entry_dart_is_not_complete() {
     let followed = "i < degree_seen visit -> followed";
     assert_matters("complete", "Folding.v", followed, &format!("0 < i -> {followed}"));
+}
+
+#[test]
+fn darts_at_the_marker_are_folded_by_its_direction() {
+    let folded = "folded (visit, i) (visit', j)";
+    assert_matters("folded", "Folding.v", folded, "folded (visit, j) (visit', i)");
+}
+
+#[test]
+fn an_edge_is_traversed_in_either_direction() {
+    let either = "[|| turn pose i == d, traverse pose i == d |";
+    assert_matters("traversed", "Folding.v", either, "[|| turn pose i == d |");
 }
 
 #[test]
@@ -211,4 +279,38 @@ fn a_place_of_the_folding_explorer_joins_the_map_only_without_hypotheses() {
 fn a_certificate_saves_what_leads_to_a_leaf() {
     let saved = "(2 * hanging_above leaf - distance leaf)";
     assert_matters("leaf", "Certificate.v", saved, "(hanging_above leaf - distance leaf)");
+}
+
+#[test]
+fn a_certificate_goes_over_each_hanging_edge_twice() {
+    assert_matters("hanging", "Certificate.v", "+ 2 * #|hanging| -", "+ #|hanging| -");
+}
+
+#[test]
+fn a_robot_can_turn_before_each_move_of_a_shortest_walk() {
+    let turned = "[exists e, same_vertex d e && reached";
+    assert_matters("distance", "Certificate.v", turned, "[exists e, (d == e) && reached");
+}
+
+#[test]
+fn the_folding_explorer_joins_only_what_its_trail_shows_to_be_one_edge() {
+    let shown = "h \\in U & stands_for K x == stands_for K (dart_in_trail K h)]";
+    assert_matters("joined", "FoldingExplorer.v", shown, "h \\in U & true]");
+}
+
+#[test]
+fn a_failed_test_of_the_folding_explorer_refutes_its_hypothesis() {
+    let both = "else with_refuted K e h.";
+    assert_matters("refuted", "FoldingExplorer.v", both, "else with_refuted K h h.");
+}
+
+#[test]
+fn an_action_from_outside_has_to_be_allowed() {
+    let allowed = "if allowed_action allowed patience K a then guided_by";
+    assert_matters(
+        "given",
+        "GivenActions.v",
+        allowed,
+        "if allowed_action allowed patience K a || true then guided_by",
+    );
 }

@@ -7,13 +7,17 @@ use toposlam_model::{embedded_graph::EmbeddedGraph, format::world_file};
 use super::{compiled, printed, source};
 
 /// The lists of `Figures.v`, without their ending, and the world files.
-const WORLDS: [(&str, &str); 8] = [
+const WORLDS: [(&str, &str); 12] = [
     ("cycle_3", "cycle-3"),
     ("cycle_4", "cycle-4"),
     ("figure_1a", "figure-1a"),
     ("figure_1b", "figure-1b"),
     ("smallest_a", "atlas/undirected-simple-1"),
     ("smallest_b", "atlas/undirected-simple-2"),
+    ("corridor_a", "atlas/undirected-corridor-1"),
+    ("corridor_b", "atlas/undirected-corridor-2"),
+    ("planar_a", "atlas/undirected-planar-1"),
+    ("planar_b", "atlas/undirected-planar-2"),
     ("edge_a", "atlas/undirected-edge-corridor-1"),
     ("edge_b", "atlas/undirected-edge-corridor-2"),
 ];

@@ -1,5 +1,5 @@
 //! The Coq development, where Coq is installed: that it holds, that it would not if it were broken, and
-//! that the algorithm of which it speaks is the one of `toposlam-model`.
+//! that its algorithms do the same as those of `toposlam-model` on the tested starts.
 //!
 //! Where Coq, MathComp or OCaml is missing a test says so and is skipped, unless `TOPOSLAM_COQ=required`.
 

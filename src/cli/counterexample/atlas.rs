@@ -156,19 +156,24 @@ fn no_pair(marker: &dyn Marker) -> String {
 }
 
 /// The theorem that the marker suffices in this class of worlds, or that it does not.
-fn proved(marker: &dyn Marker, class: Class, suffices: bool) -> Option<&'static str> {
+pub(super) fn proved(marker: &dyn Marker, class: Class, suffices: bool) -> Option<&'static str> {
     let theorem = marker_theorems::about(marker.name(), class)?;
     (theorem.suffices == suffices).then_some(theorem.theorem)
+}
+
+/// That the search up to this number of edges found no pair; or, if it is proved, that there is none.
+pub(super) fn none(marker: &dyn Marker, class: Class, edges: usize) -> String {
+    match proved(marker, class, true) {
+        Some(theorem) => format!("none: `{theorem}`"),
+        None => format!("none up to {}", counted(edges, "edge")),
+    }
 }
 
 /// The sizes of the smallest pair, with links to its files, and the theorem about the marker in this class.
 fn cell(marker: &dyn Marker, class: Class, found: &WorldPairs, edges: usize) -> String {
     let pairs = found.pairs();
     let Some(pair) = pairs.first() else {
-        return match proved(marker, class, true) {
-            Some(theorem) => format!("none: `{theorem}`"),
-            None => format!("none up to {}", counted(edges, "edge")),
-        };
+        return none(marker, class, edges);
     };
     let file = |world: &NamedWorld| {
         format!("[{}]({}.toml)", counted(world.graph.edge_count(), "edge"), world.name)

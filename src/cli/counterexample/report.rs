@@ -10,7 +10,10 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use super::pairs::WorldPairs;
+use super::{
+    atlas::{none, proved},
+    pairs::WorldPairs,
+};
 use crate::cli::{
     CliError,
     cluster::ClusterSession,
@@ -146,7 +149,7 @@ impl<'o> SearchReport<'o> {
             marker.name(),
             sum(|size| size.placed_worlds),
             sum(|size| size.ambiguous),
-            self.sizes_of_smallest(found),
+            self.sizes_of_smallest(marker, found),
         )?;
         if found.has_all() && !found.pairs().is_empty() {
             self.pairs.push(found.clone());
@@ -154,10 +157,10 @@ impl<'o> SearchReport<'o> {
         Ok(())
     }
 
-    fn sizes_of_smallest(&self, found: &WorldPairs) -> String {
+    fn sizes_of_smallest(&self, marker: &dyn Marker, found: &WorldPairs) -> String {
         match found.pairs().first() {
             Some([one, other]) => sizes(one, other),
-            None => format!("none up to {}", counted(self.edges, "edge")),
+            None => none(marker, self.class, self.edges),
         }
     }
 
@@ -186,6 +189,10 @@ impl<'o> SearchReport<'o> {
                 counted(self.edges, "edge")
             );
             print_paragraph(self.out, &none)?;
+            if let Some(theorem) = proved(marker, self.class, true) {
+                let any = format!("none in any world of the class: `{theorem}`, proved in Coq");
+                print_paragraph(self.out, &any)?;
+            }
             return Ok(());
         };
         writeln!(self.out)?;
