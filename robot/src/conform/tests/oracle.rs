@@ -327,7 +327,7 @@ pub(super) fn takes_doors(algorithm: DirectionalAlgorithm, trace: &Trace) -> Opt
     let mut script = Script::default();
     for _ in 0..RUNS {
         let mut world = DoorsOf { world: GraphWorld::new(&graph, pose), doors: trace.doors() };
-        let mut nobody = |_: &DoorsOf, _: &Journey, _: MappingEvent| {};
+        let mut nobody = |_: &mut DoorsOf, _: &Journey, _: MappingEvent| {};
         let end = match algorithm {
             DirectionalAlgorithm::Algorithm1 => {
                 let mut exploration = Exploration::new(usize::MAX);

@@ -119,9 +119,10 @@ impl Options {
         let marker = self.marker.marker();
         let known = self.world.map(|known| KnownWorld {
             graph,
-            states: match known {
-                true => vec![GraphWorld::with_marker(graph, marker, facing).state()],
-                false => anywhere(graph, &marker),
+            states: if known {
+                vec![GraphWorld::with_marker(graph, marker, facing).state()]
+            } else {
+                anywhere(graph, &marker)
             },
         });
         ConformConfig {
