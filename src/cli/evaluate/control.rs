@@ -92,10 +92,15 @@ impl EvaluateControlArguments {
         let (wrong, gave_up) = tally(judged);
         writeln!(out, "  wrong    {}", share(wrong, judged.len()))?;
         writeln!(out, "  gave up  {}", share(gave_up, judged.len()))?;
-        let mean = |sum: f64| sum / judged.len().max(1) as f64;
-        let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
-        let pictures = mean(judged.iter().map(|traversal| traversal.pictures as f64).sum());
-        writeln!(out, "  {pictures:.1} images and {seconds:.1} s of simulated time per traversal")?;
+        if !judged.is_empty() {
+            let mean = |sum: f64| sum / judged.len() as f64;
+            let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
+            let pictures = mean(judged.iter().map(|traversal| traversal.pictures as f64).sum());
+            writeln!(
+                out,
+                "  {pictures:.1} images and {seconds:.1} s of simulated time per traversal"
+            )?;
+        }
         let verdict = match outcome {
             Outcome::Incomplete if judged.is_empty() => "incomplete: nothing was measured",
             Outcome::Incomplete => "incomplete, interrupted",
@@ -129,7 +134,7 @@ impl EvaluateControlArguments {
         let line = json!({
             "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
-            "holds": outcome == Outcome::Holds,
+            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "control", &line)
     }

@@ -156,9 +156,12 @@ impl EvaluateRunsArguments {
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
-        let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
-        let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
-        writeln!(out, "  {moves} moves, {pictures} images, {hours:.1} hours of simulated time")?;
+        if !judged.is_empty() {
+            let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
+            let (moves, pictures) =
+                (counted(moves as usize, "move"), counted(pictures as usize, "image"));
+            writeln!(out, "  {moves}, {pictures}, {hours:.1} hours of simulated time")?;
+        }
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -211,7 +214,7 @@ impl EvaluateRunsArguments {
             "runs": judged.len(), "seed": self.robots.seed,
             "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
-            "violations": violations, "holds": outcome == Outcome::Holds,
+            "violations": violations, "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
     }
