@@ -23,6 +23,58 @@ pub struct SourceFile {
     pub sha256: String,
 }
 
+/// The reports on the logs of one command.
+#[derive(Clone, Debug, Default)]
+pub struct ConformReports {
+    /// The logs that were checked.
+    pub logs: Vec<LogReport>,
+    /// The logs that were not.
+    pub unread: Vec<UnreadLog>,
+    /// The cases that the logs must cover together, if some are required.
+    pub required: Option<RequiredCoverage>,
+}
+
+/// A log that could not be checked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnreadLog {
+    /// The file of the log.
+    pub log: String,
+    /// Why.
+    pub cause: String,
+}
+
+/// The cases that logs must cover.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RequiredCoverage {
+    /// Their names.
+    pub required: Vec<String>,
+    /// Those that are not covered.
+    pub not_covered: Vec<String>,
+    /// Those of them that the algorithm of the logs does not have.
+    pub not_applicable: Vec<String>,
+}
+
+impl RequiredCoverage {
+    /// Which cases are not covered, in words.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let Self { required, not_covered, not_applicable } = self;
+        let not_covered = match &not_covered[..] {
+            [] => "all are covered".to_owned(),
+            not => format!("not covered: {}", not.join(", ")),
+        };
+        let foreign = match &not_applicable[..] {
+            [] => String::new(),
+            cases => format!(
+                "; the folding explorer does not have these cases of Algorithm 1: {}",
+                cases.join(", ")
+            ),
+        };
+        let cases = if required.len() == 1 { "required case" } else { "required cases" };
+        format!("{} {cases}: {not_covered}{foreign}", required.len())
+    }
+}
+
 /// The report on a log.
 #[derive(Clone, Debug)]
 pub struct LogReport {
@@ -118,8 +170,8 @@ pub struct EventLine {
 pub struct DivergenceReport {
     /// The number of the event, from 1; one more than there are if an event is missing at the end.
     pub event: usize,
-    /// Seconds since the first message.
-    pub time: f64,
+    /// Seconds since the first message; `None` if the log has no times.
+    pub time: Option<f64>,
     /// The number of the message in the log, from 1, and its position in the file; none at the end.
     pub message: Option<(u64, u64)>,
     /// The class of the fault.

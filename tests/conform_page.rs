@@ -14,7 +14,8 @@ use toposlam::{
     page::conform_page,
     picture::{OpenGraph, WorldPicture, open_svg, svg},
     report::{
-        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, ReportOrigin, SourceFile,
+        ConformReports, CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport,
+        ReportOrigin, SourceFile,
     },
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
@@ -138,7 +139,7 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
         verdict: ConformVerdict::Diverged,
         divergence: Some(DivergenceReport {
             event: at,
-            time: at as f64 * 4.7,
+            time: Some(at as f64 * 4.7),
             message: Some((4711, 1_234_567)),
             fault: FaultClass::Perception,
             cause: "percept",
@@ -192,7 +193,11 @@ fn the_page_of_a_report_opens_and_leads_to_its_events() {
     ];
     let pages = pages.map(|(name, reports)| {
         let file = folder.join(format!("conform-{name}.html"));
-        fs::write(&file, conform_page(&reports, &origin)).unwrap();
+        fs::write(
+            &file,
+            conform_page(&ConformReports { logs: reports, ..ConformReports::default() }, &origin),
+        )
+        .unwrap();
         format!("{name}={}", file.display())
     });
     browser::open("conform_page.mjs", &pages);

@@ -80,6 +80,8 @@ const COMMANDS: [(&str, &[&str]); 20] = [
             "info fuzz/corpus/mcap/cut-in-a-chunk",
             "info fuzz/corpus/mcap/error-a-wrong-checksum --verify",
             "info damaged.mcap --verify",
+            "info fuzz/corpus/mcap/cut-in-a-chunk --verify",
+            "info nothing.mcap",
         ],
     ),
     (
@@ -90,6 +92,7 @@ const COMMANDS: [(&str, &[&str]); 20] = [
             "conform run.mcap carried.mcap --require-coverage confirmed",
             "conform run.mcap --max-darts 4 --max-steps 1",
             "conform run.mcap --events recorded",
+            "conform run.mcap nothing.mcap",
         ],
     ),
     ("replay", &["replay run.mcap"]),
@@ -103,11 +106,16 @@ const COMMANDS: [(&str, &[&str]); 20] = [
         &[
             "sense 2.png 5.png 7.png --calibration camera.toml --colours colours.toml",
             "sense scans.log",
+            "sense nothing.mcap",
         ],
     ),
     (
         "evaluate-control",
-        &["evaluate control --traversals 60", "evaluate control --traversals 300 --noise 5"],
+        &[
+            "evaluate control --traversals 60",
+            "evaluate control --traversals 300 --noise 5",
+            "evaluate control --traversals 0",
+        ],
     ),
     (
         "evaluate-laser",
@@ -171,16 +179,34 @@ fn kinds(schema: &Value) -> BTreeSet<&str> {
 
 /// Runs a command in a folder. Returns its lines, none of which is empty.
 fn lines(folder: &Path, command: &str) -> String {
-    let mut toposlam = Command::new(env!("CARGO_BIN_EXE_toposlam"));
-    let output = toposlam.current_dir(folder).args(command.split(' ')).output().unwrap();
-    assert_ne!(output.status.code(), Some(2), "{command}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
+    run(folder, command).0
 }
 
-/// A single view is always printed as JSON.
+/// Runs a command in a folder. Returns its lines and its exit code.
+fn run(folder: &Path, command: &str) -> (String, i32) {
+    let mut toposlam = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+    let output = toposlam.current_dir(folder).args(command.split(' ')).output().unwrap();
+    let code = output.status.code().unwrap();
+    assert_eq!(code == 2, command.contains(" nothing."), "{command}: {output:?}");
+    (String::from_utf8(output.stdout).unwrap(), code)
+}
+
+/// The exit code for the verdict of a line, if it has one: the line itself, or the verification of a log.
+fn code_of(line: &Value) -> Option<i32> {
+    let judged =
+        [line, &line["verification"]].into_iter().find(|part| part.get("holds").is_some())?;
+    let code = match judged["verdict"].as_str().unwrap() {
+        "holds" => 0,
+        "violated" | "fails" => 1,
+        "not-known" | "excluded" => 3,
+        other => panic!("{other}"),
+    };
+    assert_eq!(judged["holds"], code == 0, "{line}");
+    Some(code)
+}
+
 fn with_json(command: &str) -> String {
-    let option = if command.contains("--view ") { "" } else { " --json" };
-    format!("{command}{option}")
+    format!("{command} --json")
 }
 
 /// A folder with the worlds, some logs, and images with their labels.
@@ -237,8 +263,13 @@ fn the_lines_of_each_verb_fit_its_schema() {
         let schema = schema(name);
         let mut printed = String::new();
         for command in commands {
-            let lines = lines(&folder, &with_json(command));
+            let (lines, code) = run(&folder, &with_json(command));
             assert!(!lines.is_empty(), "{command}");
+            let verdicts =
+                lines.lines().filter_map(|line| code_of(&serde_json::from_str(line).unwrap()));
+            // 1 is worse than 3.
+            let worst = verdicts.min_by_key(|code| [1, 3, 0].iter().position(|one| one == code));
+            assert!(worst.is_none_or(|worst| worst == code), "{command} ends with {code}: {lines}");
             write!(printed, "{lines}").unwrap();
         }
         let mut shown = BTreeSet::new();
@@ -297,7 +328,7 @@ fn a_line_with_another_kind_key_or_type_does_not_fit() {
     let schema = schema("paper");
     let line = json!({
         "schema": 1, "kind": "requirements", "requirements": 2, "done": 1, "open": 1, "faults": [],
-        "holds": true,
+        "verdict": "holds", "holds": true,
     });
     assert_eq!(problem(&schema, &line), None);
     for (key, value) in [
@@ -310,6 +341,7 @@ fn a_line_with_another_kind_key_or_type_does_not_fit() {
         ("done", Value::Null),
         ("faults", json!([1])),
         ("holds", json!("true")),
+        ("verdict", json!("unknown")),
     ] {
         let mut changed = line.clone();
         changed[key] = value;

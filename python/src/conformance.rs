@@ -7,7 +7,7 @@ use toposlam_model::{
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
-    marker::{Directional, Marker},
+    marker::{Marker, NoMarker},
     percept::{Percept as ModelPercept, Sighting},
     trace::{AlgorithmCase, anywhere},
     world::{GraphWorld, State},
@@ -136,7 +136,7 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
         ..laser
     };
     let sensor = sensor(log)?;
-    let marked = question.marker.name() == Directional.name();
+    let marked = question.marker.name() != NoMarker.name();
     let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
     let mut extracted =
         extract(&log.log, &log.mapping, &config, watcher).map_err(|cause| text(&cause))?;
@@ -179,10 +179,11 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
         dart_bound: question.max_darts,
     };
     // A robot that no algorithm drives may turn back between junctions.
-    let events = match question.driver {
-        RunDriver::Anyone => extracted.events.without_excursions(),
-        RunDriver::Method(_) => extracted.events.clone(),
-    };
+    let mut events = extracted.events.clone();
+    events.complete_sightings(question.marker).map_err(|cause| text(&cause))?;
+    if question.driver == RunDriver::Anyone {
+        events = events.without_excursions();
+    }
     let judgement =
         judge(events, &config, &Quirks::default(), watcher).map_err(|cause| text(&cause))?;
     Ok(Checked { extracted, judgement, remarks })

@@ -71,6 +71,17 @@ def test_an_assumed_marker_must_be_seen(tmp_path):
     assert ts.conform(tmp_path / "run.jsonl", marker="directional").verdict == "diverged"
 
 
+def test_an_undirected_marker_is_seen_with_or_without_a_direction(tmp_path):
+    log = tmp_path / "run.jsonl"
+    for first, last, verdict in [("0", "0", "conforms"), ("true", "0", "conforms"), ("true", "-1", "diverged")]:
+        log.write_text(
+            f'{{"degree":2,"marker":{first},"door":1}}\n{{"degree":1,"marker":false,"door":0}}\n'
+            f'{{"degree":2,"marker":{last},"door":1}}\n{{"degree":3,"marker":-1}}\n'
+        )
+        assert ts.conform(log, driver="anyone", marker="undirected").verdict == verdict
+
+
+
 def test_tables_are_those_of_numpy_and_pandas(tmp_path):
     pandas, numpy = pytest.importorskip("pandas"), pytest.importorskip("numpy")
     run = recorded(ts.World.load("worlds/shape-6.toml"), tmp_path / "run.jsonl")

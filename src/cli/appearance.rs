@@ -85,6 +85,11 @@ impl Appearance {
 
 /// Settings of effects by name.
 pub(super) fn settings(given: &[EffectSetting]) -> Result<EffectSettings, CliError> {
+    for (index, (name, _)) in given.iter().enumerate() {
+        if given[..index].iter().any(|(earlier, _)| earlier == name) {
+            return Err(CliError::at("--effect", format!("{name} is given twice")));
+        }
+    }
     let given = given.iter().map(|(name, value)| (name.as_str(), *value));
     EffectSettings::new(given).map_err(|error| CliError::at("--effect", error))
 }

@@ -20,7 +20,7 @@ use toposlam_vision::camera::{
 
 use super::{
     CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
-    text::three_numbers,
+    progress::watch_for_interrupt, text::three_numbers,
 };
 
 /// Find centre, rim and focal length of a spherical mirror in images
@@ -121,6 +121,7 @@ struct Report {
 
 impl CalibrateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        watch_for_interrupt()?;
         self.check_places()?;
         let known = self.known()?;
         let images = self.read_images()?;

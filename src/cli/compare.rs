@@ -172,7 +172,7 @@ impl CompareArguments {
             (Some(marker), _) => marker,
         };
         let one_pose = self.start.len() == 2;
-        let progress = Progress::new("comparing", "starts")?;
+        let progress = Progress::endless("comparing", "starts")?;
         let robots = RobotComparison::new(worlds, marker, one_pose, &progress);
         progress.finish();
         robots.map(Some)

@@ -1,6 +1,7 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
 mod ci_cases;
+mod divergence_fields;
 mod expected_run;
 mod fact_fields;
 mod folded_trail;
@@ -30,11 +31,14 @@ use toposlam_model::{
 use toposlam_robot::conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCoverage};
 
 use super::{
-    CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input,
+    CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input, json::print_unread,
     laser_options::LaserOptions, mapping_marker::AlgorithmOption, open_log::LogOptions,
     outcome::SeveralInputs, output,
 };
-use crate::{page, report::LogReport};
+use crate::{
+    page,
+    report::{ConformReports, LogReport, UnreadLog},
+};
 use ci_cases::{ci_case, required_case, unread_case};
 use judged_log::JudgedLog;
 use robot_marker::RobotMarker;
@@ -199,7 +203,7 @@ impl ConformArguments {
         // For events that have no corners.
         let smooth = world.as_ref().map(NamedWorld::smoothed);
         let worlds = world.as_ref().zip(smooth.as_ref());
-        let mut reports = Vec::new();
+        let mut reports = ConformReports::default();
         let mut all = RunCoverage::default();
         let mut any_algorithm1 = false;
         let mut logs = SeveralInputs::new();
@@ -209,32 +213,36 @@ impl ConformArguments {
                 let outcome = outcome(judged.judgement.verdict());
                 (judged, outcome)
             });
+            let cause = judged.as_ref().err().map(|error| error.cause_in(path));
             let Some(judged) = logs.add(judged) else {
-                cases.push(unread_case(path));
+                let cause = cause.unwrap_or_default();
+                let unread = UnreadLog { log: path.display().to_string(), cause };
+                if self.json {
+                    print_unread(out, &unread.log, &unread.cause)?;
+                }
+                cases.push(unread_case(path, &unread));
+                reports.unread.push(unread);
                 continue;
             };
             all.include(&judged.judgement.coverage);
             any_algorithm1 |= !judged.is_folding();
             let report = self.report(out, path, &judged, &quirks)?;
             cases.push(ci_case(path, &report));
-            reports.push(report);
+            reports.logs.push(report);
         }
         if self.logs.len() > 1 {
-            report_lines::together(out, self.logs.len(), &reports, self.json)?;
+            report_lines::together(out, &reports, self.json)?;
         }
-        if !self.require_coverage.is_empty() && !reports.is_empty() {
-            let required = required_coverage::report(
-                out,
-                &self.require_coverage,
-                &all,
-                any_algorithm1,
-                self.json,
-            )?;
-            logs.add(Ok(((), required)));
-            cases.push(required_case(required));
+        if !self.require_coverage.is_empty() && !reports.logs.is_empty() {
+            let required =
+                required_coverage::required_coverage(&self.require_coverage, &all, any_algorithm1);
+            required_coverage::print(out, &required, self.json)?;
+            logs.add(Ok(((), required_coverage::outcome(&required))));
+            cases.push(required_case(&required));
+            reports.required = Some(required);
         }
         self.ci.write("conform", &cases)?;
-        if let Some(path) = self.html.as_ref().filter(|_| !reports.is_empty()) {
+        if let Some(path) = self.html.as_ref().filter(|_| !reports.logs.is_empty()) {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
         logs.worst()
@@ -249,6 +257,7 @@ impl ConformArguments {
         quirks: &Quirks,
     ) -> Result<LogReport, CliError> {
         let shorter = self.shorter(judged)?;
+        let short = shorter.as_ref().map(|shorter| shorter.events.events.clone());
         let mut report = judged.report(path, quirks, shorter, self.html.is_some());
         if self.html.is_some() {
             report.sources = origin::sources(path, self.world.as_deref())?;
@@ -257,7 +266,7 @@ impl ConformArguments {
             if self.events.is_some() {
                 report_lines::events(out, &judged.gathered.events)?;
             }
-            report_lines::json(out, &report, judged)?;
+            report_lines::json(out, &report, &short.unwrap_or_default(), judged)?;
         } else {
             report_lines::text(out, &report)?;
         }

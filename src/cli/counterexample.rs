@@ -257,7 +257,7 @@ impl CounterexampleArguments {
     }
 
     fn case_name(&self, marker: &dyn Marker, edges: usize) -> String {
-        format!("{}, class {}, 1 to {edges} edges", marker.name(), self.class)
+        format!("{}, class {}, {}", marker.name(), self.class, up_to(edges))
     }
 }
 
@@ -268,4 +268,9 @@ fn usual_size(class: Class) -> usize {
         Class::Simple | Class::Planar => 8,
         Class::Corridor => 11,
     }
+}
+
+/// The sizes that were searched, in words.
+fn up_to(edges: usize) -> String {
+    if edges == 1 { "1 edge".to_owned() } else { format!("1 to {edges} edges") }
 }

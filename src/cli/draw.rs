@@ -9,7 +9,10 @@ use std::{
 use clap::ValueEnum;
 use toposlam_model::{format::dot, marker::Marker};
 
-use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output};
+use super::{
+    CliError, Outcome, exit_codes::help_end, input, marker_kinds, output,
+    progress::watch_for_interrupt,
+};
 use crate::picture::{WorldPicture, png, svg};
 
 /// Draw a world: the clockwise order of the doors at each vertex, and the start
@@ -47,6 +50,7 @@ enum Format {
 
 impl DrawArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        watch_for_interrupt()?;
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;
         }

@@ -27,6 +27,7 @@ use super::{
     mapping_marker::{AlgorithmOption, MappingMarker},
     method_options::AuditOption,
     output,
+    progress::{StopSignal, watch_for_interrupt},
     text::print_paragraph,
 };
 use crate::{
@@ -73,7 +74,7 @@ rule out. To test it, the robot follows the path that would lead from there to t
         (0, "the map is right"),
         (1, "the map is wrong"),
         (2, "bad usage or input"),
-        (3, "not known: --max-darts, --max-states or 1 GiB of memory for the states was reached"),
+        (3, "not known: ended by Ctrl-C, or --max-darts, --max-states or 1 GiB of memory for the states was reached"),
     ],
 ))]
 #[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
@@ -153,6 +154,7 @@ impl ExploreArguments {
     }
 
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        watch_for_interrupt()?;
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
@@ -195,6 +197,8 @@ impl ExploreArguments {
             }
         };
         printer.finish()?;
+        // All choices can take long.
+        out.flush()?;
         let moves = explored.result.is_ok().then(|| explored.moves_without_audits());
         let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
         let result = ExploreResult {
@@ -204,7 +208,7 @@ impl ExploreArguments {
             algorithm: self.algorithm,
             explored,
             certificate,
-            ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
+            ways: chosen.other_runs(&world.graph, facing, &StopSignal).transpose(),
         };
         if self.json {
             result.print_json(&mut out)?;

@@ -36,6 +36,12 @@ pub(super) enum FileConflict {
         output.display(), other.display()
     )]
     Output { output: PathBuf, other: PathBuf },
+    /// It would become a part of an input.
+    #[error(
+        "{}: this output would be in the folder {}, which is an input; choose another folder",
+        output.display(), folder.display()
+    )]
+    Folder { output: PathBuf, folder: PathBuf },
 }
 
 /// The use of a file.
@@ -58,6 +64,8 @@ pub(super) struct CallFiles {
     by_path: BTreeMap<PathBuf, usize>,
     /// The entry of each existing file by device and number, which hard links share.
     by_number: BTreeMap<[u64; 2], usize>,
+    /// The folders that are inputs as a whole: absolute paths, and as they were given.
+    input_folders: Vec<[PathBuf; 2]>,
     /// Whether files are written into a folder.
     fills_folder: bool,
 }
@@ -68,6 +76,7 @@ impl CallFiles {
             entries: Vec::new(),
             by_path: BTreeMap::new(),
             by_number: BTreeMap::new(),
+            input_folders: Vec::new(),
             fills_folder: false,
         }
     }
@@ -86,11 +95,39 @@ impl CallFiles {
         }
     }
 
+    /// Registers a folder that is an input as a whole. From now on nothing is written into it.
+    ///
+    /// # Errors
+    /// Returns an error if an output is in it.
+    pub(super) fn read_folder(&mut self, path: &Path) -> Result<(), FileConflict> {
+        let real = real_path(path);
+        let mut inside = self.by_path.iter().filter(|(file, _)| file.starts_with(&real));
+        if let Some((output, _)) = inside
+            .find_map(|(_, &entry)| self.entries.get(entry).filter(|(_, is)| *is != FileUse::Input))
+        {
+            return Err(FileConflict::Folder { output: output.clone(), folder: path.to_owned() });
+        }
+        self.input_folders.push([real, path.to_owned()]);
+        Ok(())
+    }
+
+    /// Checks that an output is in no folder that is an input.
+    fn check_folder(&self, output: &Path) -> Result<(), FileConflict> {
+        let real = real_path(output);
+        match self.input_folders.iter().find(|[folder, _]| real.starts_with(folder)) {
+            Some([_, folder]) => {
+                Err(FileConflict::Folder { output: output.to_owned(), folder: folder.clone() })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Registers a file that is written later.
     ///
     /// # Errors
     /// Returns an error if it is an input or another output.
     pub(super) fn plan(&mut self, path: &Path) -> Result<(), FileConflict> {
+        self.check_folder(path)?;
         match self.entry(path, FileUse::Planned) {
             Some((other, found)) => Err(conflict(path, other, *found)),
             None => Ok(()),
@@ -114,6 +151,7 @@ impl CallFiles {
     }
 
     fn begin(&mut self, path: &Path, now: FileUse) -> Result<(), FileConflict> {
+        self.check_folder(path)?;
         let number = number(path);
         match self.entry(path, now) {
             Some((_, found @ FileUse::Planned)) => *found = now,
@@ -231,6 +269,22 @@ mod tests {
             assert_eq!(files.write(&file), Err(conflict));
         }
         fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn an_input_folder_gets_no_output() {
+        let folder = folder("input_folder");
+        let (inside, other) = (folder.join("new.mcap"), folder.with_extension("other"));
+        let conflict = FileConflict::Folder { output: inside.clone(), folder: folder.clone() };
+        for output in [CallFiles::plan as Step, CallFiles::write, CallFiles::grow] {
+            let mut files = CallFiles::new();
+            files.read_folder(&folder).unwrap();
+            assert_eq!(output(&mut files, &inside), Err(conflict.clone()));
+            output(&mut files, &other).unwrap();
+            let mut files = CallFiles::new();
+            output(&mut files, &inside).unwrap();
+            assert_eq!(files.read_folder(&folder), Err(conflict.clone()));
+        }
     }
 
     #[test]

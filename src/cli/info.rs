@@ -8,7 +8,7 @@ use std::{
 
 use serde::Serialize;
 use toposlam_robot::log::{
-    FileCompression, Format, SkippedLines,
+    FileCompression, Format,
     error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
@@ -20,10 +20,11 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     input,
-    json::{TruncatedLine, print_line},
+    json::{TruncatedLine, print_line, print_unread},
     outcome::SeveralInputs,
     output,
     progress::Progress,
+    skipped_lines::{self, SkippedLinesFields},
     text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
@@ -84,19 +85,11 @@ struct Line<'l> {
     truncated: Option<TruncatedLine>,
     /// Whether it has an index.
     indexed: bool,
-    skipped: Option<SkippedLine<'l>>,
+    skipped: Option<SkippedLinesFields<'l>>,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
-}
-
-/// The lines of a log of lines that are not read.
-#[derive(Serialize)]
-struct SkippedLine<'l> {
-    unknown: &'l BTreeMap<String, u64>,
-    other_kinds: u64,
-    off_clock: u64,
 }
 
 /// With `--verify`.
@@ -108,6 +101,7 @@ struct VerificationLine {
     covered_bytes: u64,
     complete: bool,
     damage: Vec<DamageLine>,
+    verdict: &'static str,
     holds: bool,
 }
 
@@ -152,7 +146,11 @@ impl InfoArguments {
         };
         let mut inputs = SeveralInputs::new();
         for path in &self.logs {
-            let read = inputs.add(self.show(out, path, mapping.as_ref()));
+            let shown = self.show(out, path, mapping.as_ref());
+            if let (true, Err(error @ CliError::Input(_))) = (self.json, &shown) {
+                print_unread(out, &path.display().to_string(), &error.cause_in(path))?;
+            }
+            let read = inputs.add(shown);
             if read == Some(ReadTo::Interruption) {
                 break;
             }
@@ -190,13 +188,8 @@ impl InfoArguments {
         } else {
             print(out, path, &log, verification.as_ref(), &carriers)?;
         }
-        let damaged = verification.as_ref().is_some_and(|found| !found.damage.is_empty());
         let unread = verification.as_ref().is_some_and(|found| !found.complete);
-        let outcome = match () {
-            () if damaged => Outcome::Violated,
-            () if unread || log.truncation().is_some() => Outcome::Incomplete,
-            () => Outcome::Holds,
-        };
+        let outcome = outcome(Some(&log), verification.as_ref());
         Ok((if unread { ReadTo::Interruption } else { ReadTo::End }, outcome))
     }
 
@@ -209,7 +202,7 @@ impl InfoArguments {
     ) -> Result<(), CliError> {
         let found = Verification { damage: vec![error], ..Verification::default() };
         if self.json {
-            let (log, verification) = (path.display().to_string(), verification_line(&found));
+            let (log, verification) = (path.display().to_string(), verification_line(None, &found));
             return print_line(out, "damaged-log", &DamagedLine { log, verification });
         }
         writeln!(out, "{}: damaged, and not read further", path.display())?;
@@ -245,7 +238,19 @@ fn verify(path: &Path, log: &Log) -> Result<Verification, CliError> {
     found
 }
 
-fn verification_line(found: &Verification) -> VerificationLine {
+/// The result of a log: damage, or what was not read.
+fn outcome(log: Option<&Log>, verification: Option<&Verification>) -> Outcome {
+    let damaged = verification.is_some_and(|found| !found.damage.is_empty());
+    let unread = verification.is_some_and(|found| !found.complete);
+    match () {
+        () if damaged => Outcome::Violated,
+        () if unread || log.is_some_and(|log| log.truncation().is_some()) => Outcome::Incomplete,
+        () => Outcome::Holds,
+    }
+}
+
+fn verification_line(log: Option<&Log>, found: &Verification) -> VerificationLine {
+    let outcome = outcome(log, Some(found));
     let damage = found
         .damage
         .iter()
@@ -256,7 +261,8 @@ fn verification_line(found: &Verification) -> VerificationLine {
         covered_bytes: found.covered,
         complete: found.complete,
         damage: damage.collect(),
-        holds: found.complete && found.damage.is_empty(),
+        verdict: outcome.verdict(),
+        holds: outcome == Outcome::Holds,
     }
 }
 
@@ -267,9 +273,14 @@ fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliErro
     Ok(())
 }
 
+/// Whether a log has an index. Lines have none: all of them are read.
+fn has_index(log: &Log) -> bool {
+    !matches!(log.format(), Format::Carmen | Format::Events) && log.is_indexed()
+}
+
 /// What is known of the contents of a log.
 fn contents(log: &Log, verification: Option<&Verification>) -> String {
-    let index = if log.is_indexed() { "an index" } else { "no index" };
+    let index = if has_index(log) { "an index" } else { "no index" };
     match verification {
         None => format!("has {index}, contents not verified"),
         Some(found) if !found.damage.is_empty() => format!("has {index}, contents damaged:"),
@@ -329,13 +340,9 @@ fn line<'l>(
         duration: duration(log),
         messages: log.messages_total(),
         truncated: log.truncation().map(TruncatedLine::from),
-        indexed: log.is_indexed(),
-        skipped: log.skipped().map(|skipped| SkippedLine {
-            unknown: skipped.unknown(),
-            other_kinds: skipped.others(),
-            off_clock: skipped.off_clock(),
-        }),
-        verification: verification.map(verification_line),
+        indexed: has_index(log),
+        skipped: log.skipped().map(SkippedLinesFields::from),
+        verification: verification.map(|found| verification_line(Some(log), found)),
         topics: log
             .topics()
             .iter()
@@ -356,21 +363,6 @@ fn line<'l>(
             .collect(),
         mapping: carriers.into_iter().collect(),
     }
-}
-
-/// The lines that are skipped, in words.
-fn skipped_text(skipped: &SkippedLines) -> String {
-    let kinds = skipped.unknown().iter();
-    let mut parts: Vec<_> =
-        kinds.map(|(kind, count)| format!("{} {kind}", grouped((*count).into()))).collect();
-    if skipped.others() > 0 {
-        parts.push(format!("{} of other kinds", grouped(skipped.others().into())));
-    }
-    if skipped.off_clock() > 0 {
-        let count = grouped(skipped.off_clock().into());
-        parts.push(format!("{count} whose time is far from that of their neighbours"));
-    }
-    format!("lines: {}", parts.join(", "))
 }
 
 /// A name out of a log, as it can be printed.
@@ -411,7 +403,7 @@ fn print(
     }
     writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
     if let Some(skipped) = log.skipped() {
-        print_hanging(out, "", &format!("skipped {}", skipped_text(skipped)))?;
+        print_hanging(out, "", &format!("skipped {}", skipped_lines::in_words(skipped)))?;
     }
     writeln!(out)?;
     let rows: Vec<_> = log

@@ -28,7 +28,7 @@ use super::{CliError, files::files};
 /// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
 /// no name, the world gets the name of the file.
 pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
-    let bytes = read(path)?;
+    let bytes = read_at_most(path, MOST_WORLDS)?;
     let mut world = match plantri::PlantriCode::of_file(path, &bytes) {
         None => world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?,
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
@@ -71,7 +71,7 @@ pub(crate) fn read_camera(path: &Path) -> Result<Camera, CliError> {
     let beside = &mut |name: &str| {
         let path = folder.join(name);
         files().read(&path).map_err(io::Error::other)?;
-        fs::read(path)
+        read_whole(fs::File::open(&path)?, 0, MOST)
     };
     calibration::read(&read(path)?, beside).map_err(|error| CliError::in_file(path, error))
 }
@@ -93,7 +93,7 @@ pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, 
 
 /// Reads the embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
 pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
-    let bytes = read(path)?;
+    let bytes = read_at_most(path, MOST_WORLDS)?;
     if let Some(code) = plantri::PlantriCode::of_file(path, &bytes) {
         return read_plantri(path, &bytes, code);
     }
@@ -137,9 +137,12 @@ pub(crate) fn open_log(path: &Path) -> Result<Log, CliError> {
 /// Opens a log, or returns why it cannot be read.
 pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, CliError> {
     if is_standard(path) {
-        return Ok(Log::new(Cursor::new(standard_input()?)));
+        return Ok(Log::new(Cursor::new(standard_input(MOST_LOG)?)));
     }
     files().read(path)?;
+    if path.is_dir() {
+        files().read_folder(path)?;
+    }
     for file in folder_files(path).unwrap_or_default() {
         files().read(&file)?;
     }
@@ -174,13 +177,40 @@ pub(crate) fn open_again(path: &Path) -> io::Result<Box<dyn Read>> {
     }
 }
 
-/// Reads a file.
+/// The most bytes of a file of worlds, 1 GiB.
+const MOST_WORLDS: u64 = 1 << 30;
+/// The most bytes of a log that is standard input, 2 GiB. A log in a file is read in pieces.
+const MOST_LOG: u64 = 1 << 31;
+/// The most bytes of any other file, 256 MiB.
+const MOST: u64 = 1 << 28;
+
+/// Reads a file that is neither of worlds nor a log.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    read_at_most(path, MOST)
+}
+
+fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, CliError> {
     if is_standard(path) {
-        return Ok(standard_input()?.to_vec());
+        return Ok(standard_input(most)?.to_vec());
     }
     files().read(path)?;
-    fs::read(path).map_err(|error| not_readable(path, &error))
+    let file = fs::File::open(path);
+    let bytes = file.and_then(|file| {
+        let size = file.metadata()?.len();
+        if size > most { Err(too_large(most)) } else { read_whole(file, size, most) }
+    });
+    bytes.map_err(|error| not_readable(path, &error))
+}
+
+/// Reads to the end of a file of about a size. A device has no end.
+fn read_whole(file: impl Read, size: u64, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(0));
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
+}
+
+fn too_large(most: u64) -> io::Error {
+    io::Error::other(format!("it has more than {} MiB", most >> 20))
 }
 
 /// The content of standard input, once it was read.
@@ -195,11 +225,9 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 }
 
 /// Reads standard input to its end. A log, too, is kept in memory.
-fn standard_input() -> Result<Arc<[u8]>, CliError> {
-    let mut bytes = Vec::new();
-    let read = io::stdin().lock().read_to_end(&mut bytes);
-    read.map_err(|error| not_readable(Path::new(STANDARD), &error))?;
-    let bytes: Arc<[u8]> = bytes.into();
+fn standard_input(most: u64) -> Result<Arc<[u8]>, CliError> {
+    let read = read_whole(io::stdin().lock(), 0, most);
+    let bytes: Arc<[u8]> = read.map_err(|error| not_readable(Path::new(STANDARD), &error))?.into();
     STANDARD_INPUT.set(bytes.clone()).map_err(|_| {
         let cause = "standard input is one input; give the path of a file for the others";
         CliError::at(STANDARD, cause)
@@ -209,4 +237,17 @@ fn standard_input() -> Result<Arc<[u8]>, CliError> {
 
 fn not_readable(path: &Path, error: &io::Error) -> CliError {
     CliError::in_file(path, format!("cannot be read: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_without_an_end_is_read_up_to_the_limit() {
+        let error = read_whole(io::repeat(b'a'), 0, 3 << 20).unwrap_err();
+        assert_eq!(error.to_string(), "it has more than 3 MiB");
+        assert_eq!(read_whole(&b"abc"[..], 3, 3).unwrap(), b"abc");
+        assert!(read_whole(&b"abcd"[..], 3, 3).is_err());
+    }
 }

@@ -54,6 +54,18 @@ impl From<&Truncation> for TruncatedLine {
     }
 }
 
+/// One of several inputs that could not be used.
+#[derive(Serialize)]
+struct UnreadLine<'f> {
+    file: &'f str,
+    cause: &'f str,
+}
+
+/// Prints that one of several inputs could not be used.
+pub(super) fn print_unread(out: &mut dyn Write, file: &str, cause: &str) -> Result<(), CliError> {
+    print_line(out, "unread", &UnreadLine { file, cause })
+}
+
 /// A door is a number, another action is a word.
 pub(super) fn action_json(action: Action) -> Value {
     match action {

@@ -90,7 +90,8 @@ impl MergeArguments {
             read_shards(file, &mut shards)?;
         }
         let Some(first) = shards.first() else {
-            return Err(CliError::at("FILES", "there is no line of a shard"));
+            let files: Vec<_> = self.files.iter().map(|file| file.display().to_string()).collect();
+            return Err(CliError::at(files.join(", "), "there is no line of a shard"));
         };
         let algorithm = algorithm_of(first)?;
         let choice = match first.line.max_states {

@@ -50,6 +50,7 @@ mod safeguards;
 mod scene;
 mod sense;
 mod simulate;
+mod skipped_lines;
 mod story_lines;
 mod temporary_folder;
 mod terminal;

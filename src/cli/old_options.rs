@@ -1,4 +1,4 @@
-//! Options that have another name now. The old name is refused, and the error names the new one.
+//! Options that have another name now, or in another command. The error for the one names the other.
 
 use clap::{Arg, ArgAction, Command, builder::UnknownArgumentValueParser};
 
@@ -14,7 +14,9 @@ const fn renamed(verb: &'static [&'static str], old: &'static str, new: &'static
     Renamed { verb, old, new, action: ArgAction::Set }
 }
 
-const RENAMED: [Renamed; 7] = [
+const RENAMED: [Renamed; 9] = [
+    renamed(&["check"], "max-edges", "--edges 1..=N"),
+    renamed(&["evaluate", "mistakes"], "max-edges", "--edges 1..=N"),
     renamed(&["counterexample"], "edges", "--max-edges"),
     renamed(&["counterexample"], "out", "--out-dir"),
     renamed(&["conform"], "edges", "--max-edges"),

@@ -17,6 +17,17 @@ pub(crate) enum Outcome {
     Incomplete,
 }
 
+impl Outcome {
+    /// The field `verdict` of `--json`.
+    pub(crate) fn verdict(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Violated => "violated",
+            Self::Incomplete => "not-known",
+        }
+    }
+}
+
 impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         match outcome {
@@ -50,6 +61,20 @@ impl CliError {
     /// A failure in a file.
     pub(crate) fn in_file(path: &Path, cause: impl Display) -> Self {
         Self::at(path.display(), cause)
+    }
+
+    /// Why one of several inputs could not be used, without its path.
+    pub(crate) fn cause_in(&self, path: &Path) -> String {
+        match self {
+            Self::Input(message) => {
+                let place = format!("{}: ", path.display());
+                message.strip_prefix(&place).unwrap_or(message).to_owned()
+            }
+            Self::Reported => String::new(),
+            Self::Interrupted => Interrupted.to_string(),
+            #[cfg(feature = "cluster")]
+            Self::Unfinished(cause) => cause.clone(),
+        }
     }
 
     /// Prints the message and returns the exit code.

@@ -63,8 +63,12 @@ impl PaperArguments {
         } else {
             print_table(out, &rows, &trace)?;
         }
-        Ok(if trace.holds() { Outcome::Holds } else { Outcome::Violated })
+        Ok(outcome(&trace))
     }
+}
+
+fn outcome(trace: &PaperTrace) -> Outcome {
+    if trace.holds() { Outcome::Holds } else { Outcome::Violated }
 }
 
 /// A line of `--json`.
@@ -88,6 +92,7 @@ struct TotalsLine {
     done: usize,
     open: usize,
     faults: Vec<String>,
+    verdict: &'static str,
     holds: bool,
 }
 
@@ -123,6 +128,7 @@ fn print_json(
         done,
         open: rows.len() - done,
         faults: trace.faults().collect(),
+        verdict: outcome(trace).verdict(),
         holds: trace.holds(),
     };
     print_line(out, "requirements", &totals)

@@ -4,6 +4,7 @@
 //! soon is ended.
 
 use std::{
+    fmt,
     sync::{
         Once,
         atomic::{AtomicBool, AtomicU64, Ordering},
@@ -12,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
 use super::{
@@ -32,6 +33,9 @@ static ANSWERED: AtomicBool = AtomicBool::new(false);
 /// The time for work to ask whether to stop, and the time for it to report what it has.
 const TO_ASK: Duration = Duration::from_millis(900);
 const TO_REPORT: Duration = Duration::from_secs(10);
+
+/// The time between two drawings of a bar that shows the time.
+const TICK: Duration = Duration::from_millis(200);
 
 /// Whether work is to stop: after Ctrl-C, or if nobody reads its result.
 pub(crate) fn must_stop() -> bool {
@@ -56,6 +60,8 @@ pub(crate) struct Progress {
     bar: ProgressBar,
     /// The noun for the cases.
     unit: &'static str,
+    /// Whether the length of the work is unknown: then the bar shows the time.
+    is_endless: bool,
     cases: AtomicU64,
     parts: AtomicU64,
     parts_done: AtomicU64,
@@ -76,15 +82,31 @@ impl Progress {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let [cases, parts, parts_done] = std::array::from_fn(|_| AtomicU64::new(0));
-        Ok(Self { bar, unit, cases, parts, parts_done })
+        Ok(Self { bar, unit, is_endless: false, cases, parts, parts_done })
     }
 
-    /// Shows a bar for work of unknown length.
+    /// Shows the time of work of unknown length. It moves even if no part is done for long.
     pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, CliError> {
         let progress = Self::new(work, unit)?;
-        let style = ProgressStyle::with_template("{prefix} {spinner}  {wide_msg}")
+        let style = ProgressStyle::with_template("{prefix} {spinner}  {time}  {wide_msg}")
             .map_err(|error| CliError::at("progress bar", error))?;
-        Ok(Self { bar: progress.bar.with_style(style), ..progress })
+        let style = style.with_key("time", |state: &ProgressState, out: &mut dyn fmt::Write| {
+            // A line that cannot be drawn is left out.
+            let _ = out.write_str(&duration_text(state.elapsed().as_secs_f64()));
+        });
+        let bar = progress.bar.with_style(style);
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(TICK);
+        }
+        Ok(Self { bar, is_endless: true, ..progress })
+    }
+
+    /// The next work.
+    pub(crate) fn next(&self, work: &str) {
+        self.bar.set_prefix(shortened(work));
+        self.bar.set_message("");
+        self.cases.store(0, Ordering::Relaxed);
+        self.bar.reset_elapsed();
     }
 
     /// Also a second Ctrl-C waits for the work to stop: otherwise a robot would be left on its way.
@@ -127,7 +149,9 @@ impl Watch for Progress {
         if !self.bar.is_hidden() {
             let (seconds, parts) =
                 (self.bar.elapsed().as_secs_f64(), self.parts.load(Ordering::Relaxed));
-            self.bar.set_message(message(seconds, [done, parts], cases, self.unit));
+            let time = Some(time_text(seconds, [done, parts])).filter(|_| !self.is_endless);
+            let rate = rate_text(seconds, cases, self.unit);
+            self.bar.set_message(time.map_or(rate.clone(), |time| format!("{time}  {rate}")));
         }
         self.bar.inc(1);
     }
@@ -147,22 +171,26 @@ fn shortened(work: &str) -> String {
     beginning + "…"
 }
 
-/// What stands beside the bar, the most important first: the end of a long line is cut. `parts` are the
-/// number of parts that are done, and of all parts; 0 if that is not known.
-fn message(seconds: f64, parts: [u64; 2], cases: u64, unit: &str) -> String {
-    let [done, all] = parts;
-    let time = if all > done && done > 0 {
+/// The time that is left, or that has passed. `parts` are the number of parts that are done, and of all parts; 0 if
+/// that is not known. In the first second too little is known.
+fn time_text(seconds: f64, [done, all]: [u64; 2]) -> String {
+    if seconds >= 1.0 && all > done && done > 0 {
         let left = seconds / done as f64 * (all - done) as f64;
         format!("{} left", duration_text(left))
     } else {
         duration_text(seconds)
-    };
-    let rate = rough(cases as f64 / seconds.max(1e-3));
-    format!("{time}  {} {unit}, {rate} a second", grouped(cases.into()))
+    }
 }
 
-/// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed.
-fn watch_for_interrupt() -> Result<(), CliError> {
+/// The number of cases, and how many there are in a second. The end of a long line is cut.
+fn rate_text(seconds: f64, cases: u64, unit: &str) -> String {
+    let rate = rough(cases as f64 / seconds.max(1e-3));
+    format!("{} {unit}, {rate} a second", grouped(cases.into()))
+}
+
+/// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed. Work that
+/// does not ask whether to stop is ended.
+pub(crate) fn watch_for_interrupt() -> Result<(), CliError> {
     static SET: Once = Once::new();
     let mut result = Ok(());
     SET.call_once(|| {
@@ -201,13 +229,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_message_has_the_time_left_then_the_cases() {
-        let text = message(2.0, [1, 4], 12_345, "starts");
-        assert_eq!(text, "6 s left  12,345 starts, 6,200 a second");
-        let text = message(2.0, [4, 4], 12_345, "starts");
-        assert_eq!(text, "2 s  12,345 starts, 6,200 a second");
-        let text = message(90.0, [7, 0], 7, "moves");
-        assert_eq!(text, "1 min 30 s  7 moves, 0.08 a second");
+    fn the_time_left_is_known_after_a_second() {
+        assert_eq!(time_text(2.0, [1, 4]), "6 s left");
+        assert_eq!(time_text(0.001, [1, 400]), "0 s");
+        assert_eq!(time_text(2.0, [4, 4]), "2 s");
+        assert_eq!(time_text(90.0, [7, 0]), "1 min 30 s");
+        assert_eq!(rate_text(2.0, 12_345, "starts"), "12,345 starts, 6,200 a second");
+        assert_eq!(rate_text(90.0, 7, "moves"), "7 moves, 0.08 a second");
+    }
+
+    #[test]
+    fn the_time_of_work_without_parts_moves() {
+        let terminal = Recorded::default();
+        let progress = Progress::endless("comparing", "starts").unwrap();
+        let target = ProgressDrawTarget::term_like_with_hz(Box::new(terminal.clone()), 255);
+        progress.bar.set_draw_target(target);
+        progress.bar.enable_steady_tick(Duration::from_millis(5));
+        while !terminal
+            .0
+            .lock()
+            .unwrap()
+            .iter()
+            .any(|line| line.contains("comparing") && line.contains(" 1 s"))
+        {
+            thread::sleep(Duration::from_millis(5));
+        }
+        progress.finish();
     }
 
     /// What is drawn on a terminal of 60 columns.
@@ -262,7 +309,7 @@ mod tests {
             let lines: Vec<_> = drawn.iter().filter(|line| line.contains('%')).collect();
             assert!(lines.iter().all(|line| display_width(line.trim_end()) <= 60), "{lines:#?}");
             assert!(lines[0].contains("  0 %"), "{lines:#?}");
-            assert!(lines.iter().all(|line| !line.contains("0 s left") || parts > 1), "{lines:#?}");
+            assert!(lines.iter().all(|line| !line.contains("0 s left")), "{lines:#?}");
             progress.finish();
         }
     }

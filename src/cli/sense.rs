@@ -20,10 +20,11 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     input,
-    json::print_line,
+    json::{print_line, print_unread},
     laser_options::LaserOptions,
     outcome::SeveralInputs,
     output, picture_file,
+    progress::{must_stop, watch_for_interrupt},
     scene::{SceneLine, rows},
     text::print_hanging,
 };
@@ -92,6 +93,7 @@ struct Line {
 
 impl SenseArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        watch_for_interrupt()?;
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;
         }
@@ -157,12 +159,19 @@ impl SenseArguments {
     ) -> Result<SeveralInputs, CliError> {
         let mut inputs = SeveralInputs::new();
         for (path, name) in self.files.iter().zip(names) {
+            if must_stop() {
+                inputs.add::<()>(Err(CliError::Interrupted));
+                break;
+            }
             let sensed = match eye {
                 Some((camera, sensor)) if is_image(path) => {
                     self.sense_image(camera, sensor, path, name, out)
                 }
                 _ => self.sense_scans(path, out),
             };
+            if let (true, Err(error @ CliError::Input(_))) = (self.json, &sensed) {
+                print_unread(out, &path.display().to_string(), &error.cause_in(path))?;
+            }
             inputs.add(sensed.map(|()| ((), Outcome::Holds)));
             out.flush()?;
         }

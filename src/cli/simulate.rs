@@ -104,7 +104,7 @@ pub(super) struct SimulateArguments {
     #[arg(long, conflicts_with_all = OF_IMAGES)]
     by_scene: bool,
     /// Noise of wheels and odometry, as a multiple of the default
-    #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
+    #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise, allow_hyphen_values = true)]
     noise: f64,
     /// Time to take an image, in seconds
     #[arg(long, default_value_t = IMAGE_TIME, value_name = "SECONDS", value_parser = seconds)]
@@ -130,9 +130,9 @@ pub(super) struct SimulateArguments {
     /// Do not explore: serve the robot through ROS 1 topics at this master
     #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
     ros: Option<String>,
-    /// With --ros: how fast simulated time passes, as a multiple of real time
-    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed, requires = "ros")]
-    speed: f64,
+    /// With --ros: how fast simulated time passes, as a multiple of real time [default: 1]
+    #[arg(long, value_name = "TIMES", value_parser = speed)]
+    speed: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -177,6 +177,9 @@ impl SimulateArguments {
         if self.ros.is_some() {
             return Err(super::without_ros());
         }
+        if self.speed.is_some() && self.ros.is_none() {
+            return Err(CliError::at("--speed", "this needs --ros"));
+        }
         self.options.method()?;
         let scanner = self.scanner_params()?;
         self.check_places()?;
@@ -198,7 +201,7 @@ impl SimulateArguments {
             let robot = simulation.setting.by_laser(scanner);
             #[cfg(feature = "ros1")]
             if let Some(master) = &self.ros {
-                return node::run(robot, master, self.speed, out);
+                return node::run(robot, master, self.speed.unwrap_or(1.0), out);
             }
             let sensor = RobotSensor::Laser(Box::default());
             let log = self.recorder(&simulation, None)?;
@@ -220,7 +223,7 @@ impl SimulateArguments {
         let robot = equipped(simulation.robot(&eyes, &self.appearance, &effects));
         #[cfg(feature = "ros1")]
         if let Some(master) = &self.ros {
-            return node::run(robot, master, self.speed, out);
+            return node::run(robot, master, self.speed.unwrap_or(1.0), out);
         }
         let sensor = RobotSensor::Camera(Box::new(eyes.sensor(self.appearance.look)));
         let log =

@@ -205,12 +205,17 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
 #[test]
 fn an_option_without_effect_is_an_error() {
     const LOG: &str = "fuzz/corpus/bag/bz2";
-    let cases: [(&[&str], &str); 15] = [
+    let cases: [(&[&str], &str); 17] = [
         (&["simulate", WORLD, "--by-scene", "--look", "vinyl"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--effects", "none"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--effect", "blur=1"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--size", "640x480"], "cannot be used with"),
-        (&["simulate", WORLD, "--speed", "2"], "--ros <URI>"),
+        (&["simulate", WORLD, "--speed", "2"], "--speed: this needs --ros"),
+        (&["simulate", WORLD, "--by-scene", "--speed", "2"], "--speed: this needs --ros"),
+        (
+            &["render", WORLD, "--effect", "blur=1", "--effect", "blur=2", "--out", "x.png"],
+            "--effect: blur is given twice",
+        ),
         (&["simulate", WORLD, "--ros", "http://x", "--max-darts", "9"], "cannot be used with"),
         (&["evaluate", "control", "--look", "vinyl"], "--images"),
         (&["evaluate", "control", "--size", "640x480"], "--images"),

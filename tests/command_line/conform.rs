@@ -612,11 +612,19 @@ fn an_unreadable_log_does_not_hide_the_others() {
     let message = stderr(&output);
     assert!(message.contains("text.mcap: ") && message.contains("missing.mcap: "), "{message}");
     let report = objects(&stdout(&output));
-    assert_eq!((report.len(), &report[0]["verdict"]), (2, &"conforms".into()));
+    let kinds: Vec<_> = report.iter().map(|line| line["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["unread", "log", "unread", "logs"]);
+    assert_eq!(report[1]["verdict"], "conforms");
+    assert!(report[2]["file"] == "missing.mcap" && report[2]["cause"] != "", "{report:?}");
     assert_eq!(
-        (&report[1]["logs"], &report[1]["conform"], &report[1]["unreadable"]),
+        (&report[3]["logs"], &report[3]["conform"], &report[3]["unreadable"]),
         (&3.into(), &1.into(), &2.into())
     );
+    // So is it on the page.
+    let page = folder.join("report.html");
+    run(["conform", text, good, "--html", page.to_str().unwrap()]);
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("<title>2 logs: 1 conforms, 1 not checked</title>"), "{page}");
     // A divergence is worse than an incomplete log, and a log that is not read is worse than both.
     let other = ["--world", SHAPE_8];
     let code = |logs: &[&str]| run([&["conform"][..], logs, &other].concat()).status.code();
@@ -638,6 +646,13 @@ fn required_cases_that_are_not_covered_are_listed() {
     let report = objects(&stdout(&output));
     assert_eq!(report[0]["verdict"], "conforms");
     assert_eq!(report[1]["not_covered"], serde_json::json!(["l-left", "rejected-on-the-way"]));
+    let [page, xml] = ["report.html", "report.xml"].map(|name| folder.join(name));
+    let files = ["--html", page.to_str().unwrap(), "--junit", xml.to_str().unwrap()];
+    let list = ["conform", path, "--require-coverage", "confirmed,l-left"];
+    assert_eq!(super::run([&list[..], &files].concat()).status.code(), Some(3));
+    let [page, xml] = [page, xml].map(|file| fs::read_to_string(file).unwrap());
+    assert!(page.contains("<p>2 required cases: not covered: l-left.</p>"), "{page}");
+    assert!(xml.contains("message=\"2 required cases: not covered: l-left\""), "{xml}");
     let output = run("confirmed,no-such-case");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("rejected-at-once"), "{}", stderr(&output));
@@ -684,4 +699,93 @@ fn a_case_that_a_complete_run_has_is_expected() {
     let written = fs::read_to_string(page).unwrap();
     assert!(written.contains("<tr class=\"missed\"><th scope=\"row\">confirmed</th>"), "{written}");
     assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
+}
+
+/// An undirected marker is seen with or without a direction. A correct log conforms, whatever its events come from.
+#[test]
+fn a_correct_log_conforms_with_an_undirected_marker() {
+    let folder = folder("conform-undirected");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let undirected = ["--driver", "anyone", "--marker", "undirected"];
+    for more in [
+        &["--world", SHAPE_6][..],
+        &["--world", SHAPE_6, "--start", "any"],
+        &["--world", SHAPE_6, "--events", "scenes"],
+        &["--world", SHAPE_6, "--events", "scenes", "--start", "any"],
+        &[],
+        &["--events", "scenes"],
+    ] {
+        let (code, line) = judged(&log, &[&undirected, more].concat());
+        assert_eq!((code, &line["verdict"]), (Some(0), &"conforms".into()), "{more:?} {line}");
+    }
+    // Into a dead end beside the marker, and back past it, with the marker as it is written in lines.
+    let walk = |first: &str, last: &str| {
+        let lines = folder.join("events.jsonl");
+        let text = format!(
+            "{{\"degree\":2,\"marker\":{first},\"door\":1}}\n{{\"degree\":1,\"marker\":false,\"door\":0}}\n\
+             {{\"degree\":2,\"marker\":{last},\"door\":1}}\n{{\"degree\":3,\"marker\":-1}}\n"
+        );
+        fs::write(&lines, text).unwrap();
+        lines
+    };
+    for (first, last, code) in
+        [("true", "true", 0), ("0", "0", 0), ("0", "true", 0), ("true", "-1", 1)]
+    {
+        let (found, line) = judged(&walk(first, last), &undirected);
+        assert_eq!(found, Some(code), "{first} {last} {line}");
+    }
+    let lines = walk("true", "true");
+    let lines = lines.to_str().unwrap();
+    let printed = stdout_of(
+        [&["conform", lines, "--json", "--events", "recorded"], &undirected[..]].concat(),
+    );
+    assert_eq!(objects(&printed)[0]["marker"], true);
+    let directional = run(["conform", lines, "--driver", "anyone"]);
+    let expected = "its percepts do not record along which door the marker points; for an undirected marker add \
+                    --driver anyone --marker undirected\n";
+    assert_eq!(directional.status.code(), Some(2));
+    assert!(stderr(&directional).ends_with(expected), "{}", stderr(&directional));
+    // A shorter log has the sightings, too.
+    let wrong = folder.join("wrong.jsonl");
+    let text = fs::read_to_string(lines).unwrap().replacen("true", "false", 1);
+    fs::write(&wrong, text).unwrap();
+    let short = folder.join("short.mcap");
+    let (code, line) =
+        judged(&wrong, &[&undirected, &["--minimise", short.to_str().unwrap()][..]].concat());
+    assert_eq!(code, Some(1), "{line}");
+    if short.exists() {
+        assert_eq!(judged(&short, &["--driver", "anyone"]).0, Some(1));
+    }
+}
+
+#[test]
+fn an_option_without_effect_on_a_log_is_an_error() {
+    let log = logged(&folder("conform-no-effect"), SHAPE_6, &["--seed", "3"]);
+    let conform = ["conform", log.to_str().unwrap(), "--driver", "anyone"];
+    for (options, place) in [
+        (&["--max-darts", "1"][..], "--max-darts: "),
+        (&["--require-coverage", "tee,confirmed"], "--require-coverage: "),
+    ] {
+        let output = run([&conform[..], options].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(place), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_divergence_is_fields_too() {
+    let log = logged(&folder("conform-fields"), SHAPE_6, &["--seed", "3"]);
+    let (code, line) = judged(&log, &["--world", SHAPE_8, "--start", "any"]);
+    assert_eq!(code, Some(1));
+    let Value::Object(divergence) = &line["divergence"] else { panic!("{line}") };
+    let event = line["event"].as_u64().unwrap();
+    let what = if event % 2 == 1 { "percept" } else { "door" };
+    assert_eq!(divergence["found"]["what"], what, "{line}");
+    let allowed = divergence["allowed"].as_array().unwrap();
+    assert_eq!(allowed.len(), line["allowed"].as_array().unwrap().len().min(8), "{line}");
+    assert!(allowed.iter().all(|one| one["vertex"].is_string() || one["purpose"].is_string()));
+    let short = line["shorter_events"].as_array().unwrap();
+    assert_eq!(short.len(), line["shorter"].as_array().unwrap().len(), "{line}");
+    let (_, good) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!(good["divergence"], Value::Null);
 }

@@ -175,7 +175,7 @@ fn a_log_that_cannot_be_read_is_a_case_without_a_result() {
     assert_eq!(output.status.code(), Some(2));
     let written = fs::read_to_string(&report).unwrap();
     assert!(written.contains("tests=\"2\" failures=\"0\" errors=\"1\""), "{written}");
-    assert!(written.contains("message=\"the log cannot be read\""), "{written}");
+    assert!(written.contains("message=\"the log cannot be checked: "), "{written}");
     // What is not known has its reason.
     let walk = walked(&folder, &[(3, 0, Some(1)), (1, -1, None)]);
     let walk = walk.to_str().unwrap();

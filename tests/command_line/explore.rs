@@ -479,3 +479,28 @@ fn the_limit_of_a_search_of_all_choices_is_named() {
     let whole = ["explore", "worlds/shape-6.toml", "--choices", "all", "--json"];
     assert_eq!(objects(&stdout_of(whole))[0]["limit"], Value::Null);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_search_of_all_choices_that_is_interrupted_is_not_known() {
+    use std::{
+        io::{BufRead, BufReader, Read},
+        process::{Command, Stdio},
+    };
+
+    let mut explore = super::toposlam();
+    // Far more states than fit into the memory that it uses.
+    let arguments = ["--choices", "all", "--max-states", "100000000"];
+    explore.args(["explore", "worlds/petersen.toml"]).args(arguments);
+    let mut explore = explore.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut out = BufReader::new(explore.stdout.take().unwrap());
+    // The story is printed before the search.
+    let mut text = String::new();
+    out.read_line(&mut text).unwrap();
+    let killed = Command::new("kill").args(["-INT", &explore.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    out.read_to_string(&mut text).unwrap();
+    let output = explore.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{text}{}", stderr(&output));
+    assert!(text.contains("The search was interrupted."), "{text}");
+}

@@ -62,8 +62,32 @@ fn events_as_json_lines_or_csv_are_checked() {
         assert_eq!(found, Some(code), "{line:?} {error}");
     }
     // What conform prints after the events is skipped.
-    let (code, ..) = check(&(json(&AROUND) + "{\"kind\":\"conform\",\"verdict\":\"conforms\"}\n"));
-    assert_eq!(code, Some(0));
+    let (code, line, _) =
+        check(&(json(&AROUND) + "{\"kind\":\"conform\",\"verdict\":\"conforms\"}\n"));
+    let line = line.unwrap();
+    assert_eq!((code, &line["skipped"]["unknown"]["conform"]), (Some(0), &1.into()), "{line}");
+    assert_eq!(line["remarks"], serde_json::json!(["skipped lines: 1 conform"]));
+    // A visit with a stamp that is not seconds, or with a marker along no door, is no visit less.
+    for (field, wrong) in [
+        ("\"stamp\":4.5", "\"stamp\":1e300"),
+        ("\"stamp\":4.5", "\"stamp\":1700000000000"),
+        ("\"marker\":null", "\"marker\":-9"),
+        ("\"marker\":null", "\"marker\":99999999999"),
+    ] {
+        let (code, _, error) = check(&json(&AROUND).replacen(field, wrong, 1));
+        let line = if field.contains("stamp") {
+            "line 5: its stamp is "
+        } else {
+            "line 1: its marker is "
+        };
+        assert!(code == Some(2) && error.contains(line), "{error}");
+    }
+    let twice = csv(&AROUND).replacen("door,degree", "door,degree,Door", 1);
+    let (code, _, error) = check(&twice);
+    assert!(
+        code == Some(2) && error.ends_with("line 1: the column door is there twice\n"),
+        "{error}"
+    );
     let mut wrong = AROUND;
     wrong[4].0 = 3;
     for text in [json(&wrong), csv(&wrong)] {

@@ -115,7 +115,9 @@ fn colours_are_used_if_they_are_asked_for_and_not_in_a_pipe() {
 
 #[test]
 fn an_option_with_another_name_now_is_refused_with_its_new_name() {
-    let calls: [(&[&str], &str, &str); 6] = [
+    let calls: [(&[&str], &str, &str); 8] = [
+        (&["check", "--max-edges", "4"], "--max-edges", "--edges"),
+        (&["evaluate", "mistakes", "--max-edges", "4"], "--max-edges", "--edges"),
         (&["counterexample", "--edges", "4"], "--edges", "--max-edges"),
         (&["counterexample", "--out", "x"], "--out", "--out-dir"),
         (&["conform", "x.mcap", "--edges", "30"], "--edges", "--max-edges"),
@@ -296,4 +298,30 @@ fn standard_input_is_one_input_and_no_output() {
     child.stdin.take().unwrap().write_all(b"").unwrap();
     let output = child.wait_with_output().unwrap();
     assert_eq!(stderr(&output), "error: -: the file is empty\n");
+}
+
+/// Ctrl-C ends each verb with 3, also while it reads.
+#[cfg(unix)]
+#[test]
+fn a_verb_that_is_interrupted_ends_with_3() {
+    let calls: [&[&str]; 4] = [
+        &["draw", "-"],
+        &["explore", "-"],
+        &["calibrate", "-"],
+        &["sense", "x.png", "--calibration", "-", "--colours", "x.toml"],
+    ];
+    for call in calls {
+        let mut verb = toposlam();
+        verb.args(call).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut verb = verb.spawn().unwrap();
+        // More than a pipe holds: the verb reads.
+        let mut input = verb.stdin.take().unwrap();
+        input.write_all(&[b' '; 1 << 20]).unwrap();
+        let killed = Command::new("kill").args(["-INT", &verb.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+        let output = verb.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{call:?} {}", stderr(&output));
+        assert_eq!(stderr(&output), "interrupted\n");
+        drop(input);
+    }
 }

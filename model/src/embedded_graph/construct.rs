@@ -289,7 +289,7 @@ mod tests {
         );
         assert_eq!(
             message(edges(&[("a", &["e"])])),
-            "edge `e` occurs 1 times (a); an edge has two ends"
+            "edge `e` occurs 1 time (a); an edge has two ends"
         );
         assert_eq!(
             message(edges(&[("a", &["e"; 8])])),

@@ -52,7 +52,7 @@ pub enum ListError {
         vertex: String,
     },
     /// An edge name does not occur exactly twice.
-    #[error("edge `{edge}` occurs {times} times ({places}); an edge has two ends")]
+    #[error("edge `{edge}` occurs {times} time{} ({places}); an edge has two ends", if *.times == 1 { "" } else { "s" })]
     NotTwoEnds {
         /// The edge.
         edge: String,

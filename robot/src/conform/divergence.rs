@@ -278,6 +278,9 @@ impl fmt::Display for DivergenceCause {
             }
             Self::Algorithm(departure) => {
                 out.write_str(match (departure.event.kind, departure.algorithm) {
+                    (TraceEventKind::Percept(_), _) if departure.event.id == 0 => {
+                        "a run begins where the marker lies, directed along the entry door"
+                    }
                     (TraceEventKind::Percept(_), _) => {
                         "this percept contradicts the percepts before it"
                     }

@@ -8,7 +8,7 @@
 use thiserror::Error;
 use toposlam_model::{
     mapping::ArrivalMeasurement,
-    marker::{Marker, NoMarker},
+    marker::{Directional, Marker, NoMarker, Undirected},
     measurement::{HallwayMeasurement, MeasurementNoise},
     percept::{Door, Percept, Sighting},
     trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
@@ -118,25 +118,37 @@ impl OutOfOrder {
     }
 }
 
-/// An arrival that does not record whether the robot saw its marker.
+/// Why arrivals are not those of a robot with a marker of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("its percepts do not record whether the robot saw its marker")]
-pub struct MarkerNotRecorded;
+pub enum SightingError {
+    /// An arrival does not record whether the robot saw its marker.
+    #[error("its percepts do not record whether the robot saw its marker")]
+    NotRecorded,
+    /// An arrival records a directional marker without its direction.
+    #[error("its percepts do not record along which door the marker points")]
+    NoDoor,
+}
 
 impl RunEvents {
-    /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was.
+    /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
+    /// along which an undirected marker points is left out.
     ///
     /// # Errors
-    /// Returns an error if there is such an arrival of a robot with a marker.
-    pub fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), MarkerNotRecorded> {
+    /// Returns an error if an arrival does not record what a robot with this marker sees.
+    pub fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
+        let is = |other: &dyn Marker| marker.name() == other.name();
+        let [is_none, is_directional, is_undirected] =
+            [is(&NoMarker), is(&Directional), is(&Undirected)];
         for event in &mut self.events {
-            if let CheckedKind::Arrival { arrival, .. } = &mut event.kind
-                && arrival.sighting.is_none()
-            {
-                if marker.name() != NoMarker.name() {
-                    return Err(MarkerNotRecorded);
+            let CheckedKind::Arrival { arrival, .. } = &mut event.kind else { continue };
+            match arrival.sighting {
+                None if is_none => arrival.sighting = Some(Sighting::Nothing),
+                None => return Err(SightingError::NotRecorded),
+                Some(Sighting::Pointing(_)) if is_undirected => {
+                    arrival.sighting = Some(Sighting::Lying(1));
                 }
-                arrival.sighting = Some(Sighting::Nothing);
+                Some(Sighting::Lying(_)) if is_directional => return Err(SightingError::NoDoor),
+                Some(_) => {}
             }
         }
         Ok(())

@@ -16,7 +16,7 @@ use toposlam_model::{
 use super::{
     config::ConformConfig,
     divergence::{Divergence, DivergenceCause, FaultClass},
-    events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
+    events::{CheckedEvent, CheckedKind, OutOfOrder, RunEvents, SightingError},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
     measured_hallways::MeasuredHallways,
     quirks::Quirks,
@@ -118,7 +118,7 @@ pub enum JudgeError {
     },
     /// The percepts do not record the marker.
     #[error(transparent)]
-    Marker(#[from] MarkerNotRecorded),
+    Marker(#[from] SightingError),
     /// The algorithm does not run with this marker.
     #[error("{} needs the directional marker, not `{marker}`", algorithm.in_words())]
     Algorithm {
@@ -296,7 +296,8 @@ impl Judgement {
             let marked = MarkedTrail::new(before, &self.trace, watch);
             self.ways = marked.ways;
             self.determined = marked.determined;
-            impossible = impossible.or(marked.impossible);
+            let first = [impossible, marked.impossible].into_iter().flatten();
+            impossible = first.min_by_key(|(event, _)| *event);
             trail = marked.trail.or(trail);
         } else {
             self.determined = trail.as_ref().map(|trail| trail.open_count() == 0);

@@ -31,8 +31,7 @@ mod tests;
 pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{
-    CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
-    UndecidedCause,
+    CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
 };
 pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract,

@@ -10,7 +10,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::WorldSearch,
-    mapping::DirectionalAlgorithm,
+    mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig},
     marker::Directional,
     measurement::ContradictoryMeasurement,
     percept::{Door, Percept, Sighting},
@@ -107,11 +107,11 @@ fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     log_of(DirectionalAlgorithm::Algorithm1, plan, facing, seed)
 }
 
-/// A good run of an algorithm.
-fn log_of(algorithm: DirectionalAlgorithm, plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
+/// A good run of a robot that maps.
+fn log_of(method: impl Into<MappingMethod>, plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, facing, robot, NoSensor, &mut log, &RunSettings::new(algorithm, DARTS));
+    let run = run(plan, facing, robot, NoSensor, &mut log, &RunSettings::new(method, DARTS));
     assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
 }

@@ -138,8 +138,10 @@ pub(super) fn command_of(command: &Command) -> EventKind {
 #[must_use]
 pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
     let Arrival { number: moves, degree, sighting, form, entry } = arrival;
+    // A marker that points along no door is written along any.
     let marker = match sighting {
         Some(Sighting::Pointing(door)) => number(door.0),
+        Some(Sighting::Lying(_)) => 0,
         _ => NONE,
     };
     Percept {
@@ -153,19 +155,34 @@ pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
 }
 
 /// The arrival in a message.
-pub(super) fn arrival_of(message: &Percept) -> Arrival {
-    Arrival {
+///
+/// # Errors
+/// Returns an error if its marker points along a negative door.
+pub(super) fn arrival_of(message: &Percept) -> Result<Arrival, String> {
+    Ok(Arrival {
         number: known(message.r#move),
         degree: message.degree,
-        sighting: Some(sighting_of(message.marker.into())),
+        sighting: Some(sighting_of(message.marker.into())?),
         form: message.form.contains(&true).then_some(JunctionShape(message.form)),
         entry: message.entry.is_finite().then_some(message.entry),
-    }
+    })
 }
 
-/// The sighting of a directional marker that points along a door; of none if there is no such door.
-pub(super) fn sighting_of(marker: i64) -> Sighting {
-    u32::try_from(marker).map_or(Sighting::Nothing, |door| Sighting::Pointing(percept::Door(door)))
+/// The sighting of a marker that points along a door; -1: of none.
+///
+/// # Errors
+/// Returns an error if there is no door with this number.
+pub(super) fn sighting_of(marker: i64) -> Result<Sighting, String> {
+    if marker == i64::from(NONE) {
+        return Ok(Sighting::Nothing);
+    }
+    let door = u32::try_from(marker).map(|door| Sighting::Pointing(percept::Door(door)));
+    door.map_err(|_| format!("its marker is {marker}, which is not a door and not -1, no marker"))
+}
+
+/// The sighting of a marker that points along no door.
+pub(super) fn seen(is_seen: bool) -> Sighting {
+    if is_seen { Sighting::Lying(1) } else { Sighting::Nothing }
 }
 
 /// The robot leaves by a door.
@@ -324,5 +341,14 @@ mod tests {
             }
         }
         assert_eq!(scene_of(&Scene::default()), None);
+    }
+
+    #[test]
+    fn only_minus_one_is_no_marker() {
+        assert_eq!(sighting_of(-1), Ok(Sighting::Nothing));
+        assert_eq!(sighting_of(2), Ok(Sighting::Pointing(percept::Door(2))));
+        for wrong in [-9, -2, i64::MIN, 1 << 32, 99_999_999_999] {
+            assert!(sighting_of(wrong).unwrap_err().starts_with("its marker is "), "{wrong}");
+        }
     }
 }

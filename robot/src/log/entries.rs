@@ -188,7 +188,7 @@ impl Entries<'_> {
             Some(moves) => moves,
             None => None,
         };
-        let sighting = event.marker.map(encode::sighting_of);
+        let sighting = event.sighting()?;
         let arrival = |degree| Arrival { number: moves, degree, sighting, form: None, entry: None };
         let mut contents = Vec::new();
         if self.bound.carries(Role::Percept) {
@@ -246,13 +246,19 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
             forward: number(carried, value, MessagePart::Forward)? * carried.length.in_metres(),
             turn: number(carried, value, MessagePart::Turn)? * carried.angle.in_radians(),
         },
-        Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)),
+        Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)?),
         Role::Percept => {
-            let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
+            let marker = match carried.paths.get(&MessagePart::Marker).map(|path| value.at(path)) {
+                Some(Some(Value::Bool(is_seen))) => Some(encode::seen(is_seen)),
+                _ => {
+                    let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
+                    marker.map(encode::sighting_of).transpose()?
+                }
+            };
             EventKind::Arrival(Arrival {
                 number: whole(carried, value, MessagePart::Move)?,
                 degree: whole(carried, value, MessagePart::Degree)?.unwrap_or_default(),
-                sighting: marker.map(encode::sighting_of),
+                sighting: marker,
                 form: None,
                 entry: None,
             })

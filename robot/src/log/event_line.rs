@@ -5,11 +5,22 @@
 //! {"kind":"event","index":3,"stamp":41.2,"degree":3,"door":1,"marker":null}
 //! ```
 
-use serde::{Deserialize, Deserializer};
+use std::{borrow::Cow, fmt};
+
+use serde::{
+    Deserialize, Deserializer,
+    de::{Error, Visitor},
+};
+use toposlam_model::percept::Sighting;
+
+use super::encode;
 
 /// The columns of a CSV file, in their order. Others are ignored.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Columns(Vec<Option<usize>>);
+
+/// The end of the range of stamps, in seconds: 64 bits of nanoseconds, to the year 2540.
+const LATEST: f64 = 1.8e10;
 
 const NAMES: [&str; 6] = ["index", "stamp", "degree", "door", "marker", "turned_back"];
 
@@ -25,11 +36,20 @@ pub(super) struct VisitLine {
     degree: LineDegree,
     /// The door by which the robot left, clockwise from the way back; `None` if the log ends there.
     pub(super) door: Option<u32>,
-    /// The door along which the marker points; -1: no marker is there. `None`: not recorded.
-    pub(super) marker: Option<i64>,
+    /// The marker; `None`: not recorded.
+    marker: Option<LineMarker>,
     /// Whether the robot turned back on its way there.
     #[serde(default)]
     pub(super) turned_back: Option<bool>,
+}
+
+/// The marker in a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LineMarker {
+    /// The door along which it points; -1: no marker is there.
+    Door(i64),
+    /// Whether it is there.
+    Seen(bool),
 }
 
 /// The number of doors in a line.
@@ -45,6 +65,48 @@ enum LineDegree {
 /// A field that is there, even if it is `null`.
 fn given<'d, D: Deserializer<'d>>(deserializer: D) -> Result<LineDegree, D::Error> {
     Deserialize::deserialize(deserializer).map(LineDegree::Given)
+}
+
+impl<'d> Deserialize<'d> for LineMarker {
+    fn deserialize<D: Deserializer<'d>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(MarkerVisitor)
+    }
+}
+
+struct MarkerVisitor;
+
+impl Visitor<'_> for MarkerVisitor {
+    type Value = LineMarker;
+
+    fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("the marker: a door, -1, true, false or null")
+    }
+
+    fn visit_bool<E: Error>(self, is_seen: bool) -> Result<LineMarker, E> {
+        Ok(LineMarker::Seen(is_seen))
+    }
+
+    fn visit_i64<E: Error>(self, door: i64) -> Result<LineMarker, E> {
+        Ok(LineMarker::Door(door))
+    }
+
+    fn visit_u64<E: Error>(self, door: u64) -> Result<LineMarker, E> {
+        Ok(LineMarker::Door(i64::try_from(door).unwrap_or(i64::MAX)))
+    }
+}
+
+impl VisitLine {
+    /// What the robot saw of its marker; `None`: not recorded.
+    ///
+    /// # Errors
+    /// Returns an error if there is no door with the number of the marker's.
+    pub(super) fn sighting(&self) -> Result<Option<Sighting>, String> {
+        let sighting = |marker| match marker {
+            LineMarker::Door(door) => encode::sighting_of(door),
+            LineMarker::Seen(is_seen) => Ok(encode::seen(is_seen)),
+        };
+        self.marker.map(sighting).transpose()
+    }
 }
 
 /// What a line is, without its other fields.
@@ -80,26 +142,30 @@ impl Columns {
     pub(super) fn read(line: &[u8]) -> Option<Self> {
         let line = std::str::from_utf8(line).ok()?;
         let line = line.trim_start_matches('\u{feff}');
-        let name = |cell: &str| {
-            let cell = cell.trim().trim_matches('"');
-            NAMES.iter().position(|name| cell.eq_ignore_ascii_case(name))
-        };
-        let columns = Self(line.split(',').map(name).collect());
+        let name = |cell: Cow<str>| NAMES.iter().position(|name| cell.eq_ignore_ascii_case(name));
+        let columns = Self(cells(line).into_iter().map(name).collect());
         let has = |wanted: &str| {
             columns.0.iter().flatten().any(|&index| NAMES.get(index) == Some(&wanted))
         };
         (has("degree") && has("door")).then_some(columns)
     }
 
+    /// The name of a column that is there twice.
+    pub(super) fn repeated(&self) -> Option<&'static str> {
+        let known = || self.0.iter().flatten();
+        let names = NAMES.iter().enumerate();
+        let mut twice = names.filter(|(name, _)| known().filter(|one| *one == name).count() > 1);
+        twice.next().map(|(_, name)| *name)
+    }
+
     fn event(&self, line: &str) -> Result<VisitLine, String> {
         let mut event = VisitLine::default();
-        let cells: Vec<_> = line.split(',').collect();
+        let cells = cells(line);
         if cells.len() != self.0.len() {
             return Err(format!("it has {} cells, and the header {}", cells.len(), self.0.len()));
         }
         for (cell, column) in cells.into_iter().zip(&self.0) {
             let Some(name) = column.and_then(|column| NAMES.get(column)) else { continue };
-            let cell = cell.trim();
             if cell.is_empty() || cell == "null" {
                 if *name == "degree" {
                     event.degree = LineDegree::Given(None);
@@ -114,11 +180,59 @@ impl Columns {
                     event.degree = LineDegree::Given(Some(cell.parse().map_err(|_| wrong())?));
                 }
                 "door" => event.door = Some(cell.parse().map_err(|_| wrong())?),
-                "marker" => event.marker = Some(cell.parse().map_err(|_| wrong())?),
+                "marker" => {
+                    let seen = cell.parse().map(LineMarker::Seen);
+                    let door = || cell.parse().map(LineMarker::Door);
+                    event.marker = Some(seen.or_else(|_| door()).map_err(|_| wrong())?);
+                }
                 _ => event.turned_back = Some(cell.parse().map_err(|_| wrong())?),
             }
         }
         Ok(event)
+    }
+}
+
+/// The cells of a CSV line. A cell in double quotes may have commas, and a quote as two.
+fn cells(line: &str) -> Vec<Cow<'_, str>> {
+    let mut cells = Vec::new();
+    let mut rest = Some(line);
+    while let Some(line) = rest {
+        let (cell, next) = cell(line);
+        cells.push(cell);
+        rest = next;
+    }
+    cells
+}
+
+/// The first cell of a line, and the line after its comma.
+fn cell(line: &str) -> (Cow<'_, str>, Option<&str>) {
+    let plain = || match line.split_once(',') {
+        Some((cell, next)) => (cell.trim().into(), Some(next)),
+        None => (line.trim().into(), None),
+    };
+    let Some(quoted) = line.trim_start().strip_prefix('"') else { return plain() };
+    // Two quotes are one in the cell.
+    let mut parts = quoted.split('"');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    let mut used = text.len() + 1;
+    loop {
+        match (parts.next(), parts.clone().next()) {
+            (Some(""), Some(more)) => {
+                text.push('"');
+                text.push_str(more);
+                parts.next();
+                used += more.len() + 2;
+            }
+            (Some(_), _) => break,
+            // There is no second quote.
+            (None, _) => return plain(),
+        }
+    }
+    let after = quoted.get(used..).unwrap_or_default();
+    match after.split_once(',') {
+        Some((space, next)) if space.trim().is_empty() => (text.into(), Some(next)),
+        None if after.trim().is_empty() => (text.into(), None),
+        _ => plain(),
     }
 }
 
@@ -148,9 +262,10 @@ pub(super) fn parse(line: &[u8], columns: Option<&Columns>) -> Result<Parsed, St
             columns.event(line)?
         }
     };
-    if event.stamp.is_some_and(|stamp| !stamp.is_finite() || stamp < 0.0) {
-        return Err(format!("its stamp is {:?}", event.stamp.unwrap_or_default()));
+    if let Some(stamp) = event.stamp.filter(|stamp| !(0.0..LATEST).contains(stamp)) {
+        return Err(format!("its stamp is {stamp:?}; seconds are expected"));
     }
+    event.sighting()?;
     let LineDegree::Given(degree) = event.degree else { return Err("it has no degree".to_owned()) };
     Ok(Parsed::Event(event, degree))
 }
@@ -168,6 +283,9 @@ mod tests {
                 "3,41.2,3,1,,,a note",
             ),
             (r#"{"degree":1,"door":null,"marker":-1,"more":[]}"#, ",,1,null,-1,,"),
+            // A marker that points nowhere.
+            (r#"{"degree":2,"door":1,"marker":true}"#, ",,2,1,true,,"),
+            (r#"{"degree":2,"door":1,"marker":false}"#, ",,2,1,false,,"),
             // Not recognised, after turning back.
             (r#"{"degree":null,"turned_back":true}"#, ",,,,,true,"),
         ] {
@@ -176,18 +294,47 @@ mod tests {
             };
             assert_eq!(parse(csv.as_bytes(), Some(&columns)), Ok(Parsed::Event(event, degree)));
         }
+        let quoted =
+            Columns::read(b"\"index\",stamp,\"degree\",door,marker,turned_back,\"a, note\"");
+        assert_eq!(quoted, Some(Columns(columns.0.clone())));
+        let line = |text: &str| parse(text.as_bytes(), quoted.as_ref()).unwrap();
+        assert_eq!(line("3, \"41.2\" ,\"3\",1,,,\"a, \"\"note\"\"\""), line("3,41.2,3,1,,,a note"));
         let other = parse(br#"{"kind":"conform","marker":"none"}"#, None);
         assert_eq!(other, Ok(Parsed::Other("conform".into())));
     }
 
     #[test]
     fn a_wrong_line_is_an_error() {
-        let columns = Columns::read(b"degree,door").unwrap();
+        let [columns, stamped] = ["degree,door", "degree,door,stamp"]
+            .map(|header| Columns::read(header.as_bytes()).unwrap());
         for (line, columns, error) in [
             ("{\"door\":1}", None, "it has no degree"),
             ("{\"degree\":", None, "EOF while parsing a value"),
             ("{\"degree\":-1}", None, "invalid value: integer `-1`, expected u32"),
-            ("{\"degree\":2,\"stamp\":-1}", None, "its stamp is -1.0"),
+            ("{\"degree\":2,\"stamp\":-1}", None, "its stamp is -1.0; seconds are expected"),
+            ("{\"degree\":2,\"stamp\":1e300}", None, "its stamp is 1e300; seconds are expected"),
+            // Milliseconds.
+            (
+                "{\"degree\":2,\"stamp\":1700000000000}",
+                None,
+                "its stamp is 1700000000000.0; seconds are expected",
+            ),
+            ("2,1,9e99", Some(&stamped), "its stamp is 9e99; seconds are expected"),
+            (
+                "{\"degree\":2,\"marker\":-9}",
+                None,
+                "its marker is -9, which is not a door and not -1, no marker",
+            ),
+            (
+                "{\"degree\":2,\"marker\":99999999999}",
+                None,
+                "its marker is 99999999999, which is not a door and not -1, no marker",
+            ),
+            (
+                "{\"degree\":2,\"marker\":\"north\"}",
+                None,
+                "invalid type: string \"north\", expected the marker: a door, -1, true, false or null",
+            ),
             ("2", Some(&columns), "it has 1 cells, and the header 2"),
             ("2,x", Some(&columns), "its door is \"x\""),
             (
@@ -199,5 +346,8 @@ mod tests {
             assert_eq!(parse(line.as_bytes(), columns), Err(error.to_owned()), "{line}");
         }
         assert_eq!(Columns::read(b"degree,exit"), None);
+        let repeated = Columns::read(b"degree,door,marker,Marker").unwrap();
+        assert_eq!(repeated.repeated(), Some("marker"));
+        assert_eq!(columns.repeated(), None);
     }
 }

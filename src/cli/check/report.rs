@@ -11,6 +11,8 @@ use toposlam_model::{
     format::world_file,
 };
 
+use serde::Serialize;
+
 use super::line::{AlgorithmInfo, SizeLine, SizeResult};
 use crate::cli::{
     CliError, Outcome, RunChoices,
@@ -31,6 +33,14 @@ pub(super) fn worlds_in_words(from: Option<impl Display>, class: &str) -> String
 /// The mean over some starts, and the largest value.
 pub(super) fn mean_and_most(total: u64, starts: u64, most: u64) -> String {
     format!("{:.1}/{}", total as f64 / starts.max(1) as f64, grouped(most.into()))
+}
+
+/// A line of `--json`: the counts, and the verdict that follows from them.
+#[derive(Serialize)]
+struct PrintedSize<'l> {
+    #[serde(flatten)]
+    line: &'l SizeLine,
+    verdict: &'static str,
 }
 
 impl SizeLine {
@@ -93,7 +103,8 @@ impl<'o> CheckReport<'o> {
     /// Prints the result for one number of edges.
     pub(in crate::cli) fn size(&mut self, line: SizeLine) -> Result<(), CliError> {
         if self.json {
-            print_line(self.out, "size", &line)?;
+            let verdict = line.verdict().0.verdict();
+            print_line(self.out, "size", &PrintedSize { line: &line, verdict })?;
         } else {
             self.row(&line)?;
         }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{outcome, report_lines};
+use super::{outcome, report_lines, required};
 use crate::{
     cli::{Outcome, ci_report::CiCase},
-    report::{DivergenceReport, LogReport},
+    report::{DivergenceReport, LogReport, RequiredCoverage, UnreadLog},
 };
 
 /// The result of a log, for CI systems.
@@ -23,18 +23,16 @@ pub(super) fn ci_case(path: &Path, report: &LogReport) -> CiCase {
 }
 
 /// The result of the required coverage, for CI systems.
-pub(super) fn required_case(outcome: Outcome) -> CiCase {
-    let message = match outcome {
-        Outcome::Holds => "all required cases are covered",
-        _ => "a required case is not covered",
-    };
+pub(super) fn required_case(required: &RequiredCoverage) -> CiCase {
     let name = "required coverage".to_owned();
-    CiCase { name, outcome, message: message.to_owned(), file: None }
+    let message = required.in_words();
+    CiCase { name, outcome: required::outcome(required), message, file: None }
 }
 
-/// The result of a log that cannot be read, for CI systems.
-pub(super) fn unread_case(path: &Path) -> CiCase {
-    let message = "the log cannot be read".to_owned();
-    let name = path.display().to_string();
-    CiCase { name, outcome: Outcome::Incomplete, message, file: Some(path.to_owned()) }
+/// The result of a log that cannot be checked, for CI systems.
+pub(super) fn unread_case(path: &Path, unread: &UnreadLog) -> CiCase {
+    let UnreadLog { log, cause } = unread;
+    let message = format!("the log cannot be checked: {cause}");
+    let (name, file) = (log.clone(), Some(path.to_owned()));
+    CiCase { name, outcome: Outcome::Incomplete, message, file }
 }

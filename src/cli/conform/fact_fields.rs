@@ -17,7 +17,7 @@ use super::{
     other_world::{OtherWorld, OtherWorldFields},
     robot_marker::{AddedMarker, AssumedMarkerFields},
 };
-use crate::cli::json::TruncatedLine;
+use crate::cli::{json::TruncatedLine, skipped_lines::SkippedLinesFields};
 
 /// What the remarks and the facts of a report state in words.
 #[derive(Serialize)]
@@ -29,6 +29,8 @@ pub(super) struct FactFields<'j> {
     images: u64,
     unreadable_images: u64,
     truncated: Option<TruncatedLine>,
+    /// The lines of a log of lines that are not read.
+    skipped: Option<SkippedLinesFields<'j>>,
     recorded: Option<Recorded<'j>>,
     ending: Option<Ending<'j>>,
     world: Option<World<'j>>,
@@ -141,6 +143,7 @@ impl<'j> FactFields<'j> {
             images: gathered.pictures,
             unreadable_images: gathered.unreadable,
             truncated: opened.log.truncation().map(TruncatedLine::from),
+            skipped: opened.log.skipped().map(SkippedLinesFields::from),
             recorded: run.filter(|run| !run.world_hash.is_empty()).map(|run| Recorded {
                 world: &run.world,
                 start: &run.start,

@@ -7,13 +7,13 @@ use toposlam_model::{
     folding::WorldSearch,
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
-    marker::{Directional, Marker},
+    marker::{Marker, NoMarker},
 };
 use toposlam_robot::{
     budget::RunBudget,
     conform::{
         ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, JudgeError, Judgement,
-        LogHead, Quirks, RESUMED, RunDriver, SensingProgress, extract, judge,
+        LogHead, Quirks, RESUMED, RunDriver, SensingProgress, SightingError, extract, judge,
     },
     run_settings::RecordedSettings,
 };
@@ -103,7 +103,7 @@ impl ConformArguments {
         let known = known.transpose()?;
         let progress = Progress::endless("reading", "images and scans")?;
         let sensor = opened.sensor();
-        let marked = marker.name() == Directional.name();
+        let marked = marker.name() != NoMarker.name();
         let config = ExtractConfig { evidence, sensor: sensor.as_ref(), marked, laser };
         let gathered = extract(&opened.log, &opened.mapping, &config, &progress);
         let mut gathered = gathered.map_err(|error| match error {
@@ -118,11 +118,14 @@ impl ConformArguments {
         let dart_bound = self.max_darts.unwrap_or(settings.dart_bound);
         let limits = (settings.budget, dart_bound);
         let question = self.question(known.as_ref(), marker, driver, limits);
+        let mut events = gathered.events.clone();
+        let completed = events.complete_sightings(marker);
+        completed.map_err(|error| not_judged(path, &gathered, error.into()))?;
         // A robot that no algorithm drives may turn back between junctions.
-        let events = match driver {
-            RunDriver::Anyone => gathered.events.without_excursions(),
-            RunDriver::Method(_) => gathered.events.clone(),
-        };
+        if driver == RunDriver::Anyone {
+            events = events.without_excursions();
+        }
+        progress.next("judging");
         let judgement = judge(events, &question, quirks, &progress);
         let search = question.search;
         progress.finish();
@@ -182,6 +185,9 @@ impl ConformArguments {
 /// The way out for a run without a marker.
 const WITHOUT_MARKER: &str = "; for a run without a marker add --driver anyone --marker none";
 
+/// The way out for a run with a marker that points nowhere.
+const WITHOUT_DOOR: &str = "; for an undirected marker add --driver anyone --marker undirected";
+
 /// Why a log could not be judged.
 fn not_judged(path: &Path, gathered: &ExtractedRun, error: JudgeError) -> CliError {
     let none_in = |count: u64, what: &str| {
@@ -190,6 +196,9 @@ fn not_judged(path: &Path, gathered: &ExtractedRun, error: JudgeError) -> CliErr
     match error {
         JudgeError::Empty if gathered.pictures > 0 => none_in(gathered.pictures, "images"),
         JudgeError::Empty if gathered.scans > 0 => none_in(gathered.scans, "laser scans"),
+        error @ JudgeError::Marker(SightingError::NoDoor) => {
+            CliError::in_file(path, format!("{error}{WITHOUT_DOOR}"))
+        }
         error @ (JudgeError::Marker(_) | JudgeError::Algorithm { .. }) => {
             CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
         }

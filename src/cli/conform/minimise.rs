@@ -5,7 +5,7 @@ use std::{f64::consts::PI, path::Path};
 use toposlam_model::{
     driving::odometry::Odometry,
     enumerate::Class,
-    marker::{Directional, Marker},
+    marker::{Marker, NoMarker},
 };
 use toposlam_robot::{
     conform::{
@@ -112,14 +112,14 @@ fn not_written(path: &Path, why: &str) {
 }
 
 fn is_marked(judged: &JudgedLog) -> bool {
-    judged.marker.name() == Directional.name()
+    judged.marker.name() != NoMarker.name()
 }
 
 /// The first divergence of a written log.
 fn divergence_of(bytes: &[u8], evidence: Evidence, question: &ConformConfig) -> Option<Divergence> {
     let log = Log::of_bytes(bytes.to_vec()).ok()?;
     let mapping = TopicMap::unambiguous(&log);
-    let marked = question.marker.name() == Directional.name();
+    let marked = question.marker.name() != NoMarker.name();
     let config = ExtractConfig { marked, ..ExtractConfig::new(evidence) };
     let run = extract(&log, &mapping, &config, &()).ok()?;
     judge(run.events, question, &Quirks::default(), &()).ok()?.divergence

@@ -8,7 +8,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{DirectionalAlgorithm, PartialMap},
     percept::{Percept, Sighting},
-    trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason},
+    trace::{AlgorithmCase, Departure, MatchEnd, MatchedChoices, MisfitReason, TraceEventKind},
 };
 use toposlam_robot::{
     conform::{
@@ -16,12 +16,16 @@ use toposlam_robot::{
         MeasuredHallways, Quirks, ReachedLimit, RunDriver, UndecidedCause,
     },
     evaluation::scene_class::FORMS,
+    log::Format,
     record::{Arrival, RunEnding},
 };
 
 use super::{JudgedLog, LISTED, folded_trail, minimise::Minimised, other_world::OtherWorld};
 use crate::{
-    cli::text::{counted, grouped, moment, vertices},
+    cli::{
+        skipped_lines,
+        text::{counted, grouped, moment, vertices},
+    },
     picture::{self, WorldPicture},
     report::{CoveredCase, DivergenceReport, EventLine, LogReport},
 };
@@ -76,6 +80,9 @@ impl JudgedLog<'_> {
         if let Some(truncation) = self.opened.log.truncation() {
             remarks.push(format!("the log is {truncation}"));
         }
+        if let Some(skipped) = self.opened.log.skipped() {
+            remarks.push(format!("skipped {}", skipped_lines::in_words(skipped)));
+        }
         let events = &self.judgement.events;
         match events.end.as_ref().map(|end| &end.ending) {
             Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
@@ -94,6 +101,11 @@ impl JudgedLog<'_> {
         if is_first && has_start && self.opened.run.is_none() {
             remarks.push("the log may begin elsewhere: --start any tries every start".to_owned());
         }
+        if self.judgement.divergence.as_ref().is_some_and(is_start_rule) {
+            let cause = "the log may begin in the middle of a run: --driver anyone compares the doors with no \
+                         algorithm";
+            remarks.push(cause.to_owned());
+        }
         if let Some(event) = self.judgement.unrecognised {
             remarks.push(format!(
                 "the junction of event {} was not recognised: the events from there on are not checked",
@@ -106,6 +118,10 @@ impl JudgedLog<'_> {
                  add --world",
                 event + 1
             ));
+        }
+        let last = events.events.last().map(|event| &event.kind);
+        if let (RunDriver::Anyone, Some(CheckedKind::Door { .. })) = (self.driver, last) {
+            remarks.push("the log ends with a door: where it led is not recorded".to_owned());
         }
         // What was not searched matters only if nothing diverged.
         if verdict != ConformVerdict::Diverged {
@@ -277,6 +293,12 @@ impl JudgedLog<'_> {
         judgement.events.events.iter().enumerate().map(line).collect()
     }
 
+    /// Whether the events have times. Lines need not have stamps.
+    fn has_times(&self) -> bool {
+        let mut events = self.judgement.events.events.iter();
+        self.opened.log.format() != Format::Events || events.any(|event| event.source.time > 0)
+    }
+
     fn divergence_report(&self, divergence: &Divergence) -> DivergenceReport {
         let events = &self.judgement.events.events;
         let begun = self.opened.log.start().unwrap_or(0);
@@ -284,7 +306,7 @@ impl JudgedLog<'_> {
         let time = event.or(events.last()).map_or(begun, |event| event.source.time);
         DivergenceReport {
             event: divergence.event + 1,
-            time: time.saturating_sub(begun) as f64 / 1e9,
+            time: self.has_times().then(|| time.saturating_sub(begun) as f64 / 1e9),
             message: event.map(|event| (event.source.id.0, event.source.offset)),
             fault: divergence.fault,
             cause: divergence.cause.name(),
@@ -382,6 +404,14 @@ impl JudgedLog<'_> {
             _ => None,
         }
     }
+}
+
+/// Whether the first percept is not that of the start of a run.
+fn is_start_rule(divergence: &Divergence) -> bool {
+    let is_percept =
+        |departure: &Departure| matches!(departure.event.kind, TraceEventKind::Percept(_));
+    divergence.event == 0
+        && matches!(&divergence.cause, DivergenceCause::Algorithm(departure) if is_percept(departure))
 }
 
 /// The date of a message, or the time on a clock that starts with the robot or the simulation.

@@ -3,16 +3,22 @@
 use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
-use toposlam_model::{folding::SearchLimit, percept::Sighting};
-use toposlam_robot::conform::{CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents};
+use toposlam_model::folding::SearchLimit;
+use toposlam_robot::conform::{
+    CheckedEvent, CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents,
+};
 
-use super::{CliError, JudgedLog, fact_fields::FactFields};
+use super::{
+    CliError, JudgedLog,
+    divergence_fields::{DivergenceFields, EventFields, MarkerField},
+    fact_fields::FactFields,
+};
 use crate::{
     cli::{
         json::print_line,
         text::{counted, grouped, print_command, print_hanging, since_start},
     },
-    report::{CoveredCase, DivergenceReport, LogReport},
+    report::{ConformReports, CoveredCase, DivergenceReport, LogReport},
 };
 
 /// The number of steps shown before a divergence.
@@ -44,6 +50,8 @@ struct Line<'r> {
     limits: Vec<Limit>,
     tolerated: BTreeMap<&'r str, usize>,
     shorter: &'r [String],
+    divergence: Option<DivergenceFields>,
+    shorter_events: Vec<EventFields>,
     command: Option<&'r str>,
     #[serde(flatten)]
     fields: FactFields<'r>,
@@ -83,8 +91,8 @@ struct EventLine {
     degree: Option<u32>,
     /// The door by which the robot left; `None` if the log ends there.
     door: Option<u32>,
-    /// The door along which the marker points, or -1 without a marker; `None` if that is not recorded.
-    marker: Option<i64>,
+    /// `None` if that is not recorded.
+    marker: Option<MarkerField>,
     /// Whether the robot turned back on its way there.
     turned_back: bool,
     /// The length of the hallway by which it came, by odometry, in metres; `None` if it was not measured.
@@ -107,12 +115,7 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
         };
         match &event.kind {
             CheckedKind::Arrival { arrival, hallway, .. } => {
-                // An undirected marker points along no door.
-                let marker = arrival.sighting.and_then(|sighting| match sighting {
-                    Sighting::Pointing(door) => Some(i64::from(door.0)),
-                    Sighting::Nothing => Some(-1),
-                    _ => None,
-                });
+                let marker = arrival.sighting.and_then(MarkerField::of);
                 let length = hallway.map(|hallway| hallway.length);
                 let visit = visit(Some(arrival.degree), marker);
                 lines.push(EventLine { length, ..visit });
@@ -139,6 +142,7 @@ pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliE
 pub(super) fn json(
     out: &mut dyn Write,
     report: &LogReport,
+    shorter: &[CheckedEvent],
     judged: &JudgedLog,
 ) -> Result<(), CliError> {
     let divergence = report.divergence.as_ref();
@@ -159,7 +163,7 @@ pub(super) fn json(
         cause: divergence.map(|divergence| divergence.cause),
         condition: divergence.map(|divergence| &*divergence.why),
         allowed: divergence.map_or(&[], |divergence| &divergence.allowed),
-        time: divergence.map(|divergence| divergence.time),
+        time: divergence.and_then(|divergence| divergence.time),
         message: divergence.and_then(|divergence| divergence.message).map(|(message, _)| message),
         offset: divergence.and_then(|divergence| divergence.message).map(|(_, offset)| offset),
         facts: report.facts.iter().map(|(name, fact)| (*name, &**fact)).collect(),
@@ -176,6 +180,8 @@ pub(super) fn json(
             .map(|(name, _, events)| (&**name, events.len()))
             .collect(),
         shorter: &report.shorter,
+        divergence: DivergenceFields::of(judged),
+        shorter_events: shorter.iter().map(EventFields::of).collect(),
         command: report.command.as_deref(),
         fields: FactFields::of(judged),
     };
@@ -250,8 +256,8 @@ fn diverged(
 ) -> Result<(), CliError> {
     let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = divergence;
     let [number, of] = [*event, report.events.len()].map(|number| grouped(number as u128));
-    let time = since_start(*time);
-    writeln!(out, "{}: diverges at event {number} of {of}, at {time}: {fault}", report.log)?;
+    let time = time.map_or(String::new(), |time| format!(", at {}", since_start(time)));
+    writeln!(out, "{}: diverges at event {number} of {of}{time}: {fault}", report.log)?;
     print_hanging(out, "  ", &format!("{what}: {why}"))?;
     if let Some((message, offset)) = message {
         let [message, offset] = [*message, *offset].map(|number| grouped(number.into()));
@@ -316,14 +322,15 @@ fn covered(coverage: &[CoveredCase]) -> String {
 /// The summary of several logs.
 pub(super) fn together(
     out: &mut dyn Write,
-    logs: usize,
-    reports: &[LogReport],
+    reports: &ConformReports,
     as_json: bool,
 ) -> Result<(), CliError> {
+    let unreadable = reports.unread.len();
+    let reports = &reports.logs;
+    let logs = reports.len() + unreadable;
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);
-    let unreadable = logs - reports.len();
     let coverage = LogReport::coverage_of(reports);
     let faults = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.fault));
     if as_json {

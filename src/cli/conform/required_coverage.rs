@@ -8,18 +8,18 @@ use toposlam_model::trace::AlgorithmCase;
 use toposlam_robot::{conform::RunCoverage, evaluation::scene_class::FORMS};
 
 use super::{CliError, Outcome};
-use crate::cli::{
-    json::print_line,
-    text::{counted, print_hanging},
+use crate::{
+    cli::{json::print_line, text::print_hanging},
+    report::RequiredCoverage,
 };
 
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line<'r> {
     required: &'r [String],
-    not_covered: Vec<&'r str>,
+    not_covered: &'r [String],
     /// The cases of Algorithm 1, if all logs are compared with the folding explorer.
-    not_applicable: Vec<&'r str>,
+    not_applicable: &'r [String],
 }
 
 /// Parses the name of a case.
@@ -29,37 +29,45 @@ pub(super) fn cases() -> impl TypedValueParser<Value = String> {
     PossibleValuesParser::new(algorithm.chain(junctions))
 }
 
-/// Prints which required cases are not covered. If all logs are compared with the folding explorer, the cases
-/// of Algorithm 1 do not apply.
-pub(super) fn report(
-    out: &mut dyn Write,
+/// Whether a case is one of Algorithm 1, and not a junction.
+pub(super) fn is_of_algorithm1(case: &str) -> bool {
+    AlgorithmCase::ALL.iter().any(|one| one.name() == case)
+}
+
+/// Which required cases are not covered. If all logs are compared with the folding explorer, the cases of
+/// Algorithm 1 do not apply.
+pub(super) fn required_coverage(
     required: &[String],
     coverage: &RunCoverage,
     any_algorithm1: bool,
-    as_json: bool,
-) -> Result<Outcome, CliError> {
+) -> RequiredCoverage {
     let not_covered: Vec<_> =
-        required.iter().map(String::as_str).filter(|case| !covers(coverage, case)).collect();
-    let of_algorithm1 = |case: &&str| AlgorithmCase::ALL.iter().any(|one| one.name() == *case);
-    let foreign = not_covered.iter().copied().filter(|case| !any_algorithm1 && of_algorithm1(case));
-    let not_applicable: Vec<_> = foreign.collect();
-    let outcome = if not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete };
+        required.iter().filter(|case| !covers(coverage, case)).cloned().collect();
+    let foreign = not_covered.iter().filter(|case| !any_algorithm1 && is_of_algorithm1(case));
+    let not_applicable = foreign.cloned().collect();
+    RequiredCoverage { required: required.to_vec(), not_covered, not_applicable }
+}
+
+/// Prints which required cases are not covered.
+pub(super) fn print(
+    out: &mut dyn Write,
+    found: &RequiredCoverage,
+    as_json: bool,
+) -> Result<(), CliError> {
+    let RequiredCoverage { required, not_covered, not_applicable } = found;
     if as_json {
-        print_line(out, "required-coverage", &Line { required, not_covered, not_applicable })?;
-    } else {
-        let cases = counted(required.len(), "required case");
-        let mut text = match &not_covered[..] {
-            [] => "all are covered".to_owned(),
-            not => format!("not covered: {}", not.join(", ")),
-        };
-        if !not_applicable.is_empty() {
-            let cases = not_applicable.join(", ");
-            text += "; the folding explorer does not have these cases of Algorithm 1: ";
-            text += &cases;
-        }
-        print_hanging(out, &format!("{cases}: "), &text)?;
+        return print_line(
+            out,
+            "required-coverage",
+            &Line { required, not_covered, not_applicable },
+        );
     }
-    Ok(outcome)
+    Ok(print_hanging(out, "", &found.in_words())?)
+}
+
+/// The result.
+pub(super) fn outcome(found: &RequiredCoverage) -> Outcome {
+    if found.not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete }
 }
 
 fn covers(coverage: &RunCoverage, name: &str) -> bool {

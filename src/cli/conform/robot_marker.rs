@@ -10,7 +10,7 @@ use toposlam_robot::{
     log::topic_map::{MarkerPlace, Role},
 };
 
-use super::{CliError, ConformArguments, Who};
+use super::{CliError, ConformArguments, Who, required};
 use crate::cli::{open_log::OpenLog, text::counted};
 
 /// A marker of a robot whose log is checked.
@@ -124,9 +124,20 @@ impl ConformArguments {
         if self.assume_marker && self.marker == Some(RobotMarker::None) {
             return Err(CliError::at("--assume-marker", "this needs another marker than none"));
         }
-        if self.algorithm.is_some() && self.driver == Who::Anyone {
+        if self.driver == Who::Anyone {
             let cause = "with --driver anyone the doors are compared with no algorithm";
-            return Err(CliError::at("--algorithm", cause));
+            if self.algorithm.is_some() {
+                return Err(CliError::at("--algorithm", cause));
+            }
+            if self.max_darts.is_some() {
+                return Err(CliError::at("--max-darts", cause));
+            }
+            if let Some(case) =
+                self.require_coverage.iter().find(|case| required::is_of_algorithm1(case))
+            {
+                let cause = format!("{cause}, so that {case} is never covered");
+                return Err(CliError::at("--require-coverage", cause));
+            }
         }
         Ok(())
     }

@@ -13,6 +13,7 @@ use toposlam_model::{
 use super::{
     atlas::{none, proved},
     pairs::WorldPairs,
+    up_to,
 };
 use crate::cli::{
     CliError,
@@ -128,10 +129,9 @@ impl<'o> SearchReport<'o> {
         found: &WorldPairs,
     ) -> Result<(), CliError> {
         if !std::mem::replace(&mut self.header, true) {
-            let (class, edges) = (self.class, self.edges);
-            let head = format!(
-                "Pairs of worlds that no walk distinguishes: class {class}, 1 to {edges} edges"
-            );
+            let (class, edges) = (self.class, up_to(self.edges));
+            let head =
+                format!("Pairs of worlds that no walk distinguishes: class {class}, {edges}");
             print_paragraph(self.out, &head)?;
             writeln!(self.out)?;
             writeln!(
@@ -172,7 +172,7 @@ impl<'o> SearchReport<'o> {
         found: &WorldPairs,
     ) -> Result<(), CliError> {
         print_paragraph(self.out, &format!("{} marker: {}", marker.name(), marker.about()))?;
-        writeln!(self.out, "class {}, 1 to {} edges\n", self.class, self.edges)?;
+        writeln!(self.out, "class {}, {}\n", self.class, up_to(self.edges))?;
         writeln!(self.out, "{:>5}  {:>13}  {:>9}", "edges", "placed worlds", "ambiguous")?;
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
             writeln!(

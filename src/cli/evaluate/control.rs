@@ -92,11 +92,16 @@ impl EvaluateControlArguments {
         let (wrong, gave_up) = tally(judged);
         writeln!(out, "  wrong    {}", share(wrong, judged.len()))?;
         writeln!(out, "  gave up  {}", share(gave_up, judged.len()))?;
-        let mean = |sum: f64| sum / judged.len().max(1) as f64;
-        let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
-        let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
-        let frames = self.robots.frames();
-        writeln!(out, "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal")?;
+        if !judged.is_empty() {
+            let mean = |sum: f64| sum / judged.len() as f64;
+            let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
+            let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
+            let frames = self.robots.frames();
+            writeln!(
+                out,
+                "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal"
+            )?;
+        }
         let verdict = match outcome {
             Outcome::Incomplete if judged.is_empty() => "incomplete: nothing was measured",
             Outcome::Incomplete => "incomplete, interrupted",
@@ -130,7 +135,7 @@ impl EvaluateControlArguments {
         let line = json!({
             "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
-            "holds": outcome == Outcome::Holds,
+            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "control", &line)
     }

@@ -19,8 +19,12 @@ use toposlam_robot::truth::{JunctionTruth, Truth};
 use toposlam_vision::annotate;
 
 use crate::cli::{
-    CliError, json::print_line, output, picture_file, progress::must_stop, scene::SceneLine,
-    text::counted,
+    CliError,
+    json::print_line,
+    output, picture_file,
+    progress::must_stop,
+    scene::SceneLine,
+    text::{counted, print_hanging},
 };
 
 /// The most views, and the most visits, of which pictures are written: first the wrong ones, then the
@@ -125,8 +129,31 @@ pub(super) fn print(
     out: &mut dyn Write,
     judged: &JudgedView,
     calibration: Calibration,
+    json: bool,
 ) -> Result<(), CliError> {
-    print_view(out, judged, calibration, None)
+    if json {
+        return print_view(out, judged, calibration, None);
+    }
+    let line = Line::new(judged, calibration, None);
+    writeln!(out, "view {}, calibration {}: {}", line.view, line.calibration, line.verdict)?;
+    let ([width, height], [x, y]) = (line.size, line.position);
+    let heading = line.heading.to_degrees();
+    let effects: Vec<_> =
+        line.effects.iter().map(|(name, value)| format!("{name} {value:.2}")).collect();
+    let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
+    let distance = line.distance.map_or(String::new(), |distance| {
+        format!(", {distance:.2} m from the turning point of a junction")
+    });
+    for (label, text) in [
+        ("plan", format!("{}, look {}, {width} by {height} pixels", line.plan, line.look)),
+        ("robot", format!("at {x:.2}, {y:.2} m, heading {heading:.0} degrees{distance}")),
+        ("effects", effects),
+        ("truth", line.truth),
+        ("sensed", line.said),
+    ] {
+        print_hanging(out, &format!("  {label:<9}"), &text)?;
+    }
+    Ok(())
 }
 
 fn print_view(

@@ -315,7 +315,7 @@ impl EvaluateLaserArguments {
         }
         let line = json!({
             "target": report.standing().name(), "interrupted": interrupted,
-            "holds": outcome == Outcome::Holds,
+            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "verdict", &line)
     }

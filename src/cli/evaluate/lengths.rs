@@ -156,7 +156,7 @@ impl EvaluateLengthsArguments {
         let line = json!({
             "runs": runs.len(), "traversals": tally.measured, "compared": tally.compared,
             "seed": self.robots.seed, "target": TARGET, "first_alarm": first_alarm,
-            "holds": outcome == Outcome::Holds,
+            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "lengths", &line)
     }

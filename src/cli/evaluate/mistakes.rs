@@ -199,7 +199,8 @@ impl EvaluateMistakesArguments {
             "audits": method.audits(), "recover": method.recovers(),
             "starts": tally.starts, "runs": all.runs(), "right": all.right,
             "unnoticed": all.undetected(), "moves_total": tally.moves,
-            "interrupted": tally.interrupted, "holds": outcome == Outcome::Holds,
+            "interrupted": tally.interrupted, "verdict": outcome.verdict(),
+            "holds": outcome == Outcome::Holds,
         });
         print_line(out, "mistakes", &line)
     }

@@ -190,7 +190,7 @@ impl<'o> Printer<'o> {
             let holds = outcome == Outcome::Holds;
             let line = json!({
                 "missed": missed, "not_shown": not_shown,
-                "interrupted": interrupted, "holds": holds,
+                "interrupted": interrupted, "verdict": outcome.verdict(), "holds": holds,
             });
             return print_line(self.out, "verdict", &line);
         }

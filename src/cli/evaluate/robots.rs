@@ -51,7 +51,7 @@ pub(super) struct RobotArguments {
     #[arg(long, value_name = "FILE")]
     scanner: Option<PathBuf>,
     /// Multiple of the default noise of wheels and odometry, and of sensing without images
-    #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
+    #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise, allow_hyphen_values = true)]
     pub(super) noise: f64,
     /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -155,12 +155,14 @@ impl EvaluateRunsArguments {
             print_safeguards(method, judged, out)?;
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
-        let count: u64 = judged.iter().map(|run| run.frames).sum();
-        let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
-        let (moves, count) = (grouped(moves.into()), grouped(count.into()));
-        let frames = self.robots.frames();
-        let hours = tenths(hours);
-        writeln!(out, "  {moves} moves, {count} {frames}, {hours} hours of simulated time")?;
+        if !judged.is_empty() {
+            let count: u64 = judged.iter().map(|run| run.frames).sum();
+            let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
+            let (moves, count) = (counted(moves as usize, "move"), grouped(count.into()));
+            let frames = self.robots.frames();
+            let hours = tenths(hours);
+            writeln!(out, "  {moves}, {count} {frames}, {hours} hours of simulated time")?;
+        }
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -213,7 +215,7 @@ impl EvaluateRunsArguments {
             "runs": judged.len(), "seed": self.robots.seed,
             "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
-            "violations": violations, "holds": outcome == Outcome::Holds,
+            "violations": violations, "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
     }

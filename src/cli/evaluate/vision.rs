@@ -104,7 +104,7 @@ pub(super) struct EvaluateVisionArguments {
     #[arg(long)]
     calibration_errors: bool,
     /// Measure only the view with this number
-    #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits", "json"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits"])]
     view: Option<u64>,
     /// Folder for a picture of each processing stage of the views that fail, or of the one view
     #[arg(short, long, value_name = "DIR")]
@@ -205,7 +205,7 @@ impl EvaluateVisionArguments {
         let mut outcome = Outcome::Holds;
         for &calibration in calibrations {
             let judged = judge.view(view.clone(), calibration).map_err(unmeasured)?;
-            failing::print(out, &judged, calibration)?;
+            failing::print(out, &judged, calibration, self.json)?;
             if judged.verdict.is_wrong() {
                 outcome = Outcome::Violated;
             }

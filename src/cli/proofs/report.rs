@@ -109,6 +109,7 @@ impl<'o> ProofsReport<'o> {
                 cases: self.cases,
                 seconds: self.seconds,
                 interrupted: self.interrupted,
+                verdict: outcome.verdict(),
                 holds: outcome == Outcome::Holds,
             };
             print_line(self.out, "checks", &totals)?;
@@ -177,6 +178,7 @@ struct Line<'a> {
     /// The number of cases before the first one in which it fails.
     cases: u64,
     seconds: f64,
+    verdict: &'static str,
     holds: bool,
     choices: Option<&'a [u8]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -197,11 +199,17 @@ fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Resu
         _ => None,
     };
     let again = failed.and_then(|failed| failed_case(lemma, failed));
+    let outcome = match end {
+        CheckEnd::Holds { .. } => Outcome::Holds,
+        CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => Outcome::Violated,
+        CheckEnd::Interrupted { .. } => Outcome::Incomplete,
+    };
     let line = Line {
         lemma: lemma.name,
         cases: end.cases(),
         seconds: *seconds,
-        holds: matches!(end, CheckEnd::Holds { .. }),
+        verdict: outcome.verdict(),
+        holds: outcome == Outcome::Holds,
         choices: failed.map(|failed| failed.choices.as_slice()),
         claim: failed.map(|failed| failed.claim),
         view: again.as_ref().map(|again| again.view.json()),
@@ -225,5 +233,6 @@ struct TotalsLine {
     seconds: f64,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     interrupted: bool,
+    verdict: &'static str,
     holds: bool,
 }

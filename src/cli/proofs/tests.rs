@@ -335,7 +335,7 @@ fn an_interrupt_does_not_wait_for_the_case() {
     assert!(matches!(interrupted.end, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
         (false, "\nincomplete, interrupted: 0 of 1 lemma holds, 0 cases\n"),
-        (true, "\"interrupted\":true,\"holds\":false}\n"),
+        (true, "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
     ] {
         let mut out = Vec::new();
         let mut report = ProofsReport::new(&mut out, json, &[&endless]);

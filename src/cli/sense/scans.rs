@@ -3,6 +3,7 @@
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
+use toposlam_model::enumerate::Watch;
 use toposlam_robot::{
     conform::Evidence,
     log::{
@@ -24,6 +25,7 @@ use crate::cli::{
     CliError, input,
     json::print_line,
     picture_file,
+    progress::StopSignal,
     scene::{bearing, place_in_words, rounded, rounded_angle},
     text::{counted, print_hanging},
 };
@@ -90,6 +92,7 @@ impl SenseArguments {
         let mut sensor = LaserSensor::new(self.laser.params()?);
         let mut number = 0;
         for entry in log.entries(&bound) {
+            StopSignal.go_on()?;
             let entry = entry.map_err(|error| wrong(&error))?;
             let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
                 entry.content

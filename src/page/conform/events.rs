@@ -23,7 +23,7 @@ pub(super) fn before(report: &LogReport) -> Option<String> {
     let last = report.events.get(earlier.saturating_sub(BEFORE)..earlier)?;
     let here = report.events.get(earlier).filter(|line| line.number == divergence.event);
     let rows = each(last, |line| row(line, "", ""));
-    let time = here.map_or(divergence.time, |line| line.time);
+    let time = here.map_or(divergence.time.unwrap_or(0.0), |line| line.time);
     Some(table(&(rows + &diverging(divergence.event, time, &divergence.what, ""))))
 }
 
@@ -49,7 +49,7 @@ pub(super) fn all(report: &LogReport, log: usize) -> String {
     let missing = missing.map_or_else(String::new, |divergence| {
         table(&diverging(
             divergence.event,
-            divergence.time,
+            divergence.time.unwrap_or(0.0),
             &divergence.what,
             &id(log, divergence.event),
         ))

@@ -74,6 +74,7 @@ fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> Str
     } else {
         format!("Event {number} of {all}")
     };
+    let time = time.map_or_else(String::new, |time| format!(" \u{b7} {} min", clock(time)));
     let message = message.map_or_else(String::new, |(number, offset)| {
         let [number, offset] = [number, offset].map(|number| grouped(number.into()));
         format!(" \u{b7} message {number} of the log, byte {offset}")
@@ -81,12 +82,11 @@ fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> Str
     format!(
         "<p class=\"what\"><b>{}</b> {}</p>\n\
          <p><span class=\"chip\">{fault}</span> {}</p>\n\
-         <p class=\"faint\">{} \u{b7} {} min{message} \u{b7} cause <code>{}</code></p>\n",
+         <p class=\"faint\">{}{time}{message} \u{b7} cause <code>{}</code></p>\n",
         escaped(&wording::sentence(what)),
         escaped(&wording::sentence(why)),
         wording::sentence(wording::did(*fault)),
         events::link(log, *event, &place),
-        clock(*time),
         escaped(cause),
     )
 }

@@ -16,18 +16,18 @@ use super::{PAGE_STYLE, template::filled};
 use crate::{
     moment::grouped,
     picture::escaped,
-    report::{LogReport, ReportOrigin},
+    report::{ConformReports, ReportOrigin},
 };
 
 const PAGE: &str = include_str!("../browser/conform.html");
 const SCRIPT: &str = include_str!("../browser/conform.js");
 
-/// The page of these reports as an HTML document; several have a summary above. The same reports give the
-/// same bytes.
+/// The page of these reports as an HTML document; several, and those with required cases, have a summary above. The
+/// same reports give the same bytes.
 #[must_use]
-pub fn conform_page(reports: &[LogReport], origin: &ReportOrigin) -> String {
-    let alone = matches!(reports, [_]);
-    let numbered: Vec<_> = reports.iter().zip(1..).collect();
+pub fn conform_page(reports: &ConformReports, origin: &ReportOrigin) -> String {
+    let alone = reports.logs.len() == 1 && reports.unread.is_empty() && reports.required.is_none();
+    let numbered: Vec<_> = reports.logs.iter().zip(1..).collect();
     filled(PAGE, |place| match place {
         "title" => escaped(&wording::title(reports)),
         "icon" => wording::icon(wording::worst(reports)),

@@ -1,14 +1,16 @@
 //! The summary of several logs.
 
+use toposlam_robot::conform::ConformVerdict;
+
 use super::{Level, coverage, each, panel, wording};
 use crate::{
     moment::grouped,
     picture::escaped,
-    report::{DivergenceReport, LogReport},
+    report::{ConformReports, DivergenceReport, LogReport, UnreadLog},
 };
 
 /// The verdicts with links to the logs, and the coverage of all logs.
-pub(super) fn section(reports: &[LogReport]) -> String {
+pub(super) fn section(reports: &ConformReports) -> String {
     let worst = wording::worst(reports);
     let heading = Level::First.heading(&format!(
         "{}<strong>{}</strong>",
@@ -16,16 +18,23 @@ pub(super) fn section(reports: &[LogReport]) -> String {
         wording::sentence(&wording::tally(reports)).trim_end_matches('.'),
     ));
     let verdict = worst.name();
+    let required = reports
+        .required
+        .as_ref()
+        .map(|required| format!("<p>{}</p>\n", escaped(&wording::sentence(&required.in_words()))));
+    let required = required.unwrap_or_default();
+    let ConformReports { logs: reports, unread, .. } = reports;
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
-    let table = if reports.is_empty() {
+    let table = if reports.is_empty() && unread.is_empty() {
         String::new()
     } else {
         format!(
             "<div class=\"because\"><table class=\"logs\">\n<thead><tr><th scope=\"col\">Log</th>\
              <th scope=\"col\">Verdict</th><th scope=\"col\">Why</th>\
-             <th scope=\"col\" class=\"right\">Events</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\
-             </div>\n",
-            each(&numbered, |(report, number)| row(report, *number))
+             <th scope=\"col\" class=\"right\">Events</th></tr></thead>\n<tbody>\n{}{}</tbody>\n</table>\
+             {required}</div>\n",
+            each(&numbered, |(report, number)| row(report, *number)),
+            each(unread, unread_row),
         )
     };
     let cases = LogReport::coverage_of(reports);
@@ -39,6 +48,18 @@ pub(super) fn section(reports: &[LogReport]) -> String {
     format!(
         "<section id=\"together\">\n<div class=\"verdict {verdict}\">\n{heading}{table}</div>\n{covered}\
          </section>\n"
+    )
+}
+
+/// A log that could not be checked.
+fn unread_row(UnreadLog { log, cause }: &UnreadLog) -> String {
+    let verdict = ConformVerdict::Incomplete;
+    format!(
+        "<tr><th scope=\"row\">{}</th><td class=\"is {}\">{}not checked</td><td>{}</td><td></td></tr>\n",
+        escaped(log),
+        verdict.name(),
+        wording::sign(verdict),
+        escaped(cause),
     )
 }
 

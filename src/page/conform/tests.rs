@@ -7,12 +7,46 @@ use toposlam_robot::conform::{ConformVerdict, FaultClass};
 use super::*;
 use crate::{
     page::template::checks::places_of,
-    report::{CoveredCase, DivergenceReport, EventLine, FoldedReport, SourceFile},
+    report::{
+        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, RequiredCoverage,
+        SourceFile, UnreadLog,
+    },
 };
 
 fn page_of(reports: &[LogReport]) -> String {
     let command = "toposlam conform logs/shape-6.mcap --html report.html".to_owned();
+    page_with(&ConformReports { logs: reports.to_vec(), ..ConformReports::default() }, command)
+}
+
+fn page_with(reports: &ConformReports, command: String) -> String {
     conform_page(reports, &ReportOrigin { version: "0.1.0".to_owned(), command })
+}
+
+#[test]
+fn an_unreadable_log_and_a_missing_case_are_on_the_page() {
+    let unread = UnreadLog { log: "bad.mcap".to_owned(), cause: "it is <not> a log".to_owned() };
+    let good = || vec![conforming(3)];
+    let reports =
+        ConformReports { logs: good(), unread: vec![unread], ..ConformReports::default() };
+    let page = page_with(&reports, String::new());
+    assert!(page.contains("<title>2 logs: 1 conforms, 1 not checked</title>"), "{page}");
+    assert!(page.contains("<th scope=\"row\">bad.mcap</th>"), "{page}");
+    assert!(page.contains("it is &lt;not&gt; a log"), "{page}");
+    assert!(page.contains("<div class=\"verdict incomplete\">"), "{page}");
+    let cases = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    for (not_covered, verdict, text) in [
+        (cases(&["l-left"]), "incomplete", "2 required cases: not covered: l-left."),
+        (cases(&[]), "conforms", "2 required cases: all are covered."),
+    ] {
+        let required = cases(&["tee", "l-left"]);
+        let required = RequiredCoverage { required, not_covered, ..RequiredCoverage::default() };
+        let reports =
+            ConformReports { logs: good(), required: Some(required), ..ConformReports::default() };
+        let page = page_with(&reports, String::new());
+        assert!(page.contains(text), "{page}");
+        let first = page.split_once("<div class=\"verdict ").unwrap().1;
+        assert!(first.starts_with(verdict), "{page}");
+    }
 }
 
 fn line(number: usize) -> EventLine {
@@ -65,7 +99,7 @@ fn diverged(events: usize, at: usize) -> LogReport {
         verdict: ConformVerdict::Diverged,
         divergence: Some(DivergenceReport {
             event: at,
-            time: at as f64 / 2.0,
+            time: Some(at as f64 / 2.0),
             message: Some((4711, 1_234_567)),
             fault: FaultClass::Perception,
             cause: "percept",

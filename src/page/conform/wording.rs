@@ -6,14 +6,20 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 pub(super) use crate::text::counted;
-use crate::{moment::grouped, report::LogReport};
+use crate::{
+    moment::grouped,
+    report::{ConformReports, LogReport},
+};
 
-/// The worst verdict; incomplete without any log.
-pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
-    let any = |verdict| reports.iter().any(|report| report.verdict == verdict);
+/// The worst verdict; incomplete without any log, with an unreadable one, or without a required case.
+pub(super) fn worst(reports: &ConformReports) -> ConformVerdict {
+    let any = |verdict| reports.logs.iter().any(|report| report.verdict == verdict);
+    let is_missing = reports.logs.is_empty() || !reports.unread.is_empty();
+    let is_uncovered =
+        reports.required.as_ref().is_some_and(|required| !required.not_covered.is_empty());
     if any(ConformVerdict::Diverged) {
         ConformVerdict::Diverged
-    } else if any(ConformVerdict::Incomplete) || reports.is_empty() {
+    } else if any(ConformVerdict::Incomplete) || is_missing || is_uncovered {
         ConformVerdict::Incomplete
     } else {
         ConformVerdict::Conforms
@@ -21,30 +27,42 @@ pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
 }
 
 /// The title of the window.
-pub(super) fn title(reports: &[LogReport]) -> String {
-    match reports {
-        [report] => format!("{}: {}", report.log, report.verdict.name()),
+pub(super) fn title(reports: &ConformReports) -> String {
+    match &reports.logs[..] {
+        [report] if reports.unread.is_empty() && reports.required.is_none() => {
+            format!("{}: {}", report.log, report.verdict.name())
+        }
         _ => tally(reports),
     }
 }
 
 /// The number of logs with each verdict, the worst first.
-pub(super) fn tally(reports: &[LogReport]) -> String {
-    if reports.is_empty() {
+pub(super) fn tally(reports: &ConformReports) -> String {
+    let ConformReports { logs: reports, unread, required } = reports;
+    if reports.is_empty() && unread.is_empty() {
         return "no log was checked".to_owned();
     }
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let counts = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
         .map(|verdict| (count(verdict), verdict));
-    let parts: Vec<_> = counts
-        .iter()
-        .filter(|(count, _)| *count > 0)
+    let unreadable =
+        Some(unread.len()).filter(|&count| count > 0).map(|count| format!("{count} not checked"));
+    let verdicts = counts.iter().filter(|(count, _)| *count > 0);
+    let parts: Vec<_> = verdicts
         .map(|(count, verdict)| match (verdict, count) {
             (ConformVerdict::Conforms, 2..) => format!("{} conform", grouped(*count as u128)),
             _ => format!("{} {}", grouped(*count as u128), verdict.name()),
         })
+        .chain(unreadable)
         .collect();
-    format!("{}: {}", counted(reports.len(), "log"), parts.join(", "))
+    let required =
+        required.as_ref().map_or(String::new(), |required| match &required.not_covered[..] {
+            [] => "; all required cases are covered".to_owned(),
+            [case] => format!("; {case} is not covered"),
+            cases => format!("; {} required cases are not covered", cases.len()),
+        });
+    let count = counted(reports.len() + unread.len(), "log");
+    format!("{count}: {}{required}", parts.join(", "))
 }
 
 /// A sentence with a capital letter and a full stop.

@@ -225,9 +225,43 @@ fn in_plan(file: &DocumentTable<'_>, error: FloorPlanError) -> WorldFileError {
             let mut list = file.get("hallways").and_then(|value| value.list("").ok());
             list.as_mut().and_then(|list| list.nth(*number)).map(DocumentValue::position)
         }
-        _ => file.get("hallways").map(DocumentValue::position),
+        FloorPlanError::NoLength { junction } => position_of_hallway(file, [junction; 2], 0),
+        FloorPlanError::NotAlongAxis { from, to } | FloorPlanError::OnHallway { from, to, .. } => {
+            position_of_hallway(file, [from, to], 0)
+        }
+        FloorPlanError::HallwayTwice { from, to } => position_of_hallway(file, [from, to], 1),
+        FloorPlanError::SameDirection { junction, other, .. } => {
+            position_of_hallway(file, [junction, other], 0)
+        }
+        FloorPlanError::Cross { other, .. } | FloorPlanError::FloorsMeet { other, .. } => {
+            position_of_hallway(file, other.each_ref(), 0)
+        }
+        FloorPlanError::NoDoor { junction }
+        | FloorPlanError::StraightThrough { junction }
+        | FloorPlanError::FourDoors { junction } => key_in("junctions", Some(junction)),
+        FloorPlanError::Graph(ListError::NotConnected { vertex, .. }) => {
+            key_in("junctions", Some(vertex))
+        }
+        FloorPlanError::Graph(_) => file.get("hallways").map(DocumentValue::position),
     };
     WorldFileErrorKind::from(Box::new(error)).at(position.unwrap_or_default())
+}
+
+/// Where the hallway between two junctions is, after `skip` others between them.
+fn position_of_hallway(
+    file: &DocumentTable<'_>,
+    ends: [&String; 2],
+    skip: usize,
+) -> Option<TextPosition> {
+    let is_between = |hallway: &DocumentValue<'_>| {
+        let table = hallway.any_table().ok()?;
+        let end = |key| table.get(key)?.text().ok();
+        let found = [end("from")?, end("to")?];
+        let [one, other] = ends.map(String::as_str);
+        Some(found == [one, other] || found == [other, one])
+    };
+    let list = file.get("hallways")?.list("").ok()?;
+    list.filter(|item| is_between(item) == Some(true)).nth(skip).map(DocumentValue::position)
 }
 
 /// Where a name stands in the list of a vertex, or of any vertex, for the time after `skip` times.

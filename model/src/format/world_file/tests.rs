@@ -318,7 +318,23 @@ fn an_error_in_a_floor_plan_has_its_key() {
         (
             "[4.0, 0.0]",
             "[4.0, 1.0]",
-            "line 11, column 1: hallways: hallway `east` - `corner` runs neither north-south nor east-west",
+            "line 15, column 1: hallways[1]: hallway `east` - `corner` runs neither north-south nor east-west",
+        ),
+        (
+            "[start]",
+            "[[hallways]]\nfrom = \"corner\"\nto = \"east\"\n\n[start]",
+            "line 19, column 1: hallways[2]: hallway `corner` - `east` stands twice",
+        ),
+        (
+            "[4.0, 0.0]",
+            "[0.0, 4.0]",
+            "line 8, column 1: junctions.corner: junction `corner` has two doors opposite each other; \
+             it must be a dead end, an L or a T",
+        ),
+        (
+            "from = \"east\"",
+            "from = \"corner\"",
+            "line 15, column 1: hallways[1]: the hallway from `corner` to `corner` has no length",
         ),
     ] {
         assert_eq!(message(&PLAN.replace(text, instead)), expected);

@@ -10,8 +10,13 @@ use std::{
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    mapping::{
+        Choices, DirectionalAlgorithm, Exploration, Journey, MappingError, MappingEvent,
+        MappingRun, PartialMap, map_world,
+    },
     percept::{Door, Percept, Sighting},
-    trace::Trace,
+    trace::{Trace, TraceEventKind},
+    world::{GraphWorld, World},
 };
 
 /// A world with a robot in it.
@@ -29,13 +34,17 @@ impl Place<'_> {
     /// written out here once more.
     pub(super) fn explains(&self, trace: &Trace) -> bool {
         let Self { graph, marker, mut pose } = *self;
+        let points = !is_undirected(trace);
         for (moves, percept) in trace.percepts().iter().enumerate() {
             let degree = graph.degree(graph.vertex(pose));
             let here = marker.filter(|&marker| graph.vertex(marker) == graph.vertex(pose));
             let sighting = here.map_or(Sighting::Nothing, |marker| {
-                let points =
+                if !points {
+                    return Sighting::Lying(1);
+                }
+                let along =
                     |&door: &u32| (graph.index(pose) + door) % degree == graph.index(marker);
-                Sighting::Pointing(Door((0..degree).find(points).unwrap()))
+                Sighting::Pointing(Door((0..degree).find(along).unwrap()))
             });
             if *percept != (Percept { degree, sighting }) {
                 return false;
@@ -49,6 +58,12 @@ impl Place<'_> {
         }
         true
     }
+}
+
+/// Whether the marker of a trace points along no door.
+fn is_undirected(trace: &Trace) -> bool {
+    let lies = |percept: &Percept| matches!(percept.sighting, Sighting::Lying(_));
+    trace.percepts().iter().any(lies)
 }
 
 /// Whether a world with at most this many edges explains a trace, from any start, with the marker along any
@@ -70,9 +85,53 @@ pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
     })
 }
 
-/// A world that explains a trace, the marker in it and the robot's pose at the start; `None` if there is
-/// none of any size.
-pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dart)> {
+/// A world, a dart of its marker and the robot's pose at the start.
+type Witness = (EmbeddedGraph, Option<Dart>, Dart);
+
+/// An undirected marker may lie in too many ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TooManyWays;
+
+/// The number of ways in which an undirected marker may lie that are tried.
+const WAYS: usize = 300;
+
+/// A world that explains a trace; `None` if there is none of any size. An undirected marker is one that points along a
+/// door that is not recorded: every door is tried at each sighting but the first.
+pub(super) fn witness(trace: &Trace) -> Result<Option<Witness>, TooManyWays> {
+    let percepts = || trace.percepts().iter().enumerate();
+    let mut ways = 0;
+    let mut open = vec![Vec::new()];
+    while let Some(doors) = open.pop() {
+        ways += 1;
+        if ways > WAYS {
+            return Err(TooManyWays);
+        }
+        // The next sighting after those whose doors are chosen.
+        let lying = percepts().filter(|(_, percept)| percept.sighting == Sighting::Lying(1));
+        let next = lying.map(|(visit, percept)| (visit, percept.degree)).nth(doors.len());
+        let mut chosen = doors.iter();
+        let mut kinds = Vec::new();
+        for (visit, percept) in percepts().take(next.map_or(usize::MAX, |(visit, _)| visit)) {
+            let sighting = match percept.sighting {
+                Sighting::Lying(1) => Sighting::Pointing(Door(*chosen.next().unwrap())),
+                other => other,
+            };
+            kinds.push(TraceEventKind::Percept(Percept { sighting, ..*percept }));
+            kinds.extend(trace.doors().get(visit).map(|&door| TraceEventKind::Door(door)));
+        }
+        let found = Trace::new(kinds).ok().and_then(|trace| directed_witness(&trace));
+        if found.is_none() && next.is_none_or(|(visit, _)| visit > 0) {
+            continue;
+        }
+        let Some((_, degree)) = next else { return Ok(found) };
+        let most = if doors.is_empty() { 1 } else { degree };
+        open.extend((0..most).rev().map(|door| [doors.clone(), vec![door]].concat()));
+    }
+    Ok(None)
+}
+
+/// A world that explains a trace without an undirected marker; `None` if there is none of any size.
+fn directed_witness(trace: &Trace) -> Option<Witness> {
     let degrees: Vec<_> = trace.percepts().iter().map(|percept| percept.degree as usize).collect();
     let first = |vertex: usize| degrees[..vertex].iter().sum::<usize>();
     let count = degrees.iter().sum();
@@ -175,4 +234,115 @@ fn world(clockwise: &[[usize; 2]], links: &[[usize; 2]]) -> (EmbeddedGraph, BTre
     let (graph, darts) = EmbeddedGraph::from_permutations(&opposite, &turn).unwrap();
     let number = number.into_iter().map(|(label, dart)| (label, darts[dart])).collect();
     (graph, number)
+}
+
+/// A robot that takes only the doors of a trace.
+struct DoorsOf<'t, 'g> {
+    world: GraphWorld<'g>,
+    doors: &'t [Door],
+}
+
+/// Why it goes no further.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum DoorsEnd {
+    /// All doors were taken.
+    All,
+    /// Another door would be taken.
+    Other,
+}
+
+impl World for DoorsOf<'_, '_> {
+    type Error = DoorsEnd;
+
+    fn percept(&mut self) -> Result<Percept, DoorsEnd> {
+        Ok(self.world.sensed())
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), DoorsEnd> {
+        let Some((first, rest)) = self.doors.split_first() else { return Err(DoorsEnd::All) };
+        if *first != door {
+            return Err(DoorsEnd::Other);
+        }
+        self.doors = rest;
+        if rest.is_empty() {
+            return Err(DoorsEnd::All);
+        }
+        self.world.traverse(door).map_err(|_| DoorsEnd::Other)
+    }
+}
+
+/// The choices of one run of Algorithm 1: for each, its index and the number of those that are open.
+#[derive(Default)]
+struct Script {
+    choices: Vec<[usize; 2]>,
+    made: usize,
+}
+
+impl Script {
+    fn choose(&mut self, open: usize) -> usize {
+        if self.made == self.choices.len() {
+            self.choices.push([0, open]);
+        }
+        self.made += 1;
+        self.choices[self.made - 1][0]
+    }
+
+    /// The choices of the next run; `false` if there is none.
+    fn advance(&mut self) -> bool {
+        self.choices.truncate(self.made);
+        self.made = 0;
+        while let Some([chosen, open]) = self.choices.pop() {
+            if chosen + 1 < open {
+                self.choices.push([chosen + 1, open]);
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl Choices for Script {
+    fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
+        let open: Vec<_> = map.unexplored().collect();
+        open[self.choose(open.len())]
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+        self.choose(hypotheses.len())
+    }
+}
+
+/// The number of runs of Algorithm 1 that are tried.
+const RUNS: usize = 1000;
+
+/// Whether some run of an algorithm takes all doors of a trace whose last event is a door: run after run in a world
+/// that explains the percepts. `None` if there are too many runs.
+pub(super) fn takes_doors(algorithm: DirectionalAlgorithm, trace: &Trace) -> Option<bool> {
+    let before = trace.up_to(2 * trace.percepts().len() - 2);
+    let (graph, marker, pose) = witness(&before).ok()??;
+    // A run begins with the marker along the entry door.
+    if marker != Some(pose) {
+        return Some(false);
+    }
+    let mut script = Script::default();
+    for _ in 0..RUNS {
+        let mut world = DoorsOf { world: GraphWorld::new(&graph, pose), doors: trace.doors() };
+        let mut nobody = |_: &mut DoorsOf, _: &Journey, _: MappingEvent| {};
+        let end = match algorithm {
+            DirectionalAlgorithm::Algorithm1 => {
+                let mut exploration = Exploration::new(usize::MAX);
+                map_world(&mut world, &mut script, &mut exploration, &mut nobody)
+            }
+            DirectionalAlgorithm::Folding => {
+                MappingRun::new(algorithm, usize::MAX).map_world(&mut world, &mut nobody)
+            }
+        };
+        if matches!(end, Err(MappingError::World(DoorsEnd::All))) {
+            return Some(true);
+        }
+        if algorithm == DirectionalAlgorithm::Folding || !script.advance() {
+            return Some(false);
+        }
+    }
+    None
 }

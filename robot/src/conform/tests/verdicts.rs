@@ -8,14 +8,14 @@ use toposlam_model::{
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
     mapping::{Journey, MappingEvent, MappingRun},
-    marker::NoMarker,
+    marker::{Marker, NoMarker, Undirected},
     percept::Sighting,
     trace::{Trace, TraceEventKind},
-    world::World,
+    world::{GraphWorld, World},
 };
 
 use super::{
-    oracle::{Place, is_explained_by_small, witness},
+    oracle::{Place, is_explained_by_small, takes_doors, witness},
     *,
 };
 
@@ -28,34 +28,78 @@ struct Options {
     world: Option<bool>,
     class: Class,
     steps: u64,
+    max_edges: Option<usize>,
     driver: RunDriver,
     dart_bound: usize,
     /// Without numbers, shapes, directions and odometry, as logs of others.
     bare: bool,
-    /// Without a marker, and without a record of it.
-    unmarked: bool,
+    /// Whether the events are inferred from scenes.
+    inferred: bool,
+    marker: RunMarker,
+}
+
+/// The marker of a robot, and how its log records it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RunMarker {
+    /// A directional one.
+    Directional,
+    /// An undirected one, recorded with a door as if it pointed along it.
+    AlongDoor,
+    /// An undirected one, recorded without a door.
+    Undirected,
+    /// None, and no record of it.
+    NotRecorded,
+}
+
+impl RunMarker {
+    fn marker(self) -> &'static dyn Marker {
+        match self {
+            Self::Directional => &Directional,
+            Self::AlongDoor | Self::Undirected => &Undirected,
+            Self::NotRecorded => &NoMarker,
+        }
+    }
 }
 
 fn options() -> impl Strategy<Value = Options> {
     let world = prop::sample::select(vec![None, Some(true), Some(false)]);
+    let by = |algorithm, audits| RunDriver::Method(MappingMethod::By { algorithm, audits });
+    let recovery = RecoveryConfig {
+        noise: Some(log_noise()),
+        retries_blocked: true,
+        ..RecoveryConfig::default()
+    };
     let drivers = prop::sample::select(vec![
-        RunDriver::from(DirectionalAlgorithm::Algorithm1),
-        RunDriver::from(DirectionalAlgorithm::Folding),
+        by(DirectionalAlgorithm::Algorithm1, 0),
+        by(DirectionalAlgorithm::Algorithm1, 1),
+        by(DirectionalAlgorithm::Folding, 0),
+        by(DirectionalAlgorithm::Folding, 2),
+        RunDriver::Method(MappingMethod::Recovering(recovery)),
         RunDriver::Anyone,
     ]);
-    let limits = (prop::sample::select(vec![0, 30, 2_000]), 3_usize..40);
+    let max_edges = prop::option::weighted(0.3, 1_usize..20);
+    let limits = (prop::sample::select(vec![0, 30, 2_000]), max_edges, 3_usize..40);
     let class = prop::sample::select(Class::ALL.to_vec());
-    (0_u64..1000, 2_usize..9, world, class, limits, drivers, any::<[bool; 2]>()).prop_map(
-        |(seed, junctions, world, class, (steps, dart_bound), driver, [bare, unmarked])| Options {
+    let markers = prop::sample::select(vec![
+        RunMarker::Directional,
+        RunMarker::AlongDoor,
+        RunMarker::Undirected,
+        RunMarker::NotRecorded,
+    ]);
+    let recorded = (any::<[bool; 2]>(), markers);
+    (0_u64..1000, 2_usize..9, world, class, limits, drivers, recorded).prop_map(
+        |(seed, junctions, world, class, limits, driver, ([bare, inferred], marker))| Options {
             seed,
             junctions,
             world,
             class,
-            steps,
-            driver: if unmarked { RunDriver::Anyone } else { driver },
-            dart_bound,
+            steps: limits.0,
+            max_edges: limits.1,
+            driver: if marker == RunMarker::Directional { driver } else { RunDriver::Anyone },
+            dart_bound: limits.2,
             bare,
-            unmarked,
+            inferred,
+            marker,
         },
     )
 }
@@ -63,18 +107,30 @@ fn options() -> impl Strategy<Value = Options> {
 impl Options {
     /// A good run of the algorithm that it is judged with.
     fn log(&self, plan: &Arc<FloorPlan>, facing: Dart) -> Log {
-        let algorithm = self.driver.algorithm().unwrap_or_default();
-        log_of(algorithm, plan, facing, self.seed)
+        let method = match self.driver {
+            RunDriver::Method(method) => method,
+            RunDriver::Anyone => MappingMethod::default(),
+        };
+        log_of(method, plan, facing, self.seed)
     }
 
     fn question<'p>(&self, plan: &'p FloorPlan, facing: Dart) -> ConformConfig<'p> {
-        let known = self.world.map(|known| question(plan, known.then_some(facing)).world.unwrap());
+        let graph = plan.graph();
+        let marker = self.marker.marker();
+        let known = self.world.map(|known| KnownWorld {
+            graph,
+            states: if known {
+                vec![GraphWorld::with_marker(graph, marker, facing).state()]
+            } else {
+                anywhere(graph, &marker)
+            },
+        });
         ConformConfig {
             world: known,
-            marker: if self.unmarked { &NoMarker } else { &Directional },
+            marker: self.marker.marker(),
             driver: self.driver,
             budget: RunBudget::default(),
-            search: WorldSearch { class: self.class, max_edges: None, steps: self.steps },
+            search: WorldSearch { class: self.class, max_edges: self.max_edges, steps: self.steps },
             dart_bound: self.dart_bound,
         }
     }
@@ -82,11 +138,19 @@ impl Options {
     /// The events of a log, as far as they are recorded.
     fn recorded(&self, log: &Log) -> RunEvents {
         let mut events = log.recorded();
+        if self.inferred {
+            events.events = log.inferred();
+            events.measurement_noise.standing = NEAR;
+        }
         for event in &mut events.events {
             match &mut event.kind {
                 CheckedKind::Arrival { arrival, entry_off, .. } => {
-                    if self.unmarked {
-                        arrival.sighting = None;
+                    match (self.marker, &mut arrival.sighting) {
+                        (RunMarker::NotRecorded, sighting) => *sighting = None,
+                        (RunMarker::Undirected, Some(sighting @ Sighting::Pointing(_))) => {
+                            *sighting = Sighting::Lying(1);
+                        }
+                        _ => {}
                     }
                     if self.bare {
                         (arrival.number, arrival.form, arrival.entry) = (None, None, None);
@@ -105,7 +169,8 @@ impl Options {
     /// The places in which the walk may begin, if the world is known.
     fn places<'p>(&self, plan: &'p FloorPlan, facing: Dart) -> Vec<Place<'p>> {
         let graph = plan.graph();
-        let place = |pose| Place { graph, marker: Some(pose).filter(|_| !self.unmarked), pose };
+        let is_marked = self.marker != RunMarker::NotRecorded;
+        let place = |pose| Place { graph, marker: Some(pose).filter(|_| is_marked), pose };
         match self.world {
             None => Vec::new(),
             Some(true) => vec![place(facing)],
@@ -139,21 +204,29 @@ fn trace_of(events: &RunEvents, question: &ConformConfig) -> Trace {
 fn assert_impossible(trace: &Trace, event: usize) {
     if let Some(before) = event.checked_sub(1) {
         let before = trace.up_to(before);
-        let (graph, marker, pose) = witness(&before).expect("it is possible before the event");
-        assert!(Place { graph: &graph, marker, pose }.explains(&before));
+        // Where an undirected marker may lie in too many ways, this is not decided.
+        if let Ok(witness) = witness(&before) {
+            let (graph, marker, pose) = witness.expect("it is possible before the event");
+            assert!(Place { graph: &graph, marker, pose }.explains(&before));
+        }
     }
     let cut = trace.up_to(event);
-    assert!(witness(&cut).is_none(), "event {event} is possible");
+    assert!(!matches!(witness(&cut), Ok(Some(_))), "event {event} is possible");
     assert!(!is_explained_by_small(&cut, 3), "event {event} is possible");
 }
 
 /// Checks that each world that explains the trace up to an event has a loop or parallel edges, and that this
 /// is not so before.
 fn assert_not_simple(trace: &Trace, event: usize) {
-    let (graph, ..) = witness(&trace.up_to(event)).unwrap();
-    assert!(!graph.is_simple(), "event {event} is possible");
-    let (graph, ..) = witness(&trace.up_to(event - 1)).unwrap();
-    assert!(graph.is_simple());
+    let [before, cut] = [event - 1, event].map(|event| witness(&trace.up_to(event)));
+    if let Ok(cut) = cut {
+        let (graph, ..) = cut.unwrap();
+        assert!(!graph.is_simple(), "event {event} is possible");
+    }
+    if let Ok(before) = before {
+        let (graph, ..) = before.unwrap();
+        assert!(graph.is_simple());
+    }
 }
 
 proptest! {
@@ -192,6 +265,8 @@ proptest! {
     ) {
         let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
         let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
+        // Scenes are not mutated.
+        let options = Options { inferred: false, ..options };
         let good = options.log(&plan, facing);
         let mut mutated = good.clone();
         let shows = mutated.mutate(event.index(good.places().len()), mutation, by);
@@ -202,6 +277,7 @@ proptest! {
         let [before, mut events] = [&good, &mutated].map(|log| options.recorded(log));
         events.end.as_mut().unwrap().moves = good.moves();
         // As the command does.
+        events.complete_sightings(question.marker).unwrap();
         let checked = match options.driver {
             RunDriver::Anyone => events.without_excursions(),
             RunDriver::Method(_) => events.clone(),
@@ -234,9 +310,14 @@ proptest! {
                     }
                     // A percept that contradicts others does so in every world.
                     TraceEventKind::Percept(_) => {
-                        prop_assert!(witness(&judgement.trace.up_to(event)).is_none());
+                        prop_assert_eq!(witness(&judgement.trace.up_to(event)).unwrap(), None);
                     }
-                    TraceEventKind::Door(_) => {}
+                    TraceEventKind::Door(_) => {
+                        if let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) = options.driver {
+                            let cut = judgement.trace.up_to(event);
+                            prop_assert_ne!(takes_doors(algorithm, &cut), Some(true));
+                        }
+                    }
                 }
             }
             Some(_) => {}
@@ -253,7 +334,8 @@ proptest! {
                 let holds = match &why {
                     Unobservable::NotCompared(_) => same,
                     Unobservable::NotRecorded => {
-                        options.bare || (options.unmarked && mutation == Mutation::Marker)
+                        let is_unmarked = options.marker == RunMarker::NotRecorded;
+                        options.bare || (is_unmarked && mutation == Mutation::Marker)
                     }
                     Unobservable::AnotherWalk => {
                         options.places(&plan, facing).iter().any(|place| place.explains(&trace))
@@ -312,7 +394,7 @@ proptest! {
             prop_assert!(event >= at);
             assert_impossible(&trace, event);
         } else {
-            let (graph, marker, pose) = witness(&trace).expect("a world explains it");
+            let (graph, marker, pose) = witness(&trace).unwrap().expect("a world explains it");
             let place = Place { graph: &graph, marker, pose };
             prop_assert!(place.explains(&trace));
         }
@@ -389,11 +471,17 @@ fn the_marker_is_honoured_without_a_world() {
     let error = judged(&algorithm).unwrap_err();
     assert_eq!(error.to_string(), "Algorithm 1 needs the directional marker, not `none`");
     // If the marker is not recorded, the log does not show that it was not seen.
-    let unmapped =
-        Options { unmarked: true, ..bare() }.recorded(&log(&plan, starts_of(&plan)[0], 1));
+    let unmapped = Options { marker: RunMarker::NotRecorded, ..bare() }.recorded(&log(
+        &plan,
+        starts_of(&plan)[0],
+        1,
+    ));
     let judged =
         |question: &ConformConfig| judge(unmapped.clone(), question, &Quirks::default(), &());
-    assert_eq!(judged(&without_world()).unwrap_err(), JudgeError::Marker(MarkerNotRecorded));
+    assert_eq!(
+        judged(&without_world()).unwrap_err(),
+        JudgeError::Marker(SightingError::NotRecorded)
+    );
     assert_eq!(judged(&unmarked).unwrap().divergence, None);
 }
 
@@ -405,10 +493,12 @@ fn bare() -> Options {
         world: None,
         class: Class::Multigraph,
         steps: 100_000,
+        max_edges: None,
         driver: RunDriver::Anyone,
         dart_bound: DARTS,
         bare: true,
-        unmarked: false,
+        inferred: false,
+        marker: RunMarker::Directional,
     }
 }
 

@@ -107,6 +107,10 @@ pub(super) fn scan(
         let is_first = seen == 0;
         if format == Format::Events && is_first && state.columns.is_none() {
             state.columns = Columns::read(line.bytes);
+            if let Some(name) = state.columns.as_ref().and_then(Columns::repeated) {
+                let what = format!("the column {name} is there twice");
+                return Err(at_line(LogErrorKind::Line(what), number));
+            }
         }
         let found = content(format, state.columns.as_ref(), line.bytes);
         let found = match found {

@@ -143,8 +143,12 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Topi
 fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
     let found = definition.at(path);
     if part != MessagePart::Quaternion {
-        let number =
-            |kind| matches!(kind, FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_));
+        // A marker that points nowhere is seen or not.
+        let may_be_bool = part == MessagePart::Marker;
+        let number = |kind| match kind {
+            FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_) => true,
+            kind => kind == FieldType::Bool && may_be_bool,
+        };
         return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);
     }
     ["x", "y", "z", "w"].iter().all(|name| {

@@ -236,6 +236,7 @@ struct ExplorerLine<'a> {
     interrupted: bool,
     failure: Option<UnmappedLine>,
     limit: Option<UnmappedLine>,
+    verdict: &'static str,
     holds: bool,
 }
 
@@ -292,6 +293,7 @@ impl<'a> ExplorerLine<'a> {
             interrupted: tally.interrupted,
             failure: tally.failure.as_ref().map(unmapped),
             limit: tally.limit.as_ref().map(unmapped),
+            verdict: tally.verdict().0.verdict(),
             holds: tally.verdict().0 == Outcome::Holds,
         }
     }
