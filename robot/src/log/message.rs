@@ -37,7 +37,7 @@ macro_rules! definition {
 pub(super) use definition;
 
 /// A time, which nearly every message has.
-pub(super) const TIME: TypeDefinition = definition!("builtin_interfaces", "Time");
+pub(crate) const TIME: TypeDefinition = definition!("builtin_interfaces", "Time");
 
 /// The project's messages are made of numbers, words and a time.
 impl<M: ProjectMessage> Message for M {
