@@ -85,7 +85,7 @@ fn damaged_chunks_are_reported() {
         bytes[size] ^= 1;
     });
     assert!(
-        message.ends_with("a chunk that is not compressed, and not as long as it says"),
+        message.ends_with("an uncompressed chunk has another length than its header states"),
         "{message}"
     );
 }

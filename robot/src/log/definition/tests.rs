@@ -99,7 +99,7 @@ fn a_message_is_neither_deep_nor_wide_without_end() {
     };
     let one = |nth| format!("B{nth} x\n");
     assert!(ros1(&chain(MOST_DEPTH - 2, one)).is_ok());
-    assert!(ros1(&chain(MOST_DEPTH - 1, one)).unwrap_err().contains("more than 32 deep"));
+    assert!(ros1(&chain(MOST_DEPTH - 1, one)).unwrap_err().contains("more than 32 levels deep"));
     let two = |nth| format!("B{nth} x\nB{nth} y\n");
     assert!(ros1(&chain(20, two)).unwrap_err().contains("more than 65,536 fields"));
     // The parts are deep already when they are used.
