@@ -27,8 +27,8 @@ use crate::cli::{
 /// Measure whole runs: is every building mapped correctly, in the specified number of moves?
 ///
 /// A run is right if the map is isomorphic to the floor plan, the robot's pose in the map is true,
-/// every move and every percept is as specified, and the number of moves is that of `toposlam explore`
-/// in the plan's embedded graph.
+/// every move and every percept is as specified, and the number of moves is that of the algorithm in the
+/// plan's embedded graph.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -38,8 +38,8 @@ Examples:
                                                          takes 15 minutes
   toposlam evaluate runs --sensor laser --plans 40       by a laser scanner
   toposlam evaluate runs --faults --plans 100            one fault in each run
-  toposlam evaluate runs --faults --algorithm folding --recover
-  toposlam evaluate runs --algorithm folding             fewer moves
+  toposlam evaluate runs --faults --recover
+  toposlam evaluate runs --algorithm algorithm1          more moves
 
 With --faults, a run may also be given up if the robot reports a contradiction. \
 A wrong map is not a violation if the robot was carried to a place that it cannot \
