@@ -36,6 +36,7 @@ fn a_robot_that_sees_only_its_images_maps_shape_6() {
         "So v1.2 and v4.1 are the two ends of one edge.",
         "The map is right, after 7 moves, all as specified.",
         "  moves             7 (7 in the plan's embedded graph)",
+        "  certificate       7 moves; the run took 1.00 times as many\n",
         "  edges             6",
         " s off-line, ",
     ] {
@@ -68,6 +69,8 @@ fn the_result_of_a_run_is_one_object_and_always_the_same() {
         assert_eq!(object["schema"], 1);
         assert_eq!((&object["moves"], &object["explore_moves"]), (&moves.into(), &moves.into()));
         assert_eq!(object["edges"], edges);
+        assert_eq!(object["algorithm"], "folding");
+        assert_eq!(object["certificate"], serde_json::json!({ "moves": moves, "ratio": 1.0 }));
         for holds in ["isomorphic", "pose_true", "conforms"] {
             assert_eq!(object[holds], true, "{object}");
         }

@@ -161,6 +161,14 @@ impl EvaluateRunsArguments {
         let frames = self.robots.frames();
         let hours = tenths(hours);
         writeln!(out, "  {moves} moves, {count} {frames}, {hours} hours of simulated time")?;
+        if let Some(ratio) = CertificateTotal::of(judged).ratio()
+            && self.faults.is_none()
+        {
+            writeln!(
+                out,
+                "  the right runs took {ratio:.2} times the moves of their certificates"
+            )?;
+        }
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -193,6 +201,7 @@ impl EvaluateRunsArguments {
             let line = json!({
                 "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
                 "moves": run.moves[0], "explore_moves": run.moves[1],
+                "certificate_moves": run.certificate_moves,
                 "right": run.ending == RunOutcome::Right,
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
                 "cut_off": run.way_to_marker == WayToMarker::None,
@@ -209,13 +218,42 @@ impl EvaluateRunsArguments {
         for (what, seen) in [("right", right), ("gave up", gave_up), ("wrong", wrong)] {
             print_line(out, "rate", &share_json(what, seen, judged.len()))?;
         }
+        let certificates = CertificateTotal::of(judged);
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
+            "moves_total": certificates.moves, "certificate_total": certificates.certificate_moves,
+            "ratio": certificates.ratio(),
             "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
+    }
+}
+
+/// The moves of the right runs that left no hallway out, audits apart, and those of their certificates.
+#[derive(Clone, Copy, Default)]
+struct CertificateTotal {
+    moves: u64,
+    certificate_moves: u64,
+}
+
+impl CertificateTotal {
+    fn of(judged: &[JudgedRun]) -> Self {
+        let whole =
+            judged.iter().filter(|run| run.ending == RunOutcome::Right && run.blocked().is_empty());
+        whole.fold(Self::default(), |sum, run| {
+            let audits = run.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
+            Self {
+                moves: sum.moves + run.moves[0].saturating_sub(audits),
+                certificate_moves: sum.certificate_moves + run.certificate_moves,
+            }
+        })
+    }
+
+    /// `None` without such a run.
+    fn ratio(self) -> Option<f64> {
+        (self.certificate_moves > 0).then(|| self.moves as f64 / self.certificate_moves as f64)
     }
 }
 
