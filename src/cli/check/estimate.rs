@@ -215,9 +215,9 @@ impl EstimateOptions {
             threads: rayon::current_num_threads(),
         };
         if json {
-            print_line(out, "estimate", &line)?
+            print_line(out, "estimate", &line)?;
         } else {
-            line.print(out)?
+            line.print(out)?;
         }
         Ok(if is_known { Outcome::Holds } else { Outcome::Incomplete })
     }
