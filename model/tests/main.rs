@@ -21,6 +21,7 @@ mod markers;
 mod movable;
 mod optimum;
 mod perception;
+mod random_buildings;
 mod scripted_world;
 mod smallest_failure;
 mod verdicts;

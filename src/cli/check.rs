@@ -76,7 +76,7 @@ Ctrl-C stops the check and prints the results so far.",
         (1, "a map is wrong"),
         (2, "bad usage or input"),
         (3, "not everything was checked: a limit was reached, there is nothing to check, Ctrl-C, or \
-             the connection to another process is lost"),
+             the connection to another process is lost; no probe of an estimate found a start"),
     ],
 ))]
 pub(super) struct CheckArguments {
@@ -374,15 +374,20 @@ impl CheckArguments {
         algorithm: &MappingAlgorithm,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
+        let mut outcome = Outcome::Holds;
         for (&edges, work) in work {
             let Work::Lazy(sweep) = work else {
                 return Err(needs_default_choices("--estimate"));
             };
             let progress = Progress::new(&counted(edges, "edge"), "starts")?;
-            self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
+            let printed =
+                self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
             progress.finish();
+            if printed == Outcome::Incomplete {
+                outcome = Outcome::Incomplete;
+            }
         }
-        Ok(Outcome::Holds)
+        Ok(outcome)
     }
 
     fn class(&self) -> Class {

@@ -28,10 +28,13 @@ impl AuditOption {
     }
 }
 
+/// The algorithm of a robot for which none is chosen: of the two, it makes the same maps in fewer moves.
+const DEFAULT_ALGORITHM: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+
 /// How a robot maps.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(super) struct MethodOptions {
-    /// The algorithm that makes the map: algorithm1 or folding [default: algorithm1; with --recover: folding]
+    /// The algorithm that makes the map: algorithm1 or folding [default: folding]
     #[arg(long, hide_possible_values = true)]
     algorithm: Option<AlgorithmOption>,
     #[command(flatten)]
@@ -61,18 +64,17 @@ impl MethodOptions {
                 }))
             }
             (false, algorithm) => Ok(MappingMethod::By {
-                algorithm: algorithm.unwrap_or_default(),
+                algorithm: algorithm.unwrap_or(DEFAULT_ALGORITHM),
                 audits: self.audit.audits().unwrap_or(0),
             }),
         }
     }
 }
 
-/// The options that give a method again.
+/// The options that give a method again. They name the algorithm, because earlier versions have another default.
 pub(super) fn words_of(method: MappingMethod) -> Vec<String> {
     let mut words = Vec::new();
-    let is_default = method.algorithm() == DirectionalAlgorithm::default();
-    if !is_default && !method.recovers() {
+    if !method.recovers() {
         words.extend(["--algorithm".to_owned(), method.algorithm().name().to_owned()]);
     }
     let usual = u32::from(method.recovers());

@@ -8,6 +8,7 @@ macro_rules! remark {
 mod appearance;
 mod budget_options;
 mod calibrate;
+mod certificate_cost;
 mod check;
 mod children;
 mod ci_report;

@@ -15,6 +15,7 @@ use toposlam_robot::{
 
 use super::{
     CliError, Outcome,
+    certificate_cost::CertificateCost,
     exit_codes::help_end,
     json::{TruncatedLine, print_line},
     mapping_marker::AlgorithmOption,
@@ -66,6 +67,7 @@ struct Line {
     log: String,
     pictures: u64,
     moves: u64,
+    certificate: Option<CertificateCost>,
     vertices: usize,
     edges: usize,
     complete: bool,
@@ -142,6 +144,7 @@ impl ReplayArguments {
             log: self.log.display().to_string(),
             pictures: replay.comparison.frames,
             moves: replay.mapping.moves(),
+            certificate: certificate(replay),
             vertices: map.vertex_count(),
             edges: edges(replay),
             complete: map.complete().is_some(),
@@ -178,6 +181,9 @@ impl ReplayArguments {
         writeln!(out, "  moves       {}", grouped(replay.mapping.moves().into()))?;
         let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
         writeln!(out, "  map         {vertices}, {edges}")?;
+        if let Some(certificate) = certificate(replay) {
+            certificate.print("  certificate ", out)?;
+        }
         if let Some(error) = &replay.error {
             print_hanging(out, "  ended early ", &error.to_string())?;
             if matches!(error, MappingError::Bound { .. }) {
@@ -214,6 +220,12 @@ impl ReplayArguments {
         writeln!(out, "  computed    {seconds:.2} s, {} times faster", grouped(ratio))?;
         Ok(())
     }
+}
+
+/// The certificate of the complete map.
+fn certificate(replay: &Replay) -> Option<CertificateCost> {
+    let graph = replay.mapping.map().complete().filter(|_| replay.error.is_none())?;
+    Some(CertificateCost::new(graph, FACING, Some(replay.mapping.moves())))
 }
 
 /// The number of edges whose both ends are known.

@@ -55,8 +55,8 @@ use run_capture::{KeptImages, RunCapture};
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
 /// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L.
-/// Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1 or
-/// the folding explorer makes the map. Each move, each percept and the map are checked against the floor
+/// Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and the folding
+/// explorer makes the map, or with --algorithm algorithm1 Algorithm 1, which needs more moves. Each move, each percept and the map are checked against the floor
 /// plan's embedded graph.
 ///
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
@@ -419,7 +419,7 @@ Examples:
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --seed 3 --json
-  toposlam simulate worlds/building-12.toml --by-scene --algorithm folding
+  toposlam simulate worlds/building-12.toml --by-scene --algorithm algorithm1
   toposlam simulate worlds/shape-6.toml --sensor laser --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-8.toml --by-scene --recover --fault carried@80

@@ -21,11 +21,13 @@ use super::{folder, objects, run, stderr, stdout, stdout_of};
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
 
-/// The log of a run without images.
+/// The log of a run without images. Algorithm 1 maps, unless the arguments choose how.
 pub(super) fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
     let log = folder.join("run.mcap");
     let simulate = ["simulate", world, "--by-scene", "--json", "--log", log.to_str().unwrap()];
-    run([&simulate[..], arguments].concat());
+    let chooses = arguments.iter().any(|word| ["--algorithm", "--recover"].contains(word));
+    let algorithm: &[&str] = if chooses { &[] } else { &["--algorithm", "algorithm1"] };
+    run([&simulate[..], algorithm, arguments].concat());
     log
 }
 

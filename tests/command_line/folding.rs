@@ -170,8 +170,14 @@ fn whole_runs_are_right_with_the_folding_explorer() {
     let lines = objects(&stdout_of([&words[..], &FOLDING].concat()));
     let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
     assert!(runs.len() > 10 && runs.iter().all(|run| run["right"] == true));
-    assert_eq!(lines.last().unwrap()["algorithm"], "folding");
-    let other = objects(&stdout_of(words));
+    let last = lines.last().unwrap();
+    assert_eq!(last["algorithm"], "folding");
+    let total = |name: &str| runs.iter().filter_map(|run| run[name].as_u64()).sum::<u64>();
+    assert_eq!(last["moves_total"], total("moves"));
+    assert_eq!(last["certificate_total"], total("certificate_moves"));
+    assert!(runs.iter().all(|run| run["moves"].as_u64() >= run["certificate_moves"].as_u64()));
+    assert_eq!(lines, objects(&stdout_of(words)), "it is the default");
+    let other = objects(&stdout_of([&words[..], &["--algorithm", "algorithm1"]].concat()));
     let moves =
         |lines: &[Value]| -> u64 { lines.iter().filter_map(|line| line["moves"].as_u64()).sum() };
     assert!(moves(&lines) < moves(&other));

@@ -103,7 +103,7 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
         assert_eq!(report["run"]["calibration"], "");
         assert_eq!(
             report["run"]["command"],
-            "toposlam simulate worlds/shape-6.toml --seed 3 --by-scene"
+            "toposlam simulate worlds/shape-6.toml --algorithm folding --seed 3 --by-scene"
         );
     }
     fs::remove_dir_all(folder).unwrap();

@@ -365,3 +365,21 @@ fn an_estimate_is_near_the_truth_and_follows_its_seed() {
     refused(&["check", "--estimate", "--shard", "1/2"]);
     refused(&["check", "--estimate", "--choices", "all"]);
 }
+
+/// In a class with few worlds most probes end where none is left.
+#[test]
+fn an_estimate_without_a_start_knows_nothing() {
+    let arguments = ["check", "--estimate", "--class", "simple", "--edges", "14", "--probes", "2"];
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert_eq!(text.matches("not known").count(), 4, "{text}");
+    assert!(
+        text.contains("  none of 2 probes found a start, seed 1; use more --probes\n"),
+        "{text}"
+    );
+    let line = objects(&stdout(&run([&arguments[..], &["--json"]].concat()))).remove(0);
+    for key in ["starts", "moves_total", "moves_made", "seconds"] {
+        assert!(line[key].is_null(), "{line}");
+    }
+}

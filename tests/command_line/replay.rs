@@ -20,6 +20,7 @@ fn a_log_gives_the_same_map_again_in_less_time() {
     let report = objects(&stdout_of(arguments)).remove(0);
     assert_eq!((&report["map"], &report["difference"]), (&true.into(), &Value::Null));
     assert_eq!(report["moves"], simulated["moves"]);
+    assert_eq!(report["certificate"], simulated["certificate"]);
     for what in ["scenes", "commands", "percepts", "doors"] {
         assert_eq!(report[what][0], report[what][1], "{what}");
         assert!(report[what][1].as_u64().unwrap() > 0, "{what}");

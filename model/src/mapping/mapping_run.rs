@@ -11,7 +11,7 @@ use crate::{embedded_graph::Dart, world::World};
 /// An algorithm that maps with a directional marker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirectionalAlgorithm {
-    /// The paper's Algorithm 1, with the default choices.
+    /// The paper's Algorithm 1, with the default choices. It is that of a log that names none.
     #[default]
     Algorithm1,
     /// The folding explorer.

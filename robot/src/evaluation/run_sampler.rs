@@ -8,6 +8,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::{FloorPlan, JunctionKind},
+    folding::certificate_length,
     mapping::{DEFAULT_DART_BOUND, MappedWorld, MappingError, MappingMethod},
 };
 
@@ -63,6 +64,8 @@ pub struct JudgedRun {
     pub way_to_marker: WayToMarker,
     /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
+    /// The moves of the certificate of the plan.
+    pub certificate_moves: u64,
     /// What the map took, if the robot has one.
     pub mapped: Option<MappedWorld>,
     /// Simulated time, in seconds.
@@ -180,11 +183,13 @@ fn judged(
     let ending = run.outcome();
     let stopped =
         matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })));
+    let certificate_moves = certificate_length(plan.graph(), marker) as u64;
     (!stopped).then_some(JudgedRun {
         case,
         ending,
         way_to_marker: run.way_to_marker,
         moves: [run.moves, run.explore_moves],
+        certificate_moves,
         mapped: run.mapped,
         seconds: run.seconds,
         frames: run.frames,

@@ -3,7 +3,11 @@
 //! D. E. Knuth, "Estimating the efficiency of backtrack programs" (1975): a probe goes down the tree and draws one
 //! of the `n` branches at each node. A count below, times the product of the `n`, has the count of the whole
 //! tree as its expected value. Here a probe draws until [`COMPLETE`] edges are left, and the subtree below is
-//! searched completely. That makes the spread smaller, and its time can be measured.
+//! searched completely, which makes the spread smaller.
+//!
+//! The time of a probe is no sample of the time of the check: the way down to its subtree is walked once for each
+//! probe, and once for many subtrees in the check. So the time is that of the moves that the check makes, and a
+//! smaller check measures how long a move takes.
 
 use std::{io::Write, time::Instant};
 
@@ -11,18 +15,21 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::Serialize;
 use toposlam_model::{
-    check::{LazySweep, MappingAlgorithm},
-    enumerate::Watch,
+    check::{LazySweep, MappingAlgorithm, Shard},
+    enumerate::{Class, Watch},
 };
 
 use crate::cli::{
-    CliError,
+    CliError, Outcome,
     json::print_line,
     text::{counted, duration_text, grouped, print_paragraph},
 };
 
 /// The edges that are left where a probe no longer draws.
 const COMPLETE: usize = 4;
+
+/// A smaller check that takes as long as this measures the time of a move, in seconds.
+const MEASURED: f64 = 0.1;
 
 /// 95 % of a normal distribution are within this many standard deviations of its mean.
 const STANDARD_DEVIATIONS: f64 = 1.96;
@@ -61,11 +68,11 @@ impl Sample {
         self.squares += before * (value - self.mean);
     }
 
-    fn interval(self, unit: f64) -> Interval {
+    fn interval(self) -> Interval {
         let error = (self.squares / (self.count - 1.0) / self.count).sqrt();
-        let bound = |times: f64| ((self.mean + times * error) * unit).max(0.0);
+        let bound = |times: f64| (self.mean + times * error).max(0.0);
         Interval {
-            mean: self.mean * unit,
+            mean: self.mean,
             low: bound(-STANDARD_DEVIATIONS),
             high: bound(STANDARD_DEVIATIONS),
         }
@@ -84,6 +91,51 @@ impl Interval {
     fn text(self, number: impl Fn(f64) -> String) -> String {
         format!("{} ({} to {})", number(self.mean), number(self.low), number(self.high))
     }
+
+    /// The product of two quantities.
+    fn times(self, other: Self) -> Self {
+        Self {
+            mean: self.mean * other.mean,
+            low: self.low * other.low,
+            high: self.high * other.high,
+        }
+    }
+}
+
+/// Watches whether to stop, and counts no parts.
+struct OnlyStop<'w>(&'w dyn Watch);
+
+impl Watch for OnlyStop<'_> {
+    fn stop(&self) -> bool {
+        self.0.stop()
+    }
+}
+
+/// The seconds that one move of a check takes on all threads, by complete checks of smaller sizes: the mean is that
+/// of the largest one, and the interval is as wide to each side as its difference from the one before.
+fn seconds_a_move(
+    class: Class,
+    edges: usize,
+    algorithm: &MappingAlgorithm,
+    watch: &dyn Watch,
+) -> Option<Interval> {
+    let mut times = Vec::new();
+    for size in 1..=edges {
+        let sweep = LazySweep::new(class, size, Shard::WHOLE).ok()?;
+        let begun = Instant::now();
+        let check = algorithm.lazy_sweep(&sweep, &(), &OnlyStop(watch))?;
+        let elapsed = begun.elapsed().as_secs_f64();
+        if check.moves_made > 0 {
+            times.push(elapsed / check.moves_made as f64);
+        }
+        if elapsed >= MEASURED {
+            break;
+        }
+    }
+    let mean = *times.last()?;
+    let before = times.iter().rev().nth(1).copied().unwrap_or(mean);
+    let difference = (mean - before).abs();
+    Some(Interval { mean, low: (mean - difference).max(0.0), high: mean + difference })
 }
 
 /// What a check will take.
@@ -95,18 +147,19 @@ struct EstimateLine<'a> {
     algorithm: &'a str,
     probes: u32,
     seed: u64,
-    starts: Interval,
+    /// This and what follows is not known if no probe found a start.
+    starts: Option<Interval>,
     /// Of one run for each start.
-    moves_total: Interval,
+    moves_total: Option<Interval>,
     /// Those that the check makes.
-    moves_made: Interval,
+    moves_made: Option<Interval>,
     /// On `threads` threads.
-    seconds: Interval,
+    seconds: Option<Interval>,
     threads: usize,
 }
 
 impl EstimateOptions {
-    /// Prints the estimate for one number of edges.
+    /// Prints the estimate for one number of edges. It is incomplete if no probe found a start.
     ///
     /// # Errors
     /// Returns an error if it was interrupted, or cannot be printed.
@@ -117,30 +170,37 @@ impl EstimateOptions {
         json: bool,
         watch: &dyn Watch,
         out: &mut dyn Write,
-    ) -> Result<(), CliError> {
+    ) -> Result<Outcome, CliError> {
         let (probes, seed) = (self.probes.unwrap_or(10_000), self.seed.unwrap_or(1));
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let [mut starts, mut total, mut made, mut seconds] = [Sample::default(); 4];
+        let [mut starts, mut total, mut made] = [Sample::default(); 3];
         watch.parts(probes as usize);
         for _ in 0..probes {
             // One for the start vertex, and one for each edge.
             let draws = 1 + edges.saturating_sub(COMPLETE);
             let numbers = (0..draws).map(|_| random.random()).collect();
-            let begun = Instant::now();
             let Some(probe) = algorithm.probe(sweep, numbers, watch) else {
                 return Err(super::needs_default_choices("--estimate"));
             };
-            let elapsed = begun.elapsed().as_secs_f64();
             if watch.stop() {
                 return Err(CliError::Interrupted);
             }
             starts.add(probe.weight * probe.tally.starts as f64);
             total.add(probe.weight * probe.tally.moves_total as f64);
             made.add(probe.weight * probe.tally.moves_made as f64);
-            seconds.add(probe.weight * elapsed);
             watch.part_done(probe.tally.starts);
         }
-        let threads = rayon::current_num_threads();
+        let is_known = starts.mean > 0.0;
+        let moves_made = made.interval();
+        let seconds = if is_known {
+            let a_move = seconds_a_move(sweep.class(), edges, algorithm, watch);
+            if watch.stop() {
+                return Err(CliError::Interrupted);
+            }
+            a_move.map(|a_move| moves_made.times(a_move))
+        } else {
+            None
+        };
         let line = EstimateLine {
             edges,
             class: sweep.class().name(),
@@ -148,30 +208,48 @@ impl EstimateOptions {
             algorithm: algorithm.name(),
             probes,
             seed,
-            starts: starts.interval(1.0),
-            moves_total: total.interval(1.0),
-            moves_made: made.interval(1.0),
-            seconds: seconds.interval(1.0 / threads as f64),
-            threads,
+            starts: is_known.then(|| starts.interval()),
+            moves_total: is_known.then(|| total.interval()),
+            moves_made: is_known.then_some(moves_made),
+            seconds,
+            threads: rayon::current_num_threads(),
         };
-        if json { print_line(out, "estimate", &line) } else { line.print(out) }
+        if json {
+            print_line(out, "estimate", &line)?;
+        } else {
+            line.print(out)?;
+        }
+        Ok(if is_known { Outcome::Holds } else { Outcome::Incomplete })
     }
 }
 
 impl EstimateLine<'_> {
     fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let whole = |number: f64| grouped(number.round() as u128);
+        fn whole(number: f64) -> String {
+            grouped(number.round() as u128)
+        }
+        let text = |interval: Option<Interval>, number: fn(f64) -> String| {
+            interval.map_or_else(|| "not known".to_owned(), |interval| interval.text(number))
+        };
         let Self { edges, class, algorithm, marker, probes, seed, threads, .. } = self;
         print_paragraph(
             out,
             &format!("{algorithm}, {marker} marker, class {class}, {}", counted(*edges, "edge")),
         )?;
-        writeln!(out, "  starts      {}", self.starts.text(whole))?;
-        writeln!(out, "  moves       {}", self.moves_total.text(whole))?;
-        writeln!(out, "  moves made  {}", self.moves_made.text(whole))?;
-        let threads = counted(*threads, "thread");
-        writeln!(out, "  time        {} on {threads}", self.seconds.text(duration_text))?;
-        writeln!(out, "  {} probes, seed {seed}; 95 % confidence", grouped((*probes).into()))?;
+        writeln!(out, "  starts      {}", text(self.starts, whole))?;
+        writeln!(out, "  moves       {}", text(self.moves_total, whole))?;
+        writeln!(out, "  moves made  {}", text(self.moves_made, whole))?;
+        let time = text(self.seconds, duration_text);
+        writeln!(out, "  time        {time} on {}", counted(*threads, "thread"))?;
+        let probes = grouped((*probes).into());
+        if self.starts.is_none() {
+            writeln!(
+                out,
+                "  none of {probes} probes found a start, seed {seed}; use more --probes"
+            )?;
+        } else {
+            writeln!(out, "  {probes} probes, seed {seed}; 95 % confidence")?;
+        }
         Ok(out.flush()?)
     }
 }
@@ -188,9 +266,20 @@ mod tests {
             sample.add(value);
         }
         let error = (32.0_f64 / 7.0 / 8.0).sqrt();
-        let Interval { mean, low, high } = sample.interval(10.0);
-        assert!((mean - 50.0).abs() < 1e-9);
-        assert!((low - 10.0 * (5.0 - 1.96 * error)).abs() < 1e-9);
-        assert!((high - 10.0 * (5.0 + 1.96 * error)).abs() < 1e-9);
+        let Interval { mean, low, high } = sample.interval();
+        assert!((mean - 5.0).abs() < 1e-9);
+        assert!((low - (5.0 - 1.96 * error)).abs() < 1e-9);
+        assert!((high - (5.0 + 1.96 * error)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_interval_of_a_product_is_between_the_least_and_the_greatest_product() {
+        let [one, other] = [(2.0, 1.0, 4.0), (10.0, 9.0, 12.0)].map(|(mean, low, high)| Interval {
+            mean,
+            low,
+            high,
+        });
+        let Interval { mean, low, high } = one.times(other);
+        assert_eq!([mean, low, high].map(f64::to_bits), [20.0, 9.0, 48.0].map(f64::to_bits));
     }
 }

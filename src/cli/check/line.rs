@@ -73,6 +73,9 @@ pub(in crate::cli) struct SizeLine {
     pub(in crate::cli) certificate_max: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(in crate::cli) below_certificate: Option<u64>,
+    /// The total of the moves divided by that of the certificates; `None` without a start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in crate::cli) ratio: Option<f64>,
     pub(in crate::cli) largest_ratio: f64,
     // With all choices: distinct states, runs, and the fewest and the most moves of a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -200,6 +203,8 @@ impl SizeLine {
             certificate_total: certificate(tally.certificate_total),
             certificate_max: certificate(tally.certificate_max),
             below_certificate: certificate(tally.below_certificate),
+            ratio: certificate(tally.certificate_total)
+                .and_then(|total| ratio(tally.moves_total, total)),
             largest_ratio: tally.largest_ratio(edges, subject.order),
             states: all.then_some(tally.states),
             runs: all.then_some(tally.runs),
@@ -288,6 +293,7 @@ impl SizeLine {
         add_some(&mut self.certificate_total, other.certificate_total, "certificate_total")?;
         self.certificate_max = self.certificate_max.max(other.certificate_max);
         add_some(&mut self.below_certificate, other.below_certificate, "below_certificate")?;
+        self.ratio = self.certificate_total.and_then(|total| ratio(self.moves_total, total));
         self.largest_ratio = self.largest_ratio.max(other.largest_ratio);
         add_some(&mut self.states, other.states, "states")?;
         self.runs = match (self.runs, other.runs) {
@@ -311,6 +317,11 @@ impl SizeLine {
         self.holds = self.verdict().0 == Outcome::Holds;
         Ok(())
     }
+}
+
+/// The ratio of moves to the moves of certificates.
+fn ratio(moves: u64, certificates: u64) -> Option<f64> {
+    (certificates > 0).then(|| moves as f64 / certificates as f64)
 }
 
 /// The number of starts that reached each limit on the search for all runs.

@@ -125,16 +125,15 @@ impl<'o> CheckReport<'o> {
         let AlgorithmInfo { algorithm, marker, certificates, order } = self.subject;
         let head = format!("{algorithm}, {marker} marker, {}", line.worlds_in_words());
         print_paragraph(self.out, &head)?;
+        let cost = if certificates {
+            "  certificate  ratio".to_owned()
+        } else {
+            format!("  {:>11}", format!("max/({order})"))
+        };
         writeln!(
             self.out,
-            "\n{:>5} {:>10}  {:>12}  {:>6}  {:>14}{}  {:>11}",
-            "edges",
-            "worlds",
-            "starts",
-            "failed",
-            "mean/max moves",
-            if certificates { "  certificate" } else { "" },
-            format!("max/({order})"),
+            "\n{:>5} {:>10}  {:>12}  {:>6}  {:>14}{cost}",
+            "edges", "worlds", "starts", "failed", "mean/max moves",
         )?;
         Ok(())
     }
@@ -143,21 +142,23 @@ impl<'o> CheckReport<'o> {
         if !std::mem::replace(&mut self.header, true) {
             self.header(line)?;
         }
-        let certificate = match (line.certificate_total, line.certificate_max) {
+        let cost = match (line.certificate_total, line.certificate_max) {
             (Some(total), Some(most)) => {
-                format!("  {:>11}", mean_and_most(total, line.starts, most))
+                let certificate = mean_and_most(total, line.starts, most);
+                let ratio =
+                    line.ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}"));
+                format!("  {certificate:>11}  {ratio:>5}")
             }
-            _ => String::new(),
+            _ => format!("  {:>11.3}", line.largest_ratio),
         };
         writeln!(
             self.out,
-            "{:>5} {:>10}  {:>12}  {:>6}  {:>14}{certificate}  {:>11.3}",
+            "{:>5} {:>10}  {:>12}  {:>6}  {:>14}{cost}",
             line.edges,
             grouped(line.worlds.into()),
             grouped(line.starts.into()),
             grouped(line.failed.into()),
             mean_and_most(line.moves_total, line.starts, line.moves_max),
-            line.largest_ratio,
         )?;
         if let Some(runs) = line.runs {
             let some = runs == u128::MAX || line.gave_up.unwrap_or_default() > 0;

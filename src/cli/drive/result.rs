@@ -11,6 +11,7 @@ use toposlam_robot::{evaluation::FalsePercepts, explorer::ExplorerError};
 
 use super::{CliError, Outcome};
 use crate::cli::{
+    certificate_cost::CertificateCost,
     json::print_line,
     safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
     text::{counted, grouped, print_paragraph, sentence, tenths, vertices},
@@ -43,6 +44,7 @@ struct Line<'a> {
     ending: &'a str,
     error: Option<String>,
     moves: u64,
+    certificate: Option<CertificateCost>,
     #[serde(flatten)]
     safeguards: SafeguardFields,
     vertices: usize,
@@ -77,6 +79,13 @@ impl DriveResult<'_> {
         Some(NamedWorld::numbered(&name, &about, graph.clone(), Some(FACING)))
     }
 
+    /// The certificate of the complete map.
+    fn certificate(&self) -> Option<CertificateCost> {
+        let mapped = self.mapped.ok().filter(|mapped| mapped.blocked.is_empty())?;
+        let graph = self.mapping.map().complete()?;
+        Some(CertificateCost::new(graph, FACING, Some(mapped.moves - mapped.audit_moves)))
+    }
+
     /// The number of edges whose both ends are known.
     fn edges(&self) -> usize {
         let map = self.mapping.map();
@@ -99,6 +108,9 @@ impl DriveResult<'_> {
         let (vertices, edges) =
             (vertices(self.mapping.map().vertex_count()), counted(self.edges(), "edge"));
         writeln!(out, "  map               {vertices}, {edges}")?;
+        if let Some(certificate) = self.certificate() {
+            certificate.print("  certificate       ", out)?;
+        }
         if let Ok(mapped) = self.mapped {
             print_safeguards(out, self.method, mapped, self.mapping.map(), self.percepts)?;
         }
@@ -119,6 +131,7 @@ impl DriveResult<'_> {
             ending,
             error: self.mapped.err().map(ToString::to_string),
             moves: self.moves,
+            certificate: self.certificate(),
             safeguards: SafeguardFields::new(self.mapped.ok(), self.mapping.map(), self.percepts),
             vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),

@@ -38,9 +38,10 @@ use crate::cli::{
 #[command(after_help = help_end(
     "\
 Examples:
-  toposlam evaluate mistakes                      Algorithm 1 alone
+  toposlam evaluate mistakes                      the folding explorer alone
   toposlam evaluate mistakes --audit              and with an audit
-  toposlam evaluate mistakes --algorithm folding --recover --edges 1..=4
+  toposlam evaluate mistakes --recover --edges 1..=4
+  toposlam evaluate mistakes --algorithm algorithm1 --audit
   toposlam evaluate mistakes --out-dir mistakes   the smallest ones, as worlds
 
 A wrong pose is not a violation if the robot was carried to a place that looks the \

@@ -27,8 +27,8 @@ use crate::cli::{
 /// Measure whole runs: is every building mapped correctly, in the specified number of moves?
 ///
 /// A run is right if the map is isomorphic to the floor plan, the robot's pose in the map is true,
-/// every move and every percept is as specified, and the number of moves is that of `toposlam explore`
-/// in the plan's embedded graph.
+/// every move and every percept is as specified, and the number of moves is that of the algorithm in the
+/// plan's embedded graph.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -38,8 +38,8 @@ Examples:
                                                          takes 15 minutes
   toposlam evaluate runs --sensor laser --plans 40       by a laser scanner
   toposlam evaluate runs --faults --plans 100            one fault in each run
-  toposlam evaluate runs --faults --algorithm folding --recover
-  toposlam evaluate runs --algorithm folding             fewer moves
+  toposlam evaluate runs --faults --recover
+  toposlam evaluate runs --algorithm algorithm1          more moves
 
 With --faults, a run may also be given up if the robot reports a contradiction. \
 A wrong map is not a violation if the robot was carried to a place that it cannot \
@@ -163,6 +163,14 @@ impl EvaluateRunsArguments {
             let hours = tenths(hours);
             writeln!(out, "  {moves}, {count} {frames}, {hours} hours of simulated time")?;
         }
+        if let Some(ratio) = CertificateTotal::of(judged).ratio()
+            && self.faults.is_none()
+        {
+            writeln!(
+                out,
+                "  the right runs took {ratio:.2} times the moves of their certificates"
+            )?;
+        }
         let verdict = match (outcome, self.faults.is_some()) {
             (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
             (Outcome::Incomplete, _) => "incomplete, interrupted",
@@ -195,6 +203,7 @@ impl EvaluateRunsArguments {
             let line = json!({
                 "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
                 "moves": run.moves[0], "explore_moves": run.moves[1],
+                "certificate_moves": run.certificate_moves,
                 "right": run.ending == RunOutcome::Right,
                 "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
                 "cut_off": run.way_to_marker == WayToMarker::None,
@@ -211,13 +220,42 @@ impl EvaluateRunsArguments {
         for (what, seen) in [("right", right), ("gave up", gave_up), ("wrong", wrong)] {
             print_line(out, "rate", &share_json(what, seen, judged.len()))?;
         }
+        let certificates = CertificateTotal::of(judged);
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
+            "moves_total": certificates.moves, "certificate_total": certificates.certificate_moves,
+            "ratio": certificates.ratio(),
             "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
             "violations": violations, "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)
+    }
+}
+
+/// The moves of the right runs that left no hallway out, audits apart, and those of their certificates.
+#[derive(Clone, Copy, Default)]
+struct CertificateTotal {
+    moves: u64,
+    certificate_moves: u64,
+}
+
+impl CertificateTotal {
+    fn of(judged: &[JudgedRun]) -> Self {
+        let whole =
+            judged.iter().filter(|run| run.ending == RunOutcome::Right && run.blocked().is_empty());
+        whole.fold(Self::default(), |sum, run| {
+            let audits = run.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
+            Self {
+                moves: sum.moves + run.moves[0].saturating_sub(audits),
+                certificate_moves: sum.certificate_moves + run.certificate_moves,
+            }
+        })
+    }
+
+    /// `None` without such a run.
+    fn ratio(self) -> Option<f64> {
+        (self.certificate_moves > 0).then(|| self.moves as f64 / self.certificate_moves as f64)
     }
 }
 

@@ -113,11 +113,12 @@ mod tests {
                 "--noise",
                 "0.5"
             ]),
-            "toposlam simulate 'a b.toml' --seed 0 --noise 0.5 --by-scene"
+            "toposlam simulate 'a b.toml' --algorithm folding --seed 0 --noise 0.5 --by-scene"
         );
         assert_eq!(
             command_of(&["a.toml", "--scanner", "my scanner.toml", "--sensor", "laser"]),
-            "toposlam simulate a.toml --seed 0 --sensor laser --scanner 'my scanner.toml'"
+            "toposlam simulate a.toml --algorithm folding --seed 0 --sensor laser --scanner 'my \
+             scanner.toml'"
         );
         let line = "it's.toml --start a:b --algorithm folding --max-darts 20 --seed 7 --calibration c.toml \
                     --size 1280x960 --colours d.toml --look tiles --effects none --effect noise=0.25 \

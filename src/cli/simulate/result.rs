@@ -17,6 +17,7 @@ use toposlam_robot::{
 
 use super::{CliError, Outcome};
 use crate::cli::{
+    certificate_cost::CertificateCost,
     json::print_line,
     safeguards::{SafeguardFields, blocked_in_words, print_safeguards},
     text::{counted, grouped, print_paragraph, sentence, tenths, vertices},
@@ -57,6 +58,7 @@ struct Line {
     moves: u64,
     edges: usize,
     explore_moves: u64,
+    certificate: CertificateCost,
     #[serde(flatten)]
     safeguards: SafeguardFields,
     isomorphic: bool,
@@ -107,6 +109,15 @@ impl SimulationResult<'_> {
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
+    /// The certificate of the plan, and the moves of the run if its map is right and complete.
+    fn certificate(&self) -> CertificateCost {
+        let run = self.run;
+        let is_whole = run.outcome() == RunOutcome::Right && run.blocked().is_empty();
+        let mapped = run.mapped.as_ref().filter(|_| is_whole);
+        let moves = mapped.map(|mapped| mapped.moves - mapped.audit_moves);
+        CertificateCost::new(&self.world.graph, self.facing, moves)
+    }
+
     /// The result in words.
     pub(super) fn in_words(&self) -> String {
         let moves = counted(self.run.moves as usize, "move");
@@ -150,6 +161,7 @@ impl SimulationResult<'_> {
         let known = format!("{}, {known}", vertices(map.vertex_count()));
         let [moves, expected] = [run.moves, run.explore_moves].map(|moves| grouped(moves.into()));
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
+        self.certificate().print("  certificate       ", out)?;
         if let Some(mapped) = &run.mapped {
             print_safeguards(out, run.method, mapped, map, self.percepts)?;
         }
@@ -182,6 +194,7 @@ impl SimulationResult<'_> {
             moves: run.moves,
             edges: self.world.graph.edge_count(),
             explore_moves: run.explore_moves,
+            certificate: self.certificate(),
             safeguards: SafeguardFields::new(run.mapped.as_ref(), run.mapping.map(), self.percepts),
             isomorphic: run.isomorphic(),
             pose_true: run.pose_true(),

@@ -282,7 +282,7 @@ impl FoldingExploration {
         match step {
             FoldingStep::Explore(edge) => self.explore(edge, world, observer)?,
             FoldingStep::Test(test) if InjectedFlaw::NotTested.is_present() => {
-                self.believe(test)?
+                self.believe(test)?;
             }
             FoldingStep::Test(test) => self.test(test, world, observer)?,
         }

@@ -1,30 +1,23 @@
-//! Moves in random buildings: of the folding explorer, of Algorithm 1, and of the shortest certificate.
-//!
-//! `cargo run --release -p toposlam-model --example random_buildings`
-//!
-//! A building has its junctions on a square grid. Its hallways join neighbours on the grid, at most three
-//! at a junction: a random tree, and a quarter as many more as there are junctions. With seed 7 these are
-//! the buildings of the table in `worlds/README.md`. An argument is another number of hallways besides the
-//! tree, for 100 junctions.
-
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "an example may panic, and prints")]
+//! Random buildings, and the moves of both algorithms in them. Each map is judged by a bijection.
 
 use std::{
-    env,
+    borrow::Cow,
     time::{Duration, Instant},
 };
 
 use toposlam_model::{
+    check::{ExploredMap, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     folding::certificate_length,
-    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, MappingRun},
+    isomorphism::Candidate,
+    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, FACING, MappingRun},
     world::GraphWorld,
 };
 
 /// The number of buildings of each size.
-const BUILDINGS: usize = 10;
+pub(crate) const BUILDINGS: usize = 10;
 /// Hallways besides the tree, for 100 junctions.
-const MORE_HALLWAYS: usize = 25;
+pub(crate) const MORE_HALLWAYS: usize = 25;
 /// The most hallways at a junction.
 const DOORS: usize = 3;
 
@@ -100,39 +93,45 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
     EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
 }
 
-/// The moves of an algorithm, and how long it computes.
+/// The moves of an algorithm whose map is right, and how long it computes.
 fn moves(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph) -> (u64, Duration) {
     let begun = Instant::now();
+    let mut world = GraphWorld::new(graph, Dart(0));
     let mut run = MappingRun::new(algorithm, DEFAULT_DART_BOUND);
-    run.map_world(&mut GraphWorld::new(graph, Dart(0)), &mut ()).unwrap();
-    (run.moves(), begun.elapsed())
+    run.map_world(&mut world, &mut ()).unwrap();
+    let computed = begun.elapsed();
+    let map = Cow::Borrowed(run.map().complete().unwrap());
+    let map = ExploredMap { graph: map, facing: FACING, pose: run.robot() };
+    judge_map(&map, (graph, Dart(0)), world.pose(), &mut Candidate::default()).unwrap();
+    assert_eq!(run.moves(), world.moves());
+    (run.moves(), computed)
 }
 
-fn main() {
-    let more_hallways = env::args().nth(1).map_or(MORE_HALLWAYS, |more| more.parse().unwrap());
-    println!("junctions  edges  certificate  folding  ratio  Algorithm 1  ratio  computation");
-    for junctions in [25, 50, 100, 200] {
+/// The totals of some buildings of one size.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Totals {
+    pub(crate) edges: usize,
+    pub(crate) certificate: usize,
+    pub(crate) folding: u64,
+    pub(crate) algorithm1: u64,
+    /// How long the folding explorer computes.
+    pub(crate) computed: Duration,
+}
+
+impl Totals {
+    /// Those of [`BUILDINGS`] buildings of seed 7.
+    pub(crate) fn of(junctions: usize, more_hallways: usize) -> Self {
         let mut random = Random(7);
-        let (mut edges, mut certificate) = (0, 0);
-        let ([mut folding, mut algorithm1], mut time) = ([0; 2], Duration::ZERO);
+        let mut totals = Self::default();
         for _ in 0..BUILDINGS {
             let graph = building(junctions, more_hallways, &mut random);
-            edges += graph.edge_count();
-            certificate += certificate_length(&graph, Dart(0));
+            totals.edges += graph.edge_count();
+            totals.certificate += certificate_length(&graph, Dart(0));
             let (moved, computed) = moves(DirectionalAlgorithm::Folding, &graph);
-            (folding, time) = (folding + moved, time + computed);
-            algorithm1 += moves(DirectionalAlgorithm::Algorithm1, &graph).0;
+            totals.folding += moved;
+            totals.computed += computed;
+            totals.algorithm1 += moves(DirectionalAlgorithm::Algorithm1, &graph).0;
         }
-        let mean = |sum: f64| sum / BUILDINGS as f64;
-        println!(
-            "{junctions:>9} {:>6.1} {:>12.1} {:>8.1} {:>6.2} {:>12.1} {:>6.2} {:>9.1} ms",
-            mean(edges as f64),
-            mean(certificate as f64),
-            mean(folding as f64),
-            folding as f64 / certificate as f64,
-            mean(algorithm1 as f64),
-            algorithm1 as f64 / folding as f64,
-            mean(time.as_secs_f64() * 1e3),
-        );
+        totals
     }
 }
