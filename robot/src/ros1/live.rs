@@ -6,7 +6,7 @@ use super::{
     RobotTopics,
     base::LiveBase,
     messages::{
-        LiveImage, LiveMarker, LiveScan, Nanoseconds, read_marker, read_odometry, read_picture,
+        LiveImage, LiveMarker, LiveScan, Nanoseconds, read_image, read_marker, read_odometry,
         read_scan,
     },
     node::{Node, Subscription},

@@ -79,7 +79,7 @@ pub enum PlantriErrorKind {
     #[error("the body ends in the middle of an edge")]
     HalfEdgeNumber,
     /// An edge's number is too high.
-    #[error("vertex {vertex} lists edge {edge}; the world has {}, counted from 0", counted(*.edges as usize, "edge"))]
+    #[error("vertex {vertex} lists edge {edge}; the world has {}, counted from 0", counted(*.edges, "edge"))]
     UnknownEdge {
         /// The vertex with the list.
         vertex: usize,
