@@ -248,12 +248,12 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         },
         Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)?),
         Role::Percept => {
-            let marker = match carried.paths.get(&MessagePart::Marker).map(|path| value.at(path)) {
-                Some(Some(Value::Bool(is_seen))) => Some(encode::seen(is_seen)),
-                _ => {
-                    let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
-                    marker.map(encode::sighting_of).transpose()?
-                }
+            let marker = carried.paths.get(&MessagePart::Marker).and_then(|path| value.at(path));
+            let marker = if let Some(Value::Bool(is_seen)) = marker {
+                Some(encode::seen(is_seen))
+            } else {
+                let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
+                marker.map(encode::sighting_of).transpose()?
             };
             EventKind::Arrival(Arrival {
                 number: whole(carried, value, MessagePart::Move)?,
