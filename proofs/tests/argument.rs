@@ -112,7 +112,7 @@ fn the_pages_name_theorems_and_files_that_exist() {
         let text = fs::read_to_string(&page).unwrap();
         let is_atlas = page.ends_with("worlds/atlas/README.md");
         for block in blocks(&text) {
-            for file in quoted(&block).filter(|word| word.len() > 2 && word.ends_with(".v")) {
+            for file in quoted(&block).filter(|word| is_coq_file(word)) {
                 let file = file.rsplit('/').next().unwrap();
                 assert!(root.join("proofs/coq").join(file).is_file(), "{file}: {}", page.display());
             }
@@ -132,4 +132,9 @@ fn the_pages_name_theorems_and_files_that_exist() {
     }
     // The names are read.
     assert!(cited.contains("certificate_needed") && cited.contains("directed_edge_suffices"));
+}
+
+/// Whether a word is the name of a file of the development.
+fn is_coq_file(word: &str) -> bool {
+    Path::new(word).extension().is_some_and(|extension| extension == "v")
 }
