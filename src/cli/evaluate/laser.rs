@@ -11,7 +11,7 @@ use toposlam_robot::{
             corridor_world::BuildingKind,
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
             laser_report::{LaserGroup, LaserReport},
-            scanned_run::ScannedRun,
+            scanned_run::{ScannedOutcome, ScannedRun},
         },
         report::{Rate, TargetStatus},
         traversals::{JudgedTraversal, TraversalOutcome, TraversalSampler},
@@ -30,6 +30,7 @@ use crate::cli::{
     exit_codes::help_end,
     input,
     json::print_line,
+    method_options::{SafeguardOptions, safeguards_in_words},
     progress::Progress,
     text::{counted, grouped, print_indented, print_rows},
     use_threads,
@@ -76,6 +77,8 @@ pub(super) struct EvaluateLaserArguments {
     /// Number of whole runs, each in another building
     #[arg(long, default_value_t = 10, value_name = "N")]
     runs: u64,
+    #[command(flatten)]
+    safeguards: SafeguardOptions,
     /// Number of traversals by the robot that drives by its scans
     #[arg(long, default_value_t = 100, value_name = "N")]
     traversals: u64,
@@ -164,7 +167,7 @@ impl EvaluateLaserArguments {
         let walks = sampler.judged(numbers, &progress);
         progress.finish();
         let progress = Progress::new("runs", "runs")?;
-        let made = sampler.runs(0..runs, &progress);
+        let made = sampler.runs(0..runs, self.safeguards.folding(), &progress);
         progress.finish();
         let driven = self.driven(traversals, scanner.unwrap_or_default())?;
         let interrupted = (walks.len() as u64) < wanted
@@ -213,6 +216,11 @@ impl EvaluateLaserArguments {
         let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
         writeln!(out, "  buildings: {}", self.buildings.name())?;
+        if !runs.is_empty() {
+            let safeguards = safeguards_in_words(self.safeguards.folding());
+            let text = format!("whole runs by the folding explorer {safeguards}");
+            writeln!(out, "  {}", text.trim_end())?;
+        }
         let degrees = if (self.drift - 1.0).abs() < f64::EPSILON { "degree" } else { "degrees" };
         writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?;
         let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
@@ -237,10 +245,10 @@ impl EvaluateLaserArguments {
                 print_indented(out, "  ", 4, &text)?;
             }
         }
-        for run in runs.iter().filter(|run| run.verdict != LaserVerdict::Right) {
-            let ScannedRun { number, moves, way, verdict } = run;
+        for run in runs.iter().filter(|run| run.outcome != ScannedOutcome::Right) {
+            let ScannedRun { number, moves, way, outcome, .. } = run;
             let moves = counted(*moves as usize, "move");
-            let text = format!("run {number}, {moves}, {way:.0} m: {}", verdict.name());
+            let text = format!("run {number}, {moves}, {way:.0} m: {}", outcome_in_words(outcome));
             print_indented(out, "  ", 4, &text)?;
         }
         let is_right = |traversal: &&JudgedTraversal| traversal.outcome == TraversalOutcome::Right;
@@ -274,6 +282,7 @@ impl EvaluateLaserArguments {
         let line = json!({
             "walks": walks.len(), "runs": runs.len(), "traversals": traversals,
             "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
+            "audits": self.safeguards.folding().audits(), "recover": self.safeguards.folding().recovers(),
         });
         print_line(out, "source", &line)?;
         for walk in walks {
@@ -299,10 +308,17 @@ impl EvaluateLaserArguments {
                 print_line(out, "visit", &line)?;
             }
         }
-        for ScannedRun { number, moves, way, verdict } in runs {
-            let verdict = verdict.name();
-            let line =
-                json!({"run": number, "moves": moves, "way": rounded(*way), "verdict": verdict});
+        for ScannedRun { number, moves, way, recoveries, tally, outcome } in runs {
+            let reason = match outcome {
+                ScannedOutcome::Right => None,
+                ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => Some(reason),
+            };
+            let line = json!({
+                "run": number, "moves": moves, "way": rounded(*way), "recoveries": recoveries,
+                "percepts": tally.percepts, "wrong_percepts": tally.wrong,
+                "missing_percepts": tally.passed,
+                "verdict": outcome.name(), "reason": reason,
+            });
             print_line(out, "run", &line)?;
         }
         for rate in &report.rates {
@@ -353,6 +369,16 @@ fn in_words(visit: &JudgedLaserVisit) -> String {
         None => String::new(),
     };
     format!("{way:.0} m: {}, {expected}{found}", verdict.name())
+}
+
+/// How a run ended, in words.
+fn outcome_in_words(outcome: &ScannedOutcome) -> String {
+    match outcome {
+        ScannedOutcome::Right => outcome.name().to_owned(),
+        ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => {
+            format!("{}: {reason}", outcome.name())
+        }
+    }
 }
 
 /// To a tenth.
