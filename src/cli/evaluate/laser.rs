@@ -44,8 +44,13 @@ use crate::cli::{
 ///
 /// A view is one scan and those before it. A visit is derived from several views, as `conform --events laser`
 /// derives it. It is right if it has the right degree and the right door. A walk is right if all of its visits
-/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it looks
-/// around, and decides by the views up to there.
+/// are, and no other was derived.
+///
+/// In a whole run the folding explorer maps the building by what the robot derives, right or wrong. Where the robot
+/// may be at a junction it turns around, and drives into each arm of which it does not see enough: one that it cannot
+/// follow for 10 m is none. A pilot keeps it on the floor, and a detector of its own reports the marker. A run is right if
+/// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up. With
+/// --recover it goes on after a contradiction.
 ///
 /// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
 /// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor
@@ -58,6 +63,7 @@ Examples:
   toposlam evaluate laser --walks 400 --runs 0 --traversals 0 --json
   toposlam evaluate laser --drift 5                odometry that drifts
   toposlam evaluate laser --buildings long         other buildings
+  toposlam evaluate laser --walks 0 --runs 20 --recover
   toposlam evaluate laser --scanner scanner.toml   another scanner
   toposlam evaluate laser --walk 17                each visit of one walk
 

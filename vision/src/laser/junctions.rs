@@ -149,3 +149,30 @@ impl Way {
         corners
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corridor_around_a_block_has_two_arms_at_the_junction_where_it_begins_and_ends() {
+        let node = |point| WayNode { point, clearance: 1.0, end: None };
+        let line = |points: &[[f64; 2]]| points.iter().map(|&point| (point, 1.0)).collect();
+        let way = |nodes, points: &[[f64; 2]]| Way {
+            nodes,
+            line: line(points),
+            length: 40.0,
+            is_certain: true,
+        };
+        let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
+        let straight = [[0.0, 0.0], [-10.0, 0.0]];
+        let graph = WayGraph {
+            nodes: vec![node([0.0; 2]), node([-10.0, 0.0])],
+            ways: vec![way([0, 0], &corners), way([0, 1], &straight)],
+        };
+        let junctions = graph.junctions(&LaserParams::default());
+        let [LaserJunction { arms, .. }] = &junctions[..] else { panic!("{junctions:?}") };
+        let degrees: Vec<i32> = arms.iter().map(|arm| arm.to_degrees().round() as i32).collect();
+        assert_eq!(degrees, [180, 90, 0]);
+    }
+}

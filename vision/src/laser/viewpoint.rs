@@ -125,4 +125,30 @@ mod tests {
             assert_eq!(turn_to(&viewpoint, point, &grid), None);
         }
     }
+
+    #[test]
+    fn where_rays_do_not_come_back_the_scan_is_silent_and_one_lost_ray_is_not_enough() {
+        let geometry = ScanGeometry {
+            angle_min: -FRAC_PI_2,
+            angle_increment: PI / 180.0,
+            range_min: 0.0,
+            range_max: 80.0,
+        };
+        let (_, mut grid) = viewpoint(181);
+        let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
+        let is_silent = |lost: std::ops::Range<usize>, grid: &Grid, range: f64| {
+            let mut ranges = vec![1.0; 181];
+            ranges[lost].fill(f32::INFINITY);
+            let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
+            let ahead = [8.05, 5.05];
+            Viewpoint::new(&scan, &robot).is_silent_at(ahead, range, grid, &Clearances::new(grid))
+        };
+        assert!(is_silent(85..96, &grid, 10.0));
+        assert!(!is_silent(90..91, &grid, 10.0), "a failure of the scanner");
+        assert!(!is_silent(40..60, &grid, 10.0), "another direction");
+        assert!(!is_silent(85..96, &grid, 2.0), "too far away");
+        let wall = grid.index([6.55, 5.05]).unwrap();
+        grid.cells[wall] = Cell::Occupied;
+        assert!(!is_silent(85..96, &grid, 10.0), "behind a wall");
+    }
 }

@@ -135,3 +135,70 @@ impl PilotLeg {
 fn is_within(corridor: &Corridor, point: [f64; 2]) -> bool {
     ConvexPolygon::along(corridor.ends, corridor.width + 2.0 * BESIDE, BESIDE).holds(point)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use toposlam_vision::laser::params::ArmParams;
+
+    use super::{super::corridor_world::BuildingKind, *};
+
+    fn worlds() -> impl Iterator<Item = CorridorWorld> {
+        let kinds = [BuildingKind::Mixed, BuildingKind::Long, BuildingKind::Diagonal];
+        kinds
+            .into_iter()
+            .flat_map(|kind| (0..40).map(move |seed| CorridorWorld::random(kind, seed)))
+    }
+
+    #[test]
+    fn a_robot_that_leaves_by_an_arm_comes_to_its_other_end() {
+        for world in worlds() {
+            let pilot = CorridorPilot::new(&world);
+            for place in 0..world.places.len() {
+                for arm in world.arms(place) {
+                    for off in [-0.3, 0.0, 0.3] {
+                        let leg = pilot.leave(world.places[place], arm.direction + off);
+                        assert_eq!(leg.to, world.places[arm.to]);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_alcove_ends_before_it_is_as_long_as_an_arm() {
+        let mut alcoves = 0;
+        for world in worlds() {
+            let pilot = CorridorPilot::new(&world);
+            for alcove in &world.plan.corridors[world.links.len()..] {
+                // From the middle of the corridor.
+                let begin = alcove.point(-alcove.width / 2.0, 0.0);
+                let into = pilot.leave(begin, alcove.direction());
+                let end = pilot.after(&into).unwrap();
+                assert_eq!(end.to, alcove.ends[1]);
+                assert_eq!(pilot.after(&end), None);
+                assert!(distance(begin, end.to) < ArmParams::default().min_arm);
+                alcoves += 1;
+            }
+        }
+        assert!(alcoves > 50, "{alcoves}");
+    }
+
+    #[test]
+    fn where_there_is_no_way_the_robot_stops_before_the_wall() {
+        for world in worlds() {
+            let pilot = CorridorPilot::new(&world);
+            for (&[one, other], corridor) in world.links.iter().zip(&world.plan.corridors) {
+                let middle = corridor.point(corridor.length() / 4.0, 0.0);
+                for across in [PI / 2.0, -PI / 2.0] {
+                    let leg = pilot.leave(middle, corridor.direction() + across);
+                    if leg.next == LegEnd::Blocked {
+                        assert!(distance(middle, leg.to) < corridor.width / 2.0);
+                        assert_eq!(pilot.after(&leg), None, "{one} {other}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -148,3 +148,51 @@ impl WalkSampler {
         Some(ScannedRun { number, moves, way, recoveries, tally, outcome })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::mapping::{DirectionalAlgorithm, RecoveryConfig};
+    use toposlam_vision::laser::params::LaserParams;
+
+    use super::{super::corridor_world::BuildingKind, *};
+    use crate::simulator::ScannerParams;
+
+    fn sampler(buildings: BuildingKind, seed: u64) -> WalkSampler {
+        let (scanner, sensing) = (None, LaserParams::default());
+        WalkSampler { seed, buildings, places: 12, drift: 0.0, scanner, sensing }
+    }
+
+    fn folding() -> MappingMethod {
+        MappingMethod::from(DirectionalAlgorithm::Folding)
+    }
+
+    #[test]
+    fn with_plain_walls_every_percept_is_right_and_no_junction_is_passed() {
+        for (buildings, field_of_view) in
+            [(BuildingKind::Mixed, 360.0), (BuildingKind::Diagonal, 180.0)]
+        {
+            let scanner = Some(ScannerParams { field_of_view, ..ScannerParams::PLAIN });
+            let sampler = WalkSampler { scanner, ..sampler(buildings, 1) };
+            for run in sampler.runs(0..2, folding(), &()) {
+                assert_eq!(run.outcome, ScannedOutcome::Right, "{run:?}");
+                let PerceptTally { percepts, wrong, passed } = run.tally;
+                assert_eq!((percepts, wrong, passed), (run.moves + 1, 0, 0), "{run:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
+        let recovering = MappingMethod::Recovering(RecoveryConfig::default());
+        let sampler = sampler(BuildingKind::Mixed, RECOVERED.0);
+        let run = |method| sampler.runs(RECOVERED.1..RECOVERED.1 + 1, method, &()).remove(0);
+        let without = run(folding());
+        assert!(matches!(without.outcome, ScannedOutcome::GaveUp(_)), "{without:?}");
+        let with = run(recovering);
+        assert_eq!(with.outcome, ScannedOutcome::Right, "{with:?}");
+        assert!(with.recoveries > 0, "{with:?}");
+    }
+
+    /// The seed and the number of a run in which what the robot derives contradicts itself.
+    const RECOVERED: (u64, u64) = (7, 3);
+}
