@@ -159,7 +159,7 @@ mod tests {
 
     fn sampler(buildings: BuildingKind, seed: u64) -> WalkSampler {
         let (scanner, sensing) = (None, LaserParams::default());
-        let drift = 0.1_f64.to_radians();
+        let drift = 1_f64.to_radians() / 10.0;
         WalkSampler { seed, buildings, places: 12, drift, scanner, sensing }
     }
 
