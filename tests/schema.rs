@@ -119,7 +119,11 @@ const COMMANDS: [(&str, &[&str]); 20] = [
     ),
     (
         "evaluate-laser",
-        &["evaluate laser --walks 2 --runs 1 --traversals 2", "evaluate laser --walk 1 --drift 30"],
+        &[
+            "evaluate laser --walks 2 --runs 1 --traversals 2",
+            "evaluate laser --walk 1 --drift 30",
+            "evaluate laser --walks 0 --runs 1 --traversals 0 --recover",
+        ],
     ),
     (
         "evaluate-lengths",

@@ -31,6 +31,36 @@ impl AuditOption {
 /// The algorithm of a robot for which none is chosen: of the two, it makes the same maps in fewer moves.
 const DEFAULT_ALGORITHM: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
 
+/// What a robot does for a right map, besides its algorithm.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(super) struct SafeguardOptions {
+    #[command(flatten)]
+    audit: AuditOption,
+    /// Go on after a contradiction, and if the robot gets lost; the map is audited
+    #[arg(long)]
+    recover: bool,
+}
+
+impl SafeguardOptions {
+    /// The method of the folding explorer.
+    pub(super) fn folding(&self) -> MappingMethod {
+        if self.recover {
+            MappingMethod::Recovering(RecoveryConfig {
+                audits: self.audit.audits().unwrap_or(1),
+                noise: Some(log_noise()),
+                ..RecoveryConfig::default()
+            })
+        } else {
+            self.by(DirectionalAlgorithm::Folding)
+        }
+    }
+
+    /// The method of an algorithm that does not recover.
+    fn by(&self, algorithm: DirectionalAlgorithm) -> MappingMethod {
+        MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) }
+    }
+}
+
 /// How a robot maps.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(super) struct MethodOptions {
@@ -38,10 +68,7 @@ pub(super) struct MethodOptions {
     #[arg(long, hide_possible_values = true)]
     algorithm: Option<AlgorithmOption>,
     #[command(flatten)]
-    audit: AuditOption,
-    /// Go on after a contradiction, and if the robot gets lost; the map is audited
-    #[arg(long)]
-    recover: bool,
+    safeguards: SafeguardOptions,
 }
 
 impl MethodOptions {
@@ -51,22 +78,13 @@ impl MethodOptions {
     /// Returns an error if Algorithm 1 is to recover.
     pub(super) fn method(&self) -> Result<MappingMethod, CliError> {
         let algorithm = self.algorithm.map(AlgorithmOption::directional);
-        match (self.recover, algorithm) {
+        match (self.safeguards.recover, algorithm) {
             (true, Some(DirectionalAlgorithm::Algorithm1)) => {
                 let cause = "only the folding explorer recovers; use --algorithm folding";
                 Err(CliError::at("--recover", cause))
             }
-            (true, Some(DirectionalAlgorithm::Folding) | None) => {
-                Ok(MappingMethod::Recovering(RecoveryConfig {
-                    audits: self.audit.audits().unwrap_or(1),
-                    noise: Some(log_noise()),
-                    ..RecoveryConfig::default()
-                }))
-            }
-            (false, algorithm) => Ok(MappingMethod::By {
-                algorithm: algorithm.unwrap_or(DEFAULT_ALGORITHM),
-                audits: self.audit.audits().unwrap_or(0),
-            }),
+            (true, Some(DirectionalAlgorithm::Folding) | None) => Ok(self.safeguards.folding()),
+            (false, algorithm) => Ok(self.safeguards.by(algorithm.unwrap_or(DEFAULT_ALGORITHM))),
         }
     }
 }

@@ -129,6 +129,7 @@ fn walks_are_measured_alike_on_any_number_of_threads() {
     assert!(visits["cases"].as_u64().unwrap() > 3, "{visits}");
     assert_eq!(rate("walk", "wrong")["cases"], 3);
     assert_eq!(rate("run", "wrong")["cases"], 1);
+    assert!(rate("percept", "wrong")["cases"].as_u64().unwrap() > 1);
     assert_eq!(rate("control", "wrong")["cases"], 2);
     assert!(rate("hallway", "called junction")["cases"].as_u64().unwrap() > 30);
     // Three walks are too few to show anything but a miss.

@@ -69,6 +69,29 @@ pub struct LaserEvents {
     left: Option<([f64; 2], Option<f64>)>,
 }
 
+/// The place in which a robot is, as the views up to now show it. Directions are those of the frame of the local map,
+/// which is that of the odometry if scans are not matched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandingPlace {
+    /// Its centre, in metres.
+    pub centre: [f64; 2],
+    /// The distance from there to the nearest wall, in metres.
+    pub clearance: f64,
+    /// What it is.
+    pub shown: StandingPercept,
+}
+
+/// What the views of a place show.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StandingPercept {
+    /// It is in a corridor.
+    Corridor,
+    /// The views do not decide what it is.
+    Undecided,
+    /// A junction with doors in these directions, in radians.
+    Junction(Vec<f64>),
+}
+
 /// What is known of a junction that was left.
 #[derive(Clone, Copy, Debug)]
 struct PastVisit {
@@ -156,6 +179,18 @@ impl LaserEvents {
             self.decide(&visit);
         }
         Some(view)
+    }
+
+    /// The place in which the robot is now: a junction, or what looked like one in some view; `None` within a corridor.
+    #[must_use]
+    pub fn standing(&self) -> Option<StandingPlace> {
+        let visit = self.visit.as_ref().or(self.possible_visit.as_ref())?;
+        let shown = match self.shown(visit) {
+            Some((Shown::Doors(doors), _)) => StandingPercept::Junction(doors),
+            Some((Shown::Doubt(_), _)) => StandingPercept::Undecided,
+            Some((Shown::Nothing, _)) | None => StandingPercept::Corridor,
+        };
+        Some(StandingPlace { centre: visit.centre, clearance: visit.clearance, shown })
     }
 
     /// The events, after the last scan.

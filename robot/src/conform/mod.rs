@@ -41,7 +41,7 @@ pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::KnownWorld;
-pub use laser_events::LaserEvents;
+pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};
 pub use log_head::{LogHead, MarkerNotShown, RESUMED};
 pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,

@@ -52,6 +52,8 @@ pub enum ReportSubject {
     Walk,
     /// Whole runs.
     Run,
+    /// Percepts in whole runs.
+    Percept,
     /// Traversals from junction to junction.
     Traversal,
 }
@@ -437,6 +439,7 @@ impl ReportSubject {
             Self::Visit => "visit",
             Self::Walk => "walk",
             Self::Run => "run",
+            Self::Percept => "percept",
             Self::Traversal => "control",
         }
     }

@@ -11,7 +11,7 @@ use toposlam_robot::{
             corridor_world::BuildingKind,
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
             laser_report::{LaserGroup, LaserReport},
-            scanned_run::ScannedRun,
+            scanned_run::{ScannedOutcome, ScannedRun},
         },
         report::{Rate, TargetStatus},
         traversals::{JudgedTraversal, TraversalOutcome, TraversalSampler},
@@ -30,6 +30,7 @@ use crate::cli::{
     exit_codes::help_end,
     input,
     json::print_line,
+    method_options::{SafeguardOptions, safeguards_in_words},
     progress::Progress,
     text::{counted, grouped, print_indented, print_rows},
     use_threads,
@@ -43,8 +44,13 @@ use crate::cli::{
 ///
 /// A view is one scan and those before it. A visit is derived from several views, as `conform --events laser`
 /// derives it. It is right if it has the right degree and the right door. A walk is right if all of its visits
-/// are, and no other was derived. In a whole run the folding explorer maps the building: at each junction it looks
-/// around, and decides by the views up to there.
+/// are, and no other was derived.
+///
+/// In a whole run the folding explorer maps the building by what the robot derives, right or wrong. Where the robot
+/// may be at a junction it turns around, and drives into each arm of which it does not see enough: one that it cannot
+/// follow for 10 m is none. A pilot keeps it on the floor, and a detector of its own reports the marker. A run is right if
+/// the map and the pose are, and wrong if the robot does not notice that they are not; otherwise it gave up. With
+/// --recover it goes on after a contradiction.
 ///
 /// Control is measured in floor plans with right angles: the robot drives by its scans from junction to
 /// junction, in the traversals of `evaluate control --sensor laser` with the same seed. `evaluate runs --sensor
@@ -57,6 +63,7 @@ Examples:
   toposlam evaluate laser --walks 400 --runs 0 --traversals 0 --json
   toposlam evaluate laser --drift 5                odometry that drifts
   toposlam evaluate laser --buildings long         other buildings
+  toposlam evaluate laser --walks 0 --runs 20 --recover
   toposlam evaluate laser --scanner scanner.toml   another scanner
   toposlam evaluate laser --walk 17                each visit of one walk
 
@@ -76,6 +83,8 @@ pub(super) struct EvaluateLaserArguments {
     /// Number of whole runs, each in another building
     #[arg(long, default_value_t = 10, value_name = "N")]
     runs: u64,
+    #[command(flatten)]
+    safeguards: SafeguardOptions,
     /// Number of traversals by the robot that drives by its scans
     #[arg(long, default_value_t = 100, value_name = "N")]
     traversals: u64,
@@ -164,7 +173,7 @@ impl EvaluateLaserArguments {
         let walks = sampler.judged(numbers, &progress);
         progress.finish();
         let progress = Progress::new("runs", "runs")?;
-        let made = sampler.runs(0..runs, &progress);
+        let made = sampler.runs(0..runs, self.safeguards.folding(), &progress);
         progress.finish();
         let driven = self.driven(traversals, scanner.unwrap_or_default())?;
         let interrupted = (walks.len() as u64) < wanted
@@ -213,6 +222,11 @@ impl EvaluateLaserArguments {
         let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
         writeln!(out, "  buildings: {}", self.buildings.name())?;
+        if !runs.is_empty() {
+            let safeguards = safeguards_in_words(self.safeguards.folding());
+            let text = format!("whole runs by the folding explorer {safeguards}");
+            writeln!(out, "  {}", text.trim_end())?;
+        }
         let degrees = if (self.drift - 1.0).abs() < f64::EPSILON { "degree" } else { "degrees" };
         writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?;
         let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
@@ -237,10 +251,10 @@ impl EvaluateLaserArguments {
                 print_indented(out, "  ", 4, &text)?;
             }
         }
-        for run in runs.iter().filter(|run| run.verdict != LaserVerdict::Right) {
-            let ScannedRun { number, moves, way, verdict } = run;
+        for run in runs.iter().filter(|run| run.outcome != ScannedOutcome::Right) {
+            let ScannedRun { number, moves, way, outcome, .. } = run;
             let moves = counted(*moves as usize, "move");
-            let text = format!("run {number}, {moves}, {way:.0} m: {}", verdict.name());
+            let text = format!("run {number}, {moves}, {way:.0} m: {}", outcome_in_words(outcome));
             print_indented(out, "  ", 4, &text)?;
         }
         let is_right = |traversal: &&JudgedTraversal| traversal.outcome == TraversalOutcome::Right;
@@ -274,6 +288,7 @@ impl EvaluateLaserArguments {
         let line = json!({
             "walks": walks.len(), "runs": runs.len(), "traversals": traversals,
             "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
+            "audits": self.safeguards.folding().audits(), "recover": self.safeguards.folding().recovers(),
         });
         print_line(out, "source", &line)?;
         for walk in walks {
@@ -299,10 +314,17 @@ impl EvaluateLaserArguments {
                 print_line(out, "visit", &line)?;
             }
         }
-        for ScannedRun { number, moves, way, verdict } in runs {
-            let verdict = verdict.name();
-            let line =
-                json!({"run": number, "moves": moves, "way": rounded(*way), "verdict": verdict});
+        for ScannedRun { number, moves, way, recoveries, tally, outcome } in runs {
+            let reason = match outcome {
+                ScannedOutcome::Right => None,
+                ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => Some(reason),
+            };
+            let line = json!({
+                "run": number, "moves": moves, "way": rounded(*way), "recoveries": recoveries,
+                "percepts": tally.percepts, "wrong_percepts": tally.wrong,
+                "missing_percepts": tally.passed,
+                "verdict": outcome.name(), "reason": reason,
+            });
             print_line(out, "run", &line)?;
         }
         for rate in &report.rates {
@@ -353,6 +375,16 @@ fn in_words(visit: &JudgedLaserVisit) -> String {
         None => String::new(),
     };
     format!("{way:.0} m: {}, {expected}{found}", verdict.name())
+}
+
+/// How a run ended, in words.
+fn outcome_in_words(outcome: &ScannedOutcome) -> String {
+    match outcome {
+        ScannedOutcome::Right => outcome.name().to_owned(),
+        ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => {
+            format!("{}: {reason}", outcome.name())
+        }
+    }
 }
 
 /// To a tenth.

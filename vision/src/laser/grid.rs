@@ -1,6 +1,9 @@
 //! The local map around the robot: cells that are free, occupied or unknown.
 
-use super::{params::LocalMapParams, plane::floor};
+use super::{
+    params::LocalMapParams,
+    plane::{distance, floor},
+};
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +56,26 @@ impl Grid {
     pub fn point(&self, index: usize) -> [f64; 2] {
         let at = [index % self.columns, index / self.columns];
         [0, 1].map(|axis| self.origin[axis] + (at[axis] as f64 + 0.5) * self.cell)
+    }
+
+    /// The cells whose middles are within a distance of a point, in metres, in their order.
+    pub(super) fn cells_near(
+        &self,
+        point: [f64; 2],
+        within: f64,
+    ) -> impl Iterator<Item = usize> + '_ {
+        let reach = (within / self.cell).ceil() as i64;
+        let [column, row] = self.column_row(point);
+        let around = move |at: i64, count: usize| {
+            let last = count as i64 - 1;
+            (at - reach).clamp(0, last)..=(at + reach).clamp(0, last)
+        };
+        let rows = around(row, self.rows());
+        let cells = rows.flat_map(move |row| {
+            around(column, self.columns)
+                .map(move |column| row as usize * self.columns + column as usize)
+        });
+        cells.filter(move |&at| distance(self.point(at), point) <= within)
     }
 
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.

@@ -20,6 +20,8 @@ pub struct LaserJunction {
     pub clearance: f64,
     /// The direction of each arm in the frame of odometry, in radians, clockwise.
     pub arms: Vec<f64>,
+    /// The directions of those that are not certain to be arms.
+    pub uncertain: Vec<f64>,
 }
 
 impl WayGraph {
@@ -65,21 +67,24 @@ impl WayGraph {
             let clearances = members.iter().map(|&node| self.nodes[node].clearance);
             let clearance = clearances.fold(0.0, f64::max);
             let gate = clearance + params.direction;
-            let mut arms = Vec::new();
+            let (mut arms, mut uncertain) = (Vec::new(), Vec::new());
             for way in &self.ways {
                 let inner = group[way.nodes[0]] == group[way.nodes[1]]
                     && way.length < params.merge * clearance;
-                for node in way.nodes.into_iter().filter(|&node| group[node] == leader && !inner) {
-                    let way = way.clone().from_node(node);
-                    let beyond =
-                        way.line.iter().find(|(point, _)| distance(*point, centre) >= gate);
-                    if let Some(&(point, _)) = beyond.or(way.line.last()) {
+                // A way around a block may begin and end at one junction.
+                for (node, line) in way.nodes.into_iter().zip(way.lines()) {
+                    if group[node] != leader || inner {
+                        continue;
+                    }
+                    let beyond = line.iter().find(|(point, _)| distance(*point, centre) >= gate);
+                    if let Some(&(point, _)) = beyond.or(line.last()) {
                         arms.push(direction(centre, point));
+                        uncertain.extend((!way.is_certain).then(|| direction(centre, point)));
                     }
                 }
             }
             arms.sort_by(|one, other| other.total_cmp(one));
-            junctions.push(LaserJunction { centre, clearance, arms });
+            junctions.push(LaserJunction { centre, clearance, arms, uncertain });
         }
         junctions
     }
@@ -99,7 +104,12 @@ impl WayGraph {
             let gate = clearance + arm.direction;
             let beyond = way.line.iter().find(|(at, _)| distance(*at, point) >= gate);
             let &(towards, _) = beyond.or(way.line.last())?;
-            Some(LaserJunction { centre: point, clearance, arms: vec![direction(point, towards)] })
+            Some(LaserJunction {
+                centre: point,
+                clearance,
+                arms: vec![direction(point, towards)],
+                uncertain: Vec::new(),
+            })
         })
     }
 }
@@ -130,11 +140,39 @@ impl Way {
             };
             if sharpest.as_ref().is_none_or(|(most, _)| turn > *most) {
                 arms.sort_by(|one, other| other.total_cmp(one));
-                let corner = LaserJunction { centre, clearance, arms: arms.to_vec() };
+                let (arms, uncertain) = (arms.to_vec(), Vec::new());
+                let corner = LaserJunction { centre, clearance, arms, uncertain };
                 sharpest = Some((turn, corner));
             }
         }
         corners.extend(sharpest.map(|(_, corner)| corner));
         corners
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corridor_around_a_block_has_two_arms_at_the_junction_where_it_begins_and_ends() {
+        let node = |point| WayNode { point, clearance: 1.0, end: None };
+        let line = |points: &[[f64; 2]]| points.iter().map(|&point| (point, 1.0)).collect();
+        let way = |nodes, points: &[[f64; 2]]| Way {
+            nodes,
+            line: line(points),
+            length: 40.0,
+            is_certain: true,
+        };
+        let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
+        let straight = [[0.0, 0.0], [-10.0, 0.0]];
+        let graph = WayGraph {
+            nodes: vec![node([0.0; 2]), node([-10.0, 0.0])],
+            ways: vec![way([0, 0], &corners), way([0, 1], &straight)],
+        };
+        let junctions = graph.junctions(&LaserParams::default());
+        let [LaserJunction { arms, .. }] = &junctions[..] else { panic!("{junctions:?}") };
+        let degrees: Vec<i32> = arms.iter().map(|arm| arm.to_degrees().round() as i32).collect();
+        assert_eq!(degrees, [180, 90, 0]);
     }
 }

@@ -200,7 +200,7 @@ fn junctions(view: &LaserView) -> RgbImage {
             canvas.line(two[0].0, two[1].0, CYAN);
         }
     }
-    for LaserJunction { centre, clearance, arms } in &view.junctions {
+    for LaserJunction { centre, clearance, arms, .. } in &view.junctions {
         for &arm in arms {
             let frame = Motion { turn: arm, shift: *centre };
             let [near, far] = [*clearance, clearance + DOOR];

@@ -1,4 +1,5 @@
-//! Where a scan was taken, and in which directions: what a scanner that does not look all around cannot see.
+//! Where a scan was taken, and in which directions: what a scanner that does not look all around cannot see, and
+//! where no ray came back.
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
@@ -6,17 +7,22 @@ use super::{
     clearances::Clearances,
     grid::Grid,
     plane::{Motion, direction, distance},
-    scan::Scan,
+    scan::{Reading, Scan},
 };
 
 /// Where a scan was taken, and the sector that it covers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Viewpoint {
     /// The place of the scanner, in metres in the frame of the local map.
     point: [f64; 2],
     /// The direction of the sector's middle, and half of its angle, in radians.
     middle: f64,
     half: f64,
+    /// Whether a ray of the scan and a neighbour of it did not come back, counter-clockwise. One ray alone is a
+    /// failure of the scanner.
+    silent: Vec<bool>,
+    /// The angle from one ray to the next, in radians.
+    step: f64,
 }
 
 impl Viewpoint {
@@ -24,11 +30,36 @@ impl Viewpoint {
     pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
         let half = scan.field_of_view() / 2.0;
         let mount = scan.mount();
+        let lost: Vec<bool> =
+            scan.readings().map(|(_, reading)| !matches!(reading, Reading::Hit(_))).collect();
+        let is_lost = |index: usize| lost.get(index).copied().unwrap_or(false);
+        let is_silent =
+            |index: usize| lost[index] && (is_lost(index + 1) || index > 0 && lost[index - 1]);
         Self {
             point: Motion::from_robot(robot).point(mount.position),
             middle: robot.heading + mount.heading + scan.geometry().angle_min + half,
             half,
+            silent: (0..lost.len()).map(is_silent).collect(),
+            step: scan.geometry().angle_increment,
         }
+    }
+
+    /// Whether the scan looked at a point at most `range` metres away, nothing before it hides it from here, and no ray
+    /// came back from there.
+    pub(super) fn is_silent_at(
+        &self,
+        point: [f64; 2],
+        range: f64,
+        grid: &Grid,
+        clearances: &Clearances,
+    ) -> bool {
+        let off = distance(self.point, point);
+        let towards = direction(self.point, point);
+        let ray = ((wrapped(towards - self.middle) + self.half) / self.step).round();
+        let is_silent = ray >= 0.0 && self.silent.get(ray as usize) == Some(&true);
+        is_silent
+            && off <= range
+            && clearances.sight(grid, self.point, towards, off).0 >= off - grid.cell
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
@@ -93,5 +124,31 @@ mod tests {
         for point in [[4.0, 6.0], [4.0, 5.0], [4.0, 4.0]] {
             assert_eq!(turn_to(&viewpoint, point, &grid), None);
         }
+    }
+
+    #[test]
+    fn where_rays_do_not_come_back_the_scan_is_silent_and_one_lost_ray_is_not_enough() {
+        let geometry = ScanGeometry {
+            angle_min: -FRAC_PI_2,
+            angle_increment: PI / 180.0,
+            range_min: 0.0,
+            range_max: 80.0,
+        };
+        let (_, mut grid) = viewpoint(181);
+        let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
+        let is_silent = |lost: std::ops::Range<usize>, grid: &Grid, range: f64| {
+            let mut ranges = vec![1.0; 181];
+            ranges[lost].fill(f32::INFINITY);
+            let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
+            let ahead = [8.05, 5.05];
+            Viewpoint::new(&scan, &robot).is_silent_at(ahead, range, grid, &Clearances::new(grid))
+        };
+        assert!(is_silent(85..96, &grid, 10.0));
+        assert!(!is_silent(90..91, &grid, 10.0), "a failure of the scanner");
+        assert!(!is_silent(40..60, &grid, 10.0), "another direction");
+        assert!(!is_silent(85..96, &grid, 2.0), "too far away");
+        let wall = grid.index([6.55, 5.05]).unwrap();
+        grid.cells[wall] = Cell::Occupied;
+        assert!(!is_silent(85..96, &grid, 10.0), "behind a wall");
     }
 }

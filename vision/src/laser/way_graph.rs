@@ -7,7 +7,7 @@ use super::{
     arm_view::ArmView,
     clearances::Clearances,
     ends::{End, WayEnd},
-    grid::Grid,
+    grid::{Cell, Grid},
     params::ArmParams,
     plane::distance,
     skeleton::Skeleton,
@@ -35,6 +35,9 @@ pub struct Way {
     pub line: Vec<([f64; 2], f64)>,
     /// Its length, in metres.
     pub length: f64,
+    /// Whether it is certain that the way is an arm, if it leads to an end: the robot was there, or it is seen far
+    /// enough. Otherwise what is seen of it only suggests that it goes on.
+    pub is_certain: bool,
 }
 
 /// The graph.
@@ -58,8 +61,10 @@ pub(super) enum CountedArms {
 /// Whether a way from a meet point to an end is an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ArmStatus {
-    /// It is an arm.
-    Arm,
+    /// It is an arm: it is seen far enough, or the robot is there.
+    Certain,
+    /// It looks like an arm that goes on unseen.
+    Likely,
     /// It may be one: the scanner did not look into it.
     InDoubt,
     /// It is an alcove, or too little of it is seen.
@@ -79,6 +84,39 @@ pub(super) struct ArmJudge<'a> {
     pub viewpoints: &'a [Viewpoint],
     /// The limits.
     pub params: &'a ArmParams,
+}
+
+/// A ray that does not come back shows something up to this far from the scanner, in metres: farther away its rays
+/// are wider apart than cells.
+const SILENT_RANGE: f64 = 10.0;
+/// Rays that do not come back in this number of scans show a surface.
+const SILENT_LOOKS: usize = 2;
+
+impl ArmJudge<'_> {
+    /// Whether a long enough stretch of the border to the unknown near an end of a way was not looked at. Where rays were
+    /// sent and did not come back, there is a surface of glass, or a black one.
+    fn goes_on_unseen(&self, end: [f64; 2]) -> bool {
+        let Self { grid, clearances, params, .. } = *self;
+        let is_border = |&at: &usize| {
+            grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
+        };
+        let is_silent = |at: usize| {
+            let point = grid.point(at);
+            let looks = self
+                .viewpoints
+                .iter()
+                .filter(|viewpoint| viewpoint.is_silent_at(point, SILENT_RANGE, grid, clearances));
+            looks.take(SILENT_LOOKS).count() == SILENT_LOOKS
+        };
+        let is_unseen = |&at: &usize| {
+            let direct = grid.neighbours(at).into_iter().skip(1).step_by(2);
+            let mut unknown = direct.filter(|&next| grid.cells[next] == Cell::Unknown);
+            !unknown.any(is_silent)
+        };
+        let near = grid.cells_near(end, params.border_near);
+        let unseen = near.filter(is_border).filter(is_unseen).count();
+        unseen as f64 * grid.cell >= params.border
+    }
 }
 
 /// The length of a line of neighbouring cells, without its steps.
@@ -118,7 +156,7 @@ impl WayGraph {
                     && (start, first) <= (at, before)
                 {
                     let length = length(&line);
-                    ways.push(Way { nodes: [from, to], line, length });
+                    ways.push(Way { nodes: [from, to], line, length, is_certain: true });
                 }
             }
         }
@@ -162,11 +200,20 @@ impl WayGraph {
                     .or_insert_with(|| self.arm_status(way, [meet, leaf], judge));
                 any_in_doubt |= status == ArmStatus::InDoubt;
                 match counted {
-                    CountedArms::Seen => status != ArmStatus::Arm,
+                    CountedArms::Seen => {
+                        matches!(status, ArmStatus::InDoubt | ArmStatus::None)
+                    }
                     CountedArms::SeenOrInDoubt => status == ArmStatus::None,
                 }
             });
-            let Some(&shortest) = shortest else { return (self, any_in_doubt) };
+            let Some(&shortest) = shortest else {
+                for way in 0..self.ways.len() {
+                    let status = self.arm(way, &degrees).and_then(|arm| known.get(&arm));
+                    self.ways[way].is_certain =
+                        status.is_none_or(|&status| status == ArmStatus::Certain);
+                }
+                return (self, any_in_doubt);
+            };
             for node in self.ways.swap_remove(shortest).nodes {
                 degrees[node] -= 1;
                 if degrees[node] == 2 && self.join_at(node) {
@@ -191,7 +238,7 @@ impl WayGraph {
         let ArmJudge { robot, grid, clearances, viewpoints, params } = *judge;
         let way = &self.ways[way];
         let (meet_node, leaf, meet) = (meet, &self.nodes[leaf], &self.nodes[meet]);
-        let Some(end) = leaf.end else { return ArmStatus::Arm };
+        let Some(end) = leaf.end else { return ArmStatus::Certain };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
         let known = way.length + end.beyond;
@@ -201,14 +248,14 @@ impl WayGraph {
             WayEnd::Open => is_behind && known >= params.min_arm,
         };
         if has_robot || is_long {
-            return ArmStatus::Arm;
+            return ArmStatus::Certain;
         }
         let way = way.clone().from_node(meet_node);
         let map = (grid, clearances);
         let ArmView::Near { depth, walled } =
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight)
         else {
-            return ArmStatus::Arm;
+            return ArmStatus::Certain;
         };
         if end.end == WayEnd::Closed || !is_behind {
             return ArmStatus::None;
@@ -237,8 +284,8 @@ impl WayGraph {
             let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid, clearances);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
-        if is_arm {
-            ArmStatus::Arm
+        if is_arm && judge.goes_on_unseen(leaf.point) {
+            ArmStatus::Likely
         } else if width <= params.max_width
             && 2.0 * leaf.clearance >= params.unseen_width
             && end.gap >= params.unseen_gap * width
@@ -269,7 +316,7 @@ impl WayGraph {
 
 impl Default for Way {
     fn default() -> Self {
-        Self { nodes: [0; 2], line: Vec::new(), length: 0.0 }
+        Self { nodes: [0; 2], line: Vec::new(), length: 0.0, is_certain: true }
     }
 }
 
@@ -278,6 +325,12 @@ impl Way {
     #[must_use]
     pub fn from_node(self, node: usize) -> Self {
         if self.nodes[0] == node { self } else { self.reversed() }
+    }
+
+    /// Its middle line from its first node, and the same from its second.
+    pub(super) fn lines(&self) -> [Vec<([f64; 2], f64)>; 2] {
+        let back = self.line.iter().rev().copied().collect();
+        [self.line.clone(), back]
     }
 
     fn into_node(self, node: usize) -> Self {

@@ -7,7 +7,8 @@ use super::{
         traversals::{JudgedTraversal, TraversalOutcome},
     },
     judged_walk::{JudgedLaserVisit, JudgedWalk, JunctionVerdict, LaserVerdict},
-    scanned_run::ScannedRun,
+    laser_robot::PerceptTally,
+    scanned_run::{ScannedOutcome, ScannedRun},
 };
 
 /// The figures of an evaluation of sensing with a laser scanner.
@@ -117,17 +118,21 @@ fn rates(walks: &[JudgedWalk]) -> Vec<Rate> {
     ]
 }
 
-fn of_runs(runs: &[ScannedRun]) -> [Rate; 2] {
-    let rate = |what, is: fn(LaserVerdict) -> bool| Rate {
-        subject: ReportSubject::Run,
-        what,
-        seen: runs.iter().filter(|run| is(run.verdict)).count(),
-        cases: runs.len(),
-        limit: None,
-    };
+fn of_runs(runs: &[ScannedRun]) -> [Rate; 4] {
+    let rate =
+        |subject, what, seen: usize, cases: usize| Rate { subject, what, seen, cases, limit: None };
+    let that = |is: fn(&ScannedOutcome) -> bool| runs.iter().filter(|run| is(&run.outcome)).count();
+    let wrong = that(|outcome| matches!(outcome, ScannedOutcome::Wrong(_)));
+    let gave_up = that(|outcome| matches!(outcome, ScannedOutcome::GaveUp(_)));
+    let sum =
+        |part: fn(&PerceptTally) -> u64| runs.iter().map(|run| part(&run.tally) as usize).sum();
+    let percepts = sum(|tally| tally.percepts);
+    let passed: usize = sum(|tally| tally.passed);
     [
-        rate("wrong", LaserVerdict::is_wrong),
-        rate("undecided", |verdict| verdict == LaserVerdict::Undecided),
+        rate(ReportSubject::Run, "wrong", wrong, runs.len()),
+        rate(ReportSubject::Run, "gave up", gave_up, runs.len()),
+        rate(ReportSubject::Percept, "wrong", sum(|tally| tally.wrong), percepts),
+        rate(ReportSubject::Percept, "missing", passed, percepts + passed),
     ]
 }
 

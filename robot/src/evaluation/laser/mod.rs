@@ -1,7 +1,10 @@
 //! Compares junctions that are sensed with a laser scanner with the truth, in random buildings.
 
+mod corridor_pilot;
 pub mod corridor_world;
 pub mod judged_walk;
 pub mod laser_report;
+pub mod laser_robot;
 pub mod scanned_run;
+pub mod smoothed_world;
 pub mod walk;

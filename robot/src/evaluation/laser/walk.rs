@@ -131,6 +131,37 @@ impl WalkDriver {
         self.at = point;
     }
 
+    /// Where it is, or will be after its last step.
+    pub(super) fn at(&self) -> [f64; 2] {
+        self.at
+    }
+
+    /// The direction of its last leg.
+    pub(super) fn heading(&self) -> Option<f64> {
+        self.heading
+    }
+
+    /// The number of its steps.
+    pub(super) fn step_count(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Stays where it is after this number of steps. Those after them are not made.
+    pub(super) fn stop_after(&mut self, steps: usize) {
+        self.steps.truncate(steps);
+        if let Some(step) = self.steps.last() {
+            (self.at, self.way) = (step.pose.position, step.way);
+            self.heading = Some(step.pose.heading);
+        }
+    }
+
+    /// Where it was before it entered a circle the last time; `None` if it was never inside or outside.
+    pub(super) fn before_entering(&self, centre: [f64; 2], radius: f64) -> Option<[f64; 2]> {
+        let is_outside = |place: &[f64; 2]| distance(*place, centre) >= radius;
+        let places = self.steps.iter().rev().map(|step| step.pose.position);
+        places.skip_while(is_outside).find(is_outside)
+    }
+
     /// Drives to a place, nearly.
     pub(super) fn drive_near(&mut self, place: [f64; 2]) {
         let off = [(); 2].map(|()| OFF * self.chance.random_range(-1.0..=1.0));
@@ -141,6 +172,9 @@ impl WalkDriver {
     pub(super) fn drive_to(&mut self, point: [f64; 2]) {
         let from = self.at;
         let length = distance(from, point);
+        if length < 1e-6 {
+            return;
+        }
         let ahead = (point[1] - from[1]).atan2(point[0] - from[0]);
         let turn = self.heading.map_or(0.0, |heading| wrapped(ahead - heading));
         let turns = (turn.abs() / TURN).ceil();
