@@ -536,9 +536,9 @@ fn crates_use_only_crates_below_them() {
 }
 
 /// The ways from modules to others on which they must not depend.
-fn forbidden<'c>(
+fn forbidden(
     krate: &Crate,
-    edges: &Edges<'c>,
+    edges: &Edges,
     from: impl Fn(&[String]) -> bool,
     to: impl Fn(&[String]) -> bool,
 ) -> Vec<String> {

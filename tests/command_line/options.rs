@@ -316,7 +316,7 @@ fn a_verb_that_is_interrupted_ends_with_3() {
         let mut verb = verb.spawn().unwrap();
         // More than a pipe holds: the verb reads.
         let mut input = verb.stdin.take().unwrap();
-        input.write_all(&[b' '; 1 << 20]).unwrap();
+        input.write_all(&vec![b' '; 1 << 20]).unwrap();
         let killed = Command::new("kill").args(["-INT", &verb.id().to_string()]).status().unwrap();
         assert!(killed.success());
         let output = verb.wait_with_output().unwrap();

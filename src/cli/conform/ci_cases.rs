@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{outcome, report_lines, required};
+use super::{outcome, report_lines, required_coverage};
 use crate::{
     cli::{Outcome, ci_report::CiCase},
     report::{DivergenceReport, LogReport, RequiredCoverage, UnreadLog},
@@ -26,7 +26,7 @@ pub(super) fn ci_case(path: &Path, report: &LogReport) -> CiCase {
 pub(super) fn required_case(required: &RequiredCoverage) -> CiCase {
     let name = "required coverage".to_owned();
     let message = required.in_words();
-    CiCase { name, outcome: required::outcome(required), message, file: None }
+    CiCase { name, outcome: required_coverage::outcome(required), message, file: None }
 }
 
 /// The result of a log that cannot be checked, for CI systems.

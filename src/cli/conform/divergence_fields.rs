@@ -7,7 +7,7 @@ use toposlam_model::{
 };
 use toposlam_robot::conform::{CheckedEvent, CheckedKind, DivergenceCause};
 
-use super::{Judged, LISTED};
+use super::{JudgedLog, LISTED};
 
 /// The first event that is not allowed.
 #[derive(Serialize)]
@@ -102,7 +102,7 @@ impl EventFields {
 }
 
 impl DivergenceFields {
-    pub(super) fn of(judged: &Judged) -> Option<Self> {
+    pub(super) fn of(judged: &JudgedLog) -> Option<Self> {
         let divergence = judged.judgement.divergence.as_ref()?;
         let event = judged.judgement.events.events.get(divergence.event);
         let none = Self {

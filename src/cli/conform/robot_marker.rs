@@ -10,7 +10,7 @@ use toposlam_robot::{
     log::topic_map::{MarkerPlace, Role},
 };
 
-use super::{CliError, ConformArguments, Who, required};
+use super::{CliError, ConformArguments, Who, required_coverage};
 use crate::cli::{open_log::OpenLog, text::counted};
 
 /// A marker of a robot whose log is checked.
@@ -133,7 +133,7 @@ impl ConformArguments {
                 return Err(CliError::at("--max-darts", cause));
             }
             if let Some(case) =
-                self.require_coverage.iter().find(|case| required::is_of_algorithm1(case))
+                self.require_coverage.iter().find(|case| required_coverage::is_of_algorithm1(case))
             {
                 let cause = format!("{cause}, so that {case} is never covered");
                 return Err(CliError::at("--require-coverage", cause));

@@ -166,13 +166,11 @@ impl LaserRobot<'_> {
                     let is_junction = leg.junction(self.world).is_some();
                     self.tally.passed += u64::from(is_other && is_junction);
                     points.push(leg.to);
-                    match self.pilot.after(&leg) {
-                        Some(next) => leg = next,
-                        None => {
-                            along += distance(before, self.driver.at());
-                            break;
-                        }
-                    }
+                    let Some(next) = self.pilot.after(&leg) else {
+                        along += distance(before, self.driver.at());
+                        break;
+                    };
+                    leg = next;
                 }
             }
             along += distance(before, self.driver.at());
@@ -259,20 +257,16 @@ impl LaserRobot<'_> {
                 let off = |seen: &&LaserJunction| distance(seen.centre, self.odometry());
                 let near = self.seen.last().into_iter().flatten().filter(|seen| off(seen) < HERE);
                 let near = near.min_by(|one, other| off(one).total_cmp(&off(other)));
-                match near.filter(|_| !has_moved) {
-                    Some(seen) => {
-                        let (centre, clearance) = (seen.centre, seen.clearance);
-                        has_moved = true;
-                        let shown = StandingPercept::Undecided;
-                        self.go_to(&StandingPlace { centre, clearance, shown })?;
-                        self.look_around()?;
-                        continue;
-                    }
-                    None => {
-                        self.left = Some((last.centre, last.clearance));
-                        return Ok(None);
-                    }
-                }
+                let Some(seen) = near.filter(|_| !has_moved) else {
+                    self.left = Some((last.centre, last.clearance));
+                    return Ok(None);
+                };
+                let (centre, clearance) = (seen.centre, seen.clearance);
+                has_moved = true;
+                let shown = StandingPercept::Undecided;
+                self.go_to(&StandingPlace { centre, clearance, shown })?;
+                self.look_around()?;
+                continue;
             };
             let turn = self.to_plan().turn;
             last = place.clone();
