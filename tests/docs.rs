@@ -86,7 +86,8 @@ fn without_bytes(text: &str) -> String {
     let mut parts = text.split("at byte ");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| {
-        text + "at byte N" + part.trim_start_matches(|digit: char| digit.is_ascii_digit())
+        text + "at byte N"
+            + part.trim_start_matches(|digit: char| digit.is_ascii_digit() || digit == ',')
     })
 }
 

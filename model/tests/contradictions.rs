@@ -81,8 +81,8 @@ fn a_known_place_that_changed_is_a_contradiction() {
     assert_eq!(scripted(&[marked(2, 0), plain(1), marked(2, 1)]), turned.into());
     assert_eq!(
         MappingError::<RefusedAction>::from(expected).to_string(),
-        "the world contradicts itself: at the known vertex v0, entered by its dart 0, there should \
-         be degree 2 with the marker along door 0 but there is degree 3 with the marker along door 0"
+        "the world contradicts itself: at the known vertex v0, entered by its dart 0: expected \
+         degree 2 with the marker along door 0, found degree 3 with the marker along door 0"
     );
 }
 

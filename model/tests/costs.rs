@@ -84,14 +84,15 @@ fn own_starts() -> Vec<String> {
     let worlds = names.iter().map(|name| world(name)).filter(|world| world.graph.is_simple());
     let rows = worlds.map(|world| {
         let facing = world.start.unwrap();
+        let certificate = certificate_length(&world.graph, facing);
+        let one = moves(&Algorithm1, &world, facing);
         format!(
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {certificate} | {one} | {:.2} | {} |",
             world.name,
             world.start_text(facing),
             world.graph.vertex_count(),
             world.graph.edge_count(),
-            certificate_length(&world.graph, facing),
-            moves(&Algorithm1, &world, facing),
+            one as f64 / certificate as f64,
             moves(&MovableMarker, &world, facing),
         )
     });
@@ -133,8 +134,9 @@ fn every_start(class: Class, up_to: usize) -> Vec<String> {
         let one = tally(class, edges, MappingAlgorithm::Algorithm1);
         let other = tally(class, edges, MappingAlgorithm::MovableMarker);
         let (starts, certificate) = (one.starts, certificates_of(&one));
+        let ratio = one.moves_total as f64 / one.certificate_total as f64;
         let [one, other] = [one, other].map(|tally| moves_of(&tally));
-        format!("| {class} | {edges} | {starts} | {certificate} | {one} | {other} |")
+        format!("| {class} | {edges} | {starts} | {certificate} | {one} | {ratio:.2} | {other} |")
     });
     rows.collect()
 }
@@ -163,12 +165,15 @@ fn folded(class: Class, edges: usize) -> String {
     let algorithm1 = tally(class, edges, MappingAlgorithm::Algorithm1);
     let two_places =
         |total: u64, most: u64| format!("{:.2} / {most}", total as f64 / folding.starts as f64);
+    let ratio = |total: u64| total as f64 / folding.certificate_total as f64;
     format!(
-        "| {class} | {edges} | {} | {} | {} | {} |",
+        "| {class} | {edges} | {} | {} | {} | {:.2} | {} | {:.2} |",
         folding.starts,
         two_places(folding.certificate_total, folding.certificate_max),
         two_places(folding.moves_total, folding.moves_max()),
+        ratio(folding.moves_total),
         two_places(algorithm1.moves_total, algorithm1.moves_max()),
+        ratio(algorithm1.moves_total),
     )
 }
 

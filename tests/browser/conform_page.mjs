@@ -67,8 +67,8 @@ async function visit(page, kind, file) {
       assert.ok(section.includes(log));
     }
   }
-  const row = await follow(page, page.getByRole("link", { name: "Event 7003 of 10000" }));
-  assert.match(row, /^7003.*does not fit/s);
+  const row = await follow(page, page.getByRole("link", { name: "Event 7,003 of 10,000" }));
+  assert.match(row, /^7,?003.*does not fit/s);
   const copy = page.locator("section .copy").first();
   await copy.click();
   await page.getByRole("button", { name: /Copied|Marked/ }).waitFor();

@@ -262,19 +262,13 @@ fn bad_input_is_one_message_and_exit_code_2() {
     fs::write(&mapping, "[percept]\ntopic = \"/nowhere\"\n").unwrap();
     let misspelt = folder.join("misspelt.toml");
     fs::write(&misspelt, "[[quirk]]\nname = \"x\"\ncuase = \"percept\"\nreason = \"y\"\n").unwrap();
-    let laser = folder.join("laser.toml");
-    fs::write(&laser, "[corner]\n[arm]\nmin = 2.0\n").unwrap();
-    let files = [&text, &quirks, &mapping, &misspelt, &laser];
-    let [text, quirks, mapping, misspelt, laser] = files.map(|path| path.to_str().unwrap());
+    let files = [&text, &quirks, &mapping, &misspelt];
+    let [text, quirks, mapping, misspelt] = files.map(|path| path.to_str().unwrap());
     for (arguments, cause) in [
         (&["missing.mcap"][..], "missing.mcap: "),
         (&[text], "text.mcap: "),
         (&[log, "--quirks", quirks], "cannot be tolerated"),
         (&[log, "--quirks", misspelt], "misspelt.toml: line 3, column 1: quirk[0].cuase: unknown"),
-        (
-            &[log, "--events", "laser", "--laser-params", laser],
-            "laser.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ",
-        ),
         (&[log, "--mapping", mapping], "/nowhere"),
         (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
@@ -766,7 +760,7 @@ fn an_option_without_effect_on_a_log_is_an_error() {
     let conform = ["conform", log.to_str().unwrap(), "--driver", "anyone"];
     for (options, place) in [
         (&["--max-darts", "1"][..], "--max-darts: "),
-        (&["--require-coverage", "tee,confirmed"], "--require-coverage: "),
+        (&["--require-coverage", "t-by-stem,confirmed"], "--require-coverage: "),
     ] {
         let output = run([&conform[..], options].concat());
         assert_eq!(output.status.code(), Some(2));

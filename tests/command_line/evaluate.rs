@@ -74,6 +74,7 @@ fn one_view_is_shown_stage_by_stage() {
         "tiles",
         "--view",
         "5",
+        "--json",
         "--out-dir",
         folder.to_str().unwrap(),
     ]);
@@ -92,7 +93,8 @@ fn one_view_is_shown_stage_by_stage() {
 /// In this view of an L a hallway fits well in which the robot is not.
 #[test]
 fn a_view_with_a_strong_yellow_cast_is_not_called_a_hallway_elsewhere() {
-    let options = ["--size", "640x480", "--look", "vinyl", "--seed", "100", "--view", "118"];
+    let options =
+        ["--size", "640x480", "--look", "vinyl", "--seed", "100", "--view", "118", "--json"];
     let effect = ["--effect", "cast=0.77"];
     let output = run([&["evaluate", "vision"][..], &options, &effect].concat());
     let line = &objects(&stdout(&output))[0];

@@ -197,17 +197,31 @@ fn a_marker_that_is_assumed_is_bad_usage_unless_it_is_asked_for() {
 }
 
 #[test]
+fn an_unknown_parameter_of_sensing_is_an_error_with_its_place() {
+    let (folder, log) = written("laser_parameters");
+    let params = folder.join("params.toml");
+    fs::write(&params, "[corner]\n[arm]\nmin = 2.0\n").unwrap();
+    let params = params.to_str().unwrap();
+    let output = run(["conform", &log, "--laser-params", params]);
+    assert_eq!(output.status.code(), Some(2));
+    let cause = "params.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ";
+    assert!(stderr(&output).contains(cause), "{}", stderr(&output));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn a_log_that_begins_elsewhere_than_its_world_has_a_hint() {
     let (folder, log) = written("laser_elsewhere");
     let world = ["--marker", "none", "--world", "worlds/figure-1a.toml"];
     let (code, lines) = conform(&log, &world);
     let verdict = lines.last().unwrap();
     assert_eq!((code, &verdict["event"]), (Some(1), &1.into()), "{verdict}");
-    let hint = json!(["the log may begin elsewhere: --start any tries every start"]);
-    assert_eq!(verdict["remarks"], hint);
+    let end = "the log ends with a door: where it led is not recorded";
+    let hint = "the log may begin elsewhere: --start any tries every start";
+    assert_eq!(verdict["remarks"], json!([hint, end]));
     // With it the log begins at some T of the wheel.
     let (_, lines) = conform(&log, &[&world[..], &["--start", "any"]].concat());
-    assert_eq!(lines.last().unwrap()["remarks"], json!([]), "{lines:?}");
+    assert_eq!(lines.last().unwrap()["remarks"], json!([end]), "{lines:?}");
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -125,7 +125,7 @@ fn a_robot_that_is_carried_recovers() {
     assert_eq!(simulated(&carried).0, 1);
     let (code, text, object) = simulated(&[&carried[..], &["--recover"]].concat());
     assert_eq!(code, 0, "{text}");
-    assert!(text.contains("\nContradiction"), "{text}");
+    assert!(text.contains("Contradiction ("), "{text}");
     assert!(text.contains("It finds the marker") && text.contains("recoveries 1"), "{text}");
     assert_eq!((&object["recoveries"], &object["blocked"]), (&json!(1), &json!([])));
 }

@@ -224,7 +224,10 @@ fn other_files_than_images_of_the_camera_are_refused_with_the_reason() {
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.starts_with(&format!("error: {path}: {cause}")), "{message}");
-        assert_eq!((message.lines().count(), stdout(&output).as_str()), (1, ""), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        let line = &objects(&stdout(&output))[0];
+        assert_eq!((&line["kind"], &line["file"]), (&"unread".into(), &path.into()), "{message}");
+        assert!(line["cause"].as_str().unwrap().starts_with(cause), "{line}");
     }
 }
 
@@ -327,9 +330,13 @@ fn an_unreadable_image_does_not_stop_the_others() {
     let (missing, file) = (FILES.folder.join("missing.png"), FILES.folder.join("scenes.jsonl"));
     let (missing, file) = (missing.to_str().unwrap(), file.to_str().unwrap());
     let alone = stdout_of(sense(&[&one, &other], &["--json"]));
+    // The lines without those of the images that cannot be read.
+    let read = |text: &str| -> String {
+        text.split_inclusive('\n').filter(|line| !line.contains("\"kind\":\"unread\"")).collect()
+    };
     let images = [&*one, &bad, missing, &other];
     let output = run(sense(&images, &["--json"]));
-    assert_eq!((output.status.code(), stdout(&output)), (Some(2), alone.clone()));
+    assert_eq!((output.status.code(), read(&stdout(&output))), (Some(2), alone.clone()));
     let message = stderr(&output);
     let lines: Vec<_> = message.lines().collect();
     assert_eq!(lines.len(), 2, "{message}");
@@ -337,5 +344,5 @@ fn an_unreadable_image_does_not_stop_the_others() {
     assert!(lines[1].starts_with(&format!("error: {missing}: ")), "{message}");
     let output = run(sense(&images, &["--json", "--out", file]));
     assert_eq!(output.status.code(), Some(2));
-    assert_eq!(fs::read_to_string(file).unwrap(), alone);
+    assert_eq!(read(&fs::read_to_string(file).unwrap()), alone);
 }

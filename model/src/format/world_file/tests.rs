@@ -323,7 +323,7 @@ fn an_error_in_a_floor_plan_has_its_key() {
         (
             "[start]",
             "[[hallways]]\nfrom = \"corner\"\nto = \"east\"\n\n[start]",
-            "line 19, column 1: hallways[2]: hallway `corner` - `east` stands twice",
+            "line 19, column 1: hallways[2]: hallway `corner` - `east` is listed twice",
         ),
         (
             "[4.0, 0.0]",
