@@ -12,9 +12,9 @@ use toposlam_model::{
 
 use crate::{
     error::{error, interrupted},
+    long_work::{Watcher, run_watched},
     own_marker::OwnMarker,
     percept::Percept,
-    long_work::{Watcher, run_watched},
     world::{CoreWorld, named_marker},
 };
 

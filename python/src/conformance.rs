@@ -28,8 +28,8 @@ use toposlam_vision::{
 use crate::{
     error::{error, interrupted},
     log::{LogReader, shown},
-    percept::Percept,
     long_work::{Watcher, run_watched},
+    percept::Percept,
     world::{CoreWorld, named_marker},
 };
 

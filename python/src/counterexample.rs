@@ -11,8 +11,8 @@ use toposlam_model::{
 
 use crate::{
     error::{error, interrupted},
-    own_marker::OwnMarker,
     long_work::{Watcher, run_watched},
+    own_marker::OwnMarker,
     world::{CoreWorld, named_marker},
 };
 

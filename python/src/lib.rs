@@ -7,11 +7,11 @@ mod counterexample;
 mod error;
 mod exploration;
 mod log;
+mod long_work;
 mod own_marker;
 mod percept;
 mod robot;
 mod starts;
-mod long_work;
 mod world;
 
 /// The module `toposlam._core`.

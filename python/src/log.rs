@@ -26,8 +26,8 @@ use toposlam_robot::{
 
 use crate::{
     error::{error, interrupted},
-    percept::Percept,
     long_work::{Watcher, run_watched},
+    percept::Percept,
 };
 
 /// A log that is open for reading.

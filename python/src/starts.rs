@@ -14,8 +14,8 @@ use toposlam_model::{
 
 use crate::{
     error::{error, guarded, interrupted},
-    robot::Robot,
     long_work::run_watched,
+    robot::Robot,
     world::{CoreWorld, graph_of, named_marker},
 };
 

@@ -73,13 +73,13 @@ def test_an_assumed_marker_must_be_seen(tmp_path):
 
 def test_an_undirected_marker_is_seen_with_or_without_a_direction(tmp_path):
     log = tmp_path / "run.jsonl"
-    for first, last, verdict in [("0", "0", "conforms"), ("true", "0", "conforms"), ("true", "-1", "diverged")]:
+    cases = [("0", "0", "conforms"), ("true", "0", "conforms"), ("true", "-1", "diverged")]
+    for first, last, verdict in cases:
         log.write_text(
             f'{{"degree":2,"marker":{first},"door":1}}\n{{"degree":1,"marker":false,"door":0}}\n'
             f'{{"degree":2,"marker":{last},"door":1}}\n{{"degree":3,"marker":-1}}\n'
         )
         assert ts.conform(log, driver="anyone", marker="undirected").verdict == verdict
-
 
 
 def test_tables_are_those_of_numpy_and_pandas(tmp_path):
@@ -119,7 +119,7 @@ def test_a_simulated_robot(tmp_path, required):
     command = [program, "simulate", "worlds/shape-6.toml", "--log", str(log)]
     subprocess.run(command, check=True, capture_output=True)
     found = ts.read_log(log)
-    assert found.format == "mcap" and found.head["algorithm"] == "algorithm1"
+    assert found.format == "mcap" and found.head["algorithm"] == "folding"
     assert found.scenes.rows > 50 and found.poses.rows > 50
     assert {"hallway", "junction"} <= set(found.scenes["place"])
     report = ts.conform(log, ts.World.load("worlds/shape-6.toml"))
