@@ -108,8 +108,8 @@ pub enum ExtractError {
     TopicMap(#[from] TopicMapError),
     /// No source of events is mapped.
     #[error(
-        "no topics are known for percepts and doors, nor for scenes or images with odometry; `toposlam info` \
-         lists the topics"
+        "no topics are known for percepts and doors, nor for scenes, images or laser scans with odometry; \
+         `toposlam info` lists the topics"
     )]
     NothingMapped,
     /// Images must be sensed without a calibration or colours.

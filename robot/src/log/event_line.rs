@@ -124,11 +124,14 @@ pub(super) enum Parsed {
     Other(String),
 }
 
-/// Whether a file begins with lines of events.
+/// Whether a file begins with lines of events, after comments.
 pub(super) fn is_events(head: &[u8]) -> bool {
-    let mut lines = head.split(|&byte| byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
+    let mut lines = head
+        .split(|&byte| byte == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .filter(|line| !line.is_empty() && !line.starts_with(b"#"));
     match lines.next() {
-        Some(line) if line.trim_ascii_start().starts_with(b"{") => {
+        Some(line) if line.starts_with(b"{") => {
             let names = [&b"\"degree\""[..], b"\"kind\""];
             names.iter().any(|name| line.windows(name.len()).any(|part| part == *name))
         }
@@ -142,6 +145,9 @@ impl Columns {
     pub(super) fn read(line: &[u8]) -> Option<Self> {
         let line = std::str::from_utf8(line).ok()?;
         let line = line.trim_start_matches('\u{feff}');
+        if line.trim_start().starts_with('#') {
+            return None;
+        }
         let name = |cell: Cow<str>| NAMES.iter().position(|name| cell.eq_ignore_ascii_case(name));
         let columns = Self(cells(line).into_iter().map(name).collect());
         let has = |wanted: &str| {
@@ -301,6 +307,16 @@ mod tests {
         assert_eq!(line("3, \"41.2\" ,\"3\",1,,,\"a, \"\"note\"\"\""), line("3,41.2,3,1,,,a note"));
         let other = parse(br#"{"kind":"conform","marker":"none"}"#, None);
         assert_eq!(other, Ok(Parsed::Other("conform".into())));
+    }
+
+    #[test]
+    fn a_file_of_events_may_begin_with_comments() {
+        for head in ["# by hand\n\n{\"degree\":3}\n", "  # by hand\ndegree,door\n3,1\n"] {
+            assert!(is_events(head.as_bytes()), "{head:?}");
+        }
+        for head in ["", "# by,degree,door\n", "# a CARMEN log\nPARAM robot_length 0.4\n"] {
+            assert!(!is_events(head.as_bytes()), "{head:?}");
+        }
     }
 
     #[test]
