@@ -5,13 +5,15 @@
 use std::sync::Arc;
 
 use toposlam_model::{
-    driving::algorithm2::{Command, PathState},
+    driving::{
+        algorithm2::{Command, PathState},
+        pose::Pose,
+    },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     mapping::PartialMap,
     percept::{Door, Percept},
 };
-use toposlam_robot::pose::Pose;
 
 /// A run, as its page and its picture show it.
 #[derive(Clone, Debug)]

@@ -12,10 +12,11 @@ use std::{
 };
 
 /// The crates, lowest first: name, folder of the source, and the crates that it may use.
-const CRATES: [(&str, &str, &[&str]); 7] = [
+const CRATES: [(&str, &str, &[&str]); 8] = [
     ("toposlam_model", "model/src", &[]),
     ("toposlam_vision", "vision/src", &["toposlam_model"]),
-    ("toposlam_robot", "robot/src", &["toposlam_model", "toposlam_vision"]),
+    ("toposlam_render", "render/src", &["toposlam_model", "toposlam_vision"]),
+    ("toposlam_robot", "robot/src", &["toposlam_model", "toposlam_vision", "toposlam_render"]),
     ("toposlam_proofs", "proofs/src", &["toposlam_model"]),
     ("toposlam_cluster", "cluster/src", &["toposlam_model"]),
     (
@@ -573,6 +574,12 @@ fn only_evaluation_and_simulated_robots_use_the_simulator() {
         ));
     }
     assert!(found.is_empty(), "forbidden imports:\n{}", found.join("\n"));
+    // Nor does any other module use the crate that renders images.
+    for (path, module) in &robot.modules {
+        let paths = module.uses.iter().map(|(path, _)| path).chain(&module.paths);
+        let renders = paths.filter_map(|path| path.first()).any(|first| first == "toposlam_render");
+        assert!(!renders || simulates(path), "{} renders", relative(&module.file));
+    }
     let named = INDEPENDENT.into_iter().flat_map(|(one, other)| [one, other]).chain(SIMULATES);
     for name in named {
         let exists = robot.modules.keys().any(|module| starts_with(module, name));

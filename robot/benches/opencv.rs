@@ -18,10 +18,10 @@ use std::{
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::counts::grouped;
+use toposlam_model::{counts::grouped, driving::pose::Pose};
 use toposlam_robot::{
     evaluation::{learned, view_sampler::ViewSampler},
-    simulator::{Building, BuildingLook, Effects, Pose, Rig, label_mask, labels, render},
+    simulator::{Building, BuildingLook, Effects, Rig, label_mask, labels, render},
 };
 use toposlam_vision::{
     boundary::Bearings,

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use toposlam_model::{
-    driving::{algorithm2::Standing, odometry::Odometry, scene::wrapped},
+    driving::{algorithm2::Standing, odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     percept::{Door, Percept},
@@ -12,7 +12,6 @@ use toposlam_model::{
 };
 
 use crate::{
-    pose::Pose,
     record::{Event, EventKind, RunObserver},
     truth::{JunctionTruth, angle},
 };

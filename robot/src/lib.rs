@@ -14,7 +14,6 @@ pub mod ground_truth_monitor;
 pub mod log;
 pub mod measured_hallway;
 mod obstacle_judge;
-pub mod pose;
 pub mod record;
 pub mod recording;
 pub mod replay;

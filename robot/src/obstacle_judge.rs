@@ -6,6 +6,7 @@
 
 use toposlam_model::{
     check::Flaw,
+    driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     isomorphism::Bijection,
@@ -13,7 +14,6 @@ use toposlam_model::{
 };
 
 use crate::{
-    pose::Pose,
     superscout::{CLEARANCE, RADIUS},
     truth::angle,
 };

@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use toposlam_model::{
     driving::{
+        pose::Pose,
         scene::{undirected, wrapped},
         visit::JunctionShape,
     },
@@ -15,8 +16,6 @@ use toposlam_model::{
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     percept::Door,
 };
-
-use crate::pose::Pose;
 
 /// Up to this distance from a turning point the robot is at the junction, in metres.
 pub const JUNCTION_WITHIN: f64 = 0.5;

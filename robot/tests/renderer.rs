@@ -10,12 +10,13 @@ use image::RgbImage;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
+    driving::pose::Pose,
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind, Rectangle},
     format::world_file,
 };
 use toposlam_robot::simulator::{
-    Building, BuildingLook, Effects, KNOBS, LOOKS, Pose, Rig, RigErrors, label_mask, labels, render,
+    Building, BuildingLook, Effects, KNOBS, LOOKS, Rig, RigErrors, label_mask, labels, render,
 };
 use toposlam_vision::{
     camera::Camera,

@@ -6,8 +6,8 @@ use image::{GrayImage, imageops};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
-use toposlam_model::{floor_plan::FloorPlan, format::world_file};
-use toposlam_robot::simulator::{Building, Effects, LOOKS, Pose, Rig, render};
+use toposlam_model::{driving::pose::Pose, floor_plan::FloorPlan, format::world_file};
+use toposlam_robot::simulator::{Building, Effects, LOOKS, Rig, render};
 use toposlam_vision::camera::{
     Camera, OpticsModel,
     rim::{self, RimError},

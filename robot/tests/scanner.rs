@@ -8,8 +8,12 @@ use std::{
 };
 
 use toposlam_model::{
-    driving::odometry::Odometry, embedded_graph::Dart, floor_plan::FloorPlan, format::world_file,
-    mapping::DirectionalAlgorithm, percept::Door,
+    driving::{odometry::Odometry, pose::Pose},
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    format::world_file,
+    mapping::DirectionalAlgorithm,
+    percept::Door,
 };
 use toposlam_robot::{
     conform::{CheckedKind, Evidence, ExtractConfig, RunEvents, extract},
@@ -20,7 +24,6 @@ use toposlam_robot::{
         traversals::{TraversalOutcome, TraversalSampler},
     },
     log::{messages, reader::Log, recorder::Recorder, topic_map::TopicMap},
-    pose::Pose,
     record::{FrameSensor, NoSensor, RobotSensor},
     run::{RunOutcome, run},
     run_settings::RunSettings,

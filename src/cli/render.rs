@@ -3,11 +3,12 @@
 use std::{io::Write, path::PathBuf};
 
 use toposlam_model::{
+    driving::pose::Pose,
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
 };
 use toposlam_robot::simulator::{
-    Building, EffectScope, KNOBS, Pose, Rig, label_mask, labels, render, start_pose,
+    Building, EffectScope, KNOBS, Rig, label_mask, labels, render, start_pose,
 };
 use toposlam_vision::camera::Camera;
 

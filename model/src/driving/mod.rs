@@ -2,5 +2,6 @@
 
 pub mod algorithm2;
 pub mod odometry;
+pub mod pose;
 pub mod scene;
 pub mod visit;

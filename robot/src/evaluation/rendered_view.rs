@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use image::RgbImage;
-use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
+use toposlam_model::{driving::pose::Pose, embedded_graph::Dart, floor_plan::FloorPlan};
 
-use crate::simulator::{Building, BuildingLook, Effects, Pose, Rig, render};
+use crate::simulator::{Building, BuildingLook, Effects, Rig, render};
 use crate::truth::{MarkerTruth, Truth};
 
 /// A pose in a building, and all that its image depends on.

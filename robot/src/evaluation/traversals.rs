@@ -6,6 +6,7 @@ use std::{f64::consts::FRAC_PI_2, fmt, sync::Arc};
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
+    driving::pose::Pose,
     embedded_graph::{Dart, Vertex},
     enumerate::Watch,
     floor_plan::FloorPlan,
@@ -17,7 +18,6 @@ use super::{RobotEquipment, parallel::made_in_turn, run_sampler::starts_of};
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
-    pose::Pose,
     record::StoppedBy,
     robot::Robot,
     simulator::{SimulationConfig, start_pose},

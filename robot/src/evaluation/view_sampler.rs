@@ -5,6 +5,7 @@ use std::{f64::consts::FRAC_PI_2, sync::Arc};
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
+    driving::pose::Pose,
     driving::visit::JunctionShape,
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
@@ -17,7 +18,7 @@ use super::{
     rendered_view::{RenderedView, WhichEffects},
     scene_class::FORMS,
 };
-use crate::simulator::{BuildingLook, EffectSettings, Effects, Pose};
+use crate::simulator::{BuildingLook, EffectSettings, Effects};
 use crate::truth::{JunctionTruth, angle};
 
 /// Views of a junction lie from this distance before its turning point to this distance behind it,

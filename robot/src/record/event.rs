@@ -4,6 +4,7 @@ use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState, Standing},
         odometry::Odometry,
+        pose::Pose,
         visit::JunctionShape,
     },
     mapping::MappingEvent,
@@ -11,7 +12,6 @@ use toposlam_model::{
 };
 
 use super::{Frame, MapRecord};
-use crate::pose::Pose;
 
 /// The number of an event in a running robot, or of the log message that it came from; counted from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

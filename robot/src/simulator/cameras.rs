@@ -12,6 +12,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
+    driving::pose::Pose,
     driving::scene::{
         CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason, Scene,
         Unclear, undirected, wrapped,
@@ -20,19 +21,11 @@ use toposlam_model::{
     floor_plan::FloorPlan,
 };
 
-use super::{
-    building::Building,
-    effects::Effects,
-    exposure::file,
-    random_stream::{StreamPurpose, stream},
-    renderer::exposed,
-    rig::Rig,
-};
 use crate::{
-    pose::Pose,
     record::{CameraImage, Frame},
     truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
 };
+use toposlam_render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream};
 
 /// The camera of a simulated robot.
 pub trait SimulatedCamera: Debug + Send {
@@ -104,7 +97,8 @@ impl RenderingCamera {
 
     /// Sets the exposure of the next image from this one.
     fn adapt(&mut self, image: &RgbImage) {
-        let ([u, v], reach) = (self.rig.optics.centre, METERED * self.rig.optics.rim());
+        let ([u, v], rim) = self.rig.rim();
+        let reach = METERED * rim;
         let (mut metered, mut burnt) = (0_u32, 0_u32);
         for (column, row, pixel) in image.enumerate_pixels() {
             if (f64::from(column) - u).hypot(f64::from(row) - v) < reach {

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use toposlam_model::driving::pose::Pose;
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 
 use super::{faults::RobotFault, motion::MotionNoise};
-use crate::{pose::Pose, truth::angle};
+use crate::truth::angle;
 
 /// The default time to take an image, in seconds.
 pub const IMAGE_TIME: f64 = 0.3;

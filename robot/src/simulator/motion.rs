@@ -4,19 +4,16 @@
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    driving::odometry::Odometry,
+    driving::{odometry::Odometry, pose::Pose},
     floor_plan::{FloorPlan, Rectangle},
 };
 
-use super::{
-    random_stream::{StreamPurpose, clouds, stream},
-    surroundings::Surroundings,
-};
+use super::surroundings::Surroundings;
 use crate::{
-    pose::Pose,
     robot::{RobotError, Sample, TimedOdometry},
     superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
 };
+use toposlam_render::{StreamPurpose, clouds, stream};
 
 /// The differences of a simulated base from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]

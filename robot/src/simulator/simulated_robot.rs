@@ -3,26 +3,22 @@
 use std::sync::Arc;
 
 use rand::{RngExt, seq::IndexedRandom};
+use toposlam_model::driving::pose::Pose;
 use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
 
 use super::{
-    building::Building,
     cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
     config::SimulationConfig,
-    effects::Effects,
     faults::{FaultKind, RobotFault},
-    looks::BuildingLook,
     motion::SimulatedBase,
-    random_stream::{StreamPurpose, stream},
-    rig::Rig,
     scanner::{CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams},
 };
 use crate::{
-    pose::Pose,
     record::Frame,
     robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive},
 };
+use toposlam_render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
 
 /// A SuperScout in a simulated building.
 #[derive(Debug)]

@@ -7,9 +7,10 @@ use std::hint::black_box;
 use image::RgbImage;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::driving::pose::Pose;
 use toposlam_robot::{
     evaluation::{learned, view_sampler::ViewSampler},
-    simulator::{Building, BuildingLook, Effects, Pose, Rig, render},
+    simulator::{Building, BuildingLook, Effects, Rig, render},
 };
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 

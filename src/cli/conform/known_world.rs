@@ -1,7 +1,7 @@
 //! The known world of a log.
 
 use toposlam_model::{
-    driving::visit::JunctionShape,
+    driving::{pose::Pose, visit::JunctionShape},
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
@@ -13,7 +13,6 @@ use toposlam_model::{
 use toposlam_robot::{
     conform::{KnownWorld, LogHead},
     log::messages::Run,
-    pose::Pose,
     truth::{JunctionTruth, angle},
 };
 

@@ -3,6 +3,7 @@
 use std::{collections::VecDeque, path::Path};
 
 use toposlam_model::{
+    driving::pose::Pose,
     driving::scene::Scene,
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
@@ -11,7 +12,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     evaluation::{LearnedSensors, run_sampler::starts_of},
-    simulator::{Building, BuildingLook, Effects, Pose, render},
+    simulator::{Building, BuildingLook, Effects, render},
     superscout::{CLEARANCE, RADIUS},
     truth::angle,
 };

@@ -4,7 +4,7 @@ use std::{path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_model::{
-    driving::algorithm2::PathState,
+    driving::{algorithm2::PathState, pose::Pose},
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
@@ -12,7 +12,6 @@ use toposlam_model::{
     percept::Door,
 };
 use toposlam_robot::{
-    pose::Pose,
     record::{Event, EventKind, Frame, RunObserver},
     run::Run,
 };

@@ -3,8 +3,6 @@
 
 use std::sync::Arc;
 
-use toposlam_robot::pose::Pose;
-
 use crate::{
     model::{
         driving::algorithm2::{Command, PathState},
@@ -16,6 +14,7 @@ use crate::{
     },
     run_page_data::{PageArrival, PageFrame, RunPageData},
 };
+use toposlam_model::driving::pose::Pose;
 
 /// Seven frames; the last three images are the same, and the third call is wrong.
 pub(crate) fn run_page_data() -> RunPageData {

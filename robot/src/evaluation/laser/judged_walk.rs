@@ -3,7 +3,7 @@
 use std::{f64::consts::TAU, sync::Arc};
 
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::wrapped},
+    driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     enumerate::Watch,
     percept::Door,
 };
@@ -20,7 +20,6 @@ use super::{
 };
 use crate::{
     conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents},
-    pose::Pose,
     simulator::{LaserScanner, ScannedBuilding, ScannerParams},
 };
 

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::wrapped},
+    driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::Dart,
     enumerate::Watch,
     mapping::Relocate,
@@ -32,7 +32,6 @@ use super::{
 };
 use crate::{
     conform::{EventSource, LaserEvents, StandingPercept, StandingPlace},
-    pose::Pose,
     simulator::LaserScanner,
 };
 

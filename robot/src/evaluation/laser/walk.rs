@@ -5,11 +5,10 @@ use std::f64::consts::{PI, TAU};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use toposlam_model::driving::{odometry::Odometry, pose::Pose, scene::wrapped};
 use toposlam_vision::laser::plane::distance;
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
-use crate::pose::Pose;
 
 /// A walk: it begins and ends within a corridor, and passes places in between.
 #[derive(Clone, Debug, PartialEq)]

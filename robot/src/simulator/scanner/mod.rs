@@ -10,16 +10,14 @@ use std::{f64::consts::TAU, sync::Arc};
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
-use toposlam_model::driving::scene::wrapped;
+use toposlam_model::driving::{pose::Pose, scene::wrapped};
+use toposlam_render::{StreamPurpose, stream};
 use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry, ScannerPose};
 
 pub use corridors::{Corridor, CorridorPlan, Lobby};
 pub use params::ScannerParams;
 pub use polygon::ConvexPolygon;
 pub use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
-
-use super::random_stream::{StreamPurpose, stream};
-use crate::pose::Pose;
 
 /// A laser scanner in a building, in the robot's centre.
 #[derive(Clone, Debug)]

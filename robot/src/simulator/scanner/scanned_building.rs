@@ -7,11 +7,11 @@ use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{
-    super::random_stream::{StreamPurpose, about, stream},
     corridors::{Corridor, CorridorPlan},
     params::ScannerParams,
     polygon::{ConvexPolygon, Segment, border, length, part},
 };
+use toposlam_render::{StreamPurpose, about, stream};
 
 /// A building to scan.
 #[derive(Clone, Debug, PartialEq)]

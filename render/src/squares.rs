@@ -4,7 +4,7 @@ use toposlam_model::floor_plan::Rectangle;
 
 /// For each square of a mesh, the numbers of the rectangles that overlap it.
 #[derive(Clone, Debug)]
-pub(super) struct Squares {
+pub struct Squares {
     least: [f32; 2],
     per_metre: f32,
     columns: usize,
@@ -15,7 +15,7 @@ pub(super) struct Squares {
 }
 
 /// The least corner of all floors, and the size of their bounding box.
-pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
+pub(crate) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
     let least = |axis: usize| floors.iter().map(|floor| floor.least[axis]).fold(f64::MAX, f64::min);
     let greatest =
         |axis: usize| floors.iter().map(|floor| floor.greatest[axis]).fold(f64::MIN, f64::max);
@@ -23,13 +23,13 @@ pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
 }
 
 /// The side of a mesh's squares: the given one, or more to avoid millions of squares.
-pub(super) fn side(wished: f64, size: [f64; 2]) -> f64 {
+pub(crate) fn side(wished: f64, size: [f64; 2]) -> f64 {
     wished.max((size[0] * size[1] / 2.5e5).sqrt()).max(size[0].max(size[1]) / 1e5)
 }
 
 impl Squares {
     /// Indexes rectangles on these floors.
-    pub(super) fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
+    pub fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
         let (least, size) = extent(floors);
         let side = side(wished, size);
         let [columns, rows] = size.map(|length| (length / side) as usize + 1);
@@ -64,7 +64,7 @@ impl Squares {
 
     /// The numbers of all rectangles that contain a place, and perhaps of others.
     #[inline]
-    pub(super) fn at(&self, place: [f32; 2]) -> &[u32] {
+    pub fn at(&self, place: [f32; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|axis| {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
         });

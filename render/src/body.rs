@@ -6,9 +6,9 @@
 
 use std::f32::consts::TAU;
 
-use super::effects::Effects;
-use super::optics::RayPath;
-use super::rig::PixelRay;
+use crate::effects::Effects;
+use crate::optics::RayPath;
+use crate::rig::PixelRay;
 
 /// Radius of the robot's body and height of its top, in metres.
 const RADIUS: f32 = 0.205;
@@ -31,7 +31,7 @@ const STRUT_FOOT: f32 = 0.03;
 
 /// A part of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RobotPart {
+pub(crate) enum RobotPart {
     Lens,
     Housing,
     Strut,
@@ -44,7 +44,7 @@ pub(super) enum RobotPart {
 
 /// The parts of the robot that are visible in one image.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Body {
+pub(crate) struct Body {
     seen: bool,
     lens: f32,
     /// Half the angle that a strut hides, and its direction, in 1/65,536 of a turn.
@@ -60,7 +60,7 @@ pub(super) struct Body {
 
 impl Body {
     /// The robot under a camera at this height, with images of this width.
-    pub(super) fn new(height: f64, width: u32, effects: &Effects) -> Self {
+    pub(crate) fn new(height: f64, width: u32, effects: &Effects) -> Self {
         let turn = |degrees: f64| degrees / 360.0 * 65_536.0;
         Self {
             seen: effects.body >= 0.5,
@@ -76,7 +76,7 @@ impl Body {
     /// The part of the robot that a ray meets; `from_middle` is the distance of its pixel from the
     /// middle of the mirror.
     #[inline]
-    pub(super) fn met(&self, ray: &PixelRay, from_middle: impl Fn() -> f32) -> Option<RobotPart> {
+    pub(crate) fn met(&self, ray: &PixelRay, from_middle: impl Fn() -> f32) -> Option<RobotPart> {
         if self.strut_half > 0 || self.strut_width > 0.0 {
             // The struts are opposite each other: half a turn makes no difference.
             let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1).cast_signed()) / 2;
@@ -169,7 +169,7 @@ fn at_height(ray: &PixelRay, height: f32) -> [f32; 2] {
 
 impl RobotPart {
     /// The reflectance of the part.
-    pub(super) fn colour(self) -> [f32; 3] {
+    pub(crate) fn colour(self) -> [f32; 3] {
         match self {
             Self::Lens => [0.01, 0.01, 0.015],
             Self::Housing => [0.06, 0.06, 0.065],

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use rand::{Rng, RngExt, seq::IndexedRandom};
 
-use super::random_stream::{StreamPurpose, about, stream};
-use super::sight_lines::TURN_ERROR;
-use super::walls::BuildingWall;
-use super::world_ray::WorldRay;
+use crate::random_stream::{StreamPurpose, about, stream};
+use crate::sight_lines::TURN_ERROR;
+use crate::walls::BuildingWall;
+use crate::world_ray::WorldRay;
 
 /// The room between two pieces of furniture, and beside the ends of a wall, in metres.
 const APART: f64 = 0.15;
@@ -38,7 +38,7 @@ const SHADES: [f32; 6] = [0.55, 0.55, 0.70, 0.70, 0.15, 1.0];
 
 /// A block with sides along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Block {
+pub(crate) struct Block {
     least: [f32; 3],
     greatest: [f32; 3],
     colour: [f32; 3],
@@ -46,18 +46,18 @@ pub(super) struct Block {
 
 /// A ray's first block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MetBlock {
+pub(crate) struct MetBlock {
     /// The length of the ray.
-    pub(super) length: f32,
+    pub(crate) length: f32,
     /// A number that is different for different faces of all blocks.
-    pub(super) face: u32,
+    pub(crate) face: u32,
     /// Its reflectance, darker on some faces.
-    pub(super) colour: [f32; 3],
-    pub(super) place: [f32; 2],
+    pub(crate) colour: [f32; 3],
+    pub(crate) place: [f32; 2],
 }
 
 /// The blocks of the furniture along these walls; `per_wall` pieces per 10 m, in hallways of this width.
-pub(super) fn furniture(
+pub(crate) fn furniture(
     walls: &[BuildingWall],
     per_wall: f64,
     width: f64,
@@ -192,7 +192,7 @@ const PER_SECTOR: usize = 65_536 / SECTORS as usize;
 
 /// The blocks around a place, by direction.
 #[derive(Clone, Debug)]
-pub(super) struct BlocksAround<'a> {
+pub(crate) struct BlocksAround<'a> {
     blocks: &'a [Block],
     /// For each sector, counter-clockwise from east, the numbers of the blocks that a ray may meet.
     sectors: Vec<Vec<u32>>,
@@ -200,7 +200,7 @@ pub(super) struct BlocksAround<'a> {
 
 impl<'a> BlocksAround<'a> {
     /// The blocks around a place, for rays that pass it within this distance.
-    pub(super) fn new(place: [f64; 2], off_axis: f64, blocks: &'a [Block]) -> Self {
+    pub(crate) fn new(place: [f64; 2], off_axis: f64, blocks: &'a [Block]) -> Self {
         let mut sectors = Vec::new();
         for (number, block) in blocks.iter().enumerate() {
             let near = block.distance(place);
@@ -225,7 +225,7 @@ impl<'a> BlocksAround<'a> {
 
     /// The first block that a ray meets.
     #[inline]
-    pub(super) fn first(&self, ray: &WorldRay) -> Option<MetBlock> {
+    pub(crate) fn first(&self, ray: &WorldRay) -> Option<MetBlock> {
         let mut nearest: Option<(f32, u32, u32)> = None;
         for &number in self.sectors.get(usize::from(ray.turn) / PER_SECTOR)? {
             if let Some((length, face)) = self.blocks[number as usize].met(ray)
@@ -251,11 +251,11 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
     use toposlam_model::format::world_file;
 
-    use super::super::walls::walls;
     use super::*;
+    use crate::walls::walls;
 
     fn blocks() -> (Vec<BuildingWall>, Vec<Block>) {
-        let bytes = include_bytes!("../../../worlds/shape-8.toml");
+        let bytes = include_bytes!("../../worlds/shape-8.toml");
         let walls = walls(&world_file::read(bytes).unwrap().plan.unwrap());
         let blocks = furniture(&walls, 6.0, 1.6, 3);
         (walls, blocks)

@@ -7,12 +7,12 @@ use image::{ImageFormat, RgbImage};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::effects::Effects;
-use super::random_stream::{StreamPurpose, stream};
-use super::rig::Rig;
+use crate::effects::Effects;
+use crate::random_stream::{StreamPurpose, stream};
+use crate::rig::Rig;
 
 /// The light at every pixel, as red, green and blue; at 1 the sensor is saturated.
-pub(super) trait RowRenderer {
+pub(crate) trait RowRenderer {
     /// Renders a row. Rows must be requested in order.
     fn row(&mut self, v: usize, out: &mut [f32]);
 
@@ -21,7 +21,7 @@ pub(super) trait RowRenderer {
 }
 
 /// Exposes an image.
-pub(super) fn expose(
+pub(crate) fn expose(
     light: &mut impl RowRenderer,
     rig: &Rig,
     effects: &Effects,
@@ -57,7 +57,7 @@ pub(super) fn expose(
 }
 
 /// Encodes an image as JPEG, or as PNG if compression is lossless.
-pub(super) fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
+pub fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = if effects.jpeg_loss > 0.0 {
         let quality = (100.0 - effects.jpeg_loss).round().clamp(1.0, 100.0) as u8;
@@ -70,7 +70,7 @@ pub(super) fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
 }
 
 /// The image after it was encoded and decoded.
-pub(super) fn compressed(image: RgbImage, effects: &Effects) -> RgbImage {
+pub(crate) fn compressed(image: RgbImage, effects: &Effects) -> RgbImage {
     if effects.jpeg_loss <= 0.0 {
         return image;
     }
@@ -291,7 +291,7 @@ mod tests {
         }
         assert_eq!(response(-1.0), 0);
         for value in 0..=255_u8 {
-            let [light, ..] = super::super::looks::linear([value; 3]);
+            let [light, ..] = crate::looks::linear([value; 3]);
             assert!(response(light).abs_diff(value) <= 1, "{value}");
         }
     }

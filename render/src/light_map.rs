@@ -2,9 +2,9 @@
 
 use toposlam_model::floor_plan::Rectangle;
 
-use super::lights::{CEILING, Lights};
-use super::squares::{extent, side};
-use super::walls::BuildingWall;
+use crate::lights::{CEILING, Lights};
+use crate::squares::{extent, side};
+use crate::walls::BuildingWall;
 
 /// Distance of the mesh's nodes, in metres.
 const MESH: f64 = 0.2;
@@ -14,7 +14,7 @@ const ROWS: usize = 7;
 
 /// The light in a building; 1 is the mean light on the floor.
 #[derive(Clone, Debug)]
-pub(super) struct LightMap {
+pub(crate) struct LightMap {
     floor: Mesh,
     walls: Vec<Mesh>,
     even: bool,
@@ -48,7 +48,7 @@ impl Mesh {
 }
 
 impl LightMap {
-    pub(super) fn new(floors: &[Rectangle], walls: &[BuildingWall], lights: &Lights) -> Self {
+    pub(crate) fn new(floors: &[Rectangle], walls: &[BuildingWall], lights: &Lights) -> Self {
         let none = || Mesh {
             least: [0.0; 2],
             per_metre: [0.0; 2],
@@ -108,12 +108,12 @@ impl LightMap {
     }
 
     #[inline]
-    pub(super) fn on_floor(&self, place: [f32; 2]) -> f32 {
+    pub(crate) fn on_floor(&self, place: [f32; 2]) -> f32 {
         if self.even { 1.0 } else { self.floor.at(place) }
     }
 
     #[inline]
-    pub(super) fn on_wall(&self, wall: usize, along: f32, height: f32) -> f32 {
+    pub(crate) fn on_wall(&self, wall: usize, along: f32, height: f32) -> f32 {
         if self.even { 1.0 } else { self.walls[wall].at([along, height]) }
     }
 }

@@ -1,11 +1,11 @@
 //! The surface that a ray meets in a building, and its colour there.
 
-use super::building::{Building, HEIGHT, WallPart};
-use super::furniture::{BlocksAround, MetBlock};
-use super::looks::FloorCovering;
-use super::random_stream::{clouds, floor, speckle};
-use super::sight_lines::SightLines;
-use super::world_ray::WorldRay;
+use crate::building::{Building, HEIGHT, WallPart};
+use crate::furniture::{BlocksAround, MetBlock};
+use crate::looks::FloorCovering;
+use crate::random_stream::{clouds, floor, speckle};
+use crate::sight_lines::SightLines;
+use crate::world_ray::WorldRay;
 
 /// Light on the ceiling, as a share of that on the floor.
 const CEILING_LIGHT: f32 = 0.6;
@@ -15,7 +15,7 @@ const LAMP_EDGE: f32 = 0.02;
 
 /// A visible surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Surface {
+pub(crate) enum Surface {
     Floor,
     Tape,
     Marker,
@@ -27,7 +27,7 @@ pub(super) enum Surface {
     Overhead(u32),
     Ceiling,
     Lamp,
-    Robot(super::body::RobotPart),
+    Robot(crate::body::RobotPart),
     /// The holder around the mirror.
     Holder,
     /// Nothing: the ray leaves the building.
@@ -37,7 +37,7 @@ pub(super) enum Surface {
 impl Surface {
     /// A number that is different for different surfaces.
     #[inline]
-    pub(super) fn number(self) -> u32 {
+    pub(crate) fn number(self) -> u32 {
         match self {
             Self::Floor => 0,
             Self::Tape => 1,
@@ -67,7 +67,7 @@ impl Surface {
 
 /// The end of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum RayEnd {
+pub(crate) enum RayEnd {
     Floor { place: [f32; 2] },
     Wall { wall: u32, along: f32, height: f32 },
     Ceiling { place: [f32; 2] },
@@ -75,13 +75,13 @@ pub(super) enum RayEnd {
 }
 
 /// Size of a pixel on the floor, along the ray seen from above and across it, in metres.
-pub(super) type Footprint = [f32; 2];
+pub(crate) type Footprint = [f32; 2];
 
 /// A building, and the sight lines and the furniture from one place in it.
-pub(super) struct BuildingView<'a> {
-    pub(super) building: &'a Building,
-    pub(super) lines: &'a SightLines,
-    pub(super) blocks: BlocksAround<'a>,
+pub(crate) struct BuildingView<'a> {
+    pub(crate) building: &'a Building,
+    pub(crate) lines: &'a SightLines,
+    pub(crate) blocks: BlocksAround<'a>,
 }
 
 impl BuildingView<'_> {
@@ -137,7 +137,7 @@ impl BuildingView<'_> {
 
     /// The surface at the end of a ray.
     #[inline]
-    pub(super) fn surface(&self, ray: &WorldRay) -> Surface {
+    pub(crate) fn surface(&self, ray: &WorldRay) -> Surface {
         let wall = self.wall(ray);
         if let Some(block) = self.furniture(ray, wall) {
             return Surface::Furniture(block.face);
@@ -155,7 +155,7 @@ impl BuildingView<'_> {
 
     /// The surface at the end of a ray, and the light that comes back along the ray.
     #[inline]
-    pub(super) fn seen(
+    pub(crate) fn seen(
         &self,
         ray: &WorldRay,
         footprint: impl Fn() -> Footprint,

@@ -4,8 +4,8 @@ use std::f32::consts::TAU;
 
 use rand::{RngExt, seq::SliceRandom};
 
-use super::random_stream::{StreamPurpose, stream};
-use super::world_ray::WorldRay;
+use crate::random_stream::{StreamPurpose, stream};
+use crate::world_ray::WorldRay;
 
 /// The number of directions in which there is furniture or none.
 const CELLS: usize = 24;
@@ -21,16 +21,16 @@ const SHADES: std::ops::RangeInclusive<f32> = 0.003..=0.010;
 
 /// Tall dark furniture around the robot, by direction: all that is seen above its lower edge is dark.
 #[derive(Clone, Debug)]
-pub(super) struct Overhead {
+pub(crate) struct Overhead {
     /// Empty without furniture.
     cells: Vec<Option<OverheadPiece>>,
 }
 
 /// A piece of furniture with a flat front.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct OverheadPiece {
+pub(crate) struct OverheadPiece {
     /// A number that is different for different pieces.
-    pub(super) number: u32,
+    pub(crate) number: u32,
     /// The direction in which its front faces the robot, counter-clockwise from east, in radians.
     middle: f32,
     slope: f32,
@@ -38,14 +38,14 @@ pub(super) struct OverheadPiece {
 }
 
 impl OverheadPiece {
-    pub(super) fn colour(&self) -> [f32; 3] {
+    pub(crate) fn colour(&self) -> [f32; 3] {
         [1.1, 1.0, 0.9].map(|channel| channel * self.shade)
     }
 }
 
 impl Overhead {
     /// Furniture in this share of all directions.
-    pub(super) fn new(share: f64, seed: u64) -> Self {
+    pub(crate) fn new(share: f64, seed: u64) -> Self {
         let dark = (share * CELLS as f64).round() as usize;
         if dark == 0 {
             return Self { cells: Vec::new() };
@@ -77,7 +77,7 @@ impl Overhead {
 
     /// The piece of furniture that a ray meets.
     #[inline]
-    pub(super) fn met(&self, ray: &WorldRay) -> Option<&OverheadPiece> {
+    pub(crate) fn met(&self, ray: &WorldRay) -> Option<&OverheadPiece> {
         let [x, y, up] = ray.direction;
         let piece = self.cells.get(usize::from(ray.turn) * CELLS / 65_536)?.as_ref()?;
         let towards = x * piece.middle.cos() + y * piece.middle.sin();

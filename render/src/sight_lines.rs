@@ -2,19 +2,19 @@
 
 use std::f64::consts::TAU;
 
-use super::walls::BuildingWall;
+use crate::walls::BuildingWall;
 
 /// The number of sectors of a full turn.
 const SECTORS: u16 = 512;
 const PER_SECTOR: u16 = (65_536 / SECTORS as u32) as u16;
 
 /// The greatest error of a ray's direction, in 1/65,536 of a turn.
-pub(super) const TURN_ERROR: i64 = 64;
+pub(crate) const TURN_ERROR: i64 = 64;
 
 /// For each sector, counter-clockwise from east, the walls that a ray may meet first, nearest
 /// first.
 #[derive(Clone, Debug)]
-pub(super) struct SightLines {
+pub(crate) struct SightLines {
     begin: Vec<u32>,
     walls: Vec<u32>,
 }
@@ -29,7 +29,7 @@ struct Seen {
 
 impl SightLines {
     /// The walls around a place, for rays that pass it within this distance.
-    pub(super) fn from(place: [f64; 2], off_axis: f64, walls: &[BuildingWall]) -> Self {
+    pub(crate) fn from(place: [f64; 2], off_axis: f64, walls: &[BuildingWall]) -> Self {
         let mut sectors: Vec<Vec<Seen>> = (0..SECTORS).map(|_| Vec::new()).collect();
         for (number, wall) in walls.iter().enumerate() {
             let out = (place[1 - wall.along] - wall.plane) * wall.floor_side;
@@ -53,7 +53,7 @@ impl SightLines {
     /// The walls that a ray in this direction may meet first. The direction is in 1/65,536 of a
     /// turn from east.
     #[inline]
-    pub(super) fn walls(&self, turn: u16) -> &[u32] {
+    pub(crate) fn walls(&self, turn: u16) -> &[u32] {
         let sector = usize::from(turn / PER_SECTOR);
         &self.walls[self.begin[sector] as usize..self.begin[sector + 1] as usize]
     }
@@ -132,8 +132,8 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
     use toposlam_model::format::world_file;
 
-    use super::super::walls::walls;
     use super::*;
+    use crate::walls::walls;
 
     /// The first of these walls that a ray meets.
     fn first<'a>(
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn the_first_wall_of_every_ray_is_found() {
-        let bytes = include_bytes!("../../../worlds/building-25.toml");
+        let bytes = include_bytes!("../../worlds/building-25.toml");
         let plan = world_file::read(bytes).unwrap().plan.unwrap();
         let walls = walls(&plan);
         let floors: Vec<_> = plan.floor().collect();

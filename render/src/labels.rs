@@ -1,15 +1,15 @@
 //! The class of each pixel, to train and judge the colour classifier. Section 3.
 
 use image::{Rgb, RgbImage};
+use toposlam_model::driving::pose::Pose;
 use toposlam_vision::colour::PixelClass;
 
-use super::building::{Building, WallPart};
-use super::effects::Effects;
-use super::renderer::Shot;
-use super::rig::Rig;
-use super::sight_lines::SightLines;
-use super::surfaces::Surface;
-use crate::pose::Pose;
+use crate::building::{Building, WallPart};
+use crate::effects::Effects;
+use crate::renderer::Shot;
+use crate::rig::Rig;
+use crate::sight_lines::SightLines;
+use crate::surfaces::Surface;
 
 /// The class of the middle of each pixel, row by row: [`PixelClass::Unseen`] on the robot, its
 /// struts and outside the mirror, and never [`PixelClass::Unknown`].

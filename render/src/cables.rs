@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use rand::{Rng, RngExt, seq::IndexedRandom};
 use toposlam_model::floor_plan::Rectangle;
 
-use super::random_stream::{StreamPurpose, about, stream};
-use super::squares::Squares;
+use crate::random_stream::{StreamPurpose, about, stream};
+use crate::squares::Squares;
 
 /// Length of a straight piece of a cable, in metres.
 const STEP: f64 = 0.15;
@@ -26,14 +26,14 @@ struct CablePiece {
 
 /// The cables on the floor.
 #[derive(Clone, Debug)]
-pub(super) struct Cables {
+pub(crate) struct Cables {
     pieces: Vec<CablePiece>,
     near: Squares,
 }
 
 impl Cables {
     /// Cables on these floors, `per_floor` on each 10 m.
-    pub(super) fn new(floors: &[Rectangle], per_floor: f64, seed: u64) -> Self {
+    pub(crate) fn new(floors: &[Rectangle], per_floor: f64, seed: u64) -> Self {
         let mut pieces = Vec::new();
         for (number, floor) in floors.iter().enumerate() {
             let mut rng = stream(seed, StreamPurpose::Cables, number);
@@ -48,7 +48,7 @@ impl Cables {
 
     /// The colour of the cable at a place.
     #[inline]
-    pub(super) fn at(&self, place: [f32; 2]) -> Option<[f32; 3]> {
+    pub(crate) fn at(&self, place: [f32; 2]) -> Option<[f32; 3]> {
         if self.pieces.is_empty() {
             return None;
         }

@@ -2,17 +2,17 @@
 
 use image::RgbImage;
 
-use super::body::Body;
-use super::building::Building;
-use super::effects::Effects;
-use super::exposure::{RowRenderer, compressed, expose};
-use super::furniture::BlocksAround;
-use super::optics::RayPath;
-use super::rig::{PixelRay, Rig};
-use super::sight_lines::SightLines;
-use super::surfaces::{BuildingView, Surface};
-use super::world_ray::WorldRay;
-use crate::pose::Pose;
+use crate::body::Body;
+use crate::building::Building;
+use crate::effects::Effects;
+use crate::exposure::{RowRenderer, compressed, expose};
+use crate::furniture::BlocksAround;
+use crate::optics::RayPath;
+use crate::rig::{PixelRay, Rig};
+use crate::sight_lines::SightLines;
+use crate::surfaces::{BuildingView, Surface};
+use crate::world_ray::WorldRay;
+use toposlam_model::driving::pose::Pose;
 
 /// The number of rays along and across a pixel in which several surfaces meet.
 const FINE: usize = 3;
@@ -36,7 +36,7 @@ pub fn render(
 }
 
 /// The image before it is compressed.
-pub(super) fn exposed(
+pub fn exposed(
     rig: &Rig,
     building: &Building,
     pose: Pose,
@@ -49,7 +49,7 @@ pub(super) fn exposed(
 }
 
 /// A rig in a building, at a pose.
-pub(super) struct Shot<'a> {
+pub(crate) struct Shot<'a> {
     rig: &'a Rig,
     view: BuildingView<'a>,
     body: Body,
@@ -63,7 +63,7 @@ pub(super) struct Shot<'a> {
 }
 
 impl<'a> Shot<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         rig: &'a Rig,
         building: &'a Building,
         lines: &'a SightLines,
@@ -90,7 +90,7 @@ impl<'a> Shot<'a> {
     }
 
     /// The surface in the middle of a pixel.
-    pub(super) fn surface(&self, u: u32, v: u32) -> Surface {
+    pub(crate) fn surface(&self, u: u32, v: u32) -> Surface {
         let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
         let from_middle = || self.off_middle([u as f32, v as f32]);
         if let Some(part) = self.body.met(ray, from_middle) {
@@ -310,7 +310,7 @@ mod tests {
     use toposlam_vision::camera::Camera;
 
     use super::*;
-    use crate::simulator::{RigErrors, sight_lines::TURN_ERROR};
+    use crate::{RigErrors, sight_lines::TURN_ERROR};
 
     fn apart(one: &PixelRay, other: &PixelRay) -> f32 {
         let square = |axis: usize| (one.direction[axis] - other.direction[axis]).powi(2);

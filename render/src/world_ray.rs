@@ -2,9 +2,9 @@
 
 /// A ray in the building's coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WorldRay {
-    pub(super) origin: [f32; 3],
-    pub(super) direction: [f32; 3],
+pub(crate) struct WorldRay {
+    pub(crate) origin: [f32; 3],
+    pub(crate) direction: [f32; 3],
     /// Direction counter-clockwise from east, in 1/65,536 of a turn.
-    pub(super) turn: u16,
+    pub(crate) turn: u16,
 }

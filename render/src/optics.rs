@@ -45,12 +45,12 @@ pub enum RayPath {
 
 /// The optics of a camera with its errors.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct RigOptics {
-    pub(super) image: [u32; 2],
+pub(crate) struct RigOptics {
+    pub(crate) image: [u32; 2],
     /// The pixel that looks straight down.
-    pub(super) centre: [f64; 2],
+    pub(crate) centre: [f64; 2],
     /// Height of the pinhole or viewpoint, in metres.
-    pub(super) height: f64,
+    pub(crate) height: f64,
     kind: Kind,
     errors: RigErrors,
 }
@@ -76,7 +76,7 @@ struct UnderSphere {
 }
 
 impl RigOptics {
-    pub(super) fn new(camera: &Camera, errors: &RigErrors) -> Self {
+    pub(crate) fn new(camera: &Camera, errors: &RigErrors) -> Self {
         let centre = camera.middle();
         Self {
             image: camera.image,
@@ -93,7 +93,7 @@ impl RigOptics {
     }
 
     /// The ray that a pixel sees.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> CameraRay {
+    pub(crate) fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         let mut ray = match &self.kind {
             Kind::UnderSphere(rig) => {
                 rig.ray([pixel[0] - self.centre[0], self.centre[1] - pixel[1]])
@@ -134,7 +134,7 @@ impl RigOptics {
     }
 
     /// Radius of the view in the image, in pixels: the mirror's rim, or the image's corner.
-    pub(super) fn rim(&self) -> f64 {
+    pub(crate) fn rim(&self) -> f64 {
         match &self.kind {
             Kind::UnderSphere(rig) => {
                 let sine = (rig.radius / rig.distance).min(0.999);
@@ -196,12 +196,12 @@ impl CameraRay {
     }
 
     /// Its direction as a share of a full turn from ahead to the left, in [0, 1).
-    pub(super) fn turn(&self) -> f64 {
+    pub(crate) fn turn(&self) -> f64 {
         (self.direction[1].atan2(self.direction[0]) / TAU).rem_euclid(1.0)
     }
 
     /// Its distance from the robot's axis, seen from above.
-    pub(super) fn off_axis(&self) -> f64 {
+    pub(crate) fn off_axis(&self) -> f64 {
         let [x, y, _] = self.direction;
         let level = x.hypot(y);
         if level == 0.0 { 0.0 } else { (self.origin[0] * y - self.origin[1] * x).abs() / level }

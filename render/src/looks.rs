@@ -212,7 +212,7 @@ impl BuildingLook {
 }
 
 /// The reflectance of a colour for red, green and blue.
-pub(super) fn linear(colour: Colour) -> [f32; 3] {
+pub(crate) fn linear(colour: Colour) -> [f32; 3] {
     colour.map(|value| {
         let value = f32::from(value) / 255.0;
         if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }

@@ -6,16 +6,16 @@ use toposlam_model::embedded_graph::Dart;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 use toposlam_vision::colour::StripeKind;
 
-use super::cables::Cables;
-use super::effects::Effects;
-use super::furniture::{Block, furniture};
-use super::light_map::LightMap;
-use super::lights::{CEILING, Lamp, Lights};
-use super::looks::{BuildingLook, linear};
-use super::overhead::Overhead;
-use super::random_stream::{StreamPurpose, about, clouds, stream};
-use super::squares::Squares;
-use super::walls::{BuildingWall, walls};
+use crate::cables::Cables;
+use crate::effects::Effects;
+use crate::furniture::{Block, furniture};
+use crate::light_map::LightMap;
+use crate::lights::{CEILING, Lamp, Lights};
+use crate::looks::{BuildingLook, linear};
+use crate::overhead::Overhead;
+use crate::random_stream::{StreamPurpose, about, clouds, stream};
+use crate::squares::Squares;
+use crate::walls::{BuildingWall, walls};
 
 /// Length and width of the marker, in metres.
 const MARKER: [f64; 2] = [0.60, 0.18];
@@ -31,45 +31,45 @@ const LONGEST: f32 = 1.01;
 /// A building to render.
 #[derive(Clone, Debug)]
 pub struct Building {
-    pub(super) look: BuildingLook,
-    pub(super) colours: BuildingColours,
+    pub(crate) look: BuildingLook,
+    pub(crate) colours: BuildingColours,
     floors: Vec<Rectangle>,
     walls: Vec<BuildingWall>,
-    pub(super) faces: Vec<Face>,
+    pub(crate) faces: Vec<Face>,
     things: Vec<Thing>,
     /// The walls along which tape may lie.
     taped: Squares,
-    pub(super) light: LightMap,
+    pub(crate) light: LightMap,
     lamps: Vec<Lamp>,
     lit: Squares,
-    pub(super) marker: Option<Rectangle>,
-    pub(super) texture: f32,
-    pub(super) gloss: f32,
+    pub(crate) marker: Option<Rectangle>,
+    pub(crate) texture: f32,
+    pub(crate) gloss: f32,
     scuffs: f32,
-    pub(super) furniture: Vec<Block>,
-    pub(super) cables: Cables,
-    pub(super) overhead: Overhead,
+    pub(crate) furniture: Vec<Block>,
+    pub(crate) cables: Cables,
+    pub(crate) overhead: Overhead,
 }
 
 /// The look's colours, in linear light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BuildingColours {
-    pub(super) floor: [f32; 3],
-    pub(super) wall: [f32; 3],
-    pub(super) stripe: [f32; 3],
-    pub(super) door: [f32; 3],
-    pub(super) frame: [f32; 3],
-    pub(super) ceiling: [f32; 3],
-    pub(super) marker: [f32; 3],
+pub(crate) struct BuildingColours {
+    pub(crate) floor: [f32; 3],
+    pub(crate) wall: [f32; 3],
+    pub(crate) stripe: [f32; 3],
+    pub(crate) door: [f32; 3],
+    pub(crate) frame: [f32; 3],
+    pub(crate) ceiling: [f32; 3],
+    pub(crate) marker: [f32; 3],
 }
 
 /// A wall as rays meet it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    pub(super) along: usize,
-    pub(super) plane: f32,
-    pub(super) floor_side: f32,
-    pub(super) span: [f32; 2],
+pub(crate) struct Face {
+    pub(crate) along: usize,
+    pub(crate) plane: f32,
+    pub(crate) floor_side: f32,
+    pub(crate) span: [f32; 2],
     /// The extent of tape along the wall: the wall itself, and round outer corners.
     taped: [f32; 2],
     /// The range of its things.
@@ -100,7 +100,7 @@ enum Kind {
 
 /// A visible part of a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum WallPart {
+pub(crate) enum WallPart {
     Bare,
     Baseboard,
     Leaf,
@@ -212,7 +212,7 @@ impl Building {
     }
 
     /// The part of a wall at this place along it and this height.
-    pub(super) fn wall_part(&self, face: &Face, along: f32, height: f32) -> WallPart {
+    pub(crate) fn wall_part(&self, face: &Face, along: f32, height: f32) -> WallPart {
         let stripe = self.look.stripe;
         let low = stripe.kind == StripeKind::OnWall && height < stripe.width as f32;
         let mut part = if low { WallPart::Baseboard } else { WallPart::Bare };
@@ -236,7 +236,7 @@ impl Building {
     }
 
     /// The reflectance of a part of a wall.
-    pub(super) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
+    pub(crate) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
         match part {
             WallPart::Bare => self.colours.wall,
             WallPart::Baseboard => self.scuffed(along, height),
@@ -253,7 +253,7 @@ impl Building {
 
     /// Whether there is tape at a place of the floor.
     #[inline]
-    pub(super) fn tape_at(&self, place: [f32; 2]) -> bool {
+    pub(crate) fn tape_at(&self, place: [f32; 2]) -> bool {
         self.taped.at(place).iter().any(|&number| {
             let face = &self.faces[number as usize];
             let (along, out) = (place[face.along], place[1 - face.along]);
@@ -270,12 +270,12 @@ impl Building {
 
     /// The lamps above a place or nearby.
     #[inline]
-    pub(super) fn lamps(&self, place: [f32; 2]) -> impl Iterator<Item = &Lamp> {
+    pub(crate) fn lamps(&self, place: [f32; 2]) -> impl Iterator<Item = &Lamp> {
         self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
     /// The reflectance of the stripe.
-    pub(super) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
+    pub(crate) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
         if self.scuffs == 0.0 {
             return self.colours.stripe;
         }
@@ -289,7 +289,7 @@ impl Building {
     }
 
     /// The reflectance of tape at a place.
-    pub(super) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
+    pub(crate) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
         self.scuffed(place[0], place[1])
     }
 }
@@ -378,4 +378,4 @@ fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
 }
 
 /// Height of the ceiling, in metres.
-pub(super) const HEIGHT: f32 = CEILING as f32;
+pub(crate) const HEIGHT: f32 = CEILING as f32;

@@ -6,35 +6,53 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// The purpose of a stream. Each purpose has its own stream.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum StreamPurpose {
+pub enum StreamPurpose {
+    /// Where lamps are, and how bright they are.
     Lamps,
+    /// Spots of light on the floor.
     Spots,
+    /// Shadows on the floor.
     Shadows,
+    /// Gaps of the stripe.
     Gaps,
+    /// Doors in walls.
     Doors,
+    /// Posters on walls.
     Posters,
+    /// The noise of the image sensor.
     Sensor,
+    /// The slip of the wheels, and the noise of odometry.
     Wheels,
+    /// Errors of a camera without images.
     Scenes,
+    /// Faults of a robot.
     Faults,
+    /// Rooms beside corridors.
     Rooms,
+    /// Furniture that a laser scanner sees.
     Furniture,
+    /// Surfaces that give a laser scanner no return.
     Surfaces,
+    /// People who walk by.
     People,
+    /// The noise of ranges.
     Ranges,
+    /// Furniture along walls.
     Blocks,
+    /// Cables on the floor.
     Cables,
+    /// Pipes and struts above the floor.
     Overhead,
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.
-pub(super) fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
+pub fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
     let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
     Xoshiro256PlusPlus::seed_from_u64(mixed)
 }
 
 /// A random number with this expectation: the expectation rounded up or down.
-pub(super) fn about(expected: f64, rng: &mut Xoshiro256PlusPlus) -> usize {
+pub fn about(expected: f64, rng: &mut Xoshiro256PlusPlus) -> usize {
     (expected.min(500.0) + rng.random::<f64>()) as usize
 }
 
@@ -48,7 +66,7 @@ fn mixed(mut bits: u64) -> u64 {
 
 /// A random number from -1 to 1 for each cell of a plane.
 #[inline]
-pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
+pub(crate) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
     let mut bits = (x as u32).wrapping_mul(0x9e37_79b1)
         ^ (y as u32).wrapping_mul(0x85eb_ca6b).rotate_left(13)
         ^ salt;
@@ -60,14 +78,14 @@ pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
 
 /// The greatest integer not above a value.
 #[inline]
-pub(super) fn floor(value: f32) -> i32 {
+pub(crate) fn floor(value: f32) -> i32 {
     let whole = value as i32;
     whole.wrapping_sub(i32::from(value < whole as f32))
 }
 
 /// Smooth noise from -1 to 1; its cells have side one.
 #[inline]
-pub(super) fn clouds(x: f32, y: f32, salt: u32) -> f32 {
+pub fn clouds(x: f32, y: f32, salt: u32) -> f32 {
     let (left, low) = (floor(x), floor(y));
     let ease = |share: f32| share * share * (3.0 - 2.0 * share);
     let (across, up) = (ease(x - left as f32), ease(y - low as f32));

@@ -2,28 +2,28 @@
 
 use toposlam_vision::camera::Camera;
 
-use super::optics::{CameraRay, RayPath, RigErrors, RigOptics};
+use crate::optics::{CameraRay, RayPath, RigErrors, RigOptics};
 
 /// A camera under its mirror. It is built once and used for any number of images.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    pub(super) optics: RigOptics,
-    pub(super) rays: Vec<PixelRay>,
+    pub(crate) optics: RigOptics,
+    pub(crate) rays: Vec<PixelRay>,
     /// Radial size of a pixel on the floor by its distance from the centre in pixels; in metres,
     /// for the upright rig.
     strides: Vec<f32>,
     /// The greatest distance of a ray from the robot's axis, seen from above, in metres.
-    pub(super) off_axis: f64,
+    pub(crate) off_axis: f64,
 }
 
 /// The ray through the middle of a pixel, in the robot's coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PixelRay {
-    pub(super) origin: [f32; 3],
-    pub(super) direction: [f32; 3],
+pub(crate) struct PixelRay {
+    pub(crate) origin: [f32; 3],
+    pub(crate) direction: [f32; 3],
     /// Direction from ahead to the left, in 1/65,536 of a turn.
-    pub(super) turn: u16,
-    pub(super) by: RayPath,
+    pub(crate) turn: u16,
+    pub(crate) by: RayPath,
 }
 
 impl From<CameraRay> for PixelRay {
@@ -42,6 +42,12 @@ impl Rig {
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         Self::with_errors(camera, &RigErrors::default())
+    }
+
+    /// The centre and the radius of the view in the image, in pixels: the mirror's rim, or a circle through the corners.
+    #[must_use]
+    pub fn rim(&self) -> ([f64; 2], f64) {
+        (self.optics.centre, self.optics.rim())
     }
 
     /// A camera that differs from its calibration.
@@ -87,7 +93,7 @@ impl Rig {
 
     /// Radial size on the floor of a pixel at this distance from the centre, in metres.
     #[inline]
-    pub(super) fn stride(&self, from_middle: f32) -> f32 {
+    pub(crate) fn stride(&self, from_middle: f32) -> f32 {
         let last = self.strides.last().copied().unwrap_or(1.0);
         self.strides.get(from_middle as usize).copied().unwrap_or(last)
     }

@@ -3,13 +3,13 @@
 use rand::RngExt;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
-use super::effects::Effects;
-use super::random_stream::{StreamPurpose, about, stream};
-use super::squares::Squares;
-use super::walls::BuildingWall;
+use crate::effects::Effects;
+use crate::random_stream::{StreamPurpose, about, stream};
+use crate::squares::Squares;
+use crate::walls::BuildingWall;
 
 /// Height of the ceiling, in metres.
-pub(super) const CEILING: f64 = 2.5;
+pub(crate) const CEILING: f64 = 2.5;
 
 /// Brightness of a lamp that is seen directly; a white surface in mean light has 1.
 const LAMP_BRIGHTNESS: f64 = 6.0;
@@ -19,11 +19,11 @@ const REACH: f64 = 6.0;
 
 /// A lamp in the ceiling.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lamp {
-    pub(super) middle: [f32; 2],
+pub(crate) struct Lamp {
+    pub(crate) middle: [f32; 2],
     /// Half its length along x and along y.
-    pub(super) half: [f32; 2],
-    pub(super) brightness: f32,
+    pub(crate) half: [f32; 2],
+    pub(crate) brightness: f32,
 }
 
 /// A hot spot or a shadow on the floor.
@@ -47,8 +47,8 @@ impl Spot {
 }
 
 /// Lamps, spots and the walls near them.
-pub(super) struct Lights {
-    pub(super) lamps: Vec<Lamp>,
+pub(crate) struct Lights {
+    pub(crate) lamps: Vec<Lamp>,
     spots: Vec<Spot>,
     /// The reach of each spot.
     spotted: Squares,
@@ -67,7 +67,7 @@ fn middle_line(floor: &Rectangle, width: f64) -> ([f64; 2], f64, usize) {
 }
 
 impl Lights {
-    pub(super) fn new(
+    pub(crate) fn new(
         plan: &FloorPlan,
         walls: &[BuildingWall],
         effects: &Effects,
@@ -129,12 +129,12 @@ impl Lights {
     }
 
     /// Whether the light is the same everywhere.
-    pub(super) fn even(&self) -> bool {
+    pub(crate) fn even(&self) -> bool {
         self.falloff == 0.0 && self.spots.is_empty()
     }
 
     /// The light of the lamps on a surface at this place, up to a factor.
-    pub(super) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
+    pub(crate) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
         let mut sum = 0.0;
         for &number in self.reaches.at([place[0] as f32, place[1] as f32]) {
             let lamp = &self.lamps[number as usize];
@@ -159,7 +159,7 @@ impl Lights {
     }
 
     /// The light at a place, given its lamplight and the floor's average lamplight.
-    pub(super) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
+    pub(crate) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
         let lamps = if average > 0.0 { lamplight / average } else { 0.0 };
         let mut light = 1.0 - self.falloff + self.falloff * lamps;
         for &number in self.spotted.at(ground.map(|at| at as f32)) {
@@ -175,7 +175,7 @@ impl Lights {
 }
 
 impl Lamp {
-    pub(super) fn rectangle(&self) -> Rectangle {
+    pub(crate) fn rectangle(&self) -> Rectangle {
         let edge =
             |side: f32| [0, 1].map(|axis| f64::from(self.middle[axis] + side * self.half[axis]));
         Rectangle { least: edge(-1.0), greatest: edge(1.0) }
