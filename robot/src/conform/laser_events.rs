@@ -21,7 +21,7 @@ use toposlam_vision::laser::{
 use super::{
     bends::{Bends, PassedBend},
     events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
-    laser_visit::{Shown, Visit, VisitKind, is_same_arm},
+    laser_visit::{PlaceEstimate, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
     seen_junctions::{SeenJunction, SeenJunctions},
 };
@@ -185,10 +185,10 @@ impl LaserEvents {
     #[must_use]
     pub fn standing(&self) -> Option<StandingPlace> {
         let visit = self.visit.as_ref().or(self.possible_visit.as_ref())?;
-        let shown = match self.shown(visit) {
-            Some((Shown::Doors(doors), _)) => StandingPercept::Junction(doors),
-            Some((Shown::Doubt(_), _)) => StandingPercept::Undecided,
-            Some((Shown::Nothing, _)) | None => StandingPercept::Corridor,
+        let shown = match self.estimate(visit) {
+            Some((PlaceEstimate::Doors(doors), _)) => StandingPercept::Junction(doors),
+            Some((PlaceEstimate::Undecided(_), _)) => StandingPercept::Undecided,
+            Some((PlaceEstimate::NoVertex, _)) | None => StandingPercept::Corridor,
         };
         Some(StandingPlace { centre: visit.centre, clearance: visit.clearance, shown })
     }
@@ -366,33 +366,34 @@ impl LaserEvents {
 
     /// What the views show of a visited place, and its extent in metres. If there are more doors with the arms
     /// in doubt than without them, the visit is undecided.
-    fn shown(&self, visit: &Visit) -> Option<(Shown, f64)> {
+    fn estimate(&self, visit: &Visit) -> Option<(PlaceEstimate, f64)> {
         let seen = self.seen(visit);
         let doors = match (visit.kind, &seen) {
-            (VisitKind::PossibleJunction, Some((Shown::Doubt(_), _))) => return None,
-            (VisitKind::DeadEnd, _) | (_, Some((Shown::Doubt(_), _))) => return seen,
-            (_, Some((Shown::Doors(doors), _))) => doors.len(),
+            (VisitKind::PossibleJunction, Some((PlaceEstimate::Undecided(_), _))) => return None,
+            (VisitKind::DeadEnd, _) | (_, Some((PlaceEstimate::Undecided(_), _))) => return seen,
+            (_, Some((PlaceEstimate::Doors(doors), _))) => doors.len(),
             (VisitKind::Bend { .. }, _) => return seen,
-            (_, Some((Shown::Nothing, _)) | None) => 0,
+            (_, Some((PlaceEstimate::NoVertex, _)) | None) => 0,
         };
         let possible = self.possible_junctions.at(visit.centre);
         // Without an arm in doubt a possible junction is no visit of its own.
         let seen = seen.filter(|_| visit.kind != VisitKind::PossibleJunction);
         let visit = Visit { kind: VisitKind::PossibleJunction, ..visit.clone() };
         let in_doubt = possible.and_then(|known| {
-            let is_more = match visit.shown(&known.arms_of_meet(&self.params.visit), &self.params) {
-                Shown::Nothing => false,
-                Shown::Doubt(_) => true,
-                Shown::Doors(possible) => possible.len() > doors.max(2),
-            };
-            let doubt = Shown::Doubt(UndecidedCause::UnseenArm);
+            let is_more =
+                match visit.estimate(&known.arms_of_meet(&self.params.visit), &self.params) {
+                    PlaceEstimate::NoVertex => false,
+                    PlaceEstimate::Undecided(_) => true,
+                    PlaceEstimate::Doors(possible) => possible.len() > doors.max(2),
+                };
+            let doubt = PlaceEstimate::Undecided(UndecidedCause::UnseenArm);
             is_more.then(|| (doubt, known.extent(&self.params.visit)))
         });
         in_doubt.or(seen)
     }
 
     /// What the views show of a visited place without the arms in doubt, and its extent in metres.
-    fn seen(&self, visit: &Visit) -> Option<(Shown, f64)> {
+    fn seen(&self, visit: &Visit) -> Option<(PlaceEstimate, f64)> {
         let params = &self.params.visit;
         let places = match visit.kind {
             VisitKind::Junction | VisitKind::PossibleJunction => &self.junctions,
@@ -405,16 +406,16 @@ impl LaserEvents {
                 });
                 let exit = visit.exit.map(|(exit, _)| exit);
                 let shown = match (is_junction, in_doubt) {
-                    (true, _) => Shown::Nothing,
-                    (_, true) => Shown::Doubt(UndecidedCause::Unclear),
-                    _ => Shown::Doors(visit.entry.into_iter().chain(exit).collect()),
+                    (true, _) => PlaceEstimate::NoVertex,
+                    (_, true) => PlaceEstimate::Undecided(UndecidedCause::Unclear),
+                    _ => PlaceEstimate::Doors(visit.entry.into_iter().chain(exit).collect()),
                 };
                 return Some((shown, params.same));
             }
         };
         let known = places.at(visit.centre)?;
-        let shown = match visit.shown(&known.arms_of_meet(params), &self.params) {
-            Shown::Nothing => visit.shown(&known.arms(params), &self.params),
+        let shown = match visit.estimate(&known.arms_of_meet(params), &self.params) {
+            PlaceEstimate::NoVertex => visit.estimate(&known.arms(params), &self.params),
             shown => shown,
         };
         Some((shown, known.extent(params)))
@@ -426,8 +427,8 @@ impl LaserEvents {
         if visit.kind == VisitKind::PossibleJunction && self.is_visited_otherwise(visit) {
             return;
         }
-        let Some((shown, extent)) = self.shown(visit) else { return };
-        if matches!(shown, Shown::Nothing) {
+        let Some((shown, extent)) = self.estimate(visit) else { return };
+        if matches!(shown, PlaceEstimate::NoVertex) {
             // It went on, or it turned back there.
             let back = visit.entry.zip(exit).is_some_and(|(entry, exit)| is_same_arm(entry, exit));
             if let Some((_, turned)) = &mut self.last {
@@ -455,12 +456,12 @@ impl LaserEvents {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
         match shown {
-            Shown::Doors(doors) => self.arrive(visit, doors, entry),
-            Shown::Doubt(cause) => {
+            PlaceEstimate::Doors(doors) => self.arrive(visit, doors, entry),
+            PlaceEstimate::Undecided(cause) => {
                 self.push_junction(visit, &[]);
                 self.push(visit.source, CheckedKind::Undecided(cause));
             }
-            Shown::Nothing => {}
+            PlaceEstimate::NoVertex => {}
         }
     }
 

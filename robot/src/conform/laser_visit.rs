@@ -47,11 +47,11 @@ pub(super) enum VisitKind {
 }
 
 /// What the views of a visited place show.
-pub(super) enum Shown {
+pub(super) enum PlaceEstimate {
     /// No vertex.
-    Nothing,
+    NoVertex,
     /// They do not decide what it is.
-    Doubt(UndecidedCause),
+    Undecided(UndecidedCause),
     /// The directions of its doors.
     Doors(Vec<f64>),
 }
@@ -63,7 +63,7 @@ const TRAVERSED: f64 = 0.25;
 
 impl Visit {
     /// What the views of the place show.
-    pub(super) fn shown(&self, arms: &[SeenArm], params: &LaserParams) -> Shown {
+    pub(super) fn estimate(&self, arms: &[SeenArm], params: &LaserParams) -> PlaceEstimate {
         let CornerParams { corners, min_turn, .. } = params.corner;
         let params = &params.visit;
         let exit = self.exit.map(|(exit, _)| exit);
@@ -89,11 +89,11 @@ impl Visit {
             _ => false,
         };
         if !is_vertex {
-            Shown::Nothing
+            PlaceEstimate::NoVertex
         } else if arms.iter().any(is_doubtful) {
-            Shown::Doubt(UndecidedCause::Unclear)
+            PlaceEstimate::Undecided(UndecidedCause::Unclear)
         } else {
-            Shown::Doors(doors)
+            PlaceEstimate::Doors(doors)
         }
     }
 }
