@@ -138,7 +138,10 @@ pair; this command prints it, and with `--html` writes a page on which you can w
 
 This command makes the folder:
 
-    toposlam counterexample --atlas worlds/atlas",
+    toposlam counterexample --atlas worlds/atlas
+
+Larger searches, one size further, and checks of every start with up to 9 edges are in `docs/checks.md`, with their
+commands.",
         sizes.join(", ")
     )
 }
