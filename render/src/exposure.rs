@@ -57,6 +57,7 @@ pub(crate) fn expose(
 }
 
 /// Encodes an image as JPEG, or as PNG if compression is lossless.
+#[must_use]
 pub fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = if effects.jpeg_loss > 0.0 {

@@ -46,6 +46,7 @@ pub enum StreamPurpose {
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.
+#[must_use]
 pub fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
     let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
     Xoshiro256PlusPlus::seed_from_u64(mixed)
@@ -85,6 +86,7 @@ pub(crate) fn floor(value: f32) -> i32 {
 
 /// Smooth noise from -1 to 1; its cells have side one.
 #[inline]
+#[must_use]
 pub fn clouds(x: f32, y: f32, salt: u32) -> f32 {
     let (left, low) = (floor(x), floor(y));
     let ease = |share: f32| share * share * (3.0 - 2.0 * share);

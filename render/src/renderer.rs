@@ -36,6 +36,7 @@ pub fn render(
 }
 
 /// The image before it is compressed.
+#[must_use]
 pub fn exposed(
     rig: &Rig,
     building: &Building,

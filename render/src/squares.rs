@@ -29,6 +29,7 @@ pub(crate) fn side(wished: f64, size: [f64; 2]) -> f64 {
 
 impl Squares {
     /// Indexes rectangles on these floors.
+    #[must_use]
     pub fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
         let (least, size) = extent(floors);
         let side = side(wished, size);
@@ -64,6 +65,7 @@ impl Squares {
 
     /// The numbers of all rectangles that contain a place, and perhaps of others.
     #[inline]
+    #[must_use]
     pub fn at(&self, place: [f32; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|axis| {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
