@@ -44,12 +44,6 @@ impl Rig {
         Self::with_errors(camera, &RigErrors::default())
     }
 
-    /// The centre and the radius of the view in the image, in pixels: the mirror's rim, or a circle through the corners.
-    #[must_use]
-    pub fn rim(&self) -> ([f64; 2], f64) {
-        (self.optics.centre, self.optics.rim())
-    }
-
     /// A camera that differs from its calibration.
     #[must_use]
     pub fn with_errors(camera: &Camera, errors: &RigErrors) -> Self {
@@ -83,6 +77,12 @@ impl Rig {
     #[must_use]
     pub fn image(&self) -> [u32; 2] {
         self.optics.image
+    }
+
+    /// The centre and the radius of the view in the image, in pixels: the mirror's rim, or a circle through the corners.
+    #[must_use]
+    pub fn rim(&self) -> ([f64; 2], f64) {
+        (self.optics.centre, self.optics.rim())
     }
 
     /// The ray that a pixel sees.

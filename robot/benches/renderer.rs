@@ -6,8 +6,7 @@
 use divan::Bencher;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::format::world_file;
-use toposlam_model::{driving::pose::Pose, floor_plan::FloorPlan};
+use toposlam_model::{driving::pose::Pose, floor_plan::FloorPlan, format::world_file};
 use toposlam_robot::simulator::{Building, BuildingLook, Effects, Rig, labels, render};
 use toposlam_vision::camera::Camera;
 

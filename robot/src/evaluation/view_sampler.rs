@@ -5,8 +5,7 @@ use std::{f64::consts::FRAC_PI_2, sync::Arc};
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    driving::pose::Pose,
-    driving::visit::JunctionShape,
+    driving::{pose::Pose, visit::JunctionShape},
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     format::world_file::WorldFileError,

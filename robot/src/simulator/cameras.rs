@@ -12,20 +12,22 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    driving::pose::Pose,
-    driving::scene::{
-        CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason, Scene,
-        Unclear, undirected, wrapped,
+    driving::{
+        pose::Pose,
+        scene::{
+            CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason, Scene,
+            Unclear, undirected, wrapped,
+        },
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
 };
+use toposlam_render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream};
 
 use crate::{
     record::{CameraImage, Frame},
     truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
 };
-use toposlam_render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream};
 
 /// The camera of a simulated robot.
 pub trait SimulatedCamera: Debug + Send {

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use toposlam_model::driving::pose::Pose;
-use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
+use toposlam_model::{driving::pose::Pose, embedded_graph::Dart, floor_plan::FloorPlan};
 
 use super::{faults::RobotFault, motion::MotionNoise};
 use crate::truth::angle;

@@ -7,13 +7,13 @@ use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose},
     floor_plan::{FloorPlan, Rectangle},
 };
+use toposlam_render::{StreamPurpose, clouds, stream};
 
 use super::surroundings::Surroundings;
 use crate::{
     robot::{RobotError, Sample, TimedOdometry},
     superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
 };
-use toposlam_render::{StreamPurpose, clouds, stream};
 
 /// The differences of a simulated base from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use rand::{RngExt, seq::IndexedRandom};
-use toposlam_model::driving::pose::Pose;
-use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
+use toposlam_model::{
+    driving::pose::Pose,
+    floor_plan::{Direction, FloorPlan, Rectangle},
+};
+use toposlam_render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
 
 use super::{
     cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
@@ -18,7 +21,6 @@ use crate::{
     robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive},
 };
-use toposlam_render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
 
 /// A SuperScout in a simulated building.
 #[derive(Debug)]

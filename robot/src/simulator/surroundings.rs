@@ -2,11 +2,13 @@
 
 use std::{collections::BTreeSet, f64::consts::FRAC_1_SQRT_2};
 
-use toposlam_model::driving::pose::Pose;
-use toposlam_model::floor_plan::{FloorPlan, Rectangle};
+use toposlam_model::{
+    driving::pose::Pose,
+    floor_plan::{FloorPlan, Rectangle},
+};
+use toposlam_render::{BuildingWall, Squares, walls};
 
 use crate::superscout::{RADIUS, sonar_direction};
-use toposlam_render::{BuildingWall, Squares, walls};
 
 /// Range of the sonars from the robot's centre, in metres.
 const RANGE: f64 = 1.5;

@@ -3,8 +3,7 @@
 use std::{collections::VecDeque, path::Path};
 
 use toposlam_model::{
-    driving::pose::Pose,
-    driving::scene::Scene,
+    driving::{pose::Pose, scene::Scene},
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
     format::named_world::NamedWorld,

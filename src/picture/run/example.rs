@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use crate::{
     model::{
-        driving::algorithm2::{Command, PathState},
+        driving::{
+            algorithm2::{Command, PathState},
+            pose::Pose,
+        },
         embedded_graph::Dart,
         floor_plan::FloorPlan,
         mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
@@ -14,7 +17,6 @@ use crate::{
     },
     run_page_data::{PageArrival, PageFrame, RunPageData},
 };
-use toposlam_model::driving::pose::Pose;
 
 /// Seven frames; the last three images are the same, and the third call is wrong.
 pub(crate) fn run_page_data() -> RunPageData {

@@ -6,12 +6,13 @@ use std::f64::consts::TAU;
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use toposlam_render::{StreamPurpose, about, stream};
+
 use super::{
     corridors::{Corridor, CorridorPlan},
     params::ScannerParams,
     polygon::{ConvexPolygon, Segment, border, length, part},
 };
-use toposlam_render::{StreamPurpose, about, stream};
 
 /// A building to scan.
 #[derive(Clone, Debug, PartialEq)]
