@@ -78,7 +78,7 @@ pub struct StandingPlace {
     /// The distance from there to the nearest wall, in metres.
     pub clearance: f64,
     /// What it is.
-    pub shown: StandingPercept,
+    pub percept: StandingPercept,
 }
 
 /// What the views of a place show.
@@ -185,12 +185,12 @@ impl LaserEvents {
     #[must_use]
     pub fn standing(&self) -> Option<StandingPlace> {
         let visit = self.visit.as_ref().or(self.possible_visit.as_ref())?;
-        let shown = match self.estimate(visit) {
+        let percept = match self.estimate(visit) {
             Some((PlaceEstimate::Doors(doors), _)) => StandingPercept::Junction(doors),
             Some((PlaceEstimate::Undecided(_), _)) => StandingPercept::Undecided,
             Some((PlaceEstimate::NoVertex, _)) | None => StandingPercept::Corridor,
         };
-        Some(StandingPlace { centre: visit.centre, clearance: visit.clearance, shown })
+        Some(StandingPlace { centre: visit.centre, clearance: visit.clearance, percept })
     }
 
     /// The events, after the last scan.
@@ -405,20 +405,20 @@ impl LaserEvents {
                     distance(last.centre, visit.centre) < arm && way <= last.left + arm
                 });
                 let exit = visit.exit.map(|(exit, _)| exit);
-                let shown = match (is_junction, in_doubt) {
+                let estimate = match (is_junction, in_doubt) {
                     (true, _) => PlaceEstimate::NoVertex,
                     (_, true) => PlaceEstimate::Undecided(UndecidedCause::Unclear),
                     _ => PlaceEstimate::Doors(visit.entry.into_iter().chain(exit).collect()),
                 };
-                return Some((shown, params.same));
+                return Some((estimate, params.same));
             }
         };
         let known = places.at(visit.centre)?;
-        let shown = match visit.estimate(&known.arms_of_meet(params), &self.params) {
+        let estimate = match visit.estimate(&known.arms_of_meet(params), &self.params) {
             PlaceEstimate::NoVertex => visit.estimate(&known.arms(params), &self.params),
-            shown => shown,
+            estimate => estimate,
         };
-        Some((shown, known.extent(params)))
+        Some((estimate, known.extent(params)))
     }
 
     /// Adds the events of a visit that is over.
@@ -427,8 +427,8 @@ impl LaserEvents {
         if visit.kind == VisitKind::PossibleJunction && self.is_visited_otherwise(visit) {
             return;
         }
-        let Some((shown, extent)) = self.estimate(visit) else { return };
-        if matches!(shown, PlaceEstimate::NoVertex) {
+        let Some((estimate, extent)) = self.estimate(visit) else { return };
+        if matches!(estimate, PlaceEstimate::NoVertex) {
             // It went on, or it turned back there.
             let back = visit.entry.zip(exit).is_some_and(|(entry, exit)| is_same_arm(entry, exit));
             if let Some((_, turned)) = &mut self.last {
@@ -455,7 +455,7 @@ impl LaserEvents {
         if turned_back {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
-        match shown {
+        match estimate {
             PlaceEstimate::Doors(doors) => self.arrive(visit, doors, entry),
             PlaceEstimate::Undecided(cause) => {
                 self.push_junction(visit, &[]);

@@ -262,8 +262,8 @@ impl LaserRobot<'_> {
                 };
                 let (centre, clearance) = (seen.centre, seen.clearance);
                 has_moved = true;
-                let shown = StandingPercept::Undecided;
-                self.go_to(&StandingPlace { centre, clearance, shown })?;
+                let percept = StandingPercept::Undecided;
+                self.go_to(&StandingPlace { centre, clearance, percept })?;
                 self.look_around()?;
                 continue;
             };
@@ -277,7 +277,7 @@ impl LaserRobot<'_> {
                 known.push((arm, is_arm));
                 continue;
             }
-            let doors = match place.shown {
+            let doors = match place.percept {
                 StandingPercept::Junction(doors) => doors,
                 StandingPercept::Corridor => Vec::new(),
                 StandingPercept::Undecided if tries < 2 && known.is_empty() => {
