@@ -1,7 +1,14 @@
 //! Conformance reports for people: the verdict, the first divergence, what was allowed there, the events
 //! before it, the coverage. Sections 2 and 6.
 
-use toposlam_robot::conform::{ConformVerdict, FaultClass};
+use std::fmt;
+
+use toposlam_robot::{
+    conform::{ConformVerdict, FaultClass},
+    log::error::OffsetUnit,
+};
+
+use crate::moment::grouped;
 
 /// How reports were made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -172,8 +179,8 @@ pub struct DivergenceReport {
     pub event: usize,
     /// Seconds since the first message; `None` if the log has no times.
     pub time: Option<f64>,
-    /// The number of the message in the log, from 1, and its position in the file; none at the end.
-    pub message: Option<(u64, u64)>,
+    /// The message of the event; none at the end.
+    pub message: Option<MessagePlace>,
     /// The class of the fault.
     pub fault: FaultClass,
     /// The cause, one word.
@@ -184,6 +191,24 @@ pub struct DivergenceReport {
     pub why: String,
     /// What was allowed, and in which pose.
     pub allowed: Vec<String>,
+}
+
+/// Where a message stands in a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessagePlace {
+    /// The number of the message in the log, from 1.
+    pub number: u64,
+    /// Its offset in its file.
+    pub offset: u64,
+    /// What the offset counts.
+    pub unit: OffsetUnit,
+}
+
+impl fmt::Display for MessagePlace {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [number, offset] = [self.number, self.offset].map(|number| grouped(number.into()));
+        write!(out, "message {number} of the log, at {} {offset}", self.unit.name())
+    }
 }
 
 /// A specification case, and how often a log covered it.

@@ -15,10 +15,13 @@ use toposlam::{
     picture::{OpenGraph, WorldPicture, open_svg, svg},
     report::{
         ConformReports, CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport,
-        ReportOrigin, SourceFile,
+        MessagePlace, ReportOrigin, SourceFile,
     },
 };
-use toposlam_robot::conform::{ConformVerdict, FaultClass};
+use toposlam_robot::{
+    conform::{ConformVerdict, FaultClass},
+    log::error::OffsetUnit,
+};
 
 use crate::browser;
 
@@ -140,7 +143,7 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
         divergence: Some(DivergenceReport {
             event: at,
             time: Some(at as f64 * 4.7),
-            message: Some((4711, 1_234_567)),
+            message: Some(MessagePlace { number: 4711, offset: 1_234_567, unit: OffsetUnit::Byte }),
             fault: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors, no marker".to_owned(),

@@ -160,7 +160,9 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
     question.start = question.world.as_ref().and_then(|world| head.start(world));
     let resumed = question.settings.is_resumed.then(|| RESUMED.to_owned());
     let other = question.world.as_ref().and_then(|world| head.other_world(&world.graph));
-    let remarks = other.into_iter().chain(resumed).collect();
+    let skipped = log.log.skipped().map(|skipped| format!("skipped {skipped}"));
+    let skipped = skipped.into_iter().chain(extracted.skipped_scans.in_words());
+    let remarks = other.into_iter().chain(resumed).chain(skipped).collect();
     let known = question.world.as_ref().map(|world| {
         let start = question.start.or(world.start);
         KnownWorld { graph: &world.graph, states: states(world, question.marker, start) }

@@ -52,6 +52,14 @@ def test_a_run_of_algorithm_1_conforms(tmp_path):
         assert found.smallest.is_isomorphic(world)
 
 
+def test_lines_that_are_not_read_are_a_remark(tmp_path):
+    path = tmp_path / "run.jsonl"
+    recorded(ts.World.load("worlds/shape-6.toml"), path)
+    assert ts.conform(path).remarks == ()
+    path.write_text(path.read_text() + '{"kind":"note"}\n' * 2)
+    assert ts.conform(path).remarks == ("skipped lines: 2 note",)
+
+
 def test_a_wrong_percept_diverges(tmp_path):
     world = ts.World.load("worlds/figure-1a.toml")
     recorded(world, tmp_path / "run.jsonl", {3: {"degree": 5}})

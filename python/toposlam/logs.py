@@ -176,7 +176,8 @@ class ConformReport:
     hallways: tuple[int, int, int]
     """The number of moves, of those measured by odometry, and of those compared with earlier ones."""
     remarks: tuple[str, ...]
-    """What a reader should know: the log was recorded in another world, or goes on from an earlier run."""
+    """What a reader should know: the log was recorded in another world, goes on from an earlier run, or has
+    lines or laser scans that were skipped."""
 
     def __repr__(self) -> str:
         text = f"{self.path.name}: {self.verdict}, {len(self.events)} events, {self.evidence}"

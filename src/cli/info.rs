@@ -24,7 +24,7 @@ use super::{
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    skipped_lines::{self, SkippedLinesFields},
+    skipped_lines::SkippedLinesFields,
     text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
@@ -403,7 +403,7 @@ fn print(
     }
     writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
     if let Some(skipped) = log.skipped() {
-        print_hanging(out, "", &format!("skipped {}", skipped_lines::in_words(skipped)))?;
+        print_hanging(out, "", &format!("skipped {skipped}"))?;
     }
     writeln!(out)?;
     let rows: Vec<_> = log

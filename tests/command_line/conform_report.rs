@@ -158,7 +158,7 @@ fn a_complete_run_of_the_folding_explorer_has_each_case_that_is_expected() {
     let page = folder.join("report.html");
     let (code, _) = judged(&log, &["--world", plan, "--html", page.to_str().unwrap()]);
     assert_eq!(code, Some(0));
-    let written = fs::read_to_string(page).unwrap();
+    let written = fs::read_to_string(&page).unwrap();
     assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">t-stem-right</th>"));
     assert!(!written.contains("<tr class=\"missed\">"));
 }
@@ -250,7 +250,7 @@ fn a_robot_that_was_carried_was_moved_between_two_events() {
     );
     let condition = report["condition"].as_str().unwrap();
     assert!(condition.starts_with("moved by hand or slipped between events "), "{condition}");
-    let page = fs::read_to_string(page).unwrap();
+    let page = fs::read_to_string(&page).unwrap();
     assert!(page.contains("oved by hand or slipped between events "), "no page");
     let lengths = &report["lengths"];
     assert_eq!((&lengths["moves"], &lengths["measured"]), (&json!(15), &json!(15)), "{lengths}");
@@ -300,4 +300,53 @@ fn without_odometry_the_report_states_that_lengths_were_not_compared() {
     assert_eq!(report["lengths"], json!({"moves": 2, "measured": 0, "compared": 0}));
     let fact = "not compared: no odometry between the junctions";
     assert_eq!(report["facts"]["lengths"], json!(fact));
+}
+
+#[test]
+fn a_divergence_in_a_log_of_lines_has_a_line_and_no_time() {
+    let folder = folder("conform-lines");
+    let log = folder.join("walk.jsonl");
+    // There and back: the first junction has three doors, and then two.
+    let lines = [
+        "# a robot that turns around twice",
+        "{\"degree\":3,\"door\":1}",
+        "{\"degree\":1,\"door\":0}",
+        "{\"degree\":2,\"door\":null}",
+    ];
+    fs::write(&log, lines.join("\n") + "\n").unwrap();
+    let page = folder.join("page.html");
+    let options = ["--driver", "anyone", "--marker", "none", "--html", page.to_str().unwrap()];
+    let (code, report) = judged(&log, &options);
+    assert_eq!((code, &report["event"]), (Some(1), &5.into()), "{report}");
+    assert_eq!(
+        (&report["message"], &report["offset"], &report["offset_unit"]),
+        (&3.into(), &4.into(), &"line".into())
+    );
+    // Nothing is known of the time of lines without stamps.
+    assert_eq!(report["time"], json!(null));
+    let output = run([&["conform", log.to_str().unwrap()][..], &options[..4]].concat());
+    let text = stdout(&output);
+    assert!(text.contains("diverges at event 5 of 5: "), "{text}");
+    assert!(text.contains("\n  message 3 of the log, at line 4\n"), "{text}");
+    let shown = fs::read_to_string(&page).unwrap();
+    assert!(shown.contains("Event 5 of 5</a> \u{b7} message 3 of the log, at line 4 "), "no line");
+    // With stamps it has a time.
+    let stamped = lines.map(|line| line.replace('{', "{\"stamp\":7.5,"));
+    fs::write(&log, stamped.join("\n") + "\n").unwrap();
+    assert_eq!(judged(&log, &options).1["time"], json!(0.0));
+    // An MCAP file has bytes.
+    let bytes = walked(&folder, &[(3, -1, Some(1)), (1, -1, Some(0)), (2, -1, None)]);
+    let (_, report) = judged(&bytes, &options[..4]);
+    assert_eq!((&report["event"], &report["offset_unit"]), (&5.into(), &"byte".into()), "{report}");
+}
+
+#[test]
+fn the_end_of_a_log_with_a_door_is_a_remark_if_anyone_drove() {
+    let folder = folder("conform-last-door");
+    let steps = [(3, 0, Some(0)), (1, -1, Some(0))];
+    let remark = "the log ends with a door: where it led is not recorded";
+    let (_, report) = judged(&walked(&folder, &steps), &ANYONE);
+    assert_eq!(report["remarks"], json!([remark]));
+    let (_, report) = judged(&walked(&folder, &[(3, 0, Some(0)), (1, -1, None)]), &ANYONE);
+    assert_eq!(report["remarks"], json!([]));
 }

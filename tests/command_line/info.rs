@@ -61,6 +61,23 @@ fn a_truncated_log_is_reported_up_to_its_end_and_is_incomplete() {
 }
 
 #[test]
+fn a_log_whose_end_is_missing_has_no_index() {
+    let folder = folder("info_cut");
+    for (name, bytes) in
+        [("cut.mcap", &b"\x89MCAP0\r\n\x01"[..]), ("cut.bag", b"#ROSBAG V2.0\n\x01")]
+    {
+        let log = folder.join(name);
+        fs::write(&log, bytes).unwrap();
+        let output = run(["info", log.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(3));
+        let text = stdout(&output);
+        assert!(text.contains("\nhas no index, contents not verified\n0 messages\n"), "{text}");
+        let output = run(["info", "--json", log.to_str().unwrap()]);
+        assert_eq!(objects(&stdout(&output))[0]["indexed"], false);
+    }
+}
+
+#[test]
 fn an_error_is_one_message_with_file_and_place() {
     for (log, message) in [
         (

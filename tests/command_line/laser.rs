@@ -1,7 +1,10 @@
 //! Robots with a laser scanner: `toposlam simulate --sensor`, `evaluate control` and `runs --sensor`, and
 //! `evaluate laser`, on a few cases.
 
-use std::fs;
+use std::{cell::Cell, fs, io::Cursor, path::Path};
+
+use mcap::{Message, MessageStream, Writer};
+use serde_json::json;
 
 use super::{folder, objects, run, stderr, stdout, stdout_of};
 
@@ -28,6 +31,88 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     let other = "worlds/figure-1a.toml";
     let output = run([&["conform", log, "--world", other][..], &options].concat());
     assert_ne!(output.status.code(), Some(2), "{}", stderr(&output));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// Writes a log with the messages that are kept, each at its time or another.
+fn rewritten(log: &str, changed: &Path, mut time: impl FnMut(usize, &Message) -> Option<u64>) {
+    let bytes = fs::read(log).unwrap();
+    let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
+    for (index, message) in MessageStream::new(&bytes).unwrap().map(Result::unwrap).enumerate() {
+        if let Some(log_time) = time(index, &message) {
+            writer.write(&Message { log_time, ..message }).unwrap();
+        }
+    }
+    writer.finish().unwrap();
+    fs::write(changed, writer.into_inner().into_inner()).unwrap();
+}
+
+#[test]
+fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
+    let folder = folder("laser_skipped");
+    let [log, changed, page] =
+        ["run.mcap", "changed.mcap", "page.html"].map(|name| folder.join(name));
+    let log = log.to_str().unwrap();
+    stdout_of(["simulate", PLAN, "--sensor", "laser", "--noise", "0.1", "--log", log]);
+    let arguments = ["--events", "laser", "--driver", "anyone", "--marker", "none"];
+    let report = |log: &str, more: &[&str]| {
+        let output = run([&["conform", log][..], &arguments, more].concat());
+        (output.status.code(), stdout(&output), stderr(&output))
+    };
+    let json_of = |log: &str| objects(&report(log, &["--json"]).1).pop().unwrap();
+    let before = json_of(log);
+    let none = json!({"off_clock": 0, "without_odometry": 0});
+    assert_eq!(before["skipped_scans"], none);
+    let remarks = |remark: &str| {
+        let others = before["remarks"].as_array().unwrap();
+        json!([&[json!(remark)][..], others].concat())
+    };
+    let scans = before["scans"].as_u64().unwrap();
+    let is_scan = |message: &Message| message.channel.topic == "/scan";
+    let is_odometry = |message: &Message| message.channel.topic == "/odom";
+
+    // The clock of the recorder jumps far ahead and back, three times.
+    let far = 4_294_970_000_000_000_000;
+    let jumped = Cell::new(0);
+    rewritten(log, &changed, |index, message| {
+        let jumps = is_scan(message) && index > 500 * (jumped.get() + 1) && jumped.get() < 3;
+        jumped.set(jumped.get() + usize::from(jumps));
+        Some(if jumps { far } else { message.log_time })
+    });
+    let changed = changed.to_str().unwrap();
+    let after = json_of(changed);
+    let skipped = json!({"off_clock": 3, "without_odometry": 0});
+    assert_eq!((&after["skipped_scans"], &after["scans"]), (&skipped, &json!(scans - 3)));
+    let remark = "skipped laser scans: 3 whose time is far from that of all others";
+    assert_eq!(after["remarks"], remarks(remark));
+    for fact in ["verdict", "events", "lengths"] {
+        assert_eq!(after[fact], before[fact], "{fact}");
+    }
+    let (_, text, _) = report(changed, &["--html", page.to_str().unwrap()]);
+    assert!(text.contains(remark), "{text}");
+    let sentence = "<p>Skipped laser scans: 3 whose time is far from that of all others.</p>";
+    assert!(fs::read_to_string(page).unwrap().contains(sentence));
+
+    // The odometry begins late, or never. Of the scans before it, the last 50 wait for it.
+    let seen = Cell::new(0);
+    rewritten(log, Path::new(changed), |_, message| {
+        seen.set(seen.get() + usize::from(is_scan(message)));
+        (seen.get() > 60 || !is_odometry(message)).then_some(message.log_time)
+    });
+    let late = json_of(changed);
+    assert_eq!(late["skipped_scans"]["off_clock"], 0);
+    let without = late["skipped_scans"]["without_odometry"].as_u64().unwrap();
+    assert!((9..=11).contains(&without), "{late}");
+    let remark = format!("skipped laser scans: {without} without odometry");
+    assert_eq!(late["remarks"][0], json!(remark));
+    // Topics that have no message carry no odometry.
+    rewritten(log, Path::new(changed), |_, message| {
+        let is_transform = message.channel.topic == "/tf";
+        (!is_odometry(message) && !is_transform).then_some(message.log_time)
+    });
+    let (code, _, error) = report(changed, &[]);
+    assert_eq!(code, Some(2), "{error}");
+    assert!(error.contains("the log does not have what this needs"), "{error}");
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -2,7 +2,7 @@
 
 use std::{
     fs,
-    io::{BufRead, BufReader, Read},
+    io::{BufRead, BufReader, Read, Write},
     path::Path,
     process::{Command, Stdio},
     thread,
@@ -49,6 +49,19 @@ fn the_shards_together_are_the_whole_check_byte_for_byte() {
             assert_eq!(fs::read(of_merged).unwrap(), fs::read(of_whole).unwrap());
         }
     }
+}
+
+#[test]
+fn shards_are_read_from_standard_input() {
+    let check = |shard: &str| stdout_of(["check", "--edges", "3", "--shard", shard, "--json"]);
+    let shards = check("1/2") + &check("2/2");
+    let mut merge = toposlam();
+    merge.args(["merge", "-", "--json"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut merge = merge.spawn().unwrap();
+    merge.stdin.take().unwrap().write_all(shards.as_bytes()).unwrap();
+    let output = merge.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stdout(&output), stdout_of(["check", "--edges", "3", "--json"]));
 }
 
 #[test]

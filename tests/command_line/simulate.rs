@@ -198,7 +198,7 @@ fn bad_arguments_are_reported_before_the_run() {
          ahead = 90.0\nseen_from = \"below\"\nmask = \"dark.png\"\n",
     );
     image::GrayImage::new(640, 480).save(folder.join("dark.png")).unwrap();
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 11] = [
         (&[&narrow], "its hallways are 0.9 m wide; a robot 0.41 m across needs 1.21 m"),
         (&[&wide], "its hallways are 2.6 m wide; sensing sees up to 2.3 m"),
         (&[&close], "are 4.00 m apart; it must be two hallway widths, 4.20 m"),
@@ -214,6 +214,8 @@ fn bad_arguments_are_reported_before_the_run() {
             &[SHAPE_6, "--noise", "9"],
             "with more than 5 times the default noise a robot cannot navigate",
         ),
+        // A number, and not an option.
+        (&[SHAPE_6, "--noise", "-1"], "for '--noise <TIMES>': write a number from 0 to 5"),
         (&[SHAPE_6, "--fault", "fog@3"], "the faults are dropped, late, frozen"),
     ];
     for (arguments, cause) in cases {
@@ -249,6 +251,32 @@ fn an_interrupted_run_reports_its_results_and_is_incomplete() {
     assert_eq!(output.status.code(), Some(3), "{text}{}", stderr(&output));
     assert!(text.contains("The robot gave up: the run was ended on move "), "{text}");
     assert!(text.contains("  map               "), "{text}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_with_a_log_and_a_page_ends_within_a_second() {
+    use std::{
+        process::{Command, Stdio},
+        thread,
+        time::{Duration, Instant},
+    };
+
+    let folder = folder("simulate_interrupted");
+    let [log, page] = ["x.mcap", "x.html"].map(|name| folder.join(name));
+    let mut robot = super::toposlam();
+    robot.args(["simulate", "worlds/building-25.toml", "--by-scene", "--algorithm", "algorithm1"]);
+    robot.arg("--log").arg(&log).arg("--html").arg(&page);
+    let mut robot = robot.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    thread::sleep(Duration::from_millis(300));
+    let interrupted = Instant::now();
+    // It may have ended by itself.
+    Command::new("kill").args(["-INT", &robot.id().to_string()]).status().unwrap();
+    let code = robot.wait().unwrap().code();
+    assert!(interrupted.elapsed() < Duration::from_secs(1), "{:?}", interrupted.elapsed());
+    assert!([Some(0), Some(3)].contains(&code), "{code:?}");
+    assert!(fs::read_to_string(page).unwrap().ends_with("</html>\n"));
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]

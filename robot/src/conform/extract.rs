@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 use thiserror::Error;
 use toposlam_model::{
+    counts::grouped,
     driving::{odometry::Odometry, scene::Scene},
     measurement::MeasurementNoise,
 };
@@ -19,6 +20,7 @@ use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
+    scan_clock::ScanClock,
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -76,6 +78,8 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
+    /// The scans that were not.
+    pub skipped_scans: SkippedScans,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -84,6 +88,31 @@ pub struct ExtractedRun {
     pub junctions: Vec<VisitedJunction>,
     /// The sightings of a marker that is a fiducial.
     pub sightings: Vec<TimedSighting>,
+}
+
+/// The number of laser scans that were not sensed, by the reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SkippedScans {
+    /// Their time is far from that of all other messages.
+    pub off_clock: u64,
+    /// No odometry was recorded before them, nor soon after.
+    pub without_odometry: u64,
+}
+
+impl SkippedScans {
+    /// A remark on them; `None` if there are none.
+    #[must_use]
+    pub fn in_words(self) -> Option<String> {
+        let Self { off_clock, without_odometry } = self;
+        let reasons = [
+            (off_clock, "whose time is far from that of all others"),
+            (without_odometry, "without odometry"),
+        ];
+        let reasons = reasons.into_iter().filter(|(count, _)| *count > 0);
+        let parts: Vec<_> =
+            reasons.map(|(count, why)| format!("{} {why}", grouped(count.into()))).collect();
+        (!parts.is_empty()).then(|| format!("skipped laser scans: {}", parts.join(", ")))
+    }
 }
 
 /// A scene, and where it was sensed.
@@ -229,17 +258,7 @@ pub fn extract(
         field_of_view: 0.0,
         sightings: Vec::new(),
     };
-    for entry in log.entries(&bound) {
-        gathering.take(entry?)?;
-    }
-    gathering.look()?;
-    match std::mem::take(&mut gathering.placing).finish() {
-        Some(waiting) => waiting.for_each(|placed| gathering.see(&placed)),
-        None if gathering.scans > 0 => {
-            return Err(ExtractError::NoOdometry { scans: gathering.scans });
-        }
-        None => {}
-    }
+    let skipped_scans = gathering.gather(log, &bound)?;
     let Extraction {
         recorded,
         track,
@@ -254,6 +273,7 @@ pub fn extract(
         sightings,
         ..
     } = gathering;
+    let scans = scans - skipped_scans.without_odometry;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
         Some(SensedScene { source, scene, odometry })
@@ -289,6 +309,7 @@ pub fn extract(
         pictures,
         unreadable,
         scans,
+        skipped_scans,
         field_of_view,
         drift,
         junctions,
@@ -301,8 +322,7 @@ pub fn extract(
 fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Option<f64> {
     let mut meter = DriftMeter::new(*params);
     let mut placing = ScanOdometry::default();
-    for entry in log.entries(bound) {
-        let Ok(Entry { stamp, content, .. }) = entry else { break };
+    let mut take = |Entry { stamp, content, .. }: Entry| {
         let stamp = stamp.nanoseconds();
         let placed: Vec<PlacedScan> = match content {
             Content::Event(EventKind::Odometry(odometry)) => placing.odometry(stamp, odometry),
@@ -311,13 +331,32 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
                 let placed = placing.scan(stamp, PlacedScan { source, scan, odometry });
                 placed.into_iter().collect()
             }
-            _ => continue,
+            _ => return,
         };
         for placed in &placed {
             meter.see(&placed.scan, &placed.odometry);
         }
+    };
+    let mut clock = ScanClock::new(is_scan);
+    for entry in log.entries(bound) {
+        let Ok(entry) = entry else { break };
+        if is_timed(&entry) {
+            clock.next(entry.time, entry).into_iter().for_each(&mut take);
+        }
     }
+    clock.finish().0.into_iter().for_each(take);
     meter.finish()
+}
+
+fn is_scan(entry: &Entry) -> bool {
+    matches!(entry.content, Content::Event(EventKind::Frame(Frame { scan: Some(_), .. })))
+}
+
+/// Whether an entry shows where the robot was at its time.
+fn is_timed(entry: &Entry) -> bool {
+    let is_sighting =
+        matches!(entry.content, Content::Fiducial(_) | Content::Event(EventKind::Odometry(_)));
+    is_sighting || is_scan(entry)
 }
 
 /// The events that are inferred from scenes.
@@ -357,6 +396,29 @@ struct Extraction<'w, W> {
 }
 
 impl<W: SensingProgress> Extraction<'_, W> {
+    /// Takes the entries of a log. Returns the number of scans that are skipped.
+    fn gather(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<SkippedScans, ExtractError> {
+        let mut clock = ScanClock::new(is_scan);
+        for entry in log.entries(bound) {
+            let entry = entry?;
+            if self.evidence == Evidence::Laser && is_timed(&entry) {
+                clock.next(entry.time, entry).into_iter().try_for_each(|entry| self.take(entry))?;
+            } else {
+                self.take(entry)?;
+            }
+        }
+        let (rest, off_clock) = clock.finish();
+        rest.into_iter().try_for_each(|entry| self.take(entry))?;
+        self.look()?;
+        let without_odometry = self.placing.without_odometry();
+        match std::mem::take(&mut self.placing).finish() {
+            Some(waiting) => waiting.for_each(|placed| self.see(&placed)),
+            None if self.scans > 0 => return Err(ExtractError::NoOdometry { scans: self.scans }),
+            None => {}
+        }
+        Ok(SkippedScans { off_clock, without_odometry })
+    }
+
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
         let Entry { time, offset, id, stamp, content, .. } = entry;
         let stamp = stamp.nanoseconds();

@@ -19,6 +19,7 @@ mod marked_visits;
 mod measured_hallways;
 mod quirks;
 mod recorded_events;
+mod scan_clock;
 mod scan_odometry;
 mod seen_junctions;
 mod shorten;
@@ -34,8 +35,8 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
 };
 pub use extract::{
-    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract,
-    infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress,
+    SkippedScans, extract, infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};

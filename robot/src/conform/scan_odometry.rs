@@ -22,6 +22,8 @@ pub(super) struct ScanOdometry {
     last: Option<(u64, Odometry)>,
     /// With the time of each.
     waiting: VecDeque<(u64, PlacedScan)>,
+    /// The number of scans that waited in vain.
+    without_odometry: u64,
 }
 
 /// Readings farther apart than this, in nanoseconds, are not of the same clock, or have a gap in between.
@@ -57,7 +59,16 @@ impl ScanOdometry {
         // Without any odometry the oldest scans are of no use.
         let is_late = self.waiting.len() > WAITING;
         let oldest = if is_late { self.waiting.pop_front() } else { None };
-        oldest.filter(|_| self.last.is_some()).map(|(_, scan)| scan)
+        if self.last.is_none() {
+            self.without_odometry += u64::from(oldest.is_some());
+            return None;
+        }
+        oldest.map(|(_, scan)| scan)
+    }
+
+    /// The number of scans that are of no use: they came too long before the first odometry.
+    pub(super) fn without_odometry(&self) -> u64 {
+        self.without_odometry
     }
 
     /// The scans after the last odometry. `None` if there was no odometry.
@@ -130,6 +141,7 @@ mod tests {
         for time in 0..200 {
             assert!(placing.scan(time, scan()).is_none());
         }
+        assert_eq!(placing.without_odometry(), 150);
         assert!(placing.finish().is_none());
     }
 }

@@ -36,6 +36,7 @@ use crate::{
 mod folding;
 mod measured;
 mod oracle;
+mod parts;
 mod recovery;
 mod report;
 mod tolerance;

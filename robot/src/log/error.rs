@@ -161,6 +161,9 @@ pub enum LogErrorKind {
     /// A database cannot be read.
     #[error("the database: {0}")]
     Database(String),
+    /// The end of a compressed database is missing. A part of a database cannot be read.
+    #[error("the compressed database ends too early; a part of it cannot be read")]
+    CutDatabase,
     /// A line is not as it should be.
     #[error("{0}")]
     Line(String),

@@ -90,7 +90,8 @@ impl Log {
             let scanned = container::scan(file, &mut |record| topics.add_record(record));
             let (scan, text) = scanned.map_err(|error| file.in_file(error))?;
             file.text = text;
-            indexed &= file.format.unit() != OffsetUnit::Line;
+            // An index is at the end of its file.
+            indexed &= file.format.unit() != OffsetUnit::Line && scan.truncation.is_none();
             let ended = scan.truncation.map(|end| Truncation { file: file.name.clone(), ..end });
             truncation = truncation.or(ended);
             for mut section in scan.sections {
@@ -147,6 +148,12 @@ impl Log {
     #[must_use]
     pub fn format(&self) -> Format {
         self.format
+    }
+
+    /// What the offsets of its messages count. rosbag2 writes all files of a folder in one format.
+    #[must_use]
+    pub fn offset_unit(&self) -> OffsetUnit {
+        self.files.first().map_or(self.format, |file| file.format).unit()
     }
 
     /// The size of its files, in bytes.
@@ -213,6 +220,9 @@ fn open(
     let source = Source::new(storage).map_err(|error| wrong(error.into()))?;
     let format = format(&source)?;
     let database = match format {
+        Format::Database if source.is_cut => {
+            return Err(LogErrorKind::CutDatabase.at(source.length()));
+        }
         Format::Database => Some(Database::open(&source, path).map_err(wrong)?),
         _ => None,
     };

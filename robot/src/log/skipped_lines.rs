@@ -1,6 +1,8 @@
 //! The lines of a log that are not read.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
+
+use toposlam_model::counts::grouped;
 
 /// The number of lines of a log that are skipped, by the reason. Comments do not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,5 +50,23 @@ impl SkippedLines {
 
     pub(super) fn set_off_clock(&mut self, lines: u64) {
         self.off_clock = lines;
+    }
+}
+
+impl fmt::Display for SkippedLines {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = |lines: u64| grouped(lines.into());
+        let kinds = self.unknown.iter();
+        let mut parts: Vec<_> = kinds
+            .map(|(kind, lines)| format!("{} {}", count(*lines), kind.escape_debug()))
+            .collect();
+        if self.others > 0 {
+            parts.push(format!("{} of other kinds", count(self.others)));
+        }
+        if self.off_clock > 0 {
+            let lines = count(self.off_clock);
+            parts.push(format!("{lines} whose time is far from that of their neighbours"));
+        }
+        write!(out, "lines: {}", parts.join(", "))
     }
 }

@@ -14,7 +14,7 @@ use toposlam_robot::{
     log::{
         Format,
         entries::{Content, Entry},
-        error::TruncationKind,
+        error::{LogErrorKind, TruncationKind},
         reader::Log,
         topic_map::{Role, TopicMap},
     },
@@ -156,6 +156,20 @@ fn a_wrong_line_is_an_error_with_its_number() {
     );
     let long = format!("{odom}FLASER {}", "1 ".repeat(600_000));
     assert_eq!(error(&long), "line 2: the line is longer than 1,048,576 bytes");
+}
+
+#[test]
+fn a_compressed_database_that_was_cut_is_an_error_with_its_place() {
+    let database = [b"SQLite format 3\0", &[7; 5000][..]].concat();
+    let whole = gzip(&database);
+    let error = |bytes: &[u8]| Log::of_bytes(bytes.to_vec()).err().unwrap();
+    let cut = error(&whole[..whole.len() - 9]);
+    assert!(matches!(cut.cause, LogErrorKind::CutDatabase) && cut.cause.is_damage(), "{cut}");
+    assert!((16..=database.len() as u64).contains(&cut.offset), "{cut}");
+    let cause = "the compressed database ends too early; a part of it cannot be read";
+    assert_eq!(cut.to_string(), format!("byte {}: {cause}", cut.offset));
+    // A whole one that is damaged is another error.
+    assert!(!matches!(error(&whole).cause, LogErrorKind::CutDatabase));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_robot::{
+    conform::{Evidence, ExtractConfig, ExtractError, extract},
     log::{
         entries::Content,
         reader::Log,
@@ -151,4 +152,19 @@ fn odometry_is_preferred_to_transforms() {
     let log = Log::of_bytes(log_of(&[transforms("/tf", &[wheel])])).unwrap();
     let mapping = TopicMap::from_log(&log).unwrap();
     assert_eq!(log.entries(&mapping.bind(&log).unwrap()).count(), 0);
+}
+
+#[test]
+fn scans_without_any_odometry_are_an_error_with_their_number() {
+    let mut scans = scan([0.0, 0.1, 0.1, 9.0], &[1.0; 9]);
+    scans.3 = vec![scans.3[0].clone(); 3];
+    let mounted = transforms("/tf_static", &[("base_link", "laser", [0.0; 3], LEVEL)]);
+    // The topic of odometry is there, and has no message.
+    let odometry = ("/odom", "nav_msgs/Odometry", ODOMETRY, Vec::new());
+    let log = Log::of_bytes(log_of(&[scans, mounted, odometry])).unwrap();
+    let mapping = "[scan]\ntopic = \"/scan\"\n[odometry]\ntopic = \"/odom\"\n";
+    let mapping = TopicMap::read(mapping.as_bytes()).unwrap();
+    let error = extract(&log, &mapping, &ExtractConfig::new(Evidence::Laser), &()).unwrap_err();
+    assert!(matches!(error, ExtractError::NoOdometry { scans: 3 }), "{error}");
+    assert_eq!(error.to_string(), "no odometry is recorded with its 3 laser scans");
 }

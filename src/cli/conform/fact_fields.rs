@@ -7,7 +7,7 @@ use toposlam_model::{
     trace::{AlgorithmMatch, MatchedChoices},
 };
 use toposlam_robot::{
-    conform::{Evidence, LogHead, MeasuredHallways},
+    conform::{Evidence, LogHead, MeasuredHallways, SkippedScans},
     record::RunEnding,
 };
 
@@ -28,6 +28,9 @@ pub(super) struct FactFields<'j> {
     /// The number of images that were sensed.
     images: u64,
     unreadable_images: u64,
+    /// The number of laser scans that were sensed.
+    scans: u64,
+    skipped_scans: SkippedScansFields,
     truncated: Option<TruncatedLine>,
     /// The lines of a log of lines that are not read.
     skipped: Option<SkippedLinesFields<'j>>,
@@ -45,6 +48,13 @@ pub(super) struct FactFields<'j> {
     twin: Option<OtherWorldFields>,
     doors: Option<Doors>,
     map: Option<Map>,
+}
+
+/// The number of laser scans that were not sensed.
+#[derive(Serialize)]
+struct SkippedScansFields {
+    off_clock: u64,
+    without_odometry: u64,
 }
 
 /// What the log records about its world.
@@ -142,6 +152,8 @@ impl<'j> FactFields<'j> {
             assumed_marker: judged.added.and_then(AddedMarker::assumed),
             images: gathered.pictures,
             unreadable_images: gathered.unreadable,
+            scans: gathered.scans,
+            skipped_scans: SkippedScansFields::from(gathered.skipped_scans),
             truncated: opened.log.truncation().map(TruncatedLine::from),
             skipped: opened.log.skipped().map(SkippedLinesFields::from),
             recorded: run.filter(|run| !run.world_hash.is_empty()).map(|run| Recorded {
@@ -169,6 +181,12 @@ impl<'j> FactFields<'j> {
             doors: judgement.algorithm.as_ref().map(Doors::of),
             map: judgement.algorithm.as_ref().map(Map::of),
         }
+    }
+}
+
+impl From<SkippedScans> for SkippedScansFields {
+    fn from(SkippedScans { off_clock, without_odometry }: SkippedScans) -> Self {
+        Self { off_clock, without_odometry }
     }
 }
 

@@ -22,12 +22,9 @@ use toposlam_robot::{
 
 use super::{JudgedLog, LISTED, folded_trail, minimise::Minimised, other_world::OtherWorld};
 use crate::{
-    cli::{
-        skipped_lines,
-        text::{counted, grouped, moment, vertices},
-    },
+    cli::text::{counted, grouped, moment, vertices},
     picture::{self, WorldPicture},
-    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport, MessagePlace},
 };
 
 /// A scanner with a field of view of fewer degrees does not see what is behind the robot.
@@ -81,8 +78,9 @@ impl JudgedLog<'_> {
             remarks.push(format!("the log is {truncation}"));
         }
         if let Some(skipped) = self.opened.log.skipped() {
-            remarks.push(format!("skipped {}", skipped_lines::in_words(skipped)));
+            remarks.push(format!("skipped {skipped}"));
         }
+        remarks.extend(self.gathered.skipped_scans.in_words());
         let events = &self.judgement.events;
         match events.end.as_ref().map(|end| &end.ending) {
             Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
@@ -307,7 +305,11 @@ impl JudgedLog<'_> {
         DivergenceReport {
             event: divergence.event + 1,
             time: self.has_times().then(|| time.saturating_sub(begun) as f64 / 1e9),
-            message: event.map(|event| (event.source.id.0, event.source.offset)),
+            message: event.map(|event| MessagePlace {
+                number: event.source.id.0,
+                offset: event.source.offset,
+                unit: self.opened.log.offset_unit(),
+            }),
             fault: divergence.fault,
             cause: divergence.cause.name(),
             what: event.map_or("end of the log".to_owned(), |event| what(&event.kind)),

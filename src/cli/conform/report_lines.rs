@@ -45,6 +45,7 @@ struct Line<'r> {
     time: Option<f64>,
     message: Option<u64>,
     offset: Option<u64>,
+    offset_unit: Option<&'static str>,
     facts: BTreeMap<&'static str, &'r str>,
     remarks: &'r [String],
     limits: Vec<Limit>,
@@ -146,6 +147,7 @@ pub(super) fn json(
     judged: &JudgedLog,
 ) -> Result<(), CliError> {
     let divergence = report.divergence.as_ref();
+    let place = divergence.and_then(|divergence| divergence.message);
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
     let line = Line {
         log: &report.log,
@@ -164,8 +166,9 @@ pub(super) fn json(
         condition: divergence.map(|divergence| &*divergence.why),
         allowed: divergence.map_or(&[], |divergence| &divergence.allowed),
         time: divergence.and_then(|divergence| divergence.time),
-        message: divergence.and_then(|divergence| divergence.message).map(|(message, _)| message),
-        offset: divergence.and_then(|divergence| divergence.message).map(|(_, offset)| offset),
+        message: place.map(|place| place.number),
+        offset: place.map(|place| place.offset),
+        offset_unit: place.map(|place| place.unit.name()),
         facts: report.facts.iter().map(|(name, fact)| (*name, &**fact)).collect(),
         remarks: &report.remarks,
         limits: judged
@@ -259,9 +262,8 @@ fn diverged(
     let time = time.map_or(String::new(), |time| format!(", at {}", since_start(time)));
     writeln!(out, "{}: diverges at event {number} of {of}{time}: {fault}", report.log)?;
     print_hanging(out, "  ", &format!("{what}: {why}"))?;
-    if let Some((message, offset)) = message {
-        let [message, offset] = [*message, *offset].map(|number| grouped(number.into()));
-        writeln!(out, "  message {message} of the log, at byte {offset}")?;
+    if let Some(message) = message {
+        writeln!(out, "  {message}")?;
     }
     if !allowed.is_empty() {
         writeln!(out, "  allowed instead:")?;

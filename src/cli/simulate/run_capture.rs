@@ -34,6 +34,8 @@ pub(super) struct RunCapture<'o> {
     /// The latest door.
     door: Option<Door>,
     maps: Vec<PartialMap>,
+    /// The story up to the last frame.
+    unwrapped: UnwrappedStory,
     moves: u64,
     /// The error of the first image that could not be written.
     failure: Option<CliError>,
@@ -68,6 +70,7 @@ impl<'o> RunCapture<'o> {
             arrivals: Vec::new(),
             door: None,
             maps: Vec::new(),
+            unwrapped: UnwrappedStory::default(),
             moves: 0,
             failure: None,
         }
@@ -78,7 +81,7 @@ impl<'o> RunCapture<'o> {
     /// # Errors
     /// Returns an error if the story or an image could not be written.
     pub(super) fn finish(
-        self,
+        mut self,
         name: &str,
         plan: &Arc<FloorPlan>,
         facing: Dart,
@@ -86,6 +89,7 @@ impl<'o> RunCapture<'o> {
     ) -> Result<RunPageData, CliError> {
         self.progress.finish();
         let story = self.story.finish()?.into_text();
+        self.unwrapped.read(&story);
         if let Some(failure) = self.failure {
             return Err(failure);
         }
@@ -103,7 +107,7 @@ impl<'o> RunCapture<'o> {
             facing,
             rounds: self.rounds,
             calls: calls.collect(),
-            story: unwrapped(&story),
+            story: self.unwrapped.lines,
             maps: self.maps,
             ending: String::new(),
         })
@@ -111,6 +115,7 @@ impl<'o> RunCapture<'o> {
 
     fn frame(&mut self, frame: &Frame, pose: Pose) {
         self.progress.part_done(1);
+        self.unwrapped.read(self.story.out().text());
         let round = PageFrame {
             time: frame.taken,
             pose,
@@ -119,7 +124,7 @@ impl<'o> RunCapture<'o> {
             scene: frame.scene.as_ref().map(in_words).unwrap_or_default(),
             command: None,
             image: self.annotated(frame),
-            story: unwrapped(self.story.out().text()).len(),
+            story: self.unwrapped.lines.len(),
             maps: self.maps.len(),
         };
         self.rounds.push(round);
@@ -146,13 +151,28 @@ impl<'o> RunCapture<'o> {
     }
 }
 
-/// The lines of a story before they were wrapped for a terminal: a page wraps them itself.
-fn unwrapped(story: &str) -> Vec<String> {
-    /// The indent of a line that continues the one before, at least.
-    const CONTINUES: &str = "    ";
-    let mut lines: Vec<String> = Vec::new();
-    for line in story.lines() {
-        match lines.last_mut() {
+/// The lines of a story before they were wrapped for a terminal: a page wraps them itself. The story is read
+/// while it grows, each line once.
+#[derive(Default)]
+struct UnwrappedStory {
+    lines: Vec<String>,
+    /// The number of bytes that were read.
+    read: usize,
+}
+
+impl UnwrappedStory {
+    /// Reads the whole lines that a story has since it was last read.
+    fn read(&mut self, story: &str) {
+        let new = story.get(self.read..).unwrap_or_default();
+        let Some((whole, _)) = new.rsplit_once('\n') else { return };
+        whole.split('\n').for_each(|line| self.push(line));
+        self.read += whole.len() + 1;
+    }
+
+    fn push(&mut self, line: &str) {
+        /// The indent of a line that continues the one before, at least.
+        const CONTINUES: &str = "    ";
+        match self.lines.last_mut() {
             // A paragraph is not indented: each of its lines but the last ends within a sentence.
             Some(last)
                 if line.starts_with(CONTINUES)
@@ -164,10 +184,9 @@ fn unwrapped(story: &str) -> Vec<String> {
                 last.push(' ');
                 last.push_str(line.trim_start());
             }
-            _ => lines.push(line.to_owned()),
+            _ => self.lines.push(line.to_owned()),
         }
     }
-    lines
 }
 
 impl RunObserver for RunCapture<'_> {
@@ -213,16 +232,23 @@ mod tests {
         let story = "World w. The robot starts at a, with its back to the door to\nb.\nIt senses 2 doors.\n\n\
                      Round 1: the robot takes v0.0 (1 move) and\n         senses 1 door.\n  \
                      Candidate v1.1: rejected, sensed 3\n    doors (2 moves).\n  Known: 2 vertices.\n";
-        assert_eq!(
-            unwrapped(story),
-            [
-                "World w. The robot starts at a, with its back to the door to b.",
-                "It senses 2 doors.",
-                "",
-                "Round 1: the robot takes v0.0 (1 move) and senses 1 door.",
-                "  Candidate v1.1: rejected, sensed 3 doors (2 moves).",
-                "  Known: 2 vertices.",
-            ]
-        );
+        // However much of it is there when it is read.
+        for step in [1, 40, story.len()] {
+            let mut read = UnwrappedStory::default();
+            for end in (0..story.len()).step_by(step).chain([story.len()]) {
+                read.read(&story[..end]);
+            }
+            assert_eq!(
+                read.lines,
+                [
+                    "World w. The robot starts at a, with its back to the door to b.",
+                    "It senses 2 doors.",
+                    "",
+                    "Round 1: the robot takes v0.0 (1 move) and senses 1 door.",
+                    "  Candidate v1.1: rejected, sensed 3 doors (2 moves).",
+                    "  Known: 2 vertices.",
+                ]
+            );
+        }
     }
 }

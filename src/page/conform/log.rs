@@ -75,10 +75,7 @@ fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> Str
         format!("Event {number} of {all}")
     };
     let time = time.map_or_else(String::new, |time| format!(" \u{b7} {} min", clock(time)));
-    let message = message.map_or_else(String::new, |(number, offset)| {
-        let [number, offset] = [number, offset].map(|number| grouped(number.into()));
-        format!(" \u{b7} message {number} of the log, byte {offset}")
-    });
+    let message = message.map_or_else(String::new, |message| format!(" \u{b7} {message}"));
     format!(
         "<p class=\"what\"><b>{}</b> {}</p>\n\
          <p><span class=\"chip\">{fault}</span> {}</p>\n\

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use toposlam_robot::conform::{ConformVerdict, FaultClass};
+use toposlam_robot::{
+    conform::{ConformVerdict, FaultClass},
+    log::error::OffsetUnit,
+};
 
 use super::*;
 use crate::{
     page::template::checks::places_of,
     report::{
-        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, RequiredCoverage,
-        SourceFile, UnreadLog,
+        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, MessagePlace,
+        RequiredCoverage, SourceFile, UnreadLog,
     },
 };
 
@@ -100,7 +103,7 @@ fn diverged(events: usize, at: usize) -> LogReport {
         divergence: Some(DivergenceReport {
             event: at,
             time: Some(at as f64 / 2.0),
-            message: Some((4711, 1_234_567)),
+            message: Some(MessagePlace { number: 4711, offset: 1_234_567, unit: OffsetUnit::Byte }),
             fault: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors".to_owned(),
@@ -220,7 +223,7 @@ fn a_divergence_is_shown_with_the_events_before_it_and_what_is_allowed() {
         "<b>Perceives 4 doors.</b>",
         "<span class=\"chip\">perception</span>",
         "<a href=\"#event-1-7\">Event 7 of 9</a> \u{b7} 0:03.5 min \u{b7} message 4,711 of the log, \
-         byte 1,234,567 \u{b7} cause <code>percept</code>",
+         at byte 1,234,567 \u{b7} cause <code>percept</code>",
         "<li>3 doors, at tee</li>",
         "src=\"data:image/jpeg;base64,/9j/4A==\"",
         "src=\"data:image/svg+xml;base64,",

@@ -199,6 +199,22 @@ fn trace_of(events: &RunEvents, question: &ConformConfig) -> Trace {
     events.trace().unwrap()
 }
 
+/// A quirk for a cause, at one event or at all.
+fn quirk_of(cause: &str, event: Option<usize>) -> Result<Quirks, QuirkError> {
+    let event = event.map_or(String::new(), |event| format!("event = {}\n", event + 1));
+    Quirks::read(&format!(
+        "[[quirk]]\nname = \"one\"\ncause = \"{cause}\"\nreason = \"it is known\"\n{event}"
+    ))
+}
+
+/// Any quirk.
+fn quirk() -> impl Strategy<Value = Quirks> {
+    let causes = ["percept", "number", "shape", "entry", "moved", "aside", "turned-back"];
+    let causes: Vec<_> = causes.into_iter().filter(|cause| quirk_of(cause, None).is_ok()).collect();
+    let event = prop::option::of(0_usize..20);
+    (prop::sample::select(causes), event).prop_map(|(cause, event)| quirk_of(cause, event).unwrap())
+}
+
 /// Checks that no world of any size explains the trace up to an event, and that one explains it up to the
 /// event before.
 fn assert_impossible(trace: &Trace, event: usize) {
@@ -233,7 +249,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn a_good_log_never_diverges(options in options(), cut in any::<prop::sample::Index>()) {
+    fn a_good_log_never_diverges_and_needs_no_quirk(
+        options in options(),
+        cut in any::<prop::sample::Index>(),
+        quirk in quirk(),
+    ) {
         let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
         let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
         let log = options.log(&plan, facing);
@@ -248,6 +268,8 @@ proptest! {
         let expected =
             if complete { ConformVerdict::Conforms } else { ConformVerdict::Incomplete };
         prop_assert_eq!(judgement.verdict(), expected);
+        let with_quirk = judge(events.clone(), &question, &quirk, &()).unwrap();
+        prop_assert_eq!((with_quirk.verdict(), with_quirk.tolerated.len()), (expected, 0));
         if let Some(SmallestWorld::World { graph, marker, .. }) = &judgement.smallest {
             let trace = trace_of(&events, &question);
             let place = Place { graph, marker: *marker, pose: Dart(0) };
@@ -282,9 +304,25 @@ proptest! {
             RunDriver::Anyone => events.without_excursions(),
             RunDriver::Method(_) => events.clone(),
         };
-        let Ok(judgement) = judge(checked, &question, &Quirks::default(), &()) else {
+        let Ok(judgement) = judge(checked.clone(), &question, &Quirks::default(), &()) else {
             return Ok(());
         };
+        if let Some(divergence) = &judgement.divergence
+            && let Ok(quirk) = quirk_of(divergence.cause.name(), Some(divergence.event))
+        {
+            // The events before it stay as they are, and what is tolerated is not where the log diverges.
+            let place = |found: &Divergence| (found.event, found.cause.name());
+            let again = judge(checked, &question, &quirk, &()).unwrap();
+            let left = again.divergence.as_ref().map(place);
+            match &again.tolerated[..] {
+                [] => prop_assert_eq!(left, Some(place(divergence))),
+                tolerated => {
+                    prop_assert!(tolerated.iter().all(|(found, _)| place(found) == place(divergence)));
+                    prop_assert_ne!(left, Some(place(divergence)));
+                    prop_assert!(left.is_none_or(|(event, _)| event >= divergence.event));
+                }
+            }
+        }
         match judgement.divergence.as_ref().map(|divergence| &divergence.cause) {
             Some(DivergenceCause::NoWorld { event, why }) => {
                 let event = judgement.trace.index_of(event.id);

@@ -1,0 +1,134 @@
+//! The clock of a log with laser scans: a few messages that are far from all others in time are skipped.
+//!
+//! The messages of a bag, an MCAP file or a database come in the order of their times. One with a wrong time
+//! comes first or last, far from where the robot was when it was recorded.
+
+/// Messages with a longer time between them, in nanoseconds, do not stand together. A robot may pause.
+const PAUSE: u64 = 3_600_000_000_000;
+/// So many messages that stand together are not skipped.
+const MANY: usize = 10;
+/// The largest number of messages that wait until it is known whether they stand alone.
+const WAITING: usize = 1000;
+
+/// Skips messages that are far from all others in time.
+#[derive(Clone, Debug)]
+pub(super) struct ScanClock<T> {
+    /// The time of the last message.
+    last: u64,
+    /// The last messages that stand together, as long as they are few.
+    together: Vec<T>,
+    /// Those before them that are few, too, until many have stood together.
+    apart: Vec<T>,
+    /// Whether many have stood together.
+    is_set: bool,
+    /// Whether the last messages are many.
+    are_many: bool,
+    /// Whether a message counts when it is skipped.
+    counts: fn(&T) -> bool,
+    skipped: u64,
+}
+
+impl<T> ScanClock<T> {
+    /// Before the first message. Those that count are counted when they are skipped.
+    pub(super) fn new(counts: fn(&T) -> bool) -> Self {
+        let [together, apart] = [Vec::new(), Vec::new()];
+        Self { last: 0, together, apart, is_set: false, are_many: false, counts, skipped: 0 }
+    }
+
+    /// Takes the next message in the order of time. Returns those that are no longer in doubt, in order.
+    pub(super) fn next(&mut self, time: u64, message: T) -> Vec<T> {
+        if time.abs_diff(std::mem::replace(&mut self.last, time)) > PAUSE {
+            self.part();
+        }
+        self.together.push(message);
+        if self.apart.len() >= WAITING {
+            // This log has pauses everywhere.
+            let mut all = std::mem::take(&mut self.apart);
+            all.append(&mut self.together);
+            return all;
+        }
+        if !self.are_many && self.together.len() < MANY {
+            return Vec::new();
+        }
+        (self.is_set, self.are_many) = (true, true);
+        self.skip_apart();
+        std::mem::take(&mut self.together)
+    }
+
+    /// Ends the messages that stand together.
+    fn part(&mut self) {
+        self.are_many = false;
+        self.apart.append(&mut self.together);
+        if self.is_set {
+            self.skip_apart();
+        }
+    }
+
+    fn skip_apart(&mut self) {
+        self.skipped += self.apart.drain(..).filter(self.counts).count() as u64;
+    }
+
+    /// The messages that are still in doubt, and how many of those that count are skipped. If many never stood
+    /// together, none are.
+    pub(super) fn finish(mut self) -> (Vec<T>, u64) {
+        self.part();
+        (self.apart, self.skipped)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: u64 = 1_000_000_000;
+
+    /// The times in seconds that are not skipped, and the number of those that are.
+    fn kept(times: impl IntoIterator<Item = u64>) -> (Vec<u64>, u64) {
+        let mut clock = ScanClock::new(|_| true);
+        let mut kept = Vec::new();
+        for time in times {
+            kept.extend(clock.next(time * SECOND, time));
+        }
+        let (rest, skipped) = clock.finish();
+        kept.extend(rest);
+        (kept, skipped)
+    }
+
+    #[test]
+    fn a_message_far_from_all_others_is_skipped() {
+        let steady = || 5000..5100;
+        let all: Vec<_> = steady().collect();
+        assert_eq!(kept(steady()), (all.clone(), 0));
+        assert_eq!(kept(steady().chain([4_294_970_000])), (all.clone(), 1));
+        assert_eq!(kept([0, 1].into_iter().chain(steady())), (all.clone(), 2));
+        // An hour is a pause; more messages than a few are not wrong.
+        assert_eq!(kept(steady().chain([5099 + 3600])).1, 0);
+        assert_eq!(kept(steady().chain([5099 + 3601])), (all, 1));
+        let later = 9_000_000..9_000_000 + MANY as u64;
+        assert_eq!(
+            kept(steady().chain(later)),
+            (steady().chain(9_000_000..9_000_010).collect(), 0)
+        );
+    }
+
+    #[test]
+    fn in_a_log_of_a_few_messages_none_is_skipped() {
+        let few = [0, 5000, 5001, 4_294_970_000];
+        assert_eq!(kept(few), (few.to_vec(), 0));
+        // Nor if there are many, each far from the next.
+        let hours: Vec<_> = (0..2 * WAITING as u64).map(|hour| hour * 7200).collect();
+        assert_eq!(kept(hours.clone()), (hours, 0));
+    }
+
+    #[test]
+    fn only_what_counts_is_counted() {
+        let mut clock = ScanClock::new(|time: &u64| time.is_multiple_of(2));
+        for time in 0..MANY as u64 {
+            clock.next(time, time);
+        }
+        for time in [4_000, 4_001, 4_002] {
+            clock.next(time * SECOND, time);
+        }
+        assert_eq!(clock.finish(), (Vec::new(), 2));
+    }
+}
