@@ -161,7 +161,7 @@ fn check(log: &LogReader, mut question: Question, watcher: &Watcher) -> Result<C
     let resumed = question.settings.is_resumed.then(|| RESUMED.to_owned());
     let other = question.world.as_ref().and_then(|world| head.other_world(&world.graph));
     let skipped = log.log.skipped().map(|skipped| format!("skipped {skipped}"));
-    let skipped = skipped.into_iter().chain(extracted.skipped_scans.in_words());
+    let skipped = skipped.into_iter().chain(extracted.skipped.in_words());
     let remarks = other.into_iter().chain(resumed).chain(skipped).collect();
     let known = question.world.as_ref().map(|world| {
         let start = question.start.or(world.start);

@@ -177,7 +177,7 @@ class ConformReport:
     """The number of moves, of those measured by odometry, and of those compared with earlier ones."""
     remarks: tuple[str, ...]
     """What a reader should know: the log was recorded in another world, goes on from an earlier run, or has
-    lines or laser scans that were skipped."""
+    lines or messages that were skipped."""
 
     def __repr__(self) -> str:
         text = f"{self.path.name}: {self.verdict}, {len(self.events)} events, {self.evidence}"

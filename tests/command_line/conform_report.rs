@@ -158,7 +158,7 @@ fn a_complete_run_of_the_folding_explorer_has_each_case_that_is_expected() {
     let page = folder.join("report.html");
     let (code, _) = judged(&log, &["--world", plan, "--html", page.to_str().unwrap()]);
     assert_eq!(code, Some(0));
-    let written = fs::read_to_string(&page).unwrap();
+    let written = fs::read_to_string(page).unwrap();
     assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">t-stem-right</th>"));
     assert!(!written.contains("<tr class=\"missed\">"));
 }
@@ -250,7 +250,7 @@ fn a_robot_that_was_carried_was_moved_between_two_events() {
     );
     let condition = report["condition"].as_str().unwrap();
     assert!(condition.starts_with("moved by hand or slipped between events "), "{condition}");
-    let page = fs::read_to_string(&page).unwrap();
+    let page = fs::read_to_string(page).unwrap();
     assert!(page.contains("oved by hand or slipped between events "), "no page");
     let lengths = &report["lengths"];
     assert_eq!((&lengths["moves"], &lengths["measured"]), (&json!(15), &json!(15)), "{lengths}");

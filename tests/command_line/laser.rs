@@ -61,8 +61,8 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
     };
     let json_of = |log: &str| objects(&report(log, &["--json"]).1).pop().unwrap();
     let before = json_of(log);
-    let none = json!({"off_clock": 0, "without_odometry": 0});
-    assert_eq!(before["skipped_scans"], none);
+    let none = json!({"off_clock": 0, "scans_without_odometry": 0});
+    assert_eq!(before["skipped_messages"], none);
     let remarks = |remark: &str| {
         let others = before["remarks"].as_array().unwrap();
         json!([&[json!(remark)][..], others].concat())
@@ -81,16 +81,16 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
     });
     let changed = changed.to_str().unwrap();
     let after = json_of(changed);
-    let skipped = json!({"off_clock": 3, "without_odometry": 0});
-    assert_eq!((&after["skipped_scans"], &after["scans"]), (&skipped, &json!(scans - 3)));
-    let remark = "skipped laser scans: 3 whose time is far from that of all others";
+    let skipped = json!({"off_clock": 3, "scans_without_odometry": 0});
+    assert_eq!((&after["skipped_messages"], &after["scans"]), (&skipped, &json!(scans - 3)));
+    let remark = "skipped messages: 3 whose time is far from that of all others";
     assert_eq!(after["remarks"], remarks(remark));
     for fact in ["verdict", "events", "lengths"] {
         assert_eq!(after[fact], before[fact], "{fact}");
     }
     let (_, text, _) = report(changed, &["--html", page.to_str().unwrap()]);
     assert!(text.contains(remark), "{text}");
-    let sentence = "<p>Skipped laser scans: 3 whose time is far from that of all others.</p>";
+    let sentence = "<p>Skipped messages: 3 whose time is far from that of all others.</p>";
     assert!(fs::read_to_string(page).unwrap().contains(sentence));
 
     // The odometry begins late, or never. Of the scans before it, the last 50 wait for it.
@@ -100,10 +100,10 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
         (seen.get() > 60 || !is_odometry(message)).then_some(message.log_time)
     });
     let late = json_of(changed);
-    assert_eq!(late["skipped_scans"]["off_clock"], 0);
-    let without = late["skipped_scans"]["without_odometry"].as_u64().unwrap();
+    assert_eq!(late["skipped_messages"]["off_clock"], 0);
+    let without = late["skipped_messages"]["scans_without_odometry"].as_u64().unwrap();
     assert!((9..=11).contains(&without), "{late}");
-    let remark = format!("skipped laser scans: {without} without odometry");
+    let remark = format!("skipped messages: {without} scans without odometry");
     assert_eq!(late["remarks"][0], json!(remark));
     // Topics that have no message carry no odometry.
     rewritten(log, Path::new(changed), |_, message| {

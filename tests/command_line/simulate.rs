@@ -253,32 +253,6 @@ fn an_interrupted_run_reports_its_results_and_is_incomplete() {
     assert!(text.contains("  map               "), "{text}");
 }
 
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_with_a_log_and_a_page_ends_within_a_second() {
-    use std::{
-        process::{Command, Stdio},
-        thread,
-        time::{Duration, Instant},
-    };
-
-    let folder = folder("simulate_interrupted");
-    let [log, page] = ["x.mcap", "x.html"].map(|name| folder.join(name));
-    let mut robot = super::toposlam();
-    robot.args(["simulate", "worlds/building-25.toml", "--by-scene", "--algorithm", "algorithm1"]);
-    robot.arg("--log").arg(&log).arg("--html").arg(&page);
-    let mut robot = robot.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    thread::sleep(Duration::from_millis(300));
-    let interrupted = Instant::now();
-    // It may have ended by itself.
-    Command::new("kill").args(["-INT", &robot.id().to_string()]).status().unwrap();
-    let code = robot.wait().unwrap().code();
-    assert!(interrupted.elapsed() < Duration::from_secs(1), "{:?}", interrupted.elapsed());
-    assert!([Some(0), Some(3)].contains(&code), "{code:?}");
-    assert!(fs::read_to_string(page).unwrap().ends_with("</html>\n"));
-    fs::remove_dir_all(folder).unwrap();
-}
-
 #[test]
 fn a_run_starts_at_the_l_nearest_to_a_start_that_is_none() {
     for (plan, start) in

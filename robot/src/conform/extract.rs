@@ -78,8 +78,8 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
-    /// The scans that were not.
-    pub skipped_scans: SkippedScans,
+    /// The messages that were skipped.
+    pub skipped: SkippedMessages,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
@@ -90,28 +90,28 @@ pub struct ExtractedRun {
     pub sightings: Vec<TimedSighting>,
 }
 
-/// The number of laser scans that were not sensed, by the reason.
+/// The number of messages that were skipped when a laser was the evidence, by the reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SkippedScans {
-    /// Their time is far from that of all other messages.
+pub struct SkippedMessages {
+    /// Scans, odometry and sightings whose time is far from that of all other messages.
     pub off_clock: u64,
-    /// No odometry was recorded before them, nor soon after.
-    pub without_odometry: u64,
+    /// Scans before which no odometry was recorded, nor soon after.
+    pub scans_without_odometry: u64,
 }
 
-impl SkippedScans {
+impl SkippedMessages {
     /// A remark on them; `None` if there are none.
     #[must_use]
     pub fn in_words(self) -> Option<String> {
-        let Self { off_clock, without_odometry } = self;
+        let Self { off_clock, scans_without_odometry } = self;
         let reasons = [
             (off_clock, "whose time is far from that of all others"),
-            (without_odometry, "without odometry"),
+            (scans_without_odometry, "scans without odometry"),
         ];
         let reasons = reasons.into_iter().filter(|(count, _)| *count > 0);
         let parts: Vec<_> =
             reasons.map(|(count, why)| format!("{} {why}", grouped(count.into()))).collect();
-        (!parts.is_empty()).then(|| format!("skipped laser scans: {}", parts.join(", ")))
+        (!parts.is_empty()).then(|| format!("skipped messages: {}", parts.join(", ")))
     }
 }
 
@@ -258,7 +258,7 @@ pub fn extract(
         field_of_view: 0.0,
         sightings: Vec::new(),
     };
-    let skipped_scans = gathering.gather(log, &bound)?;
+    let skipped = gathering.gather(log, &bound)?;
     let Extraction {
         recorded,
         track,
@@ -273,7 +273,7 @@ pub fn extract(
         sightings,
         ..
     } = gathering;
-    let scans = scans - skipped_scans.without_odometry;
+    let scans = scans - skipped.scans_without_odometry;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
         Some(SensedScene { source, scene, odometry })
@@ -309,7 +309,7 @@ pub fn extract(
         pictures,
         unreadable,
         scans,
-        skipped_scans,
+        skipped,
         field_of_view,
         drift,
         junctions,
@@ -337,7 +337,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             meter.see(&placed.scan, &placed.odometry);
         }
     };
-    let mut clock = ScanClock::new(is_scan);
+    let mut clock = ScanClock::default();
     for entry in log.entries(bound) {
         let Ok(entry) = entry else { break };
         if is_timed(&entry) {
@@ -348,15 +348,15 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
     meter.finish()
 }
 
-fn is_scan(entry: &Entry) -> bool {
-    matches!(entry.content, Content::Event(EventKind::Frame(Frame { scan: Some(_), .. })))
-}
-
 /// Whether an entry shows where the robot was at its time.
 fn is_timed(entry: &Entry) -> bool {
-    let is_sighting =
-        matches!(entry.content, Content::Fiducial(_) | Content::Event(EventKind::Odometry(_)));
-    is_sighting || is_scan(entry)
+    matches!(
+        entry.content,
+        Content::Fiducial(_)
+            | Content::Event(
+                EventKind::Odometry(_) | EventKind::Frame(Frame { scan: Some(_), .. })
+            )
+    )
 }
 
 /// The events that are inferred from scenes.
@@ -396,9 +396,13 @@ struct Extraction<'w, W> {
 }
 
 impl<W: SensingProgress> Extraction<'_, W> {
-    /// Takes the entries of a log. Returns the number of scans that are skipped.
-    fn gather(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<SkippedScans, ExtractError> {
-        let mut clock = ScanClock::new(is_scan);
+    /// Takes the entries of a log. Returns the number of those that are skipped.
+    fn gather(
+        &mut self,
+        log: &Log,
+        bound: &BoundTopicMap,
+    ) -> Result<SkippedMessages, ExtractError> {
+        let mut clock = ScanClock::default();
         for entry in log.entries(bound) {
             let entry = entry?;
             if self.evidence == Evidence::Laser && is_timed(&entry) {
@@ -410,13 +414,13 @@ impl<W: SensingProgress> Extraction<'_, W> {
         let (rest, off_clock) = clock.finish();
         rest.into_iter().try_for_each(|entry| self.take(entry))?;
         self.look()?;
-        let without_odometry = self.placing.without_odometry();
+        let scans_without_odometry = self.placing.without_odometry();
         match std::mem::take(&mut self.placing).finish() {
             Some(waiting) => waiting.for_each(|placed| self.see(&placed)),
             None if self.scans > 0 => return Err(ExtractError::NoOdometry { scans: self.scans }),
             None => {}
         }
-        Ok(SkippedScans { off_clock, without_odometry })
+        Ok(SkippedMessages { off_clock, scans_without_odometry })
     }
 
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {

@@ -36,7 +36,7 @@ pub use events::{
 };
 pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress,
-    SkippedScans, extract, infer_events,
+    SkippedMessages, extract, infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};

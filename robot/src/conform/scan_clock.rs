@@ -1,7 +1,8 @@
 //! The clock of a log with laser scans: a few messages that are far from all others in time are skipped.
 //!
 //! The messages of a bag, an MCAP file or a database come in the order of their times. One with a wrong time
-//! comes first or last, far from where the robot was when it was recorded.
+//! comes first or last, far from where the robot was when it was recorded. (Lines come in the order of their
+//! file; `log::container::clock` skips those with a wrong time.)
 
 /// Messages with a longer time between them, in nanoseconds, do not stand together. A robot may pause.
 const PAUSE: u64 = 3_600_000_000_000;
@@ -23,18 +24,17 @@ pub(super) struct ScanClock<T> {
     is_set: bool,
     /// Whether the last messages are many.
     are_many: bool,
-    /// Whether a message counts when it is skipped.
-    counts: fn(&T) -> bool,
     skipped: u64,
 }
 
-impl<T> ScanClock<T> {
-    /// Before the first message. Those that count are counted when they are skipped.
-    pub(super) fn new(counts: fn(&T) -> bool) -> Self {
+impl<T> Default for ScanClock<T> {
+    fn default() -> Self {
         let [together, apart] = [Vec::new(), Vec::new()];
-        Self { last: 0, together, apart, is_set: false, are_many: false, counts, skipped: 0 }
+        Self { last: 0, together, apart, is_set: false, are_many: false, skipped: 0 }
     }
+}
 
+impl<T> ScanClock<T> {
     /// Takes the next message in the order of time. Returns those that are no longer in doubt, in order.
     pub(super) fn next(&mut self, time: u64, message: T) -> Vec<T> {
         if time.abs_diff(std::mem::replace(&mut self.last, time)) > PAUSE {
@@ -65,11 +65,10 @@ impl<T> ScanClock<T> {
     }
 
     fn skip_apart(&mut self) {
-        self.skipped += self.apart.drain(..).filter(self.counts).count() as u64;
+        self.skipped += self.apart.drain(..).count() as u64;
     }
 
-    /// The messages that are still in doubt, and how many of those that count are skipped. If many never stood
-    /// together, none are.
+    /// The messages that are still in doubt, and how many are skipped. If many never stood together, none are.
     pub(super) fn finish(mut self) -> (Vec<T>, u64) {
         self.part();
         (self.apart, self.skipped)
@@ -84,7 +83,7 @@ mod tests {
 
     /// The times in seconds that are not skipped, and the number of those that are.
     fn kept(times: impl IntoIterator<Item = u64>) -> (Vec<u64>, u64) {
-        let mut clock = ScanClock::new(|_| true);
+        let mut clock = ScanClock::default();
         let mut kept = Vec::new();
         for time in times {
             kept.extend(clock.next(time * SECOND, time));
@@ -118,17 +117,5 @@ mod tests {
         // Nor if there are many, each far from the next.
         let hours: Vec<_> = (0..2 * WAITING as u64).map(|hour| hour * 7200).collect();
         assert_eq!(kept(hours.clone()), (hours, 0));
-    }
-
-    #[test]
-    fn only_what_counts_is_counted() {
-        let mut clock = ScanClock::new(|time: &u64| time.is_multiple_of(2));
-        for time in 0..MANY as u64 {
-            clock.next(time, time);
-        }
-        for time in [4_000, 4_001, 4_002] {
-            clock.next(time * SECOND, time);
-        }
-        assert_eq!(clock.finish(), (Vec::new(), 2));
     }
 }

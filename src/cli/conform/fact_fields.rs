@@ -7,7 +7,7 @@ use toposlam_model::{
     trace::{AlgorithmMatch, MatchedChoices},
 };
 use toposlam_robot::{
-    conform::{Evidence, LogHead, MeasuredHallways, SkippedScans},
+    conform::{Evidence, LogHead, MeasuredHallways, SkippedMessages},
     record::RunEnding,
 };
 
@@ -30,7 +30,7 @@ pub(super) struct FactFields<'j> {
     unreadable_images: u64,
     /// The number of laser scans that were sensed.
     scans: u64,
-    skipped_scans: SkippedScansFields,
+    skipped_messages: SkippedMessagesFields,
     truncated: Option<TruncatedLine>,
     /// The lines of a log of lines that are not read.
     skipped: Option<SkippedLinesFields<'j>>,
@@ -50,11 +50,11 @@ pub(super) struct FactFields<'j> {
     map: Option<Map>,
 }
 
-/// The number of laser scans that were not sensed.
+/// The number of messages that were skipped when a laser was the evidence.
 #[derive(Serialize)]
-struct SkippedScansFields {
+struct SkippedMessagesFields {
     off_clock: u64,
-    without_odometry: u64,
+    scans_without_odometry: u64,
 }
 
 /// What the log records about its world.
@@ -153,7 +153,7 @@ impl<'j> FactFields<'j> {
             images: gathered.pictures,
             unreadable_images: gathered.unreadable,
             scans: gathered.scans,
-            skipped_scans: SkippedScansFields::from(gathered.skipped_scans),
+            skipped_messages: SkippedMessagesFields::from(gathered.skipped),
             truncated: opened.log.truncation().map(TruncatedLine::from),
             skipped: opened.log.skipped().map(SkippedLinesFields::from),
             recorded: run.filter(|run| !run.world_hash.is_empty()).map(|run| Recorded {
@@ -184,9 +184,10 @@ impl<'j> FactFields<'j> {
     }
 }
 
-impl From<SkippedScans> for SkippedScansFields {
-    fn from(SkippedScans { off_clock, without_odometry }: SkippedScans) -> Self {
-        Self { off_clock, without_odometry }
+impl From<SkippedMessages> for SkippedMessagesFields {
+    fn from(skipped: SkippedMessages) -> Self {
+        let SkippedMessages { off_clock, scans_without_odometry } = skipped;
+        Self { off_clock, scans_without_odometry }
     }
 }
 

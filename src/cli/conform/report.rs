@@ -80,7 +80,7 @@ impl JudgedLog<'_> {
         if let Some(skipped) = self.opened.log.skipped() {
             remarks.push(format!("skipped {skipped}"));
         }
-        remarks.extend(self.gathered.skipped_scans.in_words());
+        remarks.extend(self.gathered.skipped.in_words());
         let events = &self.judgement.events;
         match events.end.as_ref().map(|end| &end.ending) {
             Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),

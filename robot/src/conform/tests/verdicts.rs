@@ -209,8 +209,8 @@ fn quirk_of(cause: &str, event: Option<usize>) -> Result<Quirks, QuirkError> {
 
 /// Any quirk.
 fn quirk() -> impl Strategy<Value = Quirks> {
-    let causes = ["percept", "number", "shape", "entry", "moved", "aside", "turned-back"];
-    let causes: Vec<_> = causes.into_iter().filter(|cause| quirk_of(cause, None).is_ok()).collect();
+    let causes =
+        ["percept", "number", "shape", "entry", "moved", "aside", "turned-back"].as_slice();
     let event = prop::option::of(0_usize..20);
     (prop::sample::select(causes), event).prop_map(|(cause, event)| quirk_of(cause, event).unwrap())
 }
