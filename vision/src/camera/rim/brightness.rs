@@ -48,21 +48,27 @@ impl Brightness {
         Self { width, height, pixels: pixels.map(|(u, v)| mean(u, v)).collect() }
     }
 
+    /// Whether a place is between pixels.
+    pub(super) fn contains(&self, [u, v]: [f64; 2]) -> bool {
+        u >= 0.0 && v >= 0.0 && u < (self.width - 1) as f64 && v < (self.height - 1) as f64
+    }
+
     /// The brightness between pixels; `None` outside of the image.
-    pub(super) fn at(&self, [u, v]: [f64; 2]) -> Option<f64> {
-        let (column, row) = (u.floor(), v.floor());
-        let inside = column >= 0.0
-            && row >= 0.0
-            && column < (self.width - 1) as f64
-            && row < (self.height - 1) as f64;
-        if !inside {
-            return None;
-        }
+    pub(super) fn at(&self, place: [f64; 2]) -> Option<f64> {
+        self.contains(place).then(|| self.between(place))
+    }
+
+    /// The brightness at a place that the image contains.
+    #[inline]
+    pub(super) fn between(&self, [u, v]: [f64; 2]) -> f64 {
+        // Neither is negative, so this rounds down, faster than `floor`.
+        let [column, row] = [u as i32, v as i32];
         let first = row as usize * self.width + column as usize;
+        let along = u - f64::from(column);
         let [upper, lower] = [first, first + self.width].map(|at| {
             let [left, right] = [self.pixels[at], self.pixels[at + 1]].map(f64::from);
-            left + (u - column) * (right - left)
+            left + along * (right - left)
         });
-        Some(upper + (v - row) * (lower - upper))
+        upper + (v - f64::from(row)) * (lower - upper)
     }
 }

@@ -8,6 +8,9 @@ use super::{RIM, brightness::Brightness, circle::Circle};
 /// The number of bearings on which edges are searched for.
 pub(super) const BEARINGS: usize = 1440;
 
+/// The places of an arc over which brightness is averaged, along the circle, in units.
+const ARC: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
+
 /// A steep edge near a circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CircleEdge {
@@ -36,18 +39,25 @@ impl CircleEdges {
         let (mut edges, mut visible) = (Vec::new(), 0);
         for bearing in (0..BEARINGS).step_by(every) {
             let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
+            let place = |step: usize, along: f64| {
+                let out = circle.radius + 0.5 * unit * (step as f64 - steps as f64);
+                let along = along * unit;
+                let place = [out * cosine - along * sine, out * sine + along * cosine];
+                [circle.centre[0] + place[0], circle.centre[1] + place[1]]
+            };
+            // The image is convex: if the corners of a rectangle are in it, all of the rectangle is.
+            let is_inside = [0, 2 * steps]
+                .iter()
+                .all(|&step| [ARC[0], ARC[6]].iter().all(|&along| image.contains(place(step, along))));
             // The mean over a short arc, from inside to outside in half units.
             let ring = |step: usize| {
-                let radius = circle.radius + 0.5 * unit * (step as f64 - steps as f64);
-                let sum: Option<f64> = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0]
-                    .iter()
-                    .map(|along| {
-                        let (out, along) = (radius, along * unit);
-                        let place = [out * cosine - along * sine, out * sine + along * cosine];
-                        image.at([circle.centre[0] + place[0], circle.centre[1] + place[1]])
-                    })
-                    .sum();
-                sum.map(|sum| sum / 7.0)
+                let places = ARC.iter().map(|&along| place(step, along));
+                let sum = if is_inside {
+                    Some(places.map(|place| image.between(place)).sum::<f64>())
+                } else {
+                    places.map(|place| image.at(place)).sum()
+                };
+                sum.map(|sum| sum / ARC.len() as f64)
             };
             let profile: Vec<Option<f64>> = (0..=2 * steps).map(ring).collect();
             visible += usize::from(
