@@ -1,6 +1,7 @@
 //! `toposlam conform`: what is stdout_of of a log, with which exit code, and what is written.
 
 use std::{
+    cell::Cell,
     f64::consts::PI,
     fs,
     path::{Path, PathBuf},
@@ -8,7 +9,7 @@ use std::{
 };
 
 use serde_json::{Value, json};
-use toposlam_model::driving;
+use toposlam_model::{counts::grouped, driving};
 use toposlam_robot::log::{
     messages::{Door, Percept, ProjectMessage, Scene, Stamp},
     recorder::ODOM,
@@ -16,7 +17,10 @@ use toposlam_robot::log::{
     writer::LogWriter,
 };
 
-use super::{folder, objects, run, stderr, stdout, stdout_of};
+use super::{
+    containers::{rewritten, set_stamp, stamp},
+    folder, objects, run, stderr, stdout, stdout_of,
+};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
@@ -784,4 +788,145 @@ fn a_divergence_is_fields_too() {
     assert_eq!(short.len(), line["shorter"].as_array().unwrap().len(), "{line}");
     let (_, good) = judged(&log, &["--world", SHAPE_6]);
     assert_eq!(good["divergence"], Value::Null);
+}
+
+#[test]
+fn a_scene_or_odometry_with_a_wrong_stamp_is_skipped_and_counted() {
+    let folder = folder("conform-stamps");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let options = ["--events", "scenes", "--world", SHAPE_6];
+    let (code, before) = judged(&log, &options);
+    let none = json!({"off_clock": 0, "scans_without_odometry": 0});
+    assert_eq!((code, &before["skipped_messages"]), (Some(0), &none));
+    let changed = folder.join("changed.mcap");
+    // The stamps of these messages, by their numbers on a topic, become others.
+    let change = |topic: &str, seconds: &dyn Fn(usize, i32) -> i32| {
+        let mut number = 0;
+        rewritten(&log, &changed, |_, message| {
+            if message.channel.topic == topic {
+                let other = seconds(number, stamp(message));
+                if other != stamp(message) {
+                    set_stamp(message, other);
+                }
+                number += 1;
+            }
+            true
+        });
+    };
+    let far = 2_000_000_000;
+    for topic in [ODOM, Scene::TOPIC] {
+        // In the middle of a stretch of hallway, and at a junction.
+        change(topic, &|number, seconds| if [30, 50].contains(&number) { far } else { seconds });
+        let (code, after) = judged(&changed, &options);
+        let skipped = json!({"off_clock": 2, "scans_without_odometry": 0});
+        assert_eq!((code, &after["skipped_messages"]), (Some(0), &skipped), "{topic}");
+        let remark = "skipped messages: 2 whose time is far from that of all others";
+        assert_eq!(after["remarks"][0], remark, "{topic}");
+        for fact in ["verdict", "events", "candidates", "unique"] {
+            assert_eq!(after[fact], before[fact], "{topic}: {fact}");
+        }
+    }
+    // What cannot be skipped is an error: the time of a scene decides where the robot was.
+    let error = || {
+        let output = run([&["conform", changed.to_str().unwrap()][..], &options].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+        stderr(&output)
+    };
+    change(Scene::TOPIC, &|number, seconds| if number >= 60 { far } else { seconds });
+    let message = error();
+    assert!(
+        message
+            .contains("its time, 2000000000.000 s, is more than an hour from that of all odometry")
+            && message.contains("those of all 10 images or scenes from there on"),
+        "{message}"
+    );
+    for topic in [ODOM, Scene::TOPIC] {
+        let jumped = Cell::new(0);
+        change(topic, &|number, seconds| {
+            jumped.set(if number == 50 { seconds + 1000 } else { jumped.get() });
+            if number == 50 { jumped.get() } else { seconds }
+        });
+        let message = error();
+        let back = format!("its clock goes back, from {}.000 s to ", jumped.get());
+        assert!(message.contains(&back), "{topic}: {message}");
+    }
+    // An event has its place in the order; without it the others mean something else.
+    change(Percept::TOPIC, &|number, seconds| if number == 2 { far } else { seconds });
+    let output = run(["conform", changed.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    let message = stderr(&output);
+    assert!(message.contains("the one before it at 2000000000.000 s"), "{message}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// The number of a row is that of the table, not that of the message in the order of time.
+#[cfg(feature = "sqlite")]
+#[test]
+fn a_divergence_in_a_database_names_its_row() {
+    let folder = folder("conform-row");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let [database, page] = ["run.db3", "page.html"].map(|name| folder.join(name));
+    rewritten(&log, &database, |_, _| true);
+    let other = ["--world", SHAPE_8, "--start", "any"];
+    let (code, of_file) = judged(&log, &other);
+    let (same, line) = judged(&database, &other);
+    assert_eq!((code, same), (Some(1), Some(1)), "{line}");
+    for fact in ["event", "cause", "class", "message", "condition"] {
+        assert_eq!(line[fact], of_file[fact], "{fact}");
+    }
+    assert_eq!((&of_file["offset_unit"], &line["offset_unit"]), (&"byte".into(), &"row".into()));
+    // The first row is 101.
+    let row = line["offset"].as_i64().unwrap();
+    assert_eq!(row, line["message"].as_i64().unwrap() + 100);
+    let topic = rusqlite::Connection::open(&database).unwrap().query_row(
+        "SELECT name FROM messages JOIN topics ON topics.id = topic_id WHERE messages.id = ?1",
+        [row],
+        |found| found.get::<_, String>(0),
+    );
+    let is_percept = line["event"].as_u64().unwrap() % 2 == 1;
+    assert_eq!(topic.unwrap(), if is_percept { Percept::TOPIC } else { Door::TOPIC });
+    let html = ["--html", page.to_str().unwrap()];
+    let report = run([&["conform", database.to_str().unwrap()][..], &other, &html].concat());
+    let place = format!(", at row {}", grouped(u64::try_from(row).unwrap().into()));
+    let text = stdout(&report);
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(&place), "{text}");
+    assert!(fs::read_to_string(page).unwrap().contains(&place));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// One log is checked, and the next one is being read.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_check_leaves_the_page_as_it_was() {
+    use std::{io::Write as _, process::Stdio};
+
+    let folder = folder("conform-interrupted");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let page = folder.join("page.html");
+    for earlier in [None, Some("the page of an earlier check")] {
+        if let Some(text) = earlier {
+            fs::write(&page, text).unwrap();
+        }
+        let mut verb = super::toposlam();
+        verb.arg("conform").arg(&log).args(["-", "--html"]).arg(&page);
+        verb.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut verb = verb.spawn().unwrap();
+        // More than a pipe holds: the verb reads.
+        let mut input = verb.stdin.take().unwrap();
+        input.write_all(&vec![b' '; 1 << 20]).unwrap();
+        let killed = Command::new("kill").args(["-INT", &verb.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+        let output = verb.wait_with_output().unwrap();
+        drop(input);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert_eq!(stderr(&output), "interrupted\n");
+        assert_eq!(fs::read_to_string(&page).ok().as_deref(), earlier);
+        let mut files: Vec<_> =
+            fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path()).collect();
+        files.sort();
+        let page = earlier.map(|_| page.clone());
+        assert_eq!(files, page.into_iter().chain([log.clone()]).collect::<Vec<_>>());
+    }
+    fs::remove_dir_all(folder).unwrap();
 }

@@ -1,14 +1,17 @@
 //! Robots with a laser scanner: `toposlam simulate --sensor`, `evaluate control` and `runs --sensor`, and
 //! `evaluate laser`, on a few cases.
 
-use std::{cell::Cell, fs, io::Cursor, path::Path};
+use std::{fs, path::Path};
 
-use mcap::{Message, MessageStream, Writer};
-use serde_json::json;
+use mcap::Message;
+use serde_json::{Value, json};
 
-use super::{folder, objects, run, stderr, stdout, stdout_of};
+use super::{containers::rewritten, folder, objects, run, stderr, stdout, stdout_of};
 
 const PLAN: &str = "worlds/laser/long-8.toml";
+
+/// A time in nanoseconds that is far from all others: the year 2106.
+const FAR: u64 = 4_294_967_000_000_000_000;
 
 #[test]
 fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
@@ -32,19 +35,6 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     let output = run([&["conform", log, "--world", other][..], &options].concat());
     assert_ne!(output.status.code(), Some(2), "{}", stderr(&output));
     fs::remove_dir_all(folder).unwrap();
-}
-
-/// Writes a log with the messages that are kept, each at its time or another.
-fn rewritten(log: &str, changed: &Path, mut time: impl FnMut(usize, &Message) -> Option<u64>) {
-    let bytes = fs::read(log).unwrap();
-    let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
-    for (index, message) in MessageStream::new(&bytes).unwrap().map(Result::unwrap).enumerate() {
-        if let Some(log_time) = time(index, &message) {
-            writer.write(&Message { log_time, ..message }).unwrap();
-        }
-    }
-    writer.finish().unwrap();
-    fs::write(changed, writer.into_inner().into_inner()).unwrap();
 }
 
 #[test]
@@ -72,12 +62,14 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
     let is_odometry = |message: &Message| message.channel.topic == "/odom";
 
     // The clock of the recorder jumps far ahead and back, three times.
-    let far = 4_294_970_000_000_000_000;
-    let jumped = Cell::new(0);
-    rewritten(log, &changed, |index, message| {
-        let jumps = is_scan(message) && index > 500 * (jumped.get() + 1) && jumped.get() < 3;
-        jumped.set(jumped.get() + usize::from(jumps));
-        Some(if jumps { far } else { message.log_time })
+    let mut jumped = 0;
+    rewritten(Path::new(log), &changed, |index, message| {
+        let jumps = is_scan(message) && index > 500 * (jumped + 1) && jumped < 3;
+        if jumps {
+            jumped += 1;
+            message.log_time = FAR;
+        }
+        true
     });
     let changed = changed.to_str().unwrap();
     let after = json_of(changed);
@@ -94,10 +86,10 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
     assert!(fs::read_to_string(page).unwrap().contains(sentence));
 
     // The odometry begins late, or never. Of the scans before it, the last 50 wait for it.
-    let seen = Cell::new(0);
-    rewritten(log, Path::new(changed), |_, message| {
-        seen.set(seen.get() + usize::from(is_scan(message)));
-        (seen.get() > 60 || !is_odometry(message)).then_some(message.log_time)
+    let mut seen = 0;
+    rewritten(Path::new(log), Path::new(changed), |_, message| {
+        seen += usize::from(is_scan(message));
+        seen > 60 || !is_odometry(message)
     });
     let late = json_of(changed);
     assert_eq!(late["skipped_messages"]["off_clock"], 0);
@@ -106,13 +98,74 @@ fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
     let remark = format!("skipped messages: {without} scans without odometry");
     assert_eq!(late["remarks"][0], json!(remark));
     // Topics that have no message carry no odometry.
-    rewritten(log, Path::new(changed), |_, message| {
-        let is_transform = message.channel.topic == "/tf";
-        (!is_odometry(message) && !is_transform).then_some(message.log_time)
+    rewritten(Path::new(log), Path::new(changed), |_, message| {
+        !is_odometry(message) && message.channel.topic != "/tf"
     });
     let (code, _, error) = report(changed, &[]);
     assert_eq!(code, Some(2), "{error}");
     assert!(error.contains("the log does not have what this needs"), "{error}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// The recorder of a database of rosbag2 or a ROS 1 bag has a clock, too.
+#[test]
+fn messages_off_the_clock_are_skipped_in_a_database_and_a_bag() {
+    let folder = folder("laser_containers");
+    let log = folder.join("run.mcap");
+    let noise = ["--sensor", "laser", "--noise", "0.1", "--log"];
+    stdout_of([&["simulate", PLAN][..], &noise, &[log.to_str().unwrap()]].concat());
+    let files: &[_] = if cfg!(feature = "sqlite") {
+        &[("run.db3", "db3"), ("run.bag", "bag")]
+    } else {
+        &[("run.bag", "bag")]
+    };
+    for (file, format) in files {
+        let changed = folder.join(file);
+        let text = changed.to_str().unwrap();
+        let conform = || {
+            let events = ["--events", "laser", "--driver", "anyone", "--marker", "none", "--json"];
+            let output = run([&["conform", text][..], &events].concat());
+            objects(&stdout(&output)).pop().unwrap_or_else(|| panic!("{}", stderr(&output)))
+        };
+        // Seconds since 1970, as on a real robot.
+        let begun = 1_700_000_000_000_000_000;
+        rewritten(&log, &changed, |_, message| {
+            message.log_time += begun;
+            true
+        });
+        assert_eq!(objects(&stdout_of(["info", text, "--json"]))[0]["format"], *format);
+        let before = conform();
+        let none = json!({"off_clock": 0, "scans_without_odometry": 0});
+        assert_eq!(before["skipped_messages"], none, "{file}");
+        // Two scans and an odometry far ahead, and a scan at the very beginning of time.
+        let mut scans = 0;
+        let mut odometry = 0;
+        rewritten(&log, &changed, |_, message| {
+            message.log_time += begun;
+            match &*message.channel.topic {
+                "/scan" => scans += 1,
+                "/odom" => odometry += 1,
+                _ => return true,
+            }
+            match (&*message.channel.topic, scans, odometry) {
+                ("/scan", 100 | 200, _) | ("/odom", _, 500) => message.log_time = FAR,
+                ("/scan", 300, _) => message.log_time = 0,
+                _ => {}
+            }
+            true
+        });
+        let after = conform();
+        let skipped = json!({"off_clock": 4, "scans_without_odometry": 0});
+        assert_eq!(after["skipped_messages"], skipped, "{file}");
+        let scans = [&before, &after].map(|line| line["scans"].as_u64().unwrap());
+        assert_eq!(scans[0], scans[1] + 3, "{file}");
+        let remark: Value = "skipped messages: 4 whose time is far from that of all others".into();
+        assert_eq!(after["remarks"][0], remark, "{file}");
+        for fact in ["verdict", "events", "event", "cause"] {
+            assert_eq!(after[fact], before[fact], "{file}: {fact}");
+        }
+        assert_eq!(before["events"], 10, "{file}");
+    }
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -8,6 +8,7 @@ mod check;
 mod compare;
 mod conform;
 mod conform_report;
+mod containers;
 mod counterexample;
 mod draw;
 mod evaluate;

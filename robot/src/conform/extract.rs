@@ -3,11 +3,7 @@
 
 use rayon::prelude::*;
 use thiserror::Error;
-use toposlam_model::{
-    counts::grouped,
-    driving::{odometry::Odometry, scene::Scene},
-    measurement::MeasurementNoise,
-};
+use toposlam_model::{counts::grouped, measurement::MeasurementNoise};
 use toposlam_vision::{
     laser::{
         drift::{DriftMeter, ROUNDS},
@@ -20,8 +16,9 @@ use super::{
     InferredEvents, LaserEvents, NEAR, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
-    scan_clock::ScanClock,
-    scan_odometry::{PlacedScan, ScanOdometry, interpolated},
+    message_clock::MessageClock,
+    placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
+    scan_odometry::{PlacedScan, ScanOdometry},
 };
 use crate::{
     log::{
@@ -90,10 +87,10 @@ pub struct ExtractedRun {
     pub sightings: Vec<TimedSighting>,
 }
 
-/// The number of messages that were skipped when a laser was the evidence, by the reason.
+/// The number of messages that were skipped when events were inferred, by the reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SkippedMessages {
-    /// Scans, odometry and sightings whose time is far from that of all other messages.
+    /// Images, scenes, scans, odometry and sightings whose time is far from that of all other messages.
     pub off_clock: u64,
     /// Scans before which no odometry was recorded, nor soon after.
     pub scans_without_odometry: u64,
@@ -113,17 +110,6 @@ impl SkippedMessages {
             reasons.map(|(count, why)| format!("{} {why}", grouped(count.into()))).collect();
         (!parts.is_empty()).then(|| format!("skipped messages: {}", parts.join(", ")))
     }
-}
-
-/// A scene, and where it was sensed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SensedScene {
-    /// Its message, or that of its image.
-    pub source: EventSource,
-    /// The scene.
-    pub scene: Scene,
-    /// The odometry at that time.
-    pub odometry: Odometry,
 }
 
 /// Why events cannot be extracted.
@@ -158,6 +144,9 @@ pub enum ExtractError {
         /// Why it cannot be sensed.
         cause: SensingError,
     },
+    /// The odometry at the time of an image or a scene is not known.
+    #[error(transparent)]
+    SceneClock(#[from] SceneClockError),
     /// The time of a percept or door is before that of the last one.
     #[error("message {message}: {order}")]
     OutOfOrder {
@@ -241,8 +230,7 @@ pub fn extract(
     }
     let mut gathering = Extraction {
         recorded: RecordedEvents::default(),
-        track: Vec::new(),
-        seen: Vec::new(),
+        scenes: PlacedScenes::default(),
         waiting: Vec::new(),
         run: None,
         last: 0,
@@ -258,11 +246,10 @@ pub fn extract(
         field_of_view: 0.0,
         sightings: Vec::new(),
     };
-    let skipped = gathering.gather(log, &bound)?;
+    let mut skipped = gathering.gather(log, &bound)?;
     let Extraction {
         recorded,
-        track,
-        seen,
+        scenes,
         run,
         mut events,
         pictures,
@@ -274,11 +261,8 @@ pub fn extract(
         ..
     } = gathering;
     let scans = scans - skipped.scans_without_odometry;
-    let placed = |(source, time, scene)| {
-        let odometry = at(&track, time)?;
-        Some(SensedScene { source, scene, odometry })
-    };
-    let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
+    let (seen, scenes_off_clock) = scenes.finish()?;
+    skipped.off_clock += scenes_off_clock;
     if run.is_some() {
         let noise = log_noise();
         events.measurement_noise = match evidence {
@@ -337,7 +321,7 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             meter.see(&placed.scan, &placed.odometry);
         }
     };
-    let mut clock = ScanClock::default();
+    let mut clock = MessageClock::default();
     for entry in log.entries(bound) {
         let Ok(entry) = entry else { break };
         if is_timed(&entry) {
@@ -371,10 +355,8 @@ pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
 
 struct Extraction<'w, W> {
     recorded: RecordedEvents,
-    /// The odometry, with its times.
-    track: Vec<(u64, Odometry)>,
-    /// The scenes, with their times.
-    seen: Vec<(EventSource, u64, Scene)>,
+    /// The scenes that are the evidence, or those of its images.
+    scenes: PlacedScenes,
     /// Frames that have not been sensed, with their times.
     waiting: Vec<(EventSource, u64, Frame)>,
     run: Option<messages::Run>,
@@ -402,7 +384,7 @@ impl<W: SensingProgress> Extraction<'_, W> {
         log: &Log,
         bound: &BoundTopicMap,
     ) -> Result<SkippedMessages, ExtractError> {
-        let mut clock = ScanClock::default();
+        let mut clock = MessageClock::default();
         for entry in log.entries(bound) {
             let entry = entry?;
             if self.evidence == Evidence::Laser && is_timed(&entry) {
@@ -461,12 +443,12 @@ impl<W: SensingProgress> Extraction<'_, W> {
                 for placed in self.placing.odometry(stamp, odometry) {
                     self.see(&placed);
                 }
-                if self.evidence != Evidence::Laser {
-                    self.track.push((stamp, odometry));
+                if matches!(self.evidence, Evidence::Scenes | Evidence::Pictures) {
+                    self.scenes.add_odometry(id, stamp, odometry);
                 }
             }
             EventKind::Frame(Frame { scene: Some(scene), .. }) => {
-                self.seen.push((source, stamp, scene));
+                self.scenes.add_scene(source, stamp, scene);
             }
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
                 self.scans += 1;
@@ -519,44 +501,9 @@ impl<W: SensingProgress> Extraction<'_, W> {
             match scene {
                 Err(SensingError::Image(_)) => self.unreadable += 1,
                 Err(cause) => return Err(ExtractError::Size { message: source.id.0, cause }),
-                Ok(scene) => self.seen.push((source, time, scene)),
+                Ok(scene) => self.scenes.add_scene(source, time, scene),
             }
         }
         Ok(())
-    }
-}
-
-/// The odometry at a time, interpolated between the nearest two readings. Of several at that time the last
-/// counts.
-fn at(track: &[(u64, Odometry)], time: u64) -> Option<Odometry> {
-    let after = track.partition_point(|&(reading, _)| reading <= time);
-    match (after.checked_sub(1).and_then(|before| track.get(before)), track.get(after)) {
-        (Some(&(begin, from)), Some(&(end, to))) => {
-            Some(interpolated((begin, from), (end, to), time))
-        }
-        (one, other) => one.or(other).map(|&(_, odometry)| odometry),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn between_two_readings_a_robot_is_between_two_places() {
-        let odometry = |x, heading| Odometry { position: [x, 0.0], heading };
-        let track = [(10, odometry(0.0, 3.0)), (20, odometry(1.0, -3.0))];
-        let at = |time| at(&track, time).unwrap();
-        assert_eq!(
-            (at(5), at(10), at(20), at(30)),
-            (track[0].1, track[0].1, track[1].1, track[1].1)
-        );
-        let half = at(15);
-        assert_eq!(half.position, [0.5, 0.0]);
-        assert!((half.heading.abs() - std::f64::consts::PI).abs() < 1e-12, "{half:?}");
-        assert_eq!(super::at(&[], 5), None);
-        // A CARMEN log has the odometry of a scan after that of the wheels, with the same time.
-        let scan = odometry(5.0, 3.0);
-        assert_eq!(super::at(&[track[0], (10, scan), track[1]], 10), Some(scan));
     }
 }

@@ -382,8 +382,8 @@ impl Judgement {
         let before = match event.checked_sub(1) {
             Some(last) => Self::new(&self.events.up_to(last), question, tolerated, watch)?,
             None => Self {
+                // Its trail ends before its first event: there is none.
                 divergence: None,
-                trail: None,
                 poses: None,
                 smallest: None,
                 determined: None,

@@ -242,14 +242,27 @@ mod tests {
     #[test]
     fn a_sighting_belongs_to_the_visit_nearest_in_time() {
         let (mut events, junctions) = visits(&[[0.0, 0.0], [20.0, 0.0], [0.0, 0.0]]);
-        let at = |seconds: u64, position, heading| {
-            (seconds * 1_000_000_000, FiducialSighting { position, heading })
+        let at = |milliseconds: u64, position, heading| {
+            (milliseconds * 1_000_000, FiducialSighting { position, heading })
         };
-        // Seen before the last visit, east on average; and a tag in a corridor.
-        let seen = [at(26, [1.0, 0.0], 0.9), at(28, [1.0, 0.5], -0.9), at(12, [10.0, 0.0], 0.0)];
+        // Seen before the last visit, west on average; and a tag in a corridor.
+        let seen = [
+            at(26_000, [1.0, 0.0], PI - 0.9),
+            at(28_000, [1.0, 0.5], PI + 0.8),
+            at(12_000, [10.0, 0.0], 0.0),
+        ];
         assert_eq!(mark_visits(&mut events, &junctions, &Directional, &seen), Ok(1));
-        assert_eq!(sightings(&events), [NONE, NONE, Some(Sighting::Pointing(Door(2)))]);
+        assert_eq!(sightings(&events), [NONE, NONE, Some(Sighting::Pointing(Door(0)))]);
         assert_eq!(mark_visits(&mut events, &junctions, &Undirected, &seen[..1]), Ok(0));
         assert_eq!(sightings(&events), [NONE, NONE, Some(Sighting::Lying(1))]);
+        // The first visit ended at 11 s, the last one began at 30 s. North on average.
+        let [before, after] = [20_400, 20_600].map(|time| at(time, [1.0, 0.0], 1.5));
+        for (seen, expected) in [
+            (before, [Some(Sighting::Pointing(Door(1))), NONE, NONE]),
+            (after, [NONE, NONE, Some(Sighting::Pointing(Door(1)))]),
+        ] {
+            assert_eq!(mark_visits(&mut events, &junctions, &Directional, &[seen]), Ok(0));
+            assert_eq!(sightings(&events), expected);
+        }
     }
 }

@@ -17,9 +17,10 @@ mod laser_visit;
 mod log_head;
 mod marked_visits;
 mod measured_hallways;
+mod message_clock;
+mod placed_scenes;
 mod quirks;
 mod recorded_events;
-mod scan_clock;
 mod scan_odometry;
 mod seen_junctions;
 mod shorten;
@@ -35,8 +36,8 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
 };
 pub use extract::{
-    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress,
-    SkippedMessages, extract, infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensingProgress, SkippedMessages, extract,
+    infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};
@@ -48,6 +49,7 @@ pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
 };
 pub use measured_hallways::MeasuredHallways;
+pub use placed_scenes::{SceneClockError, SensedScene};
 pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
 pub use recorded_events::RecordedEvents;
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

@@ -13,8 +13,9 @@ use super::{
     config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause},
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
-    extract::{SensedScene, infer_events},
+    extract::infer_events,
     judgement::{Judgement, judge},
+    placed_scenes::SensedScene,
     quirks::Quirks,
     shorten_measured::MeasuredWalk,
 };

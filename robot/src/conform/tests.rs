@@ -33,6 +33,7 @@ use crate::{
     simulator::SimulationConfig,
 };
 
+mod extracted;
 mod folding;
 mod measured;
 mod oracle;

@@ -199,3 +199,32 @@ fn expected_after(departure: &Departure) -> Option<Percept> {
         _ => None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::{
+        embedded_graph::Dart,
+        percept::Sighting,
+        trace::{TraceEvent, TraceEventKind},
+        world::State,
+    };
+
+    use super::*;
+
+    #[test]
+    fn a_percept_is_expected_if_all_candidate_poses_expect_it() {
+        let percept = |degree| Percept { degree, sighting: Sighting::Nothing };
+        let at = |degree| MisfitReason::Percept { expected: percept(degree) };
+        let expected = |reasons: &[MisfitReason]| {
+            let state = State { pose: Dart(0), placed: Some(Dart(0)) };
+            let candidates = reasons.iter().map(|reason| (state, *reason)).collect();
+            let event = TraceEvent { id: 2, kind: TraceEventKind::Percept(percept(5)) };
+            expected_by(&Misfit { event, moves: 1, candidates })
+        };
+        assert_eq!(expected(&[at(3)]), Some(percept(3)));
+        assert_eq!(expected(&[at(3), at(3)]), Some(percept(3)));
+        assert_eq!(expected(&[at(3), at(4)]), None);
+        assert_eq!(expected(&[at(3), MisfitReason::NoSuchDoor { degree: 3 }]), None);
+        assert_eq!(expected(&[]), None);
+    }
+}

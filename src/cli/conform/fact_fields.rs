@@ -50,7 +50,7 @@ pub(super) struct FactFields<'j> {
     map: Option<Map>,
 }
 
-/// The number of messages that were skipped when a laser was the evidence.
+/// The number of messages that were skipped when events were inferred.
 #[derive(Serialize)]
 struct SkippedMessagesFields {
     off_clock: u64,

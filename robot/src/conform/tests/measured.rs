@@ -169,6 +169,65 @@ fn a_longer_hallway_is_found_and_can_be_tolerated() {
     assert_eq!(with_longer_hallway(6.0, event, &Quirks::read(text).unwrap()), None);
 }
 
+/// A visit has the measurement of its event, and the darts of its junction.
+#[test]
+fn the_visits_of_a_run_are_identified_by_its_folded_trail() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let visits = good.measured_visits().unwrap();
+    let arrivals: Vec<_> = (good.events.iter())
+        .filter_map(|event| match &event.kind {
+            CheckedKind::Arrival { arrival, hallway, .. } => Some((arrival.degree, *hallway)),
+            _ => None,
+        })
+        .collect();
+    assert!(arrivals.len() > 5);
+    let of_visits: Vec<_> =
+        visits.iter().map(|visit| (visit.darts.len() as u32, visit.arrived)).collect();
+    assert_eq!(of_visits, arrivals);
+    let mut junctions: Vec<_> = visits.iter().map(|visit| visit.darts.iter().min()).collect();
+    junctions.sort_unstable();
+    junctions.dedup();
+    assert!(junctions.len() < visits.len(), "the robot came to a junction again");
+    // No world explains a run in which a junction has another degree where the robot turns back to it.
+    let mut wrong = good.clone();
+    let last = wrong.events.len() - 1;
+    let CheckedKind::Arrival { arrival, .. } = &mut wrong.events[last].kind else { panic!() };
+    arrival.degree += 1;
+    assert_eq!(wrong.measured_visits(), None);
+}
+
+/// A tolerated length says nothing about the shape, nor a tolerated shape about the length.
+#[test]
+fn only_the_measurement_that_is_tolerated_is_forgotten() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let forgotten = |measurement| {
+        let cause = DivergenceCause::Measurement { between: [0, 2], earlier: [4, 6], measurement };
+        let mut events = good.clone();
+        events.forget_measurement(&cause);
+        let is_left = |at: usize| match &events.events[at].kind {
+            CheckedKind::Arrival { arrival, hallway, .. } => {
+                (arrival.form.is_some(), hallway.is_some())
+            }
+            _ => panic!("{at}"),
+        };
+        assert_eq!(is_left(4), (true, true));
+        is_left(2)
+    };
+    assert_eq!(forgotten(ContradictoryMeasurement::Shape), (false, true));
+    let found =
+        (2..14).step_by(2).find_map(|event| with_longer_hallway(6.0, event, &Quirks::default()));
+    let Some(DivergenceCause::Measurement { measurement, .. }) = found.map(|found| found.cause)
+    else {
+        panic!()
+    };
+    assert_eq!(forgotten(measurement), (true, false));
+    let mut events = good.clone();
+    events.forget_measurement(&DivergenceCause::TurnedBack);
+    assert_eq!(events, good);
+}
+
 /// In a known world the robot's pose identifies the hallways, without a marker too.
 #[test]
 fn in_a_known_world_hallways_are_compared_without_a_marker() {

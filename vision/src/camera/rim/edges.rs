@@ -46,9 +46,9 @@ impl CircleEdges {
                 [circle.centre[0] + place[0], circle.centre[1] + place[1]]
             };
             // The image is convex: if the corners of a rectangle are in it, all of the rectangle is.
-            let is_inside = [0, 2 * steps]
-                .iter()
-                .all(|&step| [ARC[0], ARC[6]].iter().all(|&along| image.contains(place(step, along))));
+            let is_inside = [0, 2 * steps].iter().all(|&step| {
+                [ARC[0], ARC[6]].iter().all(|&along| image.contains(place(step, along)))
+            });
             // The mean over a short arc, from inside to outside in half units.
             let ring = |step: usize| {
                 let places = ARC.iter().map(|&along| place(step, along));

@@ -1,19 +1,19 @@
-//! The clock of a log with laser scans: a few messages that are far from all others in time are skipped.
+//! The clock of a log from which events are inferred: a few messages that are far from all others in time are skipped.
 //!
 //! The messages of a bag, an MCAP file or a database come in the order of their times. One with a wrong time
 //! comes first or last, far from where the robot was when it was recorded. (Lines come in the order of their
 //! file; `log::container::clock` skips those with a wrong time.)
 
 /// Messages with a longer time between them, in nanoseconds, do not stand together. A robot may pause.
-const PAUSE: u64 = 3_600_000_000_000;
+pub(super) const PAUSE: u64 = 3_600_000_000_000;
 /// So many messages that stand together are not skipped.
-const MANY: usize = 10;
+pub(super) const MANY: usize = 10;
 /// The largest number of messages that wait until it is known whether they stand alone.
 const WAITING: usize = 1000;
 
 /// Skips messages that are far from all others in time.
 #[derive(Clone, Debug)]
-pub(super) struct ScanClock<T> {
+pub(super) struct MessageClock<T> {
     /// The time of the last message.
     last: u64,
     /// The last messages that stand together, as long as they are few.
@@ -27,14 +27,14 @@ pub(super) struct ScanClock<T> {
     skipped: u64,
 }
 
-impl<T> Default for ScanClock<T> {
+impl<T> Default for MessageClock<T> {
     fn default() -> Self {
         let [together, apart] = [Vec::new(), Vec::new()];
         Self { last: 0, together, apart, is_set: false, are_many: false, skipped: 0 }
     }
 }
 
-impl<T> ScanClock<T> {
+impl<T> MessageClock<T> {
     /// Takes the next message in the order of time. Returns those that are no longer in doubt, in order.
     pub(super) fn next(&mut self, time: u64, message: T) -> Vec<T> {
         if time.abs_diff(std::mem::replace(&mut self.last, time)) > PAUSE {
@@ -83,7 +83,7 @@ mod tests {
 
     /// The times in seconds that are not skipped, and the number of those that are.
     fn kept(times: impl IntoIterator<Item = u64>) -> (Vec<u64>, u64) {
-        let mut clock = ScanClock::default();
+        let mut clock = MessageClock::default();
         let mut kept = Vec::new();
         for time in times {
             kept.extend(clock.next(time * SECOND, time));
