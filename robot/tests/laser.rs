@@ -259,6 +259,30 @@ fn an_arm_that_the_scanner_did_not_look_into_makes_the_visit_undecided() {
 }
 
 #[test]
+fn junctions_are_not_known_where_a_robot_drives_backwards_with_a_scanner_that_does_not_look_there()
+{
+    let way = [[3.0, 0.0], [57.0, 0.0]];
+    let back: Vec<_> = way.into_iter().rev().collect();
+    let forwards = visits(&events(&comb(), &way, 0.0));
+    assert_eq!(forwards, [(Some(3), Some(2)), (Some(3), Some(1)), (Some(4), Some(2))]);
+    for degrees in [90, 180, 270, 340, 350, 360] {
+        // In reverse order, the scans of a robot that drives towards the first end are those of one that drives
+        // away from it, backwards.
+        let mut inferred = LaserEvents::new(LaserParams::default());
+        for (scan, odometry) in drive(degrees, &comb(), &back, 0.0).iter().rev() {
+            inferred.see(EventSource::default(), scan, odometry);
+        }
+        let events = RunEvents { events: inferred.finish(), ..RunEvents::default() };
+        let first = &events.events[0].kind;
+        if degrees < 345 {
+            assert_eq!(*first, CheckedKind::Undecided(UndecidedCause::UnseenWay), "{degrees}");
+        } else {
+            assert_eq!(visits(&events), forwards, "{degrees}");
+        }
+    }
+}
+
+#[test]
 fn alcoves_rooms_and_bends_are_no_junctions() {
     let corridor = ([0.0, 0.0], [50.0, 0.0], 2.0);
     // A niche, a room behind a door of 0.9 m, an alcove that ends after 8 m.

@@ -317,16 +317,21 @@ fn state(trail: &FoldedTrail, darts: usize) -> (usize, usize, Vec<(Dart, Option<
     (trail.vertex_count(), trail.open_count(), darts)
 }
 
+/// A world, the dart that its marker points along, the dart by which the robot comes in, and its turns.
+fn long_walk() -> impl Strategy<Value = (EmbeddedGraph, Dart, Dart, Vec<u8>)> {
+    let darts = any::<[prop::sample::Index; 2]>();
+    let turns = prop::collection::vec(any::<u8>(), 0..60);
+    (any_graph(Class::Multigraph, 9), darts, turns).prop_map(|(graph, darts, turns)| {
+        let [facing, start] = darts.map(|dart| Dart(dart.index(graph.dart_count()) as u32));
+        (graph, facing, start, turns)
+    })
+}
+
 proptest! {
     #[test]
     fn the_folded_trail_maps_into_the_world_and_is_the_world_if_it_is_complete(
-        graph in any_graph(Class::Multigraph, 9),
-        facing in any::<prop::sample::Index>(),
-        start in any::<prop::sample::Index>(),
-        turns in prop::collection::vec(any::<u8>(), 0..60),
+        (graph, facing, start, turns) in long_walk(),
     ) {
-        let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
-        let (facing, start) = (dart(facing), dart(start));
         let (percepts, doors, poses) = walk(&graph, facing, start, &turns);
         let mut trail = FoldedTrail::new(percepts[0]).unwrap();
         let mut image = std::collections::HashMap::from([(trail.pose(), start)]);
@@ -418,13 +423,8 @@ proptest! {
 
     #[test]
     fn a_trail_that_is_folded_by_an_arrow_explains_the_walk_and_is_the_world_if_it_is_complete(
-        graph in any_graph(Class::Multigraph, 9),
-        facing in any::<prop::sample::Index>(),
-        start in any::<prop::sample::Index>(),
-        turns in prop::collection::vec(any::<u8>(), 0..60),
+        (graph, facing, start, turns) in long_walk(),
     ) {
-        let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
-        let (facing, start) = (dart(facing), dart(start));
         let (percepts, doors, _) = walk_with(DirectedEdge, &graph, facing, start, &turns);
         let trail = fold(&percepts, &doors).unwrap();
         let ClosedTrail { graph: closed, marker, .. } = trail.closed().unwrap();

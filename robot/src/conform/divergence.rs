@@ -267,6 +267,12 @@ impl fmt::Display for DivergenceCause {
                     "the robot was at a junction that may have an arm that its scanner did not look into"
                 )
             }
+            Self::Undecided(UndecidedCause::UnseenWay) => {
+                write!(
+                    out,
+                    "the robot drove in a direction in which its scanner did not look, so junctions there are not seen"
+                )
+            }
             Self::World(misfit) => match misfit.candidates.len() {
                 1 => write!(out, "it does not fit the known world"),
                 poses => {

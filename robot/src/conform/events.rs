@@ -66,7 +66,7 @@ pub enum CheckedKind {
     },
     /// The robot turned back without having been at a junction.
     TurnedBack,
-    /// The robot was at a junction that could not be recognised.
+    /// The robot was, or may have been, at a junction that could not be recognised.
     Undecided(UndecidedCause),
 }
 
@@ -77,6 +77,8 @@ pub enum UndecidedCause {
     Unclear,
     /// There may be an arm that the laser scanner did not look into.
     UnseenArm,
+    /// The robot drove in a direction in which the laser scanner did not look.
+    UnseenWay,
 }
 
 /// The part of a run that is checked.

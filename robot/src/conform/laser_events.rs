@@ -24,6 +24,7 @@ use super::{
     laser_visit::{PlaceEstimate, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
     seen_junctions::{SeenJunction, SeenJunctions},
+    unseen_way::UnseenWay,
 };
 use crate::{measured_hallway::turn, record::Arrival};
 
@@ -42,6 +43,8 @@ pub struct LaserEvents {
     dead_ends: SeenJunctions,
     /// Bends of the robot's way, which are corners.
     bends: Bends,
+    /// The robot's way where the scanner does not look.
+    unseen: UnseenWay,
     /// The visit that goes on.
     visit: Option<Visit>,
     /// The visit that goes on of a possible junction.
@@ -122,6 +125,7 @@ impl LaserEvents {
             possible_junctions: SeenJunctions::new(params.visit),
             dead_ends: SeenJunctions::new(params.visit),
             bends: Bends::new(params.corner),
+            unseen: UnseenWay::default(),
             visit: None,
             possible_visit: None,
             passed: VecDeque::new(),
@@ -168,6 +172,9 @@ impl LaserEvents {
             for bend in self.bends.go(robot, self.way, source) {
                 self.bend(&bend, &view);
             }
+        }
+        if self.unseen.go(scan, &view.robot) {
+            self.drive_unseen(robot);
         }
         self.enter(robot);
         self.enter_possible_junction(robot);
@@ -290,6 +297,21 @@ impl LaserEvents {
         })
     }
 
+    /// Adds what is no visit: the robot may have passed a junction that the scans do not show.
+    fn drive_unseen(&mut self, robot: [f64; 2]) {
+        self.waiting.push_back(Visit {
+            kind: VisitKind::UnseenWay,
+            source: self.source,
+            centre: robot,
+            clearance: 0.0,
+            entry: None,
+            exit: None,
+            left: self.source,
+            turned_back: false,
+            to_odometry: self.to_odometry,
+        });
+    }
+
     /// Adds the visit of a robot that has passed a corner.
     fn bend(&mut self, bend: &PassedBend, view: &LaserView) {
         let CornerParams { arm, min_way, .. } = self.params.corner;
@@ -370,7 +392,8 @@ impl LaserEvents {
         let seen = self.seen(visit);
         let doors = match (visit.kind, &seen) {
             (VisitKind::PossibleJunction, Some((PlaceEstimate::Undecided(_), _))) => return None,
-            (VisitKind::DeadEnd, _) | (_, Some((PlaceEstimate::Undecided(_), _))) => return seen,
+            (VisitKind::DeadEnd | VisitKind::UnseenWay, _)
+            | (_, Some((PlaceEstimate::Undecided(_), _))) => return seen,
             (_, Some((PlaceEstimate::Doors(doors), _))) => doors.len(),
             (VisitKind::Bend { .. }, _) => return seen,
             (_, Some((PlaceEstimate::NoVertex, _)) | None) => 0,
@@ -398,6 +421,10 @@ impl LaserEvents {
         let places = match visit.kind {
             VisitKind::Junction | VisitKind::PossibleJunction => &self.junctions,
             VisitKind::DeadEnd => &self.dead_ends,
+            VisitKind::UnseenWay => {
+                let cause = UndecidedCause::UnseenWay;
+                return Some((PlaceEstimate::Undecided(cause), params.same));
+            }
             VisitKind::Bend { way, in_doubt } => {
                 // A junction where the robot turned is no corner.
                 let arm = self.params.corner.arm;

@@ -44,6 +44,8 @@ pub(super) enum VisitKind {
         way: f64,
         in_doubt: bool,
     },
+    /// Of no place: the robot drove in a direction in which the scanner does not look.
+    UnseenWay,
 }
 
 /// What the views of a visited place show.

@@ -26,6 +26,7 @@ mod seen_junctions;
 mod shorten;
 mod shorten_measured;
 mod tolerance;
+mod unseen_way;
 
 #[cfg(test)]
 mod tests;

@@ -466,5 +466,8 @@ pub(super) fn what(kind: &CheckedKind) -> String {
         CheckedKind::Undecided(UndecidedCause::UnseenArm) => {
             "junction not recognised: the scanner did not look into an arm".to_owned()
         }
+        CheckedKind::Undecided(UndecidedCause::UnseenWay) => {
+            "drove where the scanner did not look".to_owned()
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! One sweep of a laser scanner: ranges at equal steps of the angle, as `sensor_msgs/LaserScan` and CARMEN
 //! record them.
 
+use std::f64::consts::TAU;
+
 use thiserror::Error;
 use toposlam_model::driving::scene::wrapped;
 
@@ -110,6 +112,14 @@ impl Scan {
     #[must_use]
     pub fn field_of_view(&self) -> f64 {
         self.ranges.len().saturating_sub(1) as f64 * self.geometry.angle_increment
+    }
+
+    /// The angle between a direction and the nearest one in which the scanner looks, in radians; 0 if it looks there.
+    /// Directions are counter-clockwise from the robot's heading.
+    #[must_use]
+    pub fn angle_off(&self, bearing: f64) -> f64 {
+        let from_first = (bearing - self.mount.heading - self.geometry.angle_min).rem_euclid(TAU);
+        (from_first - self.field_of_view()).max(0.0).min(TAU - from_first)
     }
 
     /// The ranges as they are recorded, in counter-clockwise order, in metres.
