@@ -105,10 +105,13 @@ impl JudgedLog<'_> {
             remarks.push(cause.to_owned());
         }
         if let Some(event) = self.judgement.unrecognised {
-            remarks.push(format!(
-                "the junction of event {} was not recognised: the events from there on are not checked",
-                event + 1
-            ));
+            let unseen = CheckedKind::Undecided(UndecidedCause::UnseenWay);
+            let what = if events.events.get(event).is_some_and(|event| event.kind == unseen) {
+                format!("at event {} the robot drove where its scanner did not look", event + 1)
+            } else {
+                format!("the junction of event {} was not recognised", event + 1)
+            };
+            remarks.push(format!("{what}: the events from there on are not checked"));
         }
         if let (Some(event), None) = (self.judgement.lost, &self.known) {
             remarks.push(format!(
