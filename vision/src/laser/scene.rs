@@ -1,7 +1,8 @@
 //! From a laser scan to the place of a robot in a building with right angles, as Algorithm 2 needs it. Section 3.
 //!
 //! The hits of the scan take the place of the boundary points of an image; all later steps are the same. A
-//! scanner that does not see behind is helped by the hits of the last scans.
+//! scanner that does not see all round is helped by the hits of the last scans. Where they do not show a hallway, the
+//! robot looks around: it turns on the spot, and the scans that it takes meanwhile are the last ones.
 
 use std::{
     collections::VecDeque,
@@ -29,6 +30,8 @@ pub struct ScanPlaceSensor {
     params: SensingParams,
     /// Where the last scans were taken, with their hits in the frame of odometry.
     last: VecDeque<(Odometry, Vec<[f64; 2]>)>,
+    /// Where the robot looked around last.
+    looked: Option<Odometry>,
     /// The last hallway that was sensed since the last junction.
     hallway: Option<SensedHallway>,
 }
@@ -55,17 +58,8 @@ impl ScanPlaceSensor {
 
     /// The place in a scan, and the odometry when it was taken.
     pub fn sense(&mut self, scan: &Scan, odometry: &Odometry) -> Place {
-        let boundary = self.boundary(scan, odometry);
-        self.remember(scan, odometry);
-        let (place, trace) = place_within(boundary, 0.0, &self.params);
-        let place = match &place {
-            Place::Junction(junction) if is_behind_its_wall(junction) => {
-                trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
-                    Place::Hallway(hallway.view(0.0, &self.params.outline))
-                })
-            }
-            _ => place,
-        };
+        let place = self.place(scan, odometry);
+        self.remember_on_the_way(scan, odometry);
         match place {
             Place::Hallway(view) => {
                 let width = view.left + view.right;
@@ -78,6 +72,49 @@ impl ScanPlaceSensor {
             }
         }
         place
+    }
+
+    /// The headings to which the robot turns to look around, one after the other, relative to its own; empty if it need
+    /// not: the scan shows everything, or with the last scans it shows a hallway, or the robot has just looked around.
+    #[must_use]
+    pub fn headings_to_look_around(&self, scan: &Scan, odometry: &Odometry) -> Vec<f64> {
+        let is_hallway = || matches!(self.place(scan, odometry), Place::Hallway(_));
+        let is_seen = sees_all_round(scan)
+            || self
+                .looked
+                .is_some_and(|looked| looked.distance(odometry) < PLACE.look_again || is_hallway());
+        if is_seen { Vec::new() } else { headings_all_round(scan.field_of_view()) }
+    }
+
+    /// The robot begins to look around: the scans of the way are forgotten.
+    pub fn begin_to_look_around(&mut self, odometry: &Odometry) {
+        self.last.clear();
+        self.looked = Some(*odometry);
+    }
+
+    /// Remembers a scan, and the odometry when it was taken.
+    pub fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
+        let (sine, cosine) = odometry.heading.sin_cos();
+        let [east, north] = odometry.position;
+        let place =
+            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
+        self.last.push_back((*odometry, scan.hits().map(place).collect()));
+        while self.last.len() > PLACE.remembered {
+            self.last.pop_front();
+        }
+    }
+
+    /// The place in a scan and the last ones.
+    fn place(&self, scan: &Scan, odometry: &Odometry) -> Place {
+        let (place, trace) = place_within(self.boundary(scan, odometry), 0.0, &self.params);
+        match &place {
+            Place::Junction(junction) if is_behind_its_wall(junction) => {
+                trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
+                    Place::Hallway(hallway.view(0.0, &self.params.outline))
+                })
+            }
+            _ => place,
+        }
     }
 
     /// The hallway that was sensed last, if furniture along it hides its walls: both sides are closed beside the robot,
@@ -162,25 +199,35 @@ impl ScanPlaceSensor {
         Boundary { sights }
     }
 
-    fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
-        // What is seen all around needs no memory.
-        let covered = scan.geometry().angle_increment * scan.ranges().len() as f64;
+    /// Remembers a scan now and then.
+    fn remember_on_the_way(&mut self, scan: &Scan, odometry: &Odometry) {
         let moved = self.last.back().is_none_or(|(last, _)| {
             last.distance(odometry) > PLACE.every
                 || wrapped(last.heading - odometry.heading).abs() > PLACE.every_turn
         });
-        if !moved || covered > 2.0 * PI - PLACE.next {
-            return;
-        }
-        let (sine, cosine) = odometry.heading.sin_cos();
-        let [east, north] = odometry.position;
-        let place =
-            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
-        self.last.push_back((*odometry, scan.hits().map(place).collect()));
-        while self.last.len() > PLACE.remembered {
-            self.last.pop_front();
+        // What is seen all around needs no memory.
+        if moved && !sees_all_round(scan) {
+            self.remember(scan, odometry);
         }
     }
+}
+
+/// Whether a scan covers a full circle.
+fn sees_all_round(scan: &Scan) -> bool {
+    scan.geometry().angle_increment * scan.ranges().len() as f64 > TAU - PLACE.next
+}
+
+/// The headings at which scans with this field of view, in radians, cover a full circle: to the left and back, to the
+/// right and back. The errors of turns to both sides cancel.
+fn headings_all_round(field_of_view: f64) -> Vec<f64> {
+    let farthest = PI - field_of_view / 2.0 + PLACE.overlap;
+    // A scan that covers next to nothing never makes a circle.
+    let step = (field_of_view - PLACE.overlap).max(PLACE.overlap);
+    let steps = (farthest / step).ceil().max(1.0);
+    let one_side =
+        |side: f64| (1..=steps as u32).map(move |index| side * farthest * f64::from(index) / steps);
+    let ahead = std::iter::once(0.0);
+    one_side(1.0).chain(ahead.clone()).chain(one_side(-1.0)).chain(ahead).collect()
 }
 
 /// Whether a robot at a junction would stand behind its wall: furniture along a corridor looks like the end of a
