@@ -28,13 +28,17 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub struct ScanPlaceSensor {
     params: SensingParams,
-    /// Where the last scans were taken, with their hits in the frame of odometry.
-    last: VecDeque<(Odometry, Vec<[f64; 2]>)>,
+    /// Where the last scans were taken, with the pieces of wall that they have hit, in the frame of odometry.
+    last: VecDeque<(Odometry, Vec<WallPiece>)>,
     /// Where the robot looked around last.
     looked: Option<Odometry>,
     /// The last hallway that was sensed since the last junction.
     hallway: Option<SensedHallway>,
 }
+
+/// What a scan has hit between two successive readings, from one to the other; a hit that has no neighbour is a piece
+/// without length.
+type WallPiece = [[f64; 2]; 2];
 
 /// A hallway that was sensed.
 #[derive(Clone, Copy, Debug)]
@@ -75,14 +79,22 @@ impl ScanPlaceSensor {
     }
 
     /// The headings to which the robot turns to look around, one after the other, relative to its own; empty if it need
-    /// not: the scan shows everything, or with the last scans it shows a hallway, or the robot has just looked around.
+    /// not: the scan covers a full circle, or with the last scans it shows a hallway, or a junction where the robot has
+    /// just looked around.
     #[must_use]
     pub fn headings_to_look_around(&self, scan: &Scan, odometry: &Odometry) -> Vec<f64> {
-        let is_hallway = || matches!(self.place(scan, odometry), Place::Hallway(_));
-        let is_seen = sees_all_round(scan)
-            || self
-                .looked
-                .is_some_and(|looked| looked.distance(odometry) < PLACE.look_again || is_hallway());
+        if sees_all_round(scan) {
+            return Vec::new();
+        }
+        let has_looked_here = self.looked.is_some_and(|looked| {
+            looked.distance(odometry) < PLACE.look_again
+                && wrapped(looked.heading - odometry.heading).abs() < PLACE.look_again_turn
+        });
+        let is_seen = match self.place(scan, odometry) {
+            Place::Hallway(_) => self.looked.is_some(),
+            Place::Junction(_) => has_looked_here,
+            Place::Unknown(_) => false,
+        };
         if is_seen { Vec::new() } else { headings_all_round(scan.field_of_view()) }
     }
 
@@ -98,7 +110,8 @@ impl ScanPlaceSensor {
         let [east, north] = odometry.position;
         let place =
             |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
-        self.last.push_back((*odometry, scan.hits().map(place).collect()));
+        let pieces = wall_pieces(scan).into_iter().map(|piece| piece.map(place)).collect();
+        self.last.push_back((*odometry, pieces));
         while self.last.len() > PLACE.remembered {
             self.last.pop_front();
         }
@@ -159,12 +172,26 @@ impl ScanPlaceSensor {
     /// What the scan shows on each bearing, and behind its field of view the last scans.
     fn boundary(&self, scan: &Scan, odometry: &Odometry) -> Boundary {
         let mut sights = vec![None; BEARINGS];
-        for (_, points) in &self.last {
-            for &point in points {
-                let (bearing, range) = polar(seen(odometry, point));
-                let at = (bearing.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize;
-                let known: &mut Option<f64> = &mut sights[at % BEARINGS];
-                *known = Some(known.map_or(range, |known| known.min(range)));
+        for (at, pieces) in &self.last {
+            let is_here = at.distance(odometry) < PLACE.look_again;
+            let mut add = |bearing: usize, range: f64| {
+                let known: &mut Option<f64> = &mut sights[bearing];
+                *known = match *known {
+                    // What moves is where it was seen last. From elsewhere one may see behind what is nearer.
+                    Some(known) if !is_here => Some(known.min(range)),
+                    _ => Some(range),
+                };
+            };
+            for piece in pieces {
+                let [(from, near), (to, far)] = piece.map(|end| polar(seen(odometry, end)));
+                add(nearest_bearing(from), near);
+                let turn = wrapped(to - from);
+                // The robot may see it from its other side.
+                let (from, near, far) =
+                    if turn < 0.0 { (to, far, near) } else { (from, near, far) };
+                for (bearing, share) in bearings_between(from, turn.abs()) {
+                    add(bearing, between_hits(near, far, share));
+                }
             }
         }
         let mut sights: Vec<Sight> = sights
@@ -187,13 +214,8 @@ impl ScanPlaceSensor {
             if !(0.0..PLACE.next).contains(&turn) {
                 continue;
             }
-            let first = (from.rem_euclid(TAU) / TAU * BEARINGS as f64).ceil() as usize;
-            let count = (turn / TAU * BEARINGS as f64).ceil() as usize;
-            for bearing in first..=first + count {
-                let share = wrapped(bearing as f64 * TAU / BEARINGS as f64 - from) / turn.max(1e-9);
-                if share <= 1.0 + 1e-9 {
-                    sights[bearing % BEARINGS] = between(near, far, share);
-                }
+            for (bearing, share) in bearings_between(from, turn) {
+                sights[bearing] = between(near, far, share);
             }
         }
         Boundary { sights }
@@ -236,15 +258,54 @@ fn is_behind_its_wall(junction: &JunctionView) -> bool {
     junction.doors.len() == 1 && junction.distance() < -PLACE.past_dead_end
 }
 
+/// The pieces of wall that a scan has hit, in the robot's frame.
+fn wall_pieces(scan: &Scan) -> Vec<WallPiece> {
+    let hit = |(bearing, reading)| match reading {
+        Reading::Hit(range) => Some((range, scan.point(bearing, range))),
+        Reading::NoReturn | Reading::Invalid => None,
+    };
+    let hits: Vec<Option<(f64, [f64; 2])>> = scan.readings().map(hit).collect();
+    let next = hits.iter().skip(1).copied().chain([None]);
+    let piece = |(&hit, next): (&Option<(f64, [f64; 2])>, Option<(f64, [f64; 2])>)| {
+        let (near, from) = hit?;
+        let to = next.filter(|&(far, _)| are_on_one_wall(near, far)).map_or(from, |(_, to)| to);
+        Some([from, to])
+    };
+    hits.iter().zip(next).filter_map(piece).collect()
+}
+
+/// The bearings of a boundary from a direction on, over an angle counter-clockwise, and the share of the angle up to
+/// each.
+fn bearings_between(from: f64, turn: f64) -> impl Iterator<Item = (usize, f64)> {
+    let first = (from.rem_euclid(TAU) / TAU * BEARINGS as f64).ceil() as usize;
+    let count = (turn / TAU * BEARINGS as f64).ceil() as usize;
+    (first..=first + count).filter_map(move |bearing| {
+        let share = wrapped(bearing as f64 * TAU / BEARINGS as f64 - from) / turn.max(1e-9);
+        (share <= 1.0 + 1e-9).then_some((bearing % BEARINGS, share))
+    })
+}
+
+/// The bearing of a boundary that is nearest to a direction.
+fn nearest_bearing(direction: f64) -> usize {
+    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
+}
+
+/// Whether the hits of two successive readings are on one wall.
+fn are_on_one_wall(one: f64, other: f64) -> bool {
+    (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other)
+}
+
+/// The range between two hits on one wall. Its inverse hardly bends in a small angle.
+fn between_hits(near: f64, far: f64, share: f64) -> f64 {
+    1.0 / (1.0 / near + share * (1.0 / far - 1.0 / near))
+}
+
 /// What is seen between two readings. A reading without a return shows nothing.
 fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
     let nearest = if share < 0.5 { near } else { far };
     let range = match (near, far) {
-        (Some(one), Some(other))
-            if (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other) =>
-        {
-            // The inverse of the range of a straight wall hardly bends in such an angle.
-            Some(1.0 / (1.0 / one + share * (1.0 / other - 1.0 / one)))
+        (Some(one), Some(other)) if are_on_one_wall(one, other) => {
+            Some(between_hits(one, other, share))
         }
         _ => nearest,
     };
