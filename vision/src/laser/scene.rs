@@ -427,4 +427,59 @@ mod tests {
             assert!(!is_hidden(&place) || x < 3.4 - PLACE.free_ahead, "after {x} m");
         }
     }
+
+    #[test]
+    fn the_headings_of_a_look_around_cover_a_full_circle_and_end_ahead() {
+        for degrees in [20, 90, 180, 240, 270, 330, 350] {
+            let field_of_view = f64::from(degrees).to_radians();
+            let headings = headings_all_round(field_of_view);
+            assert_eq!(headings.last(), Some(&0.0));
+            for bearing in -180..180 {
+                let seen = headings.iter().any(|heading| {
+                    let off = wrapped(f64::from(bearing).to_radians() - heading).abs();
+                    off <= field_of_view / 2.0
+                });
+                assert!(seen, "{bearing} with {degrees}");
+            }
+            let turns = headings.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            assert!(turns.chain([headings[0].abs()]).all(|turn| turn < PI), "{degrees}");
+        }
+    }
+
+    #[test]
+    fn a_robot_looks_around_if_its_scanner_does_not_see_all_round() {
+        let scan = |count: u16| {
+            let geometry = ScanGeometry {
+                angle_min: -f64::from(count / 2).to_radians(),
+                angle_increment: PI / 180.0,
+                range_min: 0.1,
+                range_max: 30.0,
+            };
+            let ranges = vec![2.0; count.into()];
+            Scan::new(geometry, ranges, ScannerPose::default()).unwrap()
+        };
+        let headings = |count| {
+            ScanPlaceSensor::default()
+                .headings_to_look_around(&scan(count), &Odometry::default())
+                .len()
+        };
+        assert_eq!(headings(360), 0);
+        assert!(headings(181) > 0 && headings(271) > 0);
+    }
+
+    #[test]
+    fn no_bearing_passes_between_two_hits_on_one_wall() {
+        // Two hits on a wall, 0.3 m apart, 1 m to the left of where the robot is later.
+        let mut sensor = ScanPlaceSensor::default();
+        let geometry =
+            ScanGeometry { angle_min: 0.2, angle_increment: 0.01, range_min: 0.1, range_max: 30.0 };
+        let ranges = [0.2_f64, 0.21].map(|bearing| (1.0 / bearing.sin()) as f32);
+        let scan = Scan::new(geometry, ranges.to_vec(), ScannerPose::default()).unwrap();
+        sensor.remember(&scan, &Odometry::default());
+        let later = Odometry { position: [4.8, 0.0], heading: 0.0 };
+        let nothing = Scan::new(geometry, vec![f32::NAN], ScannerPose::default()).unwrap();
+        let boundary = sensor.boundary(&nothing, &later);
+        let seen = boundary.points().count();
+        assert!(seen > 10, "{seen}");
+    }
 }
