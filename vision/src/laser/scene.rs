@@ -264,14 +264,15 @@ fn wall_pieces(scan: &Scan) -> Vec<WallPiece> {
         Reading::Hit(range) => Some((range, scan.point(bearing, range))),
         Reading::NoReturn | Reading::Invalid => None,
     };
-    let hits: Vec<Option<(f64, [f64; 2])>> = scan.readings().map(hit).collect();
-    let next = hits.iter().skip(1).copied().chain([None]);
-    let piece = |(&hit, next): (&Option<(f64, [f64; 2])>, Option<(f64, [f64; 2])>)| {
-        let (near, from) = hit?;
+    let mut pieces = Vec::new();
+    let mut readings = scan.readings().map(hit).peekable();
+    while let Some(reading) = readings.next() {
+        let Some((near, from)) = reading else { continue };
+        let next = readings.peek().copied().flatten();
         let to = next.filter(|&(far, _)| are_on_one_wall(near, far)).map_or(from, |(_, to)| to);
-        Some([from, to])
-    };
-    hits.iter().zip(next).filter_map(piece).collect()
+        pieces.push([from, to]);
+    }
+    pieces
 }
 
 /// The bearings of a boundary from a direction on, over an angle counter-clockwise, and the share of the angle up to
