@@ -299,8 +299,38 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         Err(ExplorerError::NoImage { moves, door, images: RETAKES, cause })
     }
 
-    /// A frame that was taken since the robot last moved, and its scene.
+    /// A frame that was taken since the robot last moved, and its scene. If the frame does not show enough, the robot
+    /// looks around first.
     fn frame(&mut self) -> Result<(Frame, Scene), Unusable> {
+        let mut frame = self.capture()?;
+        let headings = self.sensor.headings_to_look_around(&frame);
+        if !headings.is_empty() {
+            frame = self.look_around(frame, &headings)?;
+        }
+        let scene = self.sensor.scene(&frame)?;
+        Ok((frame, scene))
+    }
+
+    /// Turns to these headings, relative to a frame's, and returns the frame that is taken at the last of them.
+    fn look_around(&mut self, mut frame: Frame, headings: &[f64]) -> Result<Frame, Unusable> {
+        let ahead = frame.odometry.heading;
+        self.sensor.begin_to_look_around(&frame);
+        for heading in headings {
+            self.sensor.remember(&frame);
+            let turn = frame.odometry.seen(ahead + heading);
+            self.last = Some(frame.clone());
+            self.emit(EventKind::Frame(frame));
+            self.emit(EventKind::LookAround { turn });
+            if turn != 0.0 {
+                self.robot.turn(turn).map_err(Unusable::Robot)?;
+            }
+            frame = self.capture()?;
+        }
+        Ok(frame)
+    }
+
+    /// A frame that was taken since the robot last moved.
+    fn capture(&mut self) -> Result<Frame, Unusable> {
         let at = self.robot.odometry();
         let frame = self.robot.capture().map_err(|error| match error {
             RobotError::NoImage => Unusable::Missing,
@@ -314,8 +344,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if self.last.as_ref().is_some_and(same) {
             return Err(Unusable::Same);
         }
-        let scene = self.sensor.scene(&frame)?;
-        Ok((frame, scene))
+        Ok(frame)
     }
 
     /// Where the robot stands. At the very start, it finds out.

@@ -44,6 +44,11 @@ impl RunObserver for Recording {
                     *last = *command;
                 }
             }
+            EventKind::LookAround { turn } => {
+                if let Some((_, last)) = self.rounds.last_mut() {
+                    *last = Command { turn: *turn, forward: 0.0 };
+                }
+            }
             _ => {}
         }
     }

@@ -25,7 +25,8 @@ use toposlam_robot::{
     },
     log::{messages, reader::Log, recorder::Recorder, topic_map::TopicMap},
     record::{FrameSensor, NoSensor, RobotSensor},
-    run::{RunOutcome, run},
+    recording::Recording,
+    run::{RunOutcome, offline, run},
     run_settings::RunSettings,
     simulator::{
         Corridor, CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams, SimulatedRobot,
@@ -103,6 +104,46 @@ fn buildings_are_mapped_by_laser() {
             assert_eq!(run.moves[0], run.moves[1]);
         }
     }
+}
+
+#[test]
+fn buildings_are_mapped_by_a_scanner_that_does_not_see_all_round() {
+    let mut all = plans().unwrap();
+    all.extend((0..3).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
+    let algorithm = DirectionalAlgorithm::Folding;
+    for field_of_view in [180.0, 240.0, 270.0] {
+        let params = ScannerParams { field_of_view, ..ScannerParams::PLAIN };
+        let runs = RunSampler::new(all.clone(), 1, Faults::None, 1, 1.0, algorithm);
+        for run in runs.judged(0..all.len() as u64, &laser_robots(params), &()) {
+            let what = format!("{} with {field_of_view} degrees", run.case.plan_name);
+            assert_eq!(run.ending, RunOutcome::Right, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_run_with_a_look_around_is_repeated_from_its_recording() {
+    let plan = long_8();
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let robot = SimulationConfig::at_start(plan.clone(), Dart(0), 3).by_laser(&params);
+    let sensor = RobotSensor::Laser(Box::default());
+    let settings = RunSettings::new(DirectionalAlgorithm::Folding, 200);
+    let mut recording = Recording::default();
+    let run = run(&plan, Dart(0), robot, sensor.clone(), &mut recording, &settings);
+    assert_eq!(run.outcome(), RunOutcome::Right);
+    assert_eq!(recording.len() as u64, run.frames);
+    let again = offline(&recording, sensor, (), &settings).unwrap();
+    assert_eq!(again.map(), run.mapping.map());
+}
+
+#[test]
+fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let robot = |config: &SimulationConfig| config.by_laser(&params);
+    let log = logged("laser-180.mcap", robot, RobotSensor::Laser(Box::default()));
+    let recorded = visits_in(&log, Evidence::Recorded);
+    assert!(recorded.len() >= 4, "{recorded:?}");
+    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
 }
 
 /// A floor plan whose hallways are long enough for arms: shape 8, 16 m a hallway.

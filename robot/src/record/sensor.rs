@@ -17,6 +17,18 @@ pub trait FrameSensor {
     /// # Errors
     /// Returns an error if the frame cannot be sensed.
     fn scene(&mut self, frame: &Frame) -> Result<Scene, SensingError>;
+
+    /// The headings to which the robot turns to look around before the frame is sensed, one after the other, relative
+    /// to the frame's; empty if it need not. The last one is 0.
+    fn headings_to_look_around(&self, _frame: &Frame) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The robot begins to look around where it took this frame.
+    fn begin_to_look_around(&mut self, _frame: &Frame) {}
+
+    /// Remembers a frame that was taken while the robot looks around.
+    fn remember(&mut self, _frame: &Frame) {}
 }
 
 /// Why a frame cannot be sensed.
@@ -53,6 +65,22 @@ impl FrameSensor for ScanPlaceSensor {
             None => NoSensor.scene(frame),
         }
     }
+
+    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
+        frame.scan.as_ref().map_or_else(Vec::new, |scan| {
+            ScanPlaceSensor::headings_to_look_around(self, scan, &frame.odometry)
+        })
+    }
+
+    fn begin_to_look_around(&mut self, frame: &Frame) {
+        ScanPlaceSensor::begin_to_look_around(self, &frame.odometry);
+    }
+
+    fn remember(&mut self, frame: &Frame) {
+        if let Some(scan) = &frame.scan {
+            ScanPlaceSensor::remember(self, scan, &frame.odometry);
+        }
+    }
 }
 
 /// Senses with a camera or with a laser scanner.
@@ -69,6 +97,25 @@ impl FrameSensor for RobotSensor {
         match self {
             Self::Camera(sensor) => sensor.scene(frame),
             Self::Laser(sensor) => sensor.scene(frame),
+        }
+    }
+
+    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
+        match self {
+            Self::Camera(_) => Vec::new(),
+            Self::Laser(sensor) => FrameSensor::headings_to_look_around(&**sensor, frame),
+        }
+    }
+
+    fn begin_to_look_around(&mut self, frame: &Frame) {
+        if let Self::Laser(sensor) = self {
+            FrameSensor::begin_to_look_around(&mut **sensor, frame);
+        }
+    }
+
+    fn remember(&mut self, frame: &Frame) {
+        if let Self::Laser(sensor) = self {
+            FrameSensor::remember(&mut **sensor, frame);
         }
     }
 }
@@ -88,6 +135,22 @@ impl<S: FrameSensor> FrameSensor for Option<S> {
         match self {
             Some(sensor) => sensor.scene(frame),
             None => NoSensor.scene(frame),
+        }
+    }
+
+    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
+        self.as_ref().map_or_else(Vec::new, |sensor| sensor.headings_to_look_around(frame))
+    }
+
+    fn begin_to_look_around(&mut self, frame: &Frame) {
+        if let Some(sensor) = self {
+            sensor.begin_to_look_around(frame);
+        }
+    }
+
+    fn remember(&mut self, frame: &Frame) {
+        if let Some(sensor) = self {
+            sensor.remember(frame);
         }
     }
 }

@@ -4,7 +4,10 @@ use std::{path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_model::{
-    driving::{algorithm2::PathState, pose::Pose},
+    driving::{
+        algorithm2::{Command, PathState},
+        pose::Pose,
+    },
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
@@ -200,6 +203,11 @@ impl RunObserver for RunCapture<'_> {
             EventKind::Command { state, command } => {
                 if let Some(last) = self.rounds.last_mut() {
                     (last.state, last.command) = (*state, *command);
+                }
+            }
+            EventKind::LookAround { turn } => {
+                if let Some(last) = self.rounds.last_mut() {
+                    last.command = Some(Command { turn: *turn, forward: 0.0 });
                 }
             }
             EventKind::Door { door, .. } => {

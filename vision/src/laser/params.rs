@@ -238,6 +238,14 @@ params! {
         every_turn: f64 = 0.2,
         /// The number of scans that are remembered. Geometry: the robot has driven a few metres since.
         remembered: usize = 24,
+        /// A robot whose scanner does not see all round turns so far that two scans show the same surfaces over this
+        /// angle. Geometry: more than odometry errs in a turn.
+        overlap: f64 = 0.17,
+        /// It looks around again when it has driven this far since, or has turned by [`Self::look_again_turn`].
+        /// Simulated buildings.
+        look_again: f64 = 0.1,
+        /// See [`Self::look_again`]. Simulated buildings.
+        look_again_turn: f64 = 0.5,
         /// The hits of two successive readings are on one wall if their ranges differ by less than this, and ...
         /// Geometry: half a degree before a gap there is no wall.
         step: f64 = 0.15,

@@ -1,7 +1,8 @@
 //! From a laser scan to the place of a robot in a building with right angles, as Algorithm 2 needs it. Section 3.
 //!
 //! The hits of the scan take the place of the boundary points of an image; all later steps are the same. A
-//! scanner that does not see behind is helped by the hits of the last scans.
+//! scanner that does not see all round is helped by the hits of the last scans. Where they do not show a hallway, the
+//! robot looks around: it turns on the spot, and the scans that it takes meanwhile are the last ones.
 
 use std::{
     collections::VecDeque,
@@ -27,11 +28,17 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub struct ScanPlaceSensor {
     params: SensingParams,
-    /// Where the last scans were taken, with their hits in the frame of odometry.
-    last: VecDeque<(Odometry, Vec<[f64; 2]>)>,
+    /// Where the last scans were taken, with the pieces of wall that they have hit, in the frame of odometry.
+    last: VecDeque<(Odometry, Vec<WallPiece>)>,
+    /// Where the robot looked around last.
+    looked: Option<Odometry>,
     /// The last hallway that was sensed since the last junction.
     hallway: Option<SensedHallway>,
 }
+
+/// What a scan has hit between two successive readings, from one to the other; a hit that has no neighbour is a piece
+/// without length.
+type WallPiece = [[f64; 2]; 2];
 
 /// A hallway that was sensed.
 #[derive(Clone, Copy, Debug)]
@@ -55,17 +62,8 @@ impl ScanPlaceSensor {
 
     /// The place in a scan, and the odometry when it was taken.
     pub fn sense(&mut self, scan: &Scan, odometry: &Odometry) -> Place {
-        let boundary = self.boundary(scan, odometry);
-        self.remember(scan, odometry);
-        let (place, trace) = place_within(boundary, 0.0, &self.params);
-        let place = match &place {
-            Place::Junction(junction) if is_behind_its_wall(junction) => {
-                trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
-                    Place::Hallway(hallway.view(0.0, &self.params.outline))
-                })
-            }
-            _ => place,
-        };
+        let place = self.place(scan, odometry);
+        self.remember_on_the_way(scan, odometry);
         match place {
             Place::Hallway(view) => {
                 let width = view.left + view.right;
@@ -78,6 +76,58 @@ impl ScanPlaceSensor {
             }
         }
         place
+    }
+
+    /// The headings to which the robot turns to look around, one after the other, relative to its own; empty if it need
+    /// not: the scan covers a full circle, or with the last scans it shows a hallway, or a junction where the robot has
+    /// just looked around.
+    #[must_use]
+    pub fn headings_to_look_around(&self, scan: &Scan, odometry: &Odometry) -> Vec<f64> {
+        if sees_all_round(scan) {
+            return Vec::new();
+        }
+        let has_looked_here = self.looked.is_some_and(|looked| {
+            looked.distance(odometry) < PLACE.look_again
+                && wrapped(looked.heading - odometry.heading).abs() < PLACE.look_again_turn
+        });
+        let is_seen = match self.place(scan, odometry) {
+            Place::Hallway(_) => self.looked.is_some(),
+            Place::Junction(_) => has_looked_here,
+            Place::Unknown(_) => false,
+        };
+        if is_seen { Vec::new() } else { headings_all_round(scan.field_of_view()) }
+    }
+
+    /// The robot begins to look around: the scans of the way are forgotten.
+    pub fn begin_to_look_around(&mut self, odometry: &Odometry) {
+        self.last.clear();
+        self.looked = Some(*odometry);
+    }
+
+    /// Remembers a scan, and the odometry when it was taken.
+    pub fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
+        let (sine, cosine) = odometry.heading.sin_cos();
+        let [east, north] = odometry.position;
+        let place =
+            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
+        let pieces = wall_pieces(scan).into_iter().map(|piece| piece.map(place)).collect();
+        self.last.push_back((*odometry, pieces));
+        while self.last.len() > PLACE.remembered {
+            self.last.pop_front();
+        }
+    }
+
+    /// The place in a scan and the last ones.
+    fn place(&self, scan: &Scan, odometry: &Odometry) -> Place {
+        let (place, trace) = place_within(self.boundary(scan, odometry), 0.0, &self.params);
+        match &place {
+            Place::Junction(junction) if is_behind_its_wall(junction) => {
+                trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
+                    Place::Hallway(hallway.view(0.0, &self.params.outline))
+                })
+            }
+            _ => place,
+        }
     }
 
     /// The hallway that was sensed last, if furniture along it hides its walls: both sides are closed beside the robot,
@@ -122,12 +172,26 @@ impl ScanPlaceSensor {
     /// What the scan shows on each bearing, and behind its field of view the last scans.
     fn boundary(&self, scan: &Scan, odometry: &Odometry) -> Boundary {
         let mut sights = vec![None; BEARINGS];
-        for (_, points) in &self.last {
-            for &point in points {
-                let (bearing, range) = polar(seen(odometry, point));
-                let at = (bearing.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize;
-                let known: &mut Option<f64> = &mut sights[at % BEARINGS];
-                *known = Some(known.map_or(range, |known| known.min(range)));
+        for (at, pieces) in &self.last {
+            let is_here = at.distance(odometry) < PLACE.look_again;
+            let mut add = |bearing: usize, range: f64| {
+                let known: &mut Option<f64> = &mut sights[bearing];
+                *known = match *known {
+                    // What moves is where it was seen last. From elsewhere one may see behind what is nearer.
+                    Some(known) if !is_here => Some(known.min(range)),
+                    _ => Some(range),
+                };
+            };
+            for piece in pieces {
+                let [(from, near), (to, far)] = piece.map(|end| polar(seen(odometry, end)));
+                add(nearest_bearing(from), near);
+                let turn = wrapped(to - from);
+                // The robot may see it from its other side.
+                let (from, near, far) =
+                    if turn < 0.0 { (to, far, near) } else { (from, near, far) };
+                for (bearing, share) in bearings_between(from, turn.abs()) {
+                    add(bearing, between_hits(near, far, share));
+                }
             }
         }
         let mut sights: Vec<Sight> = sights
@@ -150,37 +214,42 @@ impl ScanPlaceSensor {
             if !(0.0..PLACE.next).contains(&turn) {
                 continue;
             }
-            let first = (from.rem_euclid(TAU) / TAU * BEARINGS as f64).ceil() as usize;
-            let count = (turn / TAU * BEARINGS as f64).ceil() as usize;
-            for bearing in first..=first + count {
-                let share = wrapped(bearing as f64 * TAU / BEARINGS as f64 - from) / turn.max(1e-9);
-                if share <= 1.0 + 1e-9 {
-                    sights[bearing % BEARINGS] = between(near, far, share);
-                }
+            for (bearing, share) in bearings_between(from, turn) {
+                sights[bearing] = between(near, far, share);
             }
         }
         Boundary { sights }
     }
 
-    fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
-        // What is seen all around needs no memory.
-        let covered = scan.geometry().angle_increment * scan.ranges().len() as f64;
+    /// Remembers a scan now and then.
+    fn remember_on_the_way(&mut self, scan: &Scan, odometry: &Odometry) {
         let moved = self.last.back().is_none_or(|(last, _)| {
             last.distance(odometry) > PLACE.every
                 || wrapped(last.heading - odometry.heading).abs() > PLACE.every_turn
         });
-        if !moved || covered > 2.0 * PI - PLACE.next {
-            return;
-        }
-        let (sine, cosine) = odometry.heading.sin_cos();
-        let [east, north] = odometry.position;
-        let place =
-            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
-        self.last.push_back((*odometry, scan.hits().map(place).collect()));
-        while self.last.len() > PLACE.remembered {
-            self.last.pop_front();
+        // What is seen all around needs no memory.
+        if moved && !sees_all_round(scan) {
+            self.remember(scan, odometry);
         }
     }
+}
+
+/// Whether a scan covers a full circle.
+fn sees_all_round(scan: &Scan) -> bool {
+    scan.geometry().angle_increment * scan.ranges().len() as f64 > TAU - PLACE.next
+}
+
+/// The headings at which scans with this field of view, in radians, cover a full circle: to the left and back, to the
+/// right and back. The errors of turns to both sides cancel.
+fn headings_all_round(field_of_view: f64) -> Vec<f64> {
+    let farthest = PI - field_of_view / 2.0 + PLACE.overlap;
+    // A scan that covers next to nothing never makes a circle.
+    let step = (field_of_view - PLACE.overlap).max(PLACE.overlap);
+    let steps = (farthest / step).ceil().max(1.0);
+    let one_side =
+        |side: f64| (1..=steps as u32).map(move |index| side * farthest * f64::from(index) / steps);
+    let ahead = std::iter::once(0.0);
+    one_side(1.0).chain(ahead.clone()).chain(one_side(-1.0)).chain(ahead).collect()
 }
 
 /// Whether a robot at a junction would stand behind its wall: furniture along a corridor looks like the end of a
@@ -189,15 +258,55 @@ fn is_behind_its_wall(junction: &JunctionView) -> bool {
     junction.doors.len() == 1 && junction.distance() < -PLACE.past_dead_end
 }
 
+/// The pieces of wall that a scan has hit, in the robot's frame.
+fn wall_pieces(scan: &Scan) -> Vec<WallPiece> {
+    let hit = |(bearing, reading)| match reading {
+        Reading::Hit(range) => Some((range, scan.point(bearing, range))),
+        Reading::NoReturn | Reading::Invalid => None,
+    };
+    let mut pieces = Vec::new();
+    let mut readings = scan.readings().map(hit).peekable();
+    while let Some(reading) = readings.next() {
+        let Some((near, from)) = reading else { continue };
+        let next = readings.peek().copied().flatten();
+        let to = next.filter(|&(far, _)| are_on_one_wall(near, far)).map_or(from, |(_, to)| to);
+        pieces.push([from, to]);
+    }
+    pieces
+}
+
+/// The bearings of a boundary from a direction on, over an angle counter-clockwise, and the share of the angle up to
+/// each.
+fn bearings_between(from: f64, turn: f64) -> impl Iterator<Item = (usize, f64)> {
+    let first = (from.rem_euclid(TAU) / TAU * BEARINGS as f64).ceil() as usize;
+    let count = (turn / TAU * BEARINGS as f64).ceil() as usize;
+    (first..=first + count).filter_map(move |bearing| {
+        let share = wrapped(bearing as f64 * TAU / BEARINGS as f64 - from) / turn.max(1e-9);
+        (share <= 1.0 + 1e-9).then_some((bearing % BEARINGS, share))
+    })
+}
+
+/// The bearing of a boundary that is nearest to a direction.
+fn nearest_bearing(direction: f64) -> usize {
+    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
+}
+
+/// Whether the hits of two successive readings are on one wall.
+fn are_on_one_wall(one: f64, other: f64) -> bool {
+    (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other)
+}
+
+/// The range between two hits on one wall. Its inverse hardly bends in a small angle.
+fn between_hits(near: f64, far: f64, share: f64) -> f64 {
+    1.0 / (1.0 / near + share * (1.0 / far - 1.0 / near))
+}
+
 /// What is seen between two readings. A reading without a return shows nothing.
 fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
     let nearest = if share < 0.5 { near } else { far };
     let range = match (near, far) {
-        (Some(one), Some(other))
-            if (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other) =>
-        {
-            // The inverse of the range of a straight wall hardly bends in such an angle.
-            Some(1.0 / (1.0 / one + share * (1.0 / other - 1.0 / one)))
+        (Some(one), Some(other)) if are_on_one_wall(one, other) => {
+            Some(between_hits(one, other, share))
         }
         _ => nearest,
     };
@@ -318,5 +427,60 @@ mod tests {
         for (x, place) in places {
             assert!(!is_hidden(&place) || x < 3.4 - PLACE.free_ahead, "after {x} m");
         }
+    }
+
+    #[test]
+    fn the_headings_of_a_look_around_cover_a_full_circle_and_end_ahead() {
+        for degrees in [20, 90, 180, 240, 270, 330, 350] {
+            let field_of_view = f64::from(degrees).to_radians();
+            let headings = headings_all_round(field_of_view);
+            assert_eq!(headings.last(), Some(&0.0));
+            for bearing in -180..180 {
+                let seen = headings.iter().any(|heading| {
+                    let off = wrapped(f64::from(bearing).to_radians() - heading).abs();
+                    off <= field_of_view / 2.0
+                });
+                assert!(seen, "{bearing} with {degrees}");
+            }
+            let turns = headings.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            assert!(turns.chain([headings[0].abs()]).all(|turn| turn < PI), "{degrees}");
+        }
+    }
+
+    #[test]
+    fn a_robot_looks_around_if_its_scanner_does_not_see_all_round() {
+        let scan = |count: u16| {
+            let geometry = ScanGeometry {
+                angle_min: -f64::from(count / 2).to_radians(),
+                angle_increment: PI / 180.0,
+                range_min: 0.1,
+                range_max: 30.0,
+            };
+            let ranges = vec![2.0; count.into()];
+            Scan::new(geometry, ranges, ScannerPose::default()).unwrap()
+        };
+        let headings = |count| {
+            ScanPlaceSensor::default()
+                .headings_to_look_around(&scan(count), &Odometry::default())
+                .len()
+        };
+        assert_eq!(headings(360), 0);
+        assert!(headings(181) > 0 && headings(271) > 0);
+    }
+
+    #[test]
+    fn no_bearing_passes_between_two_hits_on_one_wall() {
+        // Two hits on a wall, 0.3 m apart, 1 m to the left of where the robot is later.
+        let mut sensor = ScanPlaceSensor::default();
+        let geometry =
+            ScanGeometry { angle_min: 0.2, angle_increment: 0.01, range_min: 0.1, range_max: 30.0 };
+        let ranges = [0.2_f64, 0.21].map(|bearing| (1.0 / bearing.sin()) as f32);
+        let scan = Scan::new(geometry, ranges.to_vec(), ScannerPose::default()).unwrap();
+        sensor.remember(&scan, &Odometry::default());
+        let later = Odometry { position: [4.8, 0.0], heading: 0.0 };
+        let nothing = Scan::new(geometry, vec![f32::NAN], ScannerPose::default()).unwrap();
+        let boundary = sensor.boundary(&nothing, &later);
+        let seen = boundary.points().count();
+        assert!(seen > 10, "{seen}");
     }
 }
