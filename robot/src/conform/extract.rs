@@ -3,7 +3,10 @@
 
 use rayon::prelude::*;
 use thiserror::Error;
-use toposlam_model::{counts::grouped, measurement::MeasurementNoise};
+use toposlam_model::{
+    counts::{counted, grouped},
+    measurement::MeasurementNoise,
+};
 use toposlam_vision::{
     laser::{
         drift::{DriftMeter, ROUNDS},
@@ -101,13 +104,16 @@ impl SkippedMessages {
     #[must_use]
     pub fn in_words(self) -> Option<String> {
         let Self { off_clock, scans_without_odometry } = self;
+        let scans = counted(scans_without_odometry as usize, "scan");
         let reasons = [
-            (off_clock, "whose time is far from that of all others"),
-            (scans_without_odometry, "scans without odometry"),
+            (
+                off_clock,
+                format!("{} whose time is far from that of all others", grouped(off_clock.into())),
+            ),
+            (scans_without_odometry, format!("{scans} without odometry")),
         ];
         let reasons = reasons.into_iter().filter(|(count, _)| *count > 0);
-        let parts: Vec<_> =
-            reasons.map(|(count, why)| format!("{} {why}", grouped(count.into()))).collect();
+        let parts: Vec<_> = reasons.map(|(_, what)| what).collect();
         (!parts.is_empty()).then(|| format!("skipped messages: {}", parts.join(", ")))
     }
 }

@@ -75,6 +75,16 @@ impl Written {
         self.writer.write(IMAGE, stamp.nanoseconds(), &message).unwrap();
     }
 
+    /// A robot that passes a junction, with all kinds of evidence.
+    fn passing() -> Self {
+        let mut log = Self::new();
+        log.odometry();
+        log.visit();
+        log.scene();
+        log.scan();
+        log
+    }
+
     /// An arrival, and the door by which the robot leaves.
     fn visit(&mut self) {
         let stamp = self.stamp();
@@ -133,11 +143,7 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
 #[test]
 fn the_end_of_a_run_is_left_out_where_corners_are_no_junctions() {
     let run = |evidence| {
-        let mut log = Written::new();
-        log.odometry();
-        log.visit();
-        log.scene();
-        log.scan();
+        let mut log = Written::passing();
         log.end();
         log.extract(evidence).unwrap()
     };
@@ -179,7 +185,7 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
     );
     assert_eq!(SkippedMessages::default().in_words(), None);
     let one = SkippedMessages { off_clock: 0, scans_without_odometry: 1 };
-    assert_eq!(one.in_words().unwrap(), "skipped messages: 1 scans without odometry");
+    assert_eq!(one.in_words().unwrap(), "skipped messages: 1 scan without odometry");
     let nowhere = |write: fn(&mut Written)| {
         let mut log = Written::new();
         write(&mut log);
@@ -193,11 +199,7 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
 #[test]
 fn stamps_of_odometry_matter_only_to_scenes() {
     let run = |evidence| {
-        let mut log = Written::new();
-        log.odometry();
-        log.visit();
-        log.scene();
-        log.scan();
+        let mut log = Written::passing();
         log.late_odometry();
         log.extract(evidence)
     };
