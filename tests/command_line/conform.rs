@@ -899,7 +899,7 @@ fn a_divergence_in_a_database_names_its_row() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_check_leaves_the_page_as_it_was() {
-    use std::{io::Write as _, process::Stdio};
+    use super::interrupted;
 
     let folder = folder("conform-interrupted");
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
@@ -908,17 +908,8 @@ fn an_interrupted_check_leaves_the_page_as_it_was() {
         if let Some(text) = earlier {
             fs::write(&page, text).unwrap();
         }
-        let mut verb = super::toposlam();
-        verb.arg("conform").arg(&log).args(["-", "--html"]).arg(&page);
-        verb.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut verb = verb.spawn().unwrap();
-        // More than a pipe holds: the verb reads.
-        let mut input = verb.stdin.take().unwrap();
-        input.write_all(&vec![b' '; 1 << 20]).unwrap();
-        let killed = Command::new("kill").args(["-INT", &verb.id().to_string()]).status().unwrap();
-        assert!(killed.success());
-        let output = verb.wait_with_output().unwrap();
-        drop(input);
+        let paths = [&log, &page].map(|path| path.to_str().unwrap());
+        let output = interrupted(&["conform", paths[0], "-", "--html", paths[1]]);
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
         assert_eq!(stderr(&output), "interrupted\n");
         assert_eq!(fs::read_to_string(&page).ok().as_deref(), earlier);

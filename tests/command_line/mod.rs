@@ -65,6 +65,24 @@ fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
     output
 }
 
+/// Runs the program until it reads its standard input, and sends the signal of Ctrl-C.
+#[cfg(unix)]
+fn interrupted(arguments: &[&str]) -> Output {
+    use std::io::Write as _;
+
+    let mut program = toposlam();
+    program.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut program = program.spawn().unwrap();
+    // More than a pipe holds: the program reads.
+    let mut input = program.stdin.take().unwrap();
+    input.write_all(&vec![b' '; 1 << 20]).unwrap();
+    let killed = Command::new("kill").args(["-INT", &program.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = program.wait_with_output().unwrap();
+    drop(input);
+    output
+}
+
 fn check_exit_code(arguments: &[OsString], output: &Output) {
     static KNOWN: Mutex<BTreeMap<Vec<OsString>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
     let words = if arguments.first().is_some_and(|verb| verb == "evaluate") { 2 } else { 1 };

@@ -304,6 +304,8 @@ fn standard_input_is_one_input_and_no_output() {
 #[cfg(unix)]
 #[test]
 fn a_verb_that_is_interrupted_ends_with_3() {
+    use super::interrupted;
+
     let calls: [&[&str]; 4] = [
         &["draw", "-"],
         &["explore", "-"],
@@ -311,17 +313,8 @@ fn a_verb_that_is_interrupted_ends_with_3() {
         &["sense", "x.png", "--calibration", "-", "--colours", "x.toml"],
     ];
     for call in calls {
-        let mut verb = toposlam();
-        verb.args(call).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut verb = verb.spawn().unwrap();
-        // More than a pipe holds: the verb reads.
-        let mut input = verb.stdin.take().unwrap();
-        input.write_all(&vec![b' '; 1 << 20]).unwrap();
-        let killed = Command::new("kill").args(["-INT", &verb.id().to_string()]).status().unwrap();
-        assert!(killed.success());
-        let output = verb.wait_with_output().unwrap();
+        let output = interrupted(call);
         assert_eq!(output.status.code(), Some(3), "{call:?} {}", stderr(&output));
         assert_eq!(stderr(&output), "interrupted\n");
-        drop(input);
     }
 }
