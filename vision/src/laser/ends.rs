@@ -12,6 +12,8 @@ use super::{
 pub enum WayEnd {
     /// Free space goes on where nothing was seen yet.
     Open,
+    /// It was seen to end, but for a stretch of its border.
+    Unclear,
     /// It was seen to end.
     Closed,
 }
@@ -101,7 +103,7 @@ pub(super) fn ends(
     for cell in maxima(ways, lengths, grid, prominence) {
         if !at_gap[cell] {
             let goes_on = is_near(&borders, cell, grid, params.arm.border_near);
-            let end = if goes_on { WayEnd::Open } else { WayEnd::Closed };
+            let end = if goes_on { WayEnd::Unclear } else { WayEnd::Closed };
             ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
         }
     }

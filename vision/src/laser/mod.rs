@@ -38,4 +38,5 @@ pub mod scene;
 pub mod sensor;
 pub mod skeleton;
 mod viewpoint;
+mod wall_frame;
 pub mod way_graph;

@@ -184,7 +184,7 @@ fn ways(view: &LaserView) -> RgbImage {
         }
         for end in &skeleton.ends {
             let colour = match end.end {
-                WayEnd::Open => ORANGE,
+                WayEnd::Open | WayEnd::Unclear => ORANGE,
                 WayEnd::Closed => RED,
             };
             canvas.ring(view.grid.point(end.cell), 6, colour);

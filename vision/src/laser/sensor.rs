@@ -16,6 +16,7 @@ use super::{
     scan::{Reading, Scan},
     skeleton::Skeleton,
     viewpoint::Viewpoint,
+    wall_frame::to_walls,
     way_graph::{ArmJudge, CountedArms, WayGraph},
 };
 
@@ -24,6 +25,8 @@ use super::{
 pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
+    /// From the frame of odometry to the one in which scans are matched; `None` before the first scan.
+    frame: Option<Motion>,
     /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
     counts: Vec<RayCounts>,
     /// The number of views so far.
@@ -61,8 +64,8 @@ pub struct LaserView {
 
 /// Odometry beyond this is wrong, in metres; cells near it would have no place.
 const FARTHEST: f64 = 1e7;
-/// Corners of cells, in cells from the origin. If scans are matched, successive views take them in turn: matched
-/// walls move a little, and what is seen must not depend on how they lie in the cells.
+/// Corners of cells, in cells from the origin. Successive views take them in turn: what several views agree on must not
+/// depend on how the walls lie in the cells.
 const CORNERS: [[f64; 2]; 2] = [[0.0, 0.0], [0.5, 0.5]];
 /// The counts reach this many times as far as a window of the local map.
 const MARGIN: usize = 3;
@@ -75,6 +78,7 @@ impl LaserSensor {
         Self {
             params,
             matcher,
+            frame: None,
             counts: Vec::new(),
             views: 0,
             scans: VecDeque::new(),
@@ -101,7 +105,12 @@ impl LaserSensor {
             self.way += driven;
         }
         self.last = Some(*odometry);
-        let robot = self.matcher.see(scan, odometry, self.way, self.way - params.memory);
+        let matching = self.params.matching.rounds > 0;
+        let frame = *self.frame.get_or_insert_with(|| {
+            if matching { Motion::default() } else { to_walls(scan, odometry) }
+        });
+        let placed = frame.pose(odometry);
+        let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, &robot, &params), robot.position, side);
         self.viewpoints.push_back(Viewpoint::new(scan, &robot));
@@ -127,7 +136,7 @@ impl LaserSensor {
         } else {
             junctions.clone()
         };
-        let to_odometry = self.matcher.correction().inverse();
+        let to_odometry = frame.inverse().after(&self.matcher.correction().inverse());
         Some(LaserView {
             robot,
             to_odometry,
@@ -154,15 +163,13 @@ impl LaserSensor {
         }
         self.scans.push_back((self.way, rays));
         if moved {
-            let corners =
-                if self.params.matching.rounds > 0 { &CORNERS[..] } else { &CORNERS[..1] };
-            let around = |&corner: &[f64; 2]| {
+            let around = |corner| {
                 let cell = self.params.map.cell;
                 let mut counts = RayCounts::around(robot, MARGIN * side, cell, corner);
                 self.scans.iter().for_each(|(_, rays)| counts.add(rays));
                 counts
             };
-            self.counts = corners.iter().map(around).collect();
+            self.counts = CORNERS.into_iter().map(around).collect();
         } else if let Some((_, rays)) = self.scans.back() {
             self.counts.iter_mut().for_each(|counts| counts.add(rays));
         }

@@ -5,7 +5,7 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     clearances::Clearances,
-    grid::Grid,
+    grid::{Cell, Grid},
     plane::{Motion, direction, distance},
     scan::{Reading, Scan},
 };
@@ -23,7 +23,12 @@ pub(super) struct Viewpoint {
     silent: Vec<bool>,
     /// The angle from one ray to the next, in radians.
     step: f64,
+    /// A ray that did not come back shows a surface up to this far from the scanner, in metres.
+    silent_range: f64,
 }
+
+/// Farther away the rays of a scan are wider apart than cells, in metres.
+const SILENT_RANGE: f64 = 10.0;
 
 impl Viewpoint {
     /// The viewpoint of a scan that a robot took.
@@ -41,15 +46,15 @@ impl Viewpoint {
             half,
             silent: (0..lost.len()).map(is_silent).collect(),
             step: scan.geometry().angle_increment,
+            silent_range: scan.geometry().range_max.min(SILENT_RANGE),
         }
     }
 
-    /// Whether the scan looked at a point at most `range` metres away, nothing before it hides it from here, and no ray
-    /// came back from there.
+    /// Whether the scan looked at a point that is near enough, no wall hides it from here, and no ray came back from
+    /// there. What is unknown hides nothing: it is unknown because of a surface that no ray showed.
     pub(super) fn is_silent_at(
         &self,
         point: [f64; 2],
-        range: f64,
         grid: &Grid,
         clearances: &Clearances,
     ) -> bool {
@@ -58,8 +63,8 @@ impl Viewpoint {
         let ray = ((wrapped(towards - self.middle) + self.half) / self.step).round();
         let is_silent = ray >= 0.0 && self.silent.get(ray as usize) == Some(&true);
         is_silent
-            && off <= range
-            && clearances.sight(grid, self.point, towards, off).0 >= off - grid.cell
+            && off <= self.silent_range
+            && !is_wall_within(off - grid.cell, self.point, towards, grid, clearances)
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
@@ -77,15 +82,34 @@ impl Viewpoint {
     }
 }
 
+/// Whether there is a wall on the map within so many metres of a point in a direction.
+fn is_wall_within(
+    length: f64,
+    from: [f64; 2],
+    direction: f64,
+    grid: &Grid,
+    clearances: &Clearances,
+) -> bool {
+    let (sine, cosine) = direction.sin_cos();
+    let mut at = 0.0;
+    while at < length {
+        let point = [from[0] + at * cosine, from[1] + at * sine];
+        let (free, cell) = clearances.sight(grid, point, direction, length - at);
+        at += free;
+        if cell == Cell::Occupied {
+            return at < length;
+        }
+        at += grid.cell / 2.0;
+    }
+    false
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     use super::*;
-    use crate::laser::{
-        grid::Cell,
-        scan::{ScanGeometry, ScannerPose},
-    };
+    use crate::laser::scan::{ScanGeometry, ScannerPose};
 
     /// How far a point lies beyond the edge of a sector on a map.
     fn turn_to(viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid) -> Option<f64> {
@@ -128,27 +152,29 @@ mod tests {
 
     #[test]
     fn where_rays_do_not_come_back_the_scan_is_silent_and_one_lost_ray_is_not_enough() {
-        let geometry = ScanGeometry {
-            angle_min: -FRAC_PI_2,
-            angle_increment: PI / 180.0,
-            range_min: 0.0,
-            range_max: 80.0,
-        };
         let (_, mut grid) = viewpoint(181);
         let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
-        let is_silent = |lost: std::ops::Range<usize>, grid: &Grid, range: f64| {
+        let is_silent = |lost: std::ops::Range<usize>, grid: &Grid, range_max: f64| {
+            let geometry = ScanGeometry {
+                angle_min: -FRAC_PI_2,
+                angle_increment: PI / 180.0,
+                range_min: 0.0,
+                range_max,
+            };
             let mut ranges = vec![1.0; 181];
             ranges[lost].fill(f32::INFINITY);
             let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
             let ahead = [8.05, 5.05];
-            Viewpoint::new(&scan, &robot).is_silent_at(ahead, range, grid, &Clearances::new(grid))
+            Viewpoint::new(&scan, &robot).is_silent_at(ahead, grid, &Clearances::new(grid))
         };
-        assert!(is_silent(85..96, &grid, 10.0));
-        assert!(!is_silent(90..91, &grid, 10.0), "a failure of the scanner");
-        assert!(!is_silent(40..60, &grid, 10.0), "another direction");
-        assert!(!is_silent(85..96, &grid, 2.0), "too far away");
-        let wall = grid.index([6.55, 5.05]).unwrap();
-        grid.cells[wall] = Cell::Occupied;
-        assert!(!is_silent(85..96, &grid, 10.0), "behind a wall");
+        assert!(is_silent(85..96, &grid, 80.0));
+        assert!(!is_silent(90..91, &grid, 80.0), "a failure of the scanner");
+        assert!(!is_silent(40..60, &grid, 80.0), "another direction");
+        assert!(!is_silent(85..96, &grid, 2.0), "beyond the range of the scanner");
+        let between = grid.index([6.55, 5.05]).unwrap();
+        grid.cells[between] = Cell::Unknown;
+        assert!(is_silent(85..96, &grid, 80.0), "what is unknown hides nothing");
+        grid.cells[between] = Cell::Occupied;
+        assert!(!is_silent(85..96, &grid, 80.0), "behind a wall");
     }
 }

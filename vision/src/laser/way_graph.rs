@@ -65,7 +65,7 @@ enum ArmStatus {
     Certain,
     /// It looks like an arm that goes on unseen.
     Likely,
-    /// It may be one: the scanner did not look into it.
+    /// It may be one: the scanner did not look into it, or it is seen to end but for a stretch of its border.
     InDoubt,
     /// It is an alcove, or too little of it is seen.
     None,
@@ -86,9 +86,6 @@ pub(super) struct ArmJudge<'a> {
     pub params: &'a ArmParams,
 }
 
-/// A ray that does not come back shows something up to this far from the scanner, in metres: farther away its rays
-/// are wider apart than cells.
-const SILENT_RANGE: f64 = 10.0;
 /// Rays that do not come back in this number of scans show a surface.
 const SILENT_LOOKS: usize = 2;
 
@@ -105,7 +102,7 @@ impl ArmJudge<'_> {
             let looks = self
                 .viewpoints
                 .iter()
-                .filter(|viewpoint| viewpoint.is_silent_at(point, SILENT_RANGE, grid, clearances));
+                .filter(|viewpoint| viewpoint.is_silent_at(point, grid, clearances));
             looks.take(SILENT_LOOKS).count() == SILENT_LOOKS
         };
         let is_unseen = |&at: &usize| {
@@ -245,7 +242,7 @@ impl WayGraph {
         let is_behind = way.length >= meet.clearance + params.min_behind;
         let is_long = match end.end {
             WayEnd::Closed => known + leaf.clearance >= params.min_arm,
-            WayEnd::Open => is_behind && known >= params.min_arm,
+            WayEnd::Open | WayEnd::Unclear => is_behind && known >= params.min_arm,
         };
         if has_robot || is_long {
             return ArmStatus::Certain;
@@ -285,7 +282,7 @@ impl WayGraph {
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
         if is_arm && judge.goes_on_unseen(leaf.point) {
-            ArmStatus::Likely
+            if end.end == WayEnd::Open { ArmStatus::Likely } else { ArmStatus::InDoubt }
         } else if width <= params.max_width
             && 2.0 * leaf.clearance >= params.unseen_width
             && end.gap >= params.unseen_gap * width

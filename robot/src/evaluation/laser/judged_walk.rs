@@ -11,12 +11,13 @@ use toposlam_vision::laser::{
     junctions::LaserJunction,
     params::LaserParams,
     plane::{Motion, distance},
+    sensor::LaserView,
 };
 
 use super::{
     super::parallel::made_in_turn,
     corridor_world::{BuildingKind, CorridorWorld},
-    walk::{LaserWalk, PassedPlace, WalkStep, clockwise},
+    walk::{LaserWalk, PassedPlace, clockwise},
 };
 use crate::{
     conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents},
@@ -164,7 +165,7 @@ impl WalkSampler {
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
             let source = EventSource { time: number as u64, ..EventSource::default() };
             let Some(view) = events.see(source, &scan, &step.odometry) else { continue };
-            match self.judge_view(&world, step, &view.junctions) {
+            match self.judge_view(&world, step.pose, &view) {
                 Some(SeenFrom::Junction(verdict)) => views.push(verdict),
                 Some(SeenFrom::Corridor(is_wrong)) => {
                     corridor_views[0] += 1;
@@ -179,35 +180,33 @@ impl WalkSampler {
     }
 
     /// Compares the junctions in a view with the nearest one that is there.
-    fn judge_view(
-        &self,
-        world: &CorridorWorld,
-        step: &WalkStep,
-        seen: &[LaserJunction],
-    ) -> Option<SeenFrom> {
-        let robot = step.pose.position;
+    fn judge_view(&self, world: &CorridorWorld, pose: Pose, view: &LaserView) -> Option<SeenFrom> {
+        let robot = pose.position;
         let junctions = (0..world.places.len()).filter(|&place| world.arms(place).len() >= 3);
         let near = |place: &usize| distance(world.places[*place], robot);
         let place = junctions.min_by(|one, other| near(one).total_cmp(&near(other)))?;
         let range = self.sensing.visit.range;
+        let seen = &view.junctions;
         if near(&place) > FAR {
             let here = |junction: &LaserJunction| {
-                distance(junction.centre, step.odometry.position) < range + junction.clearance
+                distance(junction.centre, view.robot.position) < range + junction.clearance
             };
             return Some(SeenFrom::Corridor(seen.iter().any(here)));
         }
         if near(&place) > range + world.clearance(place) {
             return None;
         }
-        let centre = by_odometry(step.pose, step.odometry, world.places[place]);
+        let Pose { position, heading } = pose;
+        let to_local_map = Motion::between(&Odometry { position, heading }, &view.robot);
+        let centre = to_local_map.point(world.places[place]);
         let off = |junction: &&LaserJunction| distance(junction.centre, centre);
         let found = seen.iter().filter(|junction| off(junction) < SAME.max(world.clearance(place)));
         let found = found.min_by(|one, other| off(one).total_cmp(&off(other)));
         let Some(found) = found else { return Some(SeenFrom::Junction(JunctionVerdict::Unseen)) };
-        let turned = wrapped(step.odometry.heading - step.pose.heading);
         let arms = world.arms(place);
         let is_seen = |direction: f64| {
-            found.arms.iter().any(|&arm| wrapped(arm - direction - turned).abs() < SAME_ARM)
+            let direction = direction + to_local_map.turn;
+            found.arms.iter().any(|&arm| wrapped(arm - direction).abs() < SAME_ARM)
         };
         let is_right =
             found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
@@ -242,11 +241,14 @@ fn compared(
         }
     }
     let mut visits = Vec::new();
-    for (place, found) in junctions().zip(found) {
+    for (place, mut found) in junctions().zip(found) {
         let door = place.door as u32;
         let degree = place.arms.len() as u32;
-        let first = found.first();
-        let verdict = match first {
+        let off = |derived: &Derived| (place.way - derived.way).abs();
+        let nearest = (0..found.len())
+            .min_by(|&one, &other| off(&found[one]).total_cmp(&off(&found[other])))
+            .map(|nearest| found.remove(nearest));
+        let verdict = match &nearest {
             None => LaserVerdict::Missed,
             Some(Derived { degree: None, .. }) => LaserVerdict::Undecided,
             Some(found) if found.degree != Some(degree) => LaserVerdict::WrongDegree,
@@ -254,15 +256,14 @@ fn compared(
             Some(_) => LaserVerdict::Right,
         };
         // A second visit of one junction is one that did not happen.
-        let more = found.iter().skip(1);
-        invented.extend(more.filter_map(|more| Some((more.degree?, more.way))));
+        invented.extend(found.iter().filter_map(|more| Some((more.degree?, more.way))));
         visits.push(JudgedLaserVisit {
             features: features(world, place),
             way: place.way,
             door,
-            found: first.and_then(|found| Some((found.degree?, found.door))),
+            found: nearest.and_then(|found| Some((found.degree?, found.door))),
             verdict,
-            turning_right: first.map(|found| found.turned_back == place.turned_back),
+            turning_right: nearest.map(|found| found.turned_back == place.turned_back),
         });
     }
     (visits, invented)
@@ -315,12 +316,6 @@ fn features(world: &CorridorWorld, passed: &PassedPlace) -> JunctionFeatures {
         least_angle: angles.fold(TAU, f64::min),
         goes_back: passed.door == 0,
     }
-}
-
-/// A point of the plan in the frame of odometry.
-fn by_odometry(pose: Pose, odometry: Odometry, point: [f64; 2]) -> [f64; 2] {
-    let Pose { position, heading } = pose;
-    Motion::between(&Odometry { position, heading }, &odometry).point(point)
 }
 
 impl JudgedWalk {

@@ -28,7 +28,7 @@ use super::{
     corridor_pilot::{CorridorPilot, PilotLeg},
     corridor_world::CorridorWorld,
     smoothed_world::SmoothedWorld,
-    walk::{WalkDriver, clockwise},
+    walk::{WalkDriver, WalkStep, clockwise},
 };
 use crate::{
     conform::{EventSource, LaserEvents, StandingPercept, StandingPlace},
@@ -80,11 +80,13 @@ pub(super) struct LaserRobot<'w> {
     pub(super) watch: &'w dyn Watch,
     /// The number of steps that were sensed.
     pub(super) sensed: usize,
+    /// From the local map to the frame of odometry, in the last view.
+    pub(super) to_odometry: Motion,
     /// What may be junctions, in each view since it began to look around.
     pub(super) seen: Vec<Vec<LaserJunction>>,
-    /// The centre and the extent of the place that it left last, while it is near, in the frame of odometry.
+    /// The centre and the extent of the place that it left last, while it is near, on the local map.
     pub(super) left: Option<([f64; 2], f64)>,
-    /// Where it turned around last, in the frame of odometry, and the length of its way then.
+    /// Where it turned around last, on the local map, and the length of its way then.
     pub(super) looked: Option<([f64; 2], f64)>,
     /// Whether the last view shows an opening beside it into which its scanner may not have looked.
     pub(super) is_at_opening: bool,
@@ -183,7 +185,7 @@ impl LaserRobot<'_> {
                 self.driver.drive_to(point);
                 self.sense()?;
             }
-            self.left = Some((self.odometry(), 1.0));
+            self.left = Some((self.on_local_map(), 1.0));
             return Err(ScanFailure::Alcove);
         }
         self.left = None;
@@ -210,7 +212,7 @@ impl LaserRobot<'_> {
         while self.sensed < self.driver.step_count() {
             self.sense_step()?;
             let place = self.events.standing().filter(|place| !self.is_left(place));
-            let place = place.map(|place| (distance(place.centre, self.odometry()), place));
+            let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
             match (place, &nearest) {
                 (None, None) if self.is_at_opening => {
                     self.driver.stop_after(self.sensed);
@@ -253,7 +255,7 @@ impl LaserRobot<'_> {
         let (mut last, mut has_moved, mut tries) = (place, false, 0);
         for _ in 0..LOOKS {
             let Some(place) = self.events.standing() else {
-                let off = |seen: &&LaserJunction| distance(seen.centre, self.odometry());
+                let off = |seen: &&LaserJunction| distance(seen.centre, self.on_local_map());
                 let near = self.seen.last().into_iter().flatten().filter(|seen| off(seen) < HERE);
                 let near = near.min_by(|one, other| off(one).total_cmp(&off(other)));
                 let Some(seen) = near.filter(|_| !has_moved) else {
@@ -351,7 +353,7 @@ impl LaserRobot<'_> {
     }
 
     fn look_around(&mut self) -> Result<(), ScanFailure> {
-        self.looked = Some((self.odometry(), self.driver.way));
+        self.looked = Some((self.on_local_map(), self.driver.way));
         self.seen.clear();
         self.driver.look_around();
         self.sense()?;
@@ -378,8 +380,7 @@ impl LaserRobot<'_> {
 
     /// The length of its way up to the last scan, in metres.
     fn driver_way(&self) -> f64 {
-        let step = self.sensed.checked_sub(1).and_then(|last| self.driver.steps.get(last));
-        step.map_or(0.0, |step| step.way)
+        self.last_step().map_or(0.0, |step| step.way)
     }
 
     /// What may be a junction at a place, in a view.
@@ -445,29 +446,35 @@ impl LaserRobot<'_> {
         };
         let source = EventSource { time: number as u64, ..EventSource::default() };
         if let Some(view) = self.events.see(source, &scan, &step.odometry) {
+            self.to_odometry = view.to_odometry;
             self.is_at_opening = self.is_opening(&view, &scan);
             self.seen.push(view.possible_junctions);
         }
-        let at = step.odometry.position;
+        let at = self.on_local_map();
         if self.left.is_some_and(|(left, clearance)| distance(left, at) > clearance + 2.0 * AWAY) {
             self.left = None;
         }
         Ok(())
     }
 
-    /// Where it is by odometry.
-    fn odometry(&self) -> [f64; 2] {
-        let step = self.sensed.checked_sub(1).and_then(|last| self.driver.steps.get(last));
-        step.map_or(self.driver.at(), |step| step.odometry.position)
+    /// Where it is on the local map.
+    fn on_local_map(&self) -> [f64; 2] {
+        let at = self.last_step().map_or(self.driver.at(), |step| step.odometry.position);
+        self.to_odometry.inverse().point(at)
     }
 
-    /// From the frame of odometry to the plan, which is right near the robot.
+    /// From the local map to the plan, which is right near the robot.
     fn to_plan(&self) -> Motion {
-        let step = self.sensed.checked_sub(1).and_then(|last| self.driver.steps.get(last));
-        step.map_or_else(Motion::default, |step| {
+        let to_plan = self.last_step().map_or_else(Motion::default, |step| {
             let Pose { position, heading } = step.pose;
             Motion::between(&step.odometry, &Odometry { position, heading })
-        })
+        });
+        to_plan.after(&self.to_odometry)
+    }
+
+    /// The step of the last scan.
+    fn last_step(&self) -> Option<&WalkStep> {
+        self.driver.steps.get(self.sensed.checked_sub(1)?)
     }
 
     /// The dart by which a robot has truly come in that stands here.

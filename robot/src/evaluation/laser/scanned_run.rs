@@ -10,6 +10,7 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{FACING, MappingError, MappingMethod},
 };
+use toposlam_vision::laser::plane::Motion;
 
 use super::{
     super::parallel::made_in_turn,
@@ -109,6 +110,7 @@ impl WalkSampler {
             facing,
             watch,
             sensed: 0,
+            to_odometry: Motion::default(),
             seen: Vec::new(),
             left: None,
             looked: None,
