@@ -1,5 +1,5 @@
-//! Where a scan was taken, and in which directions: what a scanner that does not look all around cannot see, and
-//! where no ray came back.
+//! Where a scan was taken, and in which directions: where a scanner that does not look all around did not look, and
+//! what it looked at without seeing it.
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
@@ -7,7 +7,7 @@ use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
     plane::{Motion, direction, distance},
-    scan::{Reading, Scan},
+    scan::Scan,
 };
 
 /// Where a scan was taken, and the sector that it covers.
@@ -18,53 +18,54 @@ pub(super) struct Viewpoint {
     /// The direction of the sector's middle, and half of its angle, in radians.
     middle: f64,
     half: f64,
-    /// Whether a ray of the scan and a neighbour of it did not come back, counter-clockwise. One ray alone is a
-    /// failure of the scanner.
-    silent: Vec<bool>,
     /// The angle from one ray to the next, in radians.
     step: f64,
-    /// A ray that did not come back shows a surface up to this far from the scanner, in metres.
-    silent_range: f64,
+    /// The range of the scanner, in metres.
+    range: f64,
 }
 
-/// Farther away the rays of a scan are wider apart than cells, in metres.
-const SILENT_RANGE: f64 = 10.0;
+/// Whether a scanner looked at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// It did: one of its rays went there.
+    At,
+    /// It did not: the point lies beyond the edge of the sector.
+    Aside,
+    /// It could not: the point lies behind a wall, or is too far away.
+    Hidden,
+}
+
+/// No scan looks at what is farther away, in metres: at long range a ray is as wide as a cell.
+const FARTHEST: f64 = 10.0;
 
 impl Viewpoint {
     /// The viewpoint of a scan that a robot took.
     pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
         let half = scan.field_of_view() / 2.0;
         let mount = scan.mount();
-        let lost: Vec<bool> =
-            scan.readings().map(|(_, reading)| !matches!(reading, Reading::Hit(_))).collect();
-        let is_lost = |index: usize| lost.get(index).copied().unwrap_or(false);
-        let is_silent =
-            |index: usize| lost[index] && (is_lost(index + 1) || index > 0 && lost[index - 1]);
         Self {
             point: Motion::from_robot(robot).point(mount.position),
             middle: robot.heading + mount.heading + scan.geometry().angle_min + half,
             half,
-            silent: (0..lost.len()).map(is_silent).collect(),
             step: scan.geometry().angle_increment,
-            silent_range: scan.geometry().range_max.min(SILENT_RANGE),
+            range: scan.geometry().range_max,
         }
     }
 
-    /// Whether the scan looked at a point that is near enough, no wall hides it from here, and no ray came back from
-    /// there. What is unknown hides nothing: it is unknown because of a surface that no ray showed.
-    pub(super) fn is_silent_at(
-        &self,
-        point: [f64; 2],
-        grid: &Grid,
-        clearances: &Clearances,
-    ) -> bool {
+    /// Whether the scan looked at a point. What is unknown hides nothing: a surface that reflects no ray back may be
+    /// why it is unknown.
+    pub(super) fn look(&self, point: [f64; 2], grid: &Grid, clearances: &Clearances) -> Look {
         let off = distance(self.point, point);
+        // Farther away, rays are wider apart than cells.
+        let range = FARTHEST.min(self.range).min(grid.cell / self.step);
         let towards = direction(self.point, point);
-        let ray = ((wrapped(towards - self.middle) + self.half) / self.step).round();
-        let is_silent = ray >= 0.0 && self.silent.get(ray as usize) == Some(&true);
-        is_silent
-            && off <= self.silent_range
-            && !is_wall_within(off - grid.cell, self.point, towards, grid, clearances)
+        if off > range || is_wall_within(off - grid.cell, self.point, towards, grid, clearances) {
+            Look::Hidden
+        } else if wrapped(towards - self.middle).abs() <= self.half {
+            Look::At
+        } else {
+            Look::Aside
+        }
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
@@ -151,30 +152,20 @@ mod tests {
     }
 
     #[test]
-    fn where_rays_do_not_come_back_the_scan_is_silent_and_one_lost_ray_is_not_enough() {
-        let (_, mut grid) = viewpoint(181);
-        let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
-        let is_silent = |lost: std::ops::Range<usize>, grid: &Grid, range_max: f64| {
-            let geometry = ScanGeometry {
-                angle_min: -FRAC_PI_2,
-                angle_increment: PI / 180.0,
-                range_min: 0.0,
-                range_max,
-            };
-            let mut ranges = vec![1.0; 181];
-            ranges[lost].fill(f32::INFINITY);
-            let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
-            let ahead = [8.05, 5.05];
-            Viewpoint::new(&scan, &robot).is_silent_at(ahead, grid, &Clearances::new(grid))
-        };
-        assert!(is_silent(85..96, &grid, 80.0));
-        assert!(!is_silent(90..91, &grid, 80.0), "a failure of the scanner");
-        assert!(!is_silent(40..60, &grid, 80.0), "another direction");
-        assert!(!is_silent(85..96, &grid, 2.0), "beyond the range of the scanner");
+    fn a_scan_looks_at_what_is_in_its_sector_and_neither_behind_a_wall_nor_too_far_away() {
+        let (viewpoint, mut grid) = viewpoint(181);
+        let look = |point, grid: &Grid| viewpoint.look(point, grid, &Clearances::new(grid));
+        let ahead = [8.05, 5.05];
+        assert_eq!(look(ahead, &grid), Look::At);
+        assert_eq!(look([2.05, 5.05], &grid), Look::Aside);
         let between = grid.index([6.55, 5.05]).unwrap();
         grid.cells[between] = Cell::Unknown;
-        assert!(is_silent(85..96, &grid, 80.0), "what is unknown hides nothing");
+        assert_eq!(look(ahead, &grid), Look::At, "what is unknown hides nothing");
         grid.cells[between] = Cell::Occupied;
-        assert!(!is_silent(85..96, &grid, 80.0), "behind a wall");
+        assert_eq!(look(ahead, &grid), Look::Hidden, "behind a wall");
+        let near = Viewpoint { range: 2.0, ..viewpoint.clone() };
+        assert_eq!(near.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
+        let sparse = Viewpoint { step: 0.1, ..viewpoint.clone() };
+        assert_eq!(sparse.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
     }
 }

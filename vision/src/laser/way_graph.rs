@@ -11,7 +11,7 @@ use super::{
     params::ArmParams,
     plane::distance,
     skeleton::Skeleton,
-    viewpoint::Viewpoint,
+    viewpoint::{Look, Viewpoint},
 };
 
 /// A meet point, or the end of a way.
@@ -86,33 +86,54 @@ pub(super) struct ArmJudge<'a> {
     pub params: &'a ArmParams,
 }
 
-/// Rays that do not come back in this number of scans show a surface.
-const SILENT_LOOKS: usize = 2;
+/// A stretch of border to the unknown at which this number of scans looked is a surface. One ray alone may fail.
+const LOOKS: usize = 2;
+
+/// The border to the unknown near the end of a way, without the stretches at which scans looked: there must be surfaces
+/// of glass, or black ones, or walls along which the rays go.
+#[derive(Clone, Copy, Debug, Default)]
+struct UnseenBorder {
+    /// The length of what no scan could see, because it lies around a corner, in metres.
+    hidden: f64,
+    /// The length of what lay beyond the field of view of the scans, in metres.
+    aside: f64,
+}
 
 impl ArmJudge<'_> {
-    /// Whether a long enough stretch of the border to the unknown near an end of a way was not looked at. Where rays were
-    /// sent and did not come back, there is a surface of glass, or a black one.
-    fn goes_on_unseen(&self, end: [f64; 2]) -> bool {
+    /// The unseen border near an end of a way.
+    fn unseen_border(&self, end: [f64; 2]) -> UnseenBorder {
         let Self { grid, clearances, params, .. } = *self;
         let is_border = |&at: &usize| {
             grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
         };
-        let is_silent = |at: usize| {
-            let point = grid.point(at);
-            let looks = self
-                .viewpoints
-                .iter()
-                .filter(|viewpoint| viewpoint.is_silent_at(point, grid, clearances));
-            looks.take(SILENT_LOOKS).count() == SILENT_LOOKS
-        };
-        let is_unseen = |&at: &usize| {
+        let mut unseen = UnseenBorder::default();
+        for at in grid.cells_near(end, params.border_near).filter(is_border) {
             let direct = grid.neighbours(at).into_iter().skip(1).step_by(2);
-            let mut unknown = direct.filter(|&next| grid.cells[next] == Cell::Unknown);
-            !unknown.any(is_silent)
-        };
-        let near = grid.cells_near(end, params.border_near);
-        let unseen = near.filter(is_border).filter(is_unseen).count();
-        unseen as f64 * grid.cell >= params.border
+            let unknown = direct.filter(|&next| grid.cells[next] == Cell::Unknown);
+            let looks: Vec<Look> = unknown.map(|next| self.look(grid.point(next))).collect();
+            if looks.contains(&Look::At) {
+                continue;
+            }
+            let is_hidden = looks.contains(&Look::Hidden);
+            *(if is_hidden { &mut unseen.hidden } else { &mut unseen.aside }) += grid.cell;
+        }
+        unseen
+    }
+
+    /// Whether the scans looked at an unknown point.
+    fn look(&self, point: [f64; 2]) -> Look {
+        let (mut at, mut aside) = (0, false);
+        for viewpoint in self.viewpoints {
+            match viewpoint.look(point, self.grid, self.clearances) {
+                Look::At => at += 1,
+                Look::Aside => aside = true,
+                Look::Hidden => {}
+            }
+            if at == LOOKS {
+                return Look::At;
+            }
+        }
+        if aside { Look::Aside } else { Look::Hidden }
     }
 }
 
@@ -281,9 +302,18 @@ impl WayGraph {
             let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid, clearances);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
-        if is_arm && judge.goes_on_unseen(leaf.point) {
-            if end.end == WayEnd::Open { ArmStatus::Likely } else { ArmStatus::InDoubt }
-        } else if width <= params.max_width
+        if is_arm {
+            let UnseenBorder { hidden, aside } = judge.unseen_border(leaf.point);
+            // What is seen to end may go on around a corner.
+            let likely = if end.end == WayEnd::Open { hidden + aside } else { hidden };
+            if likely >= params.border {
+                return ArmStatus::Likely;
+            }
+            if hidden + aside >= params.border {
+                return ArmStatus::InDoubt;
+            }
+        }
+        if width <= params.max_width
             && 2.0 * leaf.clearance >= params.unseen_width
             && end.gap >= params.unseen_gap * width
             && is_unseen()
