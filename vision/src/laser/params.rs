@@ -141,6 +141,9 @@ params! {
         unseen_gap: f64 = 1.3,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.76,
+        /// An arm narrower than [`Self::min_width`] whose gap is more than this many times as wide is a room behind a
+        /// door. Logs.
+        room_gap: f64 = 3.5,
         /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this
         /// long is unknown, within [`Self::border_near`] of the end. Logs.
         border: f64 = 0.6,

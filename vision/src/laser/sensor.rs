@@ -105,10 +105,7 @@ impl LaserSensor {
             self.way += driven;
         }
         self.last = Some(*odometry);
-        let matching = self.params.matching.rounds > 0;
-        let frame = *self.frame.get_or_insert_with(|| {
-            if matching { Motion::default() } else { to_walls(scan, odometry) }
-        });
+        let frame = *self.frame.get_or_insert_with(|| to_walls(scan, odometry));
         let placed = frame.pose(odometry);
         let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;

@@ -313,7 +313,10 @@ impl WayGraph {
                 return ArmStatus::InDoubt;
             }
         }
+        // The door of a room is narrower, and behind it one sees more than its width.
+        let is_door = width < params.min_width && end.gap > params.room_gap * width;
         if width <= params.max_width
+            && !is_door
             && 2.0 * leaf.clearance >= params.unseen_width
             && end.gap >= params.unseen_gap * width
             && is_unseen()
