@@ -225,6 +225,9 @@ impl WayGraph {
                 }
             });
             let Some(&shortest) = shortest else {
+                if self.prune_loop(judge, &mut degrees) {
+                    continue;
+                }
                 for way in 0..self.ways.len() {
                     let status = self.arm(way, &degrees).and_then(|arm| known.get(&arm));
                     self.ways[way].is_certain =
@@ -239,6 +242,26 @@ impl WayGraph {
                 }
             }
         }
+    }
+
+    /// Removes a way around an obstacle at the end of an alcove, which is no arm either: one that begins and ends at one
+    /// meet point, and that is seen to go nowhere. The meet point becomes an end. Returns whether there was one.
+    fn prune_loop(&mut self, judge: &ArmJudge<'_>, degrees: &mut [usize]) -> bool {
+        let ArmJudge { robot, params, .. } = *judge;
+        let is_near = |&(point, _): &([f64; 2], f64)| distance(point, robot) < params.robot_near;
+        let is_alcove = |way: &Way| {
+            way.nodes[0] == way.nodes[1]
+                && degrees[way.nodes[0]] == 3
+                && way.length / 2.0 < params.min_arm
+                && !way.line.iter().any(is_near)
+        };
+        let Some(way) = self.ways.iter().position(is_alcove) else { return false };
+        let Way { nodes: [node, _], length, .. } = self.ways.swap_remove(way);
+        degrees[node] = 1;
+        let cell = judge.grid.index(self.nodes[node].point).unwrap_or_default();
+        self.nodes[node].end =
+            Some(End { cell, end: WayEnd::Closed, gap: 0.0, beyond: length / 2.0 });
+        true
     }
 
     /// The meet point and the end of a way that has both.
@@ -268,6 +291,9 @@ impl WayGraph {
         if has_robot || is_long {
             return ArmStatus::Certain;
         }
+        if !is_behind {
+            return ArmStatus::None;
+        }
         let way = way.clone().from_node(meet_node);
         let map = (grid, clearances);
         let ArmView::Near { depth, walled } =
@@ -275,7 +301,7 @@ impl WayGraph {
         else {
             return ArmStatus::Certain;
         };
-        if end.end == WayEnd::Closed || !is_behind {
+        if end.end == WayEnd::Closed {
             return ArmStatus::None;
         }
         let mut widths: Vec<f64> = way
