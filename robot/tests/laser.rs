@@ -5,13 +5,14 @@ use std::{f64::consts::PI, sync::Arc};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
 use toposlam_robot::{
-    conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause},
+    conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause},
     log::{entries::Content, reader::Log, topic_map::TopicMap},
     record::{EventKind, Frame},
 };
 use toposlam_vision::laser::{
     drift::{DriftMeter, ROUNDS},
     params::LaserParams,
+    plane::Motion,
     scan::{Scan, ScanGeometry, ScannerPose},
 };
 
@@ -455,7 +456,46 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
                 measured_drift(scans.iter().map(|(scan, odometry)| (&**scan, *odometry)));
             assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
             if drift != 0.0 {
-                are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));
+                // Each is right. Once in a log there may be one more, or an undecided one.
+                let events = events_of(&scans, &matched);
+                let is_visit = |event: &&CheckedEvent| match event.kind {
+                    CheckedKind::Arrival { .. } | CheckedKind::Undecided(_) => true,
+                    CheckedKind::Door { .. }
+                    | CheckedKind::TurnedBack
+                    | CheckedKind::Aside { .. } => false,
+                };
+                let count = events.events.iter().filter(is_visit).count();
+                assert!(count <= marked.len() + 1, "{name}, {drift}: {:?}", visits(&events));
+                let found = visits(&events);
+                let mut found = found.iter();
+                for visit in &marked {
+                    let is_same = |&&(degree, door): &&(Option<u32>, Option<u32>)| {
+                        let door = door.map(u64::from);
+                        degree.map(u64::from) == Some(visit.0)
+                            && (visit.1.is_none() || visit.1 == door)
+                    };
+                    assert!(found.any(|found| is_same(&found)), "{name}, {drift}: {visit:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_frame_of_odometry_does_not_matter() {
+    let mut matched = LaserParams::default();
+    matched.matching.rounds = ROUNDS;
+    for name in ["aces", "seattle"] {
+        let Some((_, scans)) = recorded(name) else { return };
+        for params in [LaserParams::default(), matched] {
+            let visits_from = |turn: f64, shift| {
+                let motion = Motion { turn: turn.to_radians(), shift };
+                let placed = scans.iter().map(|(scan, at)| (scan.clone(), motion.pose(at)));
+                visits(&events_of(&placed.collect::<Vec<_>>(), &params))
+            };
+            let expected = visits_from(0.0, [0.0; 2]);
+            for (turn, shift) in [(33.0, [0.03, 0.07]), (-120.0, [1000.0, -50.0])] {
+                assert_eq!(visits_from(turn, shift), expected, "{name}, turned by {turn}");
             }
         }
     }

@@ -72,8 +72,7 @@ pub struct LaserEvents {
     left: Option<([f64; 2], Option<f64>)>,
 }
 
-/// The place in which a robot is, as the views up to now show it. Directions are those of the frame of the local map,
-/// which is that of the odometry if scans are not matched.
+/// The place in which a robot is, as the views up to now show it. Points and directions are those of the local map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingPlace {
     /// Its centre, in metres.

@@ -14,11 +14,11 @@ use super::{
 /// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserJunction {
-    /// Its centre, in metres in the frame of odometry.
+    /// Its centre, in metres on the local map.
     pub centre: [f64; 2],
     /// The distance from the centre to the nearest wall, in metres.
     pub clearance: f64,
-    /// The direction of each arm in the frame of odometry, in radians, clockwise.
+    /// The direction of each arm on the local map, in radians, clockwise.
     pub arms: Vec<f64>,
     /// The directions of those that are not certain to be arms.
     pub uncertain: Vec<f64>,

@@ -41,7 +41,7 @@ impl ScanMatcher {
         Self { params, walls: BTreeMap::new(), last: None }
     }
 
-    /// The motion from the frame of odometry to that of the local map, at the last scan. They are the same
+    /// The motion from the frame in which scans are placed to that of the local map, at the last scan. They are the same
     /// at first.
     #[must_use]
     pub fn correction(&self) -> Motion {

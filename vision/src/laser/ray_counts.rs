@@ -1,4 +1,4 @@
-//! Where rays of the last scans have passed and where they have ended, in the frame of odometry.
+//! Where rays of the last scans have passed and where they have ended, on the local map.
 
 use super::{
     grid::{Cell, Grid},
@@ -6,7 +6,7 @@ use super::{
     plane::floor,
 };
 
-/// The rays of one scan, in metres in the frame of odometry.
+/// The rays of one scan, in metres on the local map.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rays {
     /// Where the scanner was.

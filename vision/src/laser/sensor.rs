@@ -25,7 +25,7 @@ use super::{
 pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
-    /// From the frame of odometry to the one in which scans are matched; `None` before the first scan.
+    /// From the frame of odometry to the one in which scans are placed; `None` before the first scan.
     frame: Option<Motion>,
     /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
     counts: Vec<RayCounts>,

@@ -17,7 +17,7 @@ use super::{
 /// A meet point, or the end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayNode {
-    /// Where it is, in metres in the frame of odometry.
+    /// Where it is, in metres on the local map.
     pub point: [f64; 2],
     /// The distance to the nearest wall, in metres.
     pub clearance: f64,
@@ -30,7 +30,7 @@ pub struct WayNode {
 pub struct Way {
     /// The indices of its nodes.
     pub nodes: [usize; 2],
-    /// Its middle line from the first node to the second, in metres in the frame of odometry, with the
+    /// Its middle line from the first node to the second, in metres on the local map, with the
     /// distance to the nearest wall.
     pub line: Vec<([f64; 2], f64)>,
     /// Its length, in metres.
@@ -411,5 +411,69 @@ impl Skeleton {
             on[number] && (number % 2 == 1 || !beside)
         };
         (0..8).filter(is_link).map(move |number| around[number])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laser::params::LaserParams;
+
+    /// A map with walls everywhere but in free rectangles: their first and last columns and rows.
+    fn map(columns: usize, rows: usize, free: &[[[usize; 2]; 2]]) -> Grid {
+        let is_free = |column: usize, row: usize| {
+            free.iter().any(|[[left, right], [low, high]]| {
+                (left..=right).contains(&&column) && (low..=high).contains(&&row)
+            })
+        };
+        let cell = |at: usize| {
+            let (column, row) = (at % columns, at / columns);
+            match (is_free(column, row), column == 0 || column == columns - 1) {
+                // The corridor goes on unseen.
+                (_, true) => Cell::Unknown,
+                (true, false) => Cell::Free,
+                (false, false) => Cell::Occupied,
+            }
+        };
+        let cells = (0..columns * rows).map(cell).collect();
+        Grid { columns, cell: 0.15, origin: [0.0; 2], cells }
+    }
+
+    /// The number of arms of each junction on a map.
+    fn degrees(grid: &Grid, robot: [f64; 2]) -> Vec<usize> {
+        let params = LaserParams::default();
+        let clearances = Clearances::new(grid);
+        let skeleton = Skeleton::new(grid, &clearances, robot, &params).unwrap();
+        let judge =
+            ArmJudge { robot, grid, clearances: &clearances, viewpoints: &[], params: &params.arm };
+        let ways = WayGraph::new(&skeleton, grid, &clearances);
+        let (graph, _) = ways.pruned(&judge, CountedArms::Seen);
+        graph.junctions(&params).iter().map(|junction| junction.arms.len()).collect()
+    }
+
+    #[test]
+    fn a_way_around_a_pillar_in_an_alcove_is_no_arm_and_one_around_a_block_is() {
+        // A corridor of 40 m, and an alcove of so many cells behind it, around an obstacle in its middle.
+        let around = |side: usize, way: usize| {
+            let (left, low) = (130 - side / 2, 34);
+            let (right, high) = (left + side, low + side);
+            map(
+                266,
+                high + 3,
+                &[
+                    [[1, 264], [10, 22]],
+                    [[124, 136], [23, low]],
+                    [[left, right], [low, low + way]],
+                    [[left, right], [high - way, high]],
+                    [[left, left + way], [low, high]],
+                    [[right - way, right], [low, high]],
+                ],
+            )
+        };
+        let robot = [10.0, 2.4];
+        // The pillar is 1.05 m wide.
+        assert!(degrees(&around(26, 9), robot).is_empty());
+        // The block is 9.15 m wide.
+        assert_eq!(degrees(&around(86, 12), robot).iter().filter(|&&arms| arms == 3).count(), 2);
     }
 }
