@@ -111,6 +111,9 @@ const BEGINNING: f64 = 2.0;
 /// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
 const TURN: f64 = 4.0;
 
+/// A place that is a junction if arms in doubt count, in fewer views than this, is no doubt.
+const DOUBTED_VIEWS: usize = 2;
+
 impl LaserEvents {
     /// A robot that has seen nothing yet.
     #[must_use]
@@ -398,6 +401,7 @@ impl LaserEvents {
             (_, Some((PlaceEstimate::NoVertex, _)) | None) => 0,
         };
         let possible = self.possible_junctions.at(visit.centre);
+        let possible = possible.filter(|known| known.views_of_meet() >= DOUBTED_VIEWS);
         // Without an arm in doubt a possible junction is no visit of its own.
         let seen = seen.filter(|_| visit.kind != VisitKind::PossibleJunction);
         let visit = Visit { kind: VisitKind::PossibleJunction, ..visit.clone() };

@@ -123,6 +123,11 @@ impl SeenJunction {
         params.same.max(0.6 * self.clearance)
     }
 
+    /// The number of views that show a junction, and no corner.
+    pub(super) fn views_of_meet(&self) -> usize {
+        self.views.iter().filter(|view| view.len() >= 3).count()
+    }
+
     /// The arms that are seen if it is a junction: the views that show a corner miss it.
     pub(super) fn arms_of_meet(&self, params: &VisitParams) -> Vec<SeenArm> {
         let is_corner = |view: &[f64]| view.len() < 3;
