@@ -144,8 +144,8 @@ params! {
         /// An arm narrower than [`Self::min_width`] whose gap is more than this many times as wide is a room behind a
         /// door. Logs.
         room_gap: f64 = 3.5,
-        /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this
-        /// long is unknown, within [`Self::border_near`] of the end. Logs.
+        /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this long lies
+        /// around a corner, within [`Self::border_near`] of the end. Logs.
         border: f64 = 0.6,
         /// See [`Self::border`]. Logs.
         border_near: f64 = 1.8,

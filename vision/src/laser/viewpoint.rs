@@ -7,7 +7,7 @@ use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
     plane::{Motion, direction, distance},
-    scan::Scan,
+    scan::{Reading, Scan},
 };
 
 /// Where a scan was taken, and the sector that it covers.
@@ -18,6 +18,9 @@ pub(super) struct Viewpoint {
     /// The direction of the sector's middle, and half of its angle, in radians.
     middle: f64,
     half: f64,
+    /// Whether a reading of the scan and a neighbour of it are invalid, counter-clockwise: a part of the robot may hide
+    /// what is there. One reading alone is a failure of the scanner.
+    blind: Vec<bool>,
     /// The angle from one ray to the next, in radians.
     step: f64,
     /// The range of the scanner, in metres.
@@ -29,7 +32,7 @@ pub(super) struct Viewpoint {
 pub(super) enum Look {
     /// It did: one of its rays went there.
     At,
-    /// It did not: the point lies beyond the edge of the sector.
+    /// It did not: the point lies beyond the edge of the sector, or where readings are invalid.
     Aside,
     /// It could not: the point lies behind a wall, or is too far away.
     Hidden,
@@ -43,10 +46,17 @@ impl Viewpoint {
     pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
         let half = scan.field_of_view() / 2.0;
         let mount = scan.mount();
+        let invalid: Vec<bool> =
+            scan.readings().map(|(_, reading)| reading == Reading::Invalid).collect();
+        let is_invalid = |index: usize| invalid.get(index).copied().unwrap_or(false);
+        let is_blind = |index: usize| {
+            is_invalid(index) && (is_invalid(index + 1) || index > 0 && is_invalid(index - 1))
+        };
         Self {
             point: Motion::from_robot(robot).point(mount.position),
             middle: robot.heading + mount.heading + scan.geometry().angle_min + half,
             half,
+            blind: (0..invalid.len()).map(is_blind).collect(),
             step: scan.geometry().angle_increment,
             range: scan.geometry().range_max,
         }
@@ -60,12 +70,11 @@ impl Viewpoint {
         let range = FARTHEST.min(self.range).min(grid.cell / self.step);
         let towards = direction(self.point, point);
         if off > range || is_wall_within(off - grid.cell, self.point, towards, grid, clearances) {
-            Look::Hidden
-        } else if wrapped(towards - self.middle).abs() <= self.half {
-            Look::At
-        } else {
-            Look::Aside
+            return Look::Hidden;
         }
+        let ray = ((wrapped(towards - self.middle) + self.half) / self.step).round();
+        let is_at = ray >= 0.0 && self.blind.get(ray as usize) == Some(&false);
+        if is_at { Look::At } else { Look::Aside }
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
@@ -167,5 +176,26 @@ mod tests {
         assert_eq!(near.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
         let sparse = Viewpoint { step: 0.1, ..viewpoint.clone() };
         assert_eq!(sparse.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
+    }
+
+    #[test]
+    fn a_scan_does_not_look_where_readings_are_invalid_and_one_alone_is_a_failure() {
+        let (_, grid) = viewpoint(181);
+        let look = |invalid: std::ops::Range<usize>| {
+            let geometry = ScanGeometry {
+                angle_min: -FRAC_PI_2,
+                angle_increment: PI / 180.0,
+                range_min: 0.1,
+                range_max: 80.0,
+            };
+            let mut ranges = vec![f32::INFINITY; 181];
+            ranges[invalid].fill(0.0);
+            let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
+            let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
+            Viewpoint::new(&scan, &robot).look([8.05, 5.05], &grid, &Clearances::new(&grid))
+        };
+        assert_eq!(look(0..0), Look::At);
+        assert_eq!(look(80..100), Look::Aside);
+        assert_eq!(look(90..91), Look::At);
     }
 }
