@@ -5,7 +5,7 @@ use std::{f64::consts::PI, sync::Arc};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
 use toposlam_robot::{
-    conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause},
+    conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause},
     log::{entries::Content, reader::Log, topic_map::TopicMap},
     record::{EventKind, Frame},
 };
@@ -456,26 +456,7 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
                 measured_drift(scans.iter().map(|(scan, odometry)| (&**scan, *odometry)));
             assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
             if drift != 0.0 {
-                // Each is right. Once in a log there may be one more, or an undecided one.
-                let events = events_of(&scans, &matched);
-                let is_visit = |event: &&CheckedEvent| match event.kind {
-                    CheckedKind::Arrival { .. } | CheckedKind::Undecided(_) => true,
-                    CheckedKind::Door { .. }
-                    | CheckedKind::TurnedBack
-                    | CheckedKind::Aside { .. } => false,
-                };
-                let count = events.events.iter().filter(is_visit).count();
-                assert!(count <= marked.len() + 1, "{name}, {drift}: {:?}", visits(&events));
-                let found = visits(&events);
-                let mut found = found.iter();
-                for visit in &marked {
-                    let is_same = |&&(degree, door): &&(Option<u32>, Option<u32>)| {
-                        let door = door.map(u64::from);
-                        degree.map(u64::from) == Some(visit.0)
-                            && (visit.1.is_none() || visit.1 == door)
-                    };
-                    assert!(found.any(|found| is_same(&found)), "{name}, {drift}: {visit:?}");
-                }
+                are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));
             }
         }
     }

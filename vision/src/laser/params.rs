@@ -126,7 +126,7 @@ params! {
         /// ... is at least this wide, ... Geometry: the doors of rooms.
         min_width: f64 = 1.55,
         /// ... at most this wide, ... Geometry: halls.
-        max_width: f64 = 2.6,
+        max_width: f64 = 2.45,
         /// ... and the gap at its end is at least this part of its width, and ... Logs.
         min_gap: f64 = 0.6,
         /// ... at most this many times its width: it is a room otherwise, of which one sees a part
