@@ -278,7 +278,7 @@ impl RunEvents {
     #[must_use]
     pub fn up_to(&self, index: usize) -> Self {
         let events = self.events.iter().take(index + 1).cloned().collect();
-        let Self { has_head, measurement_noise, .. } = *self;
-        Self { events, has_head, measurement_noise, ..Self::default() }
+        let Self { has_head, may_turn_back, measurement_noise, .. } = *self;
+        Self { events, has_head, may_turn_back, measurement_noise, ..Self::default() }
     }
 }

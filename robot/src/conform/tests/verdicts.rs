@@ -623,6 +623,17 @@ fn a_driver_may_turn_back_but_not_find_another_junction_then() {
 }
 
 #[test]
+fn a_driver_who_turned_back_before_an_unrecognised_junction_is_accused_of_nothing() {
+    let unclear = CheckedKind::Undecided(UndecidedCause::Unclear);
+    let walk = [bare_arrival(3, Sighting::Nothing), bare_door(1), CheckedKind::TurnedBack, unclear];
+    let events = bare_events(walk).without_excursions();
+    let anyone = ConformConfig { driver: RunDriver::Anyone, ..without_world() };
+    let judgement = judged(&events, &anyone);
+    assert_eq!((judgement.unrecognised, &judgement.divergence), (Some(3), &None));
+    assert_eq!(judgement.verdict(), ConformVerdict::Incomplete);
+}
+
+#[test]
 fn the_door_after_turning_back_is_counted_from_the_first_entry() {
     // From the way back, doors 1 and 2 of the second entry are doors 2 and 0 of the first one; and the marker is
     // along the same door.
