@@ -416,8 +416,15 @@ impl Skeleton {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use toposlam_model::driving::odometry::Odometry;
+
     use super::*;
-    use crate::laser::params::LaserParams;
+    use crate::laser::{
+        params::LaserParams,
+        scan::{Scan, ScanGeometry, ScannerPose},
+    };
 
     /// A map with walls everywhere but in free rectangles: their first and last columns and rows.
     fn map(columns: usize, rows: usize, free: &[[[usize; 2]; 2]]) -> Grid {
@@ -441,13 +448,22 @@ mod tests {
 
     /// The number of arms of each junction on a map.
     fn degrees(grid: &Grid, robot: [f64; 2]) -> Vec<usize> {
+        degrees_from(&[], CountedArms::Seen, grid, robot)
+    }
+
+    fn degrees_from(
+        viewpoints: &[Viewpoint],
+        counted: CountedArms,
+        grid: &Grid,
+        robot: [f64; 2],
+    ) -> Vec<usize> {
         let params = LaserParams::default();
         let clearances = Clearances::new(grid);
         let skeleton = Skeleton::new(grid, &clearances, robot, &params).unwrap();
         let judge =
-            ArmJudge { robot, grid, clearances: &clearances, viewpoints: &[], params: &params.arm };
+            ArmJudge { robot, grid, clearances: &clearances, viewpoints, params: &params.arm };
         let ways = WayGraph::new(&skeleton, grid, &clearances);
-        let (graph, _) = ways.pruned(&judge, CountedArms::Seen);
+        let (graph, _) = ways.pruned(&judge, counted);
         graph.junctions(&params).iter().map(|junction| junction.arms.len()).collect()
     }
 
@@ -475,5 +491,35 @@ mod tests {
         assert!(degrees(&around(26, 9), robot).is_empty());
         // The block is 9.15 m wide.
         assert_eq!(degrees(&around(86, 12), robot).iter().filter(|&&arms| arms == 3).count(), 2);
+    }
+
+    #[test]
+    fn an_alcove_goes_on_around_a_corner_and_is_in_doubt_where_no_scan_looked() {
+        // An alcove of 6.6 m. At its end 0.9 m of the wall on the right are unknown.
+        let mut grid = map(266, 70, &[[[1, 264], [10, 22]], [[125, 135], [23, 66]]]);
+        for row in 60..66 {
+            grid.cells[row * grid.columns + 136] = Cell::Unknown;
+        }
+        let robot = [10.0, 2.4];
+        // Two scans of half a circle at the alcove's mouth, by a robot with this heading.
+        let scans = |heading| {
+            let geometry = ScanGeometry {
+                angle_min: -FRAC_PI_2,
+                angle_increment: PI / 180.0,
+                range_min: 0.1,
+                range_max: 30.0,
+            };
+            let scan = Scan::new(geometry, vec![1.0; 181], ScannerPose::default()).unwrap();
+            let at = Odometry { position: [19.6, 3.5], heading };
+            vec![Viewpoint::new(&scan, &at); LOOKS]
+        };
+        let seen = |viewpoints: &[Viewpoint]| {
+            [CountedArms::Seen, CountedArms::SeenOrInDoubt]
+                .map(|counted| degrees_from(viewpoints, counted, &grid, robot))
+        };
+        assert_eq!(seen(&[]), [vec![3], vec![3]], "no scan could see it");
+        assert_eq!(seen(&scans(-FRAC_PI_2)), [vec![], vec![3]], "no scan looked there");
+        let none = Vec::<usize>::new();
+        assert_eq!(seen(&scans(FRAC_PI_2)), [none.clone(), none], "the scans looked there");
     }
 }
