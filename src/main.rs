@@ -3,5 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    toposlam::run()
+    // The revision of the sources, from the environment of the build.
+    toposlam::run(option_env!("TOPOSLAM_REVISION"))
 }

@@ -1,53 +1,147 @@
-//! The trace of the paper: every citation names a requirement, code and a test cite everything that is
-//! done, and `toposlam paper` reports it.
+//! The trace of the paper, `docs/paper.md`: where each requirement of `tests/paper.toml` is implemented and where
+//! it is tested. Every citation names a requirement, and code and a test cite everything that is done.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
+mod citation;
+mod requirement;
+
 use std::{
+    collections::BTreeSet,
+    fmt::Write as _,
     fs,
-    path::Path,
-    process::{Command, Output},
+    path::{Path, PathBuf},
 };
 
-use toposlam::paper::{
-    CITATIONS, Citation, CitationKind, PaperTrace, Requirement, Status, TABLE, citations,
-    requirements,
-};
+use citation::{Citation, CitationKind, citations};
+use requirement::{Requirement, Status, requirements};
+
+use crate::accepted::compare_or_accept;
 
 fn table() -> Vec<Requirement> {
-    requirements(TABLE).unwrap()
+    requirements(include_str!("paper.toml")).unwrap()
 }
 
-fn toposlam_paper(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_toposlam")).arg("paper").args(arguments).output().unwrap()
+/// The Rust and Coq files of the workspace's members, by their paths, with their texts.
+fn sources() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let is_member = |folder: &PathBuf| {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml"));
+        manifest.is_ok_and(|text| folder == root || text.lines().all(|line| line != "[workspace]"))
+    };
+    let folders = names_in(root).into_iter().map(|name| root.join(name));
+    let members = folders.chain([root.to_owned()]).filter(is_member);
+    let mut found = Vec::new();
+    for member in members {
+        for part in ["src", "tests", "coq"].map(|part| member.join(part)) {
+            if part.is_dir() {
+                add_sources(root, &part, &mut found);
+            }
+        }
+    }
+    found.sort();
+    found
 }
 
-fn lines_of(output: &Output) -> Vec<&str> {
-    str::from_utf8(&output.stdout).unwrap().lines().collect()
+fn add_sources(root: &Path, folder: &Path, found: &mut Vec<(String, String)>) {
+    for path in names_in(folder).into_iter().map(|name| folder.join(name)) {
+        if path.is_dir() {
+            add_sources(root, &path, found);
+        } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "v") {
+            let name = path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/");
+            found.push((name, fs::read_to_string(&path).unwrap()));
+        }
+    }
+}
+
+fn names_in(folder: &Path) -> Vec<std::ffi::OsString> {
+    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+}
+
+fn cited_in(sources: &[(String, String)]) -> Vec<Citation<'_>> {
+    sources.iter().flat_map(|(file, text)| citations(file, text)).collect()
+}
+
+/// The files that cite a requirement.
+fn files<'a>(id: &str, kind: CitationKind, cited: &[Citation<'a>]) -> BTreeSet<&'a str> {
+    let of_it = cited.iter().filter(|citation| citation.id == id && citation.kind == kind);
+    of_it.map(|citation| citation.file).collect()
+}
+
+/// Unknown ids, and requirements that are marked as done and not cited.
+fn faults(table: &[Requirement], cited: &[Citation<'_>]) -> Vec<String> {
+    let is_known = |citation: &Citation<'_>| table.iter().any(|row| row.id == citation.id);
+    let unknown = cited.iter().filter(|citation| !is_known(citation));
+    let mut faults: Vec<_> = unknown
+        .map(|Citation { id, file, line, .. }| format!("{file}:{line}: `{id}` is unknown"))
+        .collect();
+    for Requirement { id, .. } in table.iter().filter(|row| row.status == Status::Done) {
+        for kind in [CitationKind::Code, CitationKind::Test] {
+            if files(id, kind, cited).is_empty() {
+                faults.push(format!("{id}: done, but nothing of kind {kind:?} cites it"));
+            }
+        }
+    }
+    faults
+}
+
+/// The page: a table for each section.
+fn page(table: &[Requirement], cited: &[Citation<'_>]) -> String {
+    let open = table.iter().filter(|row| row.status == Status::Open).count();
+    let mut page = format!(
+        "# The paper and this program\n\n\
+         What the paper requires, in our own words, where it is implemented, and where it is tested or proved.\n\
+         {} requirements, {open} of them open. `cargo test --test all paper::` checks this page, and writes it if\n\
+         `TOPOSLAM_ACCEPT=1` is set.\n",
+        table.len(),
+    );
+    for section in table.chunk_by(|one, other| one.section == other.section) {
+        let _ = write!(page, "\n## Section {}\n\n", section[0].section);
+        page += "| requirement | code | tests and proofs |\n| --- | --- | --- |\n";
+        for Requirement { id, line, text, erratum, status, after, .. } in section {
+            let _ = write!(page, "| **{id}** {text}");
+            page += &line.map(|line| format!(" Line {line}.")).unwrap_or_default();
+            let erratum = erratum.as_ref().map(|erratum| format!(" Erratum: {erratum}"));
+            page += &erratum.unwrap_or_default();
+            if *status == Status::Open {
+                let _ = write!(page, " *Open, after {}.*", after.join(", "));
+            }
+            for kind in [CitationKind::Code, CitationKind::Test] {
+                let names = files(id, kind, cited).into_iter().map(|file| format!("`{file}`"));
+                let _ = write!(page, " | {}", names.collect::<Vec<_>>().join(" "));
+            }
+            page += " |\n";
+        }
+    }
+    page
 }
 
 #[test]
-fn every_citation_names_a_requirement() {
-    let requirements = table();
-    let unknown: Vec<_> = PaperTrace::new(&requirements, CITATIONS)
-        .unknown
-        .iter()
-        .map(|Citation { id, file, line, .. }| format!("{file}:{line}: `{id}`"))
-        .collect();
-    assert!(unknown.is_empty(), "these ids are not in tests/paper.toml:\n{}", unknown.join("\n"));
+fn the_page_lists_every_requirement_with_its_citations() {
+    let sources = sources();
+    let cited = cited_in(&sources);
+    compare_or_accept("docs/paper.md", &page(&table(), &cited));
 }
 
 #[test]
-fn code_and_a_test_cite_everything_that_is_done() {
-    let requirements = table();
-    let trace = PaperTrace::new(&requirements, CITATIONS);
-    let code = trace.rows.iter().filter(|row| row.lacks_code());
-    let tests = trace.rows.iter().filter(|row| row.lacks_tests());
-    let lacking: Vec<_> = code
-        .map(|row| format!("code lacks  // paper: {}", row.requirement.id))
-        .chain(tests.map(|row| format!("tests lack  // paper: {}", row.requirement.id)))
-        .collect();
-    assert!(lacking.is_empty(), "marked as done in tests/paper.toml, but\n{}", lacking.join("\n"));
+fn citations_are_known_and_everything_that_is_done_is_cited() {
+    let sources = sources();
+    let faults = faults(&table(), &cited_in(&sources));
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn an_unknown_id_and_a_missing_citation_are_faults() {
+    let mut table = table();
+    table.retain(|row| row.id == "alg1.4");
+    let code = || citations("src/a.rs", "// paper: alg1.4");
+    let both = || code().chain(citations("tests/a.rs", "// paper: alg1.4"));
+    assert_eq!(faults(&table, &both().collect::<Vec<_>>()), [""; 0]);
+    assert_eq!(faults(&table, &code().collect::<Vec<_>>()).len(), 1);
+    let unknown: Vec<_> = both().chain(citations("src/b.rs", "\n// paper: alg9.9")).collect();
+    assert_eq!(faults(&table, &unknown), ["src/b.rs:2: `alg9.9` is unknown"]);
+    table[0].status = Status::Open;
+    assert_eq!(faults(&table, &[]), [""; 0]);
 }
 
 #[test]
@@ -55,132 +149,15 @@ fn every_line_of_both_algorithms_is_a_requirement() {
     let printed = |algorithm: &str, last: u32| {
         (1..=last).map(|line| (format!("{algorithm}.{line}"), line)).collect::<Vec<_>>()
     };
-    let with_a_line: Vec<_> = table()
-        .into_iter()
-        .filter_map(|requirement| requirement.line.map(|line| (requirement.id, line)))
-        .collect();
+    let with_a_line: Vec<_> =
+        table().into_iter().filter_map(|row| row.line.map(|line| (row.id, line))).collect();
     assert_eq!(with_a_line, [printed("alg1", 23), printed("alg2", 32)].concat());
 }
 
 #[test]
 fn the_requirements_are_in_the_order_of_the_sections() {
     let numbers = |section: &str| -> Vec<u8> {
-        let parts = section.split('.');
-        parts.map(|part| part.parse().unwrap()).collect()
+        section.split('.').map(|part| part.parse().unwrap()).collect()
     };
     assert!(table().is_sorted_by_key(|requirement| numbers(&requirement.section)));
-}
-
-#[test]
-fn the_embedded_citations_are_at_their_lines() {
-    assert!(!CITATIONS.is_empty());
-    for citation in CITATIONS {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(citation.file);
-        let source = fs::read_to_string(file).unwrap();
-        let line = source.lines().nth(citation.line - 1).unwrap();
-        let (_, ids) = line.split_once(" paper: ").unwrap();
-        assert!(
-            ids.trim_end_matches(" *)").split(", ").any(|id| id == citation.id),
-            "{citation:?} in {line}"
-        );
-    }
-    assert!(CITATIONS.is_sorted_by_key(|citation| (citation.file, citation.line)));
-}
-
-#[test]
-fn an_unknown_id_and_a_missing_citation_are_faults() {
-    let done: Vec<_> = table()
-        .into_iter()
-        .filter(|requirement| requirement.id == "alg1.4" || requirement.id == "alg2.4")
-        .map(|requirement| Requirement { status: Status::Done, ..requirement })
-        .collect();
-    let code = "// paper: alg1.4\n// paper: alg2.4";
-    let test = "// paper: alg1.4, alg9.9";
-    let both: Vec<_> = citations("src/a.rs", code).chain(citations("tests/a.rs", test)).collect();
-    let faults = |cited: &[Citation]| PaperTrace::new(&done, cited).faults().collect::<Vec<_>>();
-    assert_eq!(
-        faults(&both),
-        [
-            "tests/a.rs:1: `alg9.9` is not a requirement of the paper",
-            "alg2.4: done, but no test cites it",
-        ]
-    );
-    let tests_only: Vec<_> = citations("tests/a.rs", "// paper: alg1.4").collect();
-    assert_eq!(
-        faults(&tests_only),
-        ["alg1.4: done, but no code cites it", "alg2.4: done, but no code and no test cites it",]
-    );
-    let complete = ["alg1.4", "alg2.4"].map(|id| {
-        [CitationKind::Code, CitationKind::Test].map(|kind| Citation {
-            id,
-            file: "src/a.rs",
-            line: 1,
-            kind,
-        })
-    });
-    assert!(PaperTrace::new(&done, complete.as_flattened()).holds());
-}
-
-#[test]
-fn an_open_requirement_need_not_be_cited() {
-    let open: Vec<_> =
-        table().into_iter().filter(|requirement| requirement.status != Status::Done).collect();
-    assert!(!open.is_empty());
-    assert!(PaperTrace::new(&open, &[]).holds());
-}
-
-#[test]
-fn the_exit_code_is_1_exactly_if_something_is_missing() {
-    let requirements = table();
-    let holds = PaperTrace::new(&requirements, CITATIONS).holds();
-    for arguments in [&[][..], &["--json"], &["--open"], &["--section", "4"]] {
-        let code = toposlam_paper(arguments).status.code();
-        assert_eq!(code, Some(i32::from(!holds)), "{arguments:?}");
-    }
-}
-
-#[test]
-fn the_table_lists_every_requirement_within_80_columns() {
-    let output = toposlam_paper(&[]);
-    let lines = lines_of(&output);
-    for line in &lines {
-        assert!(line.chars().count() <= 80, "{line}");
-        assert_eq!(line.trim_end(), *line);
-    }
-    for requirement in table() {
-        let is_head = |line: &&&str| line.split_whitespace().next() == Some(&requirement.id);
-        assert_eq!(lines.iter().filter(is_head).count(), 1, "{}", requirement.id);
-    }
-}
-
-#[test]
-fn the_json_is_one_object_a_line_with_the_totals_last() {
-    let output = toposlam_paper(&["--json", "--section", "2"]);
-    let objects: Vec<serde_json::Value> =
-        lines_of(&output).iter().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert!(objects.iter().all(|object| object["schema"] == 1));
-    let (totals, rows) = objects.split_last().unwrap();
-    assert_eq!(totals["requirements"], rows.len());
-    let open = rows.iter().filter(|row| row["status"] == "open").count();
-    assert_eq!(totals["open"], open);
-    let degree = rows.iter().find(|row| row["id"] == "percept.degree");
-    let code = &degree.unwrap()["code"];
-    assert!(code[0].as_str().unwrap().starts_with("model/src/percept.rs:"));
-}
-
-#[test]
-fn an_unknown_section_is_bad_usage() {
-    let output = toposlam_paper(&["--section", "9"]);
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("`9`") && message.contains("2.3"), "{message}");
-}
-
-/// An error in the printed paper is listed with its correction.
-#[test]
-fn an_erratum_is_listed() {
-    let errata: Vec<_> = table().into_iter().filter(|it| it.erratum.is_some()).collect();
-    assert_eq!(errata.iter().map(|it| it.id.as_str()).collect::<Vec<_>>(), ["fig1.step"]);
-    let output = toposlam_paper(&["--section", "2.2"]);
-    assert!(lines_of(&output).iter().any(|line| line.contains("erratum  The print gives")));
 }

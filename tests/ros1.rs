@@ -245,14 +245,14 @@ fn see(folder: &Path) {
     for n in 1..=7 {
         let pose = format!("0,{n},{}", 50 * n);
         let [image, labels] = [path(&format!("images/{n}.png")), path(&format!("labels/{n}.png"))];
-        let render = ["render", "worlds/shape-8.toml", "--with-marker", "--size", "640x480"];
+        let render = ["draw", "worlds/shape-8.toml", "--with-marker", "--size", "640x480"];
         let seed = n.to_string();
         let view = ["--pose", &pose, "--seed", &seed, "--out", &image, "--labels", &labels];
         stdout_of(&[&render[..], &view].concat());
     }
     let [images, labels] = [path("images"), path("labels")];
     let [camera, colours] = [path("camera.toml"), path("colours.toml")];
-    let train = ["train", "--images", &images, "--labels", &labels];
+    let train = ["camera", "train", "--images", &images, "--labels", &labels];
     stdout_of(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
 }
 

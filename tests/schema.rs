@@ -18,8 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 20] = [
-    ("paper", &["paper --section 2.3"]),
+const COMMANDS: [(&str, &[&str]); 19] = [
     (
         "proofs",
         &[
@@ -40,7 +39,7 @@ const COMMANDS: [(&str, &[&str]); 20] = [
             "check --edges 5 --estimate --probes 9",
         ],
     ),
-    ("merge", &["merge shards.jsonl"]),
+    ("merge", &["check --add shards.jsonl"]),
     ("counterexample", &["counterexample --marker undirected --all"]),
     (
         "compare",
@@ -95,11 +94,13 @@ const COMMANDS: [(&str, &[&str]); 20] = [
             "conform run.mcap nothing.mcap",
         ],
     ),
-    ("replay", &["replay run.mcap"]),
-    ("calibrate", &["calibrate 2.png 5.png 7.png --out camera.toml"]),
+    ("replay", &["conform --rerun run.mcap"]),
+    ("calibrate", &["camera calibrate 2.png 5.png 7.png --out camera.toml"]),
     (
         "train",
-        &["train --images images --labels labels --calibration camera.toml --out colours.toml"],
+        &[
+            "camera train --images images --labels labels --calibration camera.toml --out colours.toml",
+        ],
     ),
     (
         "sense",
@@ -238,8 +239,7 @@ fn folder() -> PathBuf {
     fs::write(folder.join("shards.jsonl"), shard(1) + &shard(2)).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
-        let render =
-            format!("render worlds/shape-8.toml --with-marker --size 640x480 --pose {pose}");
+        let render = format!("draw worlds/shape-8.toml --with-marker --size 640x480 --pose {pose}");
         let files = format!("--out images/{n}.png --labels labels/{n}.png");
         lines(&folder, &format!("{render} --seed {n} {files}"));
         fs::copy(folder.join(format!("images/{n}.png")), folder.join(format!("{n}.png"))).unwrap();
@@ -329,23 +329,23 @@ fn each_schema_is_run_and_listed_with_its_kinds() {
 
 #[test]
 fn a_line_with_another_kind_key_or_type_does_not_fit() {
-    let schema = schema("paper");
+    let schema = schema("calibrate");
     let line = json!({
-        "schema": 1, "kind": "requirements", "requirements": 2, "done": 1, "open": 1, "faults": [],
-        "verdict": "holds", "holds": true,
+        "schema": 1, "kind": "calibration", "images": 2, "image": [640, 480], "centre": [1.5, 2.5],
+        "rim": 3.0, "rim_from": "images", "focal": 4.0, "rim_seen": 0.5, "rim_spread": 0.5,
+        "mask_seen": null,
     });
     assert_eq!(problem(&schema, &line), None);
     for (key, value) in [
         ("schema", json!(2)),
-        ("kind", json!("requirement")),
-        ("kind", json!("totals")),
+        ("kind", json!("comparison")),
         ("more", json!(1)),
-        ("done", json!(-1)),
-        ("done", json!(1.5)),
-        ("done", Value::Null),
-        ("faults", json!([1])),
-        ("holds", json!("true")),
-        ("verdict", json!("unknown")),
+        ("images", json!(-1)),
+        ("images", json!(1.5)),
+        ("images", Value::Null),
+        ("image", json!(["640", 480])),
+        ("rim_from", json!("unknown")),
+        ("mask_seen", json!("none")),
     ] {
         let mut changed = line.clone();
         changed[key] = value;

@@ -55,7 +55,7 @@ pub(super) struct Appearance {
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Set one effect (repeatable); they are listed by `toposlam render --help`
+    /// Set one effect (repeatable); they are listed by `toposlam draw --help`
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<EffectSetting>,
 }

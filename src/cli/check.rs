@@ -1,5 +1,6 @@
 //! `toposlam check`: an algorithm runs on every start of every world up to a size.
 
+mod add;
 mod estimate;
 mod explorer;
 mod journal;
@@ -35,14 +36,14 @@ use super::{
     progress::Progress,
     text::counted,
     use_threads,
-    version::VERSION,
+    version::version,
 };
 use estimate::EstimateOptions;
 use explorer::ExplorerOptions;
 use journal::{CheckJournal, JournalHeader};
 use line::SizeResult;
-pub(super) use line::{AlgorithmInfo, SizeLine};
-pub(super) use report::CheckReport;
+use line::{AlgorithmInfo, SizeLine};
+use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
 ///
@@ -59,7 +60,9 @@ pub(super) use report::CheckReport;
 Examples:
   toposlam check                              every world with up to 6 edges
   toposlam check --edges 8 --class planar     one size of one class
-  toposlam check --edges 7 --shard 1/4        a quarter of the work
+  toposlam check --edges 7 --shard 1/2 --json > one.jsonl
+  toposlam check --edges 7 --shard 2/2 --json > two.jsonl
+  toposlam check --add one.jsonl two.jsonl    the whole from its shares
   toposlam check --edges 1..=4 --choices all  every open choice
   toposlam check --from worlds/petersen.toml  the worlds in a file
   toposlam check --marker movable             a marker that the robot carries
@@ -74,7 +77,7 @@ Ctrl-C stops the check and prints the results so far.",
     &[
         (0, "every map is right, or the estimate is printed"),
         (1, "a map is wrong"),
-        (2, "bad usage or input"),
+        (2, "bad usage or input, also a shard that is missing or occurs twice"),
         (3, "not everything was checked: a limit was reached, there is nothing to check, Ctrl-C, or \
              the connection to another process is lost; no probe of an estimate found a start"),
     ],
@@ -111,7 +114,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 
-    /// Check one of N disjoint shares of the starts, as in 2/4; `merge` adds up the results of --json
+    /// Check one of N disjoint shares of the starts, as in 2/4; --add adds up the results of --json
     #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
     shard: Shard,
 
@@ -135,6 +138,18 @@ pub(super) struct CheckArguments {
     /// from there. With --hosts, process 0 records the parts of all
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     journal: Option<PathBuf>,
+
+    /// Do not check: add up the results of the shards of a check, the files of --json; each shard must be
+    /// there once
+    #[arg(long, requires = "shards", conflicts_with_all = [
+        "edges", "class", "marker", "algorithm", "choices", "max_states", "shard", "from", "worst",
+        "threads", "journal", "estimate", "keep_going", "explorer", "hosts",
+    ])]
+    add: bool,
+
+    /// With --add: files with the lines of shards
+    #[arg(value_name = "FILE", requires = "add")]
+    shards: Vec<PathBuf>,
 
     #[command(flatten)]
     estimate: EstimateOptions,
@@ -175,6 +190,9 @@ impl CheckArguments {
         self.check_shared_options()?;
         self.check_cluster_options()?;
         self.ci.check_places()?;
+        if self.add {
+            return self.add_shards(out);
+        }
         if self.explorer.is_given() {
             return self.check_explorer(out);
         }
@@ -357,7 +375,7 @@ impl CheckArguments {
     ) -> JournalHeader {
         JournalHeader {
             journal: JournalHeader::FORMAT,
-            version: VERSION.to_owned(),
+            version: version().to_owned(),
             class: self.class().name().to_owned(),
             edges,
             marker: algorithm.marker().name().to_owned(),

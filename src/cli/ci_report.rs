@@ -157,7 +157,7 @@ fn sarif(verb: &str, cases: &[CiCase]) -> Value {
         "runs": [{
             "tool": { "driver": {
                 "name": "toposlam",
-                "semanticVersion": version::VERSION,
+                "semanticVersion": version::version(),
                 "rules": [{ "id": verb, "shortDescription": { "text": rule(verb) } }],
             } },
             "results": cases.iter().map(result).collect::<Vec<_>>(),

@@ -33,7 +33,7 @@ use toposlam_robot::conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCo
 use super::{
     CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input, json::print_unread,
     laser_options::LaserOptions, mapping_marker::AlgorithmOption, open_log::LogOptions,
-    outcome::SeveralInputs, output,
+    outcome::SeveralInputs, output, rerun::Rerun,
 };
 use crate::{
     page,
@@ -67,10 +67,11 @@ Examples:
   toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml \\
     --colours colours.toml
   toposlam conform scans.log.gz --driver anyone --marker directional \\
-    --assume-marker",
+    --assume-marker
+  toposlam conform --rerun run.mcap",
     &[
-        (0, "all logs conform"),
-        (1, "a log diverges"),
+        (0, "all logs conform, or --rerun gives the recorded results"),
+        (1, "a log diverges, or a result of --rerun differs"),
         (2, "bad usage or input"),
         (3, "not known: a log is truncated, its run did not end, a junction was not recognised, a limit was reached, or a required case is not covered"),
     ],
@@ -79,6 +80,13 @@ pub(super) struct ConformArguments {
     /// The logs to check
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
+    /// Run sensing and mapping again on the images, scans or scenes of the log, without a robot, and compare
+    /// scenes, commands, percepts, doors and the map with the recorded ones
+    #[arg(long, conflicts_with_all = [
+        "world", "start", "marker", "assume_marker", "driver", "class", "max_edges", "max_steps",
+        "LaserOptions", "events", "quirks", "require_coverage", "minimise", "picture", "html", "CiOptions",
+    ])]
+    rerun: bool,
     /// The world file or floor plan in which they were recorded
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
@@ -186,6 +194,9 @@ fn at_least_one_edge(text: &str) -> Result<usize, String> {
 impl ConformArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.ci.check_places()?;
+        if self.rerun {
+            return self.rerun(out);
+        }
         self.check_places()?;
         self.check_marker()?;
         let quirks = match &self.quirks {
@@ -246,6 +257,21 @@ impl ConformArguments {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
         logs.worst()
+    }
+
+    fn rerun(&self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        let [log] = &self.logs[..] else {
+            return Err(CliError::at("--rerun", "this needs exactly one log"));
+        };
+        let rerun = Rerun {
+            log,
+            sources: &self.sources,
+            algorithm: self.algorithm,
+            max_darts: self.max_darts,
+            map: self.map.as_deref(),
+            json: self.json,
+        };
+        rerun.run(out)
     }
 
     /// Prints the report of a log, and writes what belongs to it.

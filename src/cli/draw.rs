@@ -1,5 +1,7 @@
 //! `toposlam draw WORLD`.
 
+mod view;
+
 use std::{
     ffi::OsStr,
     io::Write,
@@ -13,14 +15,24 @@ use super::{
     CliError, Outcome, exit_codes::help_end, input, marker_kinds, output,
     progress::watch_for_interrupt,
 };
+use view::ViewOptions;
+
 use crate::picture::{WorldPicture, png, svg};
 
-/// Draw a world: the clockwise order of the doors at each vertex, and the start
+/// Draw a world, or what a robot's camera sees in a floor plan
+///
+/// A picture of a world shows the clockwise order of the doors at each vertex, and the start.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
-    "Example:\n  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png",
-    &[(0, "the world is drawn"), (2, "bad usage or input")],
+    &format!("\
+{}
+Examples:
+  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png
+  toposlam draw worlds/shape-8.toml --pose 2,8,0 --look vinyl \\
+    --effect blur=1.5 --out view.png", view::list_of_effects()),
+    &[(0, "the picture is written"), (2, "bad usage or input")],
 ))]
+#[command(mut_args(view::only_with_a_pose))]
 pub(super) struct DrawArguments {
     /// The world file
     world: PathBuf,
@@ -36,6 +48,8 @@ pub(super) struct DrawArguments {
     /// The format on standard output: svg, png or dot
     #[arg(long, default_value = "svg", hide_possible_values = true, conflicts_with = "out")]
     format: Format,
+    #[command(flatten)]
+    view: ViewOptions,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -51,6 +65,10 @@ enum Format {
 impl DrawArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
+        if let (Some(pose), Some(out)) = (self.view.pose(), &self.out) {
+            self.view.write(&self.world, pose, out)?;
+            return Ok(Outcome::Holds);
+        }
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;
         }

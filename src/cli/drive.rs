@@ -58,7 +58,7 @@ pub(super) struct DriveArguments {
     /// The camera
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// The colours of the building, as `toposlam train` writes them
+    /// The colours of the building, as `toposlam camera train` writes them
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
     #[command(flatten)]

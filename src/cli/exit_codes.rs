@@ -6,13 +6,10 @@ use super::text::print_hanging;
 /// this verb.
 pub(super) fn help_end(notes: &str, codes: &[(u8, &str)]) -> String {
     let mut text = notes.trim_end().as_bytes().to_vec();
-    text.extend(format!("\n\n{TITLE}\n").bytes());
+    text.extend(b"\n\nExit codes:\n");
     for (code, meaning) in codes {
         // Writing to memory does not fail.
         let _ = print_hanging(&mut text, &format!("  {code}  "), meaning);
     }
     String::from_utf8_lossy(&text).trim_end().to_owned()
 }
-
-/// The line before the codes.
-pub(super) const TITLE: &str = "Exit codes:";

@@ -7,14 +7,13 @@ macro_rules! remark {
 
 mod appearance;
 mod budget_options;
-mod calibrate;
+mod camera;
 mod certificate_cost;
 mod check;
 mod children;
 mod ci_report;
 mod cluster;
 mod compare;
-mod completions;
 mod conform;
 mod counterexample;
 mod draw;
@@ -29,22 +28,18 @@ mod info;
 mod input;
 mod json;
 mod laser_options;
-mod man;
 mod mapping_marker;
-mod merge;
 mod method_options;
-mod old_options;
+mod old_names;
 mod open_log;
 mod outcome;
 mod output;
-mod paper;
 mod picture_file;
 mod play;
 mod progress;
 mod proofs;
-mod render;
-mod replay;
 mod report_output;
+mod rerun;
 mod robot_sensor;
 mod run_options;
 mod safeguards;
@@ -56,18 +51,18 @@ mod story_lines;
 mod temporary_folder;
 mod terminal;
 mod text;
-mod train;
 mod version;
 mod walk_page;
 
 use std::{
     env,
+    ffi::OsString,
     io::{self, Write},
     process::ExitCode,
 };
 
 use clap::{
-    CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
+    Command, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::check::DEFAULT_STATE_BUDGET;
@@ -83,7 +78,7 @@ use terminal::TerminalOptions;
 #[derive(Parser)]
 #[command(
     name = "toposlam",
-    version = version::VERSION,
+    version = version::version(),
     max_term_width = 80,
     after_help = exit_codes::help_end(
         "Example:\n  toposlam check  run the algorithm on every world with up to 6 edges\n\n\
@@ -107,26 +102,19 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Verb {
     Check(check::CheckArguments),
-    Merge(merge::MergeArguments),
     Explore(explore::ExploreArguments),
     Compare(compare::CompareArguments),
     Counterexample(counterexample::CounterexampleArguments),
     Draw(draw::DrawArguments),
     Play(play::PlayArguments),
-    Paper(paper::PaperArguments),
     Proofs(proofs::ProofsArguments),
     Simulate(simulate::SimulateArguments),
     Drive(drive::DriveArguments),
-    Render(render::RenderArguments),
-    Calibrate(calibrate::CalibrateArguments),
-    Train(train::TrainArguments),
+    Camera(camera::CameraArguments),
     Sense(sense::SenseArguments),
     Evaluate(evaluate::EvaluateArguments),
     Info(info::InfoArguments),
     Conform(conform::ConformArguments),
-    Replay(replay::ReplayArguments),
-    Completions(completions::CompletionsArguments),
-    Man(man::ManArguments),
 }
 
 /// How the open choices of Algorithm 1 are made.
@@ -201,34 +189,36 @@ fn without_ros() -> CliError {
     CliError::at("--ros", cause)
 }
 
-/// Runs the verb on the command line, and returns the exit code of the program.
+/// Runs the verb on the command line, and returns the exit code of the program. The revision of its sources is
+/// part of its version.
 #[must_use]
-pub fn run() -> ExitCode {
-    let arguments = parse();
+pub fn run(revision: Option<&str>) -> ExitCode {
+    version::set_revision(revision);
+    let renamed = match old_names::with_new_command(env::args_os().collect()) {
+        Ok(renamed) => renamed,
+        Err(gone) => return gone.report(),
+    };
+    let arguments = parse(&renamed.arguments);
     arguments.terminal.apply();
+    if let Some(remark) = renamed.remark {
+        remark!("{remark}");
+    }
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),
-        Some(Verb::Merge(verb)) => verb.run(&mut out),
         Some(Verb::Explore(verb)) => verb.run(&mut out),
         Some(Verb::Compare(verb)) => verb.run(&mut out),
         Some(Verb::Counterexample(verb)) => verb.run(&mut out),
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Play(verb)) => verb.run(&mut out),
-        Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Simulate(verb)) => verb.run(&mut out),
         Some(Verb::Drive(verb)) => verb.run(&mut out),
-        Some(Verb::Render(verb)) => verb.run(&mut out),
-        Some(Verb::Calibrate(verb)) => verb.run(&mut out),
-        Some(Verb::Train(verb)) => verb.run(&mut out),
+        Some(Verb::Camera(verb)) => verb.run(&mut out),
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Info(verb)) => verb.run(&mut out),
         Some(Verb::Conform(verb)) => verb.run(&mut out),
-        Some(Verb::Replay(verb)) => verb.run(&mut out),
-        Some(Verb::Completions(verb)) => verb.run(&mut out),
-        Some(Verb::Man(verb)) => verb.run(&mut out),
         None => print_help(&mut out),
     };
     match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(CliError::from)) {
@@ -237,12 +227,18 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// The command line, for what is made of it: manual pages, completions.
+#[must_use]
+pub fn command() -> Command {
+    CommandLine::command()
+}
+
 /// Parses the command line. Prints help, the version or an error, and ends the program, if that is asked
 /// for or due.
-fn parse() -> CommandLine {
-    let command = CommandLine::command().color(terminal::color_choice(env::args_os()));
-    let mut command = old_options::with_old_names(command);
-    let parsed = command.try_get_matches_from_mut(env::args_os());
+fn parse(arguments: &[OsString]) -> CommandLine {
+    let command = command().color(terminal::color_choice(arguments.iter().cloned()));
+    let mut command = old_names::with_old_options(command);
+    let parsed = command.try_get_matches_from_mut(arguments);
     let parsed = parsed.and_then(|matches| CommandLine::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| error.format(&mut command).exit())
 }

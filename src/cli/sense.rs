@@ -61,7 +61,7 @@ pub(super) struct SenseArguments {
     /// Camera calibration, for images
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// Colours of the building, from `toposlam train`, for images
+    /// Colours of the building, from `toposlam camera train`, for images
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
     /// For logs: the numbers of the scans that are reported, counted from 0 [default: all]

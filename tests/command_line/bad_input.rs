@@ -213,7 +213,10 @@ fn an_option_without_effect_is_an_error() {
         (&["simulate", WORLD, "--speed", "2"], "--speed: this needs --ros"),
         (&["simulate", WORLD, "--by-scene", "--speed", "2"], "--speed: this needs --ros"),
         (
-            &["render", WORLD, "--effect", "blur=1", "--effect", "blur=2", "--out", "x.png"],
+            &[
+                "draw", WORLD, "--pose", "start", "--effect", "blur=1", "--effect", "blur=2",
+                "--out", "x.png",
+            ],
             "--effect: blur is given twice",
         ),
         (&["simulate", WORLD, "--ros", "http://x", "--max-darts", "9"], "cannot be used with"),
@@ -224,8 +227,14 @@ fn an_option_without_effect_is_an_error() {
         (&["evaluate", "runs", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
         (&["draw", WORLD, "--format", "dot", "--marker", "none"], "--marker: a DOT file does not"),
         (&["draw", WORLD, "--out", "x.dot", "--marker", "none"], "--marker: a DOT file does not"),
-        (&["replay", LOG, "--calibration", "x.toml"], "--calibration: this is for images, and "),
-        (&["replay", LOG, "--colours", "x.toml"], "--colours: this is for images, and "),
+        (
+            &["conform", "--rerun", LOG, "--calibration", "x.toml"],
+            "--calibration: this is for images, and ",
+        ),
+        (
+            &["conform", "--rerun", LOG, "--colours", "x.toml"],
+            "--colours: this is for images, and ",
+        ),
     ];
     for (arguments, cause) in cases {
         let error = error_of(arguments);

@@ -25,7 +25,7 @@ fn rendered(look: &str) -> Images {
     let files: Vec<String> = (0..POSES.len()).map(|number| file(format!("{number}.jpg"))).collect();
     for (number, (path, pose)) in files.iter().zip(POSES).enumerate() {
         let seed = number.to_string();
-        let mut arguments = vec!["render", "worlds/shape-8.toml", "--pose", pose, "--look", look];
+        let mut arguments = vec!["draw", "worlds/shape-8.toml", "--pose", pose, "--look", look];
         arguments.extend(["--seed", &seed, "--size", "640x480", "--out", path]);
         // The rig stays the same. Everything else follows from the seed.
         for effect in ["strut-bearing=100", "struts=3", "lens=0.014"] {
@@ -55,7 +55,7 @@ fn mirror(camera: &Camera) -> SphericalMirror {
 
 fn calibrate<'a>(images: &'a [String], more: &[&'a str]) -> Vec<&'a str> {
     let images: Vec<&str> = images.iter().map(String::as_str).collect();
-    [&["calibrate"], &images[..], more].concat()
+    [&["camera", "calibrate"], &images[..], more].concat()
 }
 
 /// Reads the camera of a calibration file.
@@ -186,7 +186,8 @@ fn a_rim_that_is_set_by_hand_needs_no_rim_in_the_image() {
     let out = folder.join("camera.toml");
     let [out, flat] = [&out, &flat].map(|path| path.to_str().unwrap());
     let seen = |image: &str, rim: &str| {
-        let report = stdout_of(["calibrate", image, "--rim", rim, "--json", "--out", out]);
+        let report =
+            stdout_of(["camera", "calibrate", image, "--rim", rim, "--json", "--out", out]);
         let [report]: [Value; 1] = objects(&report).try_into().unwrap();
         assert_eq!(report["rim_from"], "option");
         let camera = read(Path::new(out));
@@ -200,7 +201,7 @@ fn a_rim_that_is_set_by_hand_needs_no_rim_in_the_image() {
     let SphericalMirror { centre: [u, v], .. } = truth();
     let rim = format!("{u},{v},{:.1}", truth().rim());
     assert!(seen(&LABORATORY.files[0], &rim) > 0.6);
-    let text = stdout_of(["calibrate", flat, "--rim", "305.5,240.25,326", "--out", out]);
+    let text = stdout_of(["camera", "calibrate", flat, "--rim", "305.5,240.25,326", "--out", out]);
     assert!(text.contains("rim     326.0 pixels, given, seen over 0 % of the circle"), "{text}");
 }
 
@@ -225,7 +226,7 @@ fn a_rim_that_cannot_be_that_of_a_mirror_in_the_image_is_refused() {
         ("320,240,inf", "invalid value '320,240,inf' for '--rim <U,V,R>'"),
     ];
     for (rim, message) in cases {
-        let output = run(["calibrate", flat.to_str().unwrap(), "--rim", rim]);
+        let output = run(["camera", "calibrate", flat.to_str().unwrap(), "--rim", rim]);
         assert_eq!(output.status.code(), Some(2), "{rim}");
         assert!(stderr(&output).contains(message), "{rim}: {}", stderr(&output));
         assert!(stdout(&output).is_empty(), "{rim}");
@@ -291,13 +292,13 @@ fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
         (&[image, "--picture", "fit.bmp"], "fit.bmp: the name must end in .png or .jpg or .jpeg".to_owned()),
     ];
     for (arguments, message) in cases {
-        let output = run([&["calibrate", "--out", &out], arguments].concat());
+        let output = run([&["camera", "calibrate", "--out", &out], arguments].concat());
         let found = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {found}");
         assert!(found.starts_with(&format!("error: {message}")), "{arguments:?}: {found}");
         assert_eq!(found.lines().count(), 1, "{arguments:?}: {found}");
         assert!(stdout(&output).is_empty() && names_in(&folder).is_empty(), "{arguments:?}");
     }
-    let output = run(["calibrate", image, "--mask-out", &mask]);
+    let output = run(["camera", "calibrate", image, "--mask-out", &mask]);
     assert!(stderr(&output).starts_with("error: --mask-out: this goes with --out"));
 }

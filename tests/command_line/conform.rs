@@ -337,7 +337,8 @@ fn a_log_converted_to_ros_1_conforms_and_is_replayed() {
         (code, &report["verdict"], &report["events"]),
         (Some(0), &"conforms".into(), &15.into())
     );
-    let replayed = objects(&stdout_of(["replay", bag.to_str().unwrap(), "--json"])).remove(0);
+    let replayed =
+        objects(&stdout_of(["conform", "--rerun", bag.to_str().unwrap(), "--json"])).remove(0);
     assert_eq!((&replayed["map"], &replayed["difference"]), (&true.into(), &Value::Null));
 }
 

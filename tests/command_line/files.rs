@@ -26,15 +26,15 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 43] = [
+const OUTPUTS: [OutputOption; 42] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
     output("check", "--failed", &[("w.toml", "check --explorer cat --from IN --failed OUT")]),
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
-    output("merge", "--junit", &[("s.xml", "merge IN --junit OUT")]),
-    output("merge", "--sarif", &[("s.sarif", "merge IN --sarif OUT")]),
+    output("check", "--junit", &[("s.xml", "check --add IN --junit OUT")]),
+    output("check", "--sarif", &[("s.sarif", "check --add IN --sarif OUT")]),
     output("explore", "--map", &[("w.toml", "explore IN --map OUT")]),
     output("explore", "--svg", &[("w.svg", "explore IN --svg OUT")]),
     output(
@@ -71,22 +71,36 @@ const OUTPUTS: [OutputOption; 43] = [
     output("drive", "--log", &[]),
     output("drive", "--map", &[]),
     output(
-        "render",
+        "draw",
         "--out",
-        &[("w.png", "render IN --out OUT"), ("c.png", "render WORLD --calibration IN --out OUT")],
+        &[
+            ("w.png", "draw IN --pose start --out OUT"),
+            ("c.png", "draw WORLD --pose start --calibration IN --out OUT"),
+        ],
     ),
-    output("render", "--labels", &[("w.png", "render IN --out NEW.png --labels OUT")]),
-    output("calibrate", "--out", &[("c.toml", "calibrate IMAGE --initial IN --out OUT")]),
+    output("draw", "--labels", &[("w.png", "draw IN --pose start --out NEW.png --labels OUT")]),
     output(
-        "calibrate",
+        "camera calibrate",
+        "--out",
+        &[("c.toml", "camera calibrate IMAGE --initial IN --out OUT")],
+    ),
+    output(
+        "camera calibrate",
         "--picture",
-        &[("i.png", "calibrate IN --picture OUT"), ("i.png", "calibrate IMAGE IN --picture OUT")],
+        &[
+            ("i.png", "camera calibrate IN --picture OUT"),
+            ("i.png", "camera calibrate IMAGE IN --picture OUT"),
+        ],
     ),
-    output("calibrate", "--mask-out", &[("i.png", "calibrate IN --out NEW.toml --mask-out OUT")]),
     output(
-        "train",
+        "camera calibrate",
+        "--mask-out",
+        &[("i.png", "camera calibrate IN --out NEW.toml --mask-out OUT")],
+    ),
+    output(
+        "camera train",
         "--out",
-        &[("c.toml", "train --images DIR --labels DIR --calibration IN --out OUT")],
+        &[("c.toml", "camera train --images DIR --labels DIR --calibration IN --out OUT")],
     ),
     output(
         "sense",
@@ -122,27 +136,28 @@ const OUTPUTS: [OutputOption; 43] = [
     output("conform", "--junit", &[("l.xml", "conform IN --junit OUT")]),
     output("conform", "--sarif", &[("l.sarif", "conform IN --sarif OUT")]),
     output(
-        "replay",
+        "conform",
         "--map",
-        &[("l.toml", "replay IN --map OUT"), ("m.toml", "replay LOG --mapping IN --map OUT")],
+        &[
+            ("l.toml", "conform --rerun IN --map OUT"),
+            ("m.toml", "conform --rerun LOG --mapping IN --map OUT"),
+        ],
     ),
-    output("completions", "", &[]),
 ];
 
 /// Options that read files.
-const INPUTS: [(&str, &[&str]); 9] = [
+const INPUTS: [(&str, &[&str]); 8] = [
     ("check", &["--from"]),
     ("simulate", &["--calibration", "--colours", "--scanner"]),
     ("drive", &["--calibration", "--colours", "--plan"]),
-    ("render", &["--calibration"]),
-    ("calibrate", &["--initial"]),
-    ("train", &["--images", "--labels", "--calibration"]),
+    ("draw", &["--calibration"]),
+    ("camera calibrate", &["--initial"]),
+    ("camera train", &["--images", "--labels", "--calibration"]),
     ("sense", &["--calibration", "--colours", "--laser-params", "--mapping"]),
     (
         "conform",
         &["--world", "--mapping", "--calibration", "--colours", "--quirks", "--laser-params"],
     ),
-    ("replay", &["--mapping", "--calibration", "--colours"]),
 ];
 
 /// The options of a verb with a file or a folder as their value.
@@ -160,14 +175,8 @@ fn file_options(verb: &str) -> BTreeSet<String> {
 #[test]
 fn every_option_that_writes_a_file_is_in_the_list() {
     let verbs: BTreeSet<_> = OUTPUTS.iter().map(|output| output.verb).collect();
-    let others = [
-        "paper",
-        "proofs",
-        "evaluate control",
-        "evaluate runs",
-        "evaluate laser",
-        "evaluate lengths",
-    ];
+    let others =
+        ["proofs", "evaluate control", "evaluate runs", "evaluate laser", "evaluate lengths"];
     for verb in verbs.into_iter().chain(others) {
         let outputs = OUTPUTS.iter().filter(|output| output.verb == verb);
         let inputs = INPUTS.iter().filter(|(of, _)| *of == verb).flat_map(|(_, names)| *names);
@@ -218,9 +227,18 @@ impl Inputs {
         fs::copy("worlds/shape-8.toml", &world).unwrap();
         let path = |path: &Path| path.to_str().unwrap().to_owned();
         stdout_of(["simulate", &path(&world), "--by-scene", "--log", &path(&log)]);
-        stdout_of(["render", &path(&world), "--size", "640x480", "--out", &path(&image)]);
+        stdout_of([
+            "draw",
+            &path(&world),
+            "--pose",
+            "start",
+            "--size",
+            "640x480",
+            "--out",
+            &path(&image),
+        ]);
         let calibration = file("camera.toml");
-        stdout_of(["calibrate", &path(&image), "--out", &path(&calibration)]);
+        stdout_of(["camera", "calibrate", &path(&image), "--out", &path(&calibration)]);
         fs::create_dir(file("empty")).unwrap();
         Self { folder, world, log, calibration, image, shard }
     }
@@ -301,11 +319,30 @@ fn two_outputs_of_a_call_are_not_the_same_file() {
     let file = folder.join("s.png").display().to_string();
     let dotted = folder.join("./s.png").display().to_string();
     let image = folder.join("image.png").display().to_string();
-    stdout_of(["render", "worlds/shape-8.toml", "--size", "640x480", "--out", &image]);
+    stdout_of([
+        "draw",
+        "worlds/shape-8.toml",
+        "--pose",
+        "start",
+        "--size",
+        "640x480",
+        "--out",
+        &image,
+    ]);
     let calibration = folder.join("new.toml").display().to_string();
     let calls: [&[&str]; 2] = [
-        &["render", "worlds/shape-8.toml", "--out", &file, "--labels", &dotted],
-        &["calibrate", &image, "--out", &calibration, "--picture", &file, "--mask-out", &dotted],
+        &["draw", "worlds/shape-8.toml", "--pose", "start", "--out", &file, "--labels", &dotted],
+        &[
+            "camera",
+            "calibrate",
+            &image,
+            "--out",
+            &calibration,
+            "--picture",
+            &file,
+            "--mask-out",
+            &dotted,
+        ],
     ];
     for call in calls {
         let result = run(call);

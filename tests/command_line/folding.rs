@@ -148,10 +148,10 @@ fn a_simulated_run_is_logged_and_replayed_with_its_algorithm() {
     }
     let text = std::fs::read_to_string(page).unwrap();
     assert!(text.contains("the trail folds from"));
-    let replayed = objects(&stdout_of(["replay", log, "--json"])).remove(0);
+    let replayed = objects(&stdout_of(["conform", "--rerun", log, "--json"])).remove(0);
     assert_eq!((&replayed["map"], &replayed["difference"]), (&true.into(), &Value::Null));
     assert_eq!(replayed["moves"], simulated["moves"]);
-    let output = run(["replay", log, "--json", "--algorithm", "algorithm1"]);
+    let output = run(["conform", "--rerun", log, "--json", "--algorithm", "algorithm1"]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(objects(&stdout(&output))[0]["difference"]["what"], "door");
 }

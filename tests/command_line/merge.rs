@@ -44,7 +44,7 @@ fn the_shards_together_are_the_whole_check_byte_for_byte() {
         for format in [&["--json"][..], &[]] {
             let whole = stdout_of([&["check", "--junit", of_whole][..], options, format].concat());
             // In any order.
-            let files = ["merge", "--junit", of_merged, &*three, &one, &two];
+            let files = ["check", "--add", "--junit", of_merged, &*three, &one, &two];
             assert_eq!(stdout_of([&files[..], format].concat()), whole);
             assert_eq!(fs::read(of_merged).unwrap(), fs::read(of_whole).unwrap());
         }
@@ -56,7 +56,7 @@ fn shards_are_read_from_standard_input() {
     let check = |shard: &str| stdout_of(["check", "--edges", "3", "--shard", shard, "--json"]);
     let shards = check("1/2") + &check("2/2");
     let mut merge = toposlam();
-    merge.args(["merge", "-", "--json"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    merge.args(["check", "--add", "-", "--json"]).stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut merge = merge.spawn().unwrap();
     merge.stdin.take().unwrap().write_all(shards.as_bytes()).unwrap();
     let output = merge.wait_with_output().unwrap();
@@ -69,36 +69,39 @@ fn missing_duplicated_and_foreign_shards_are_listed() {
     let folder = folder("merge_refused");
     let five = |n: &str| shard(&folder, &n.replace('/', "-"), &["--edges", "5", "--shard", n]);
     let [one, two, four] = ["1/4", "2/4", "4/4"].map(five);
-    assert_eq!(refused(&["merge", &one, &two, &four]), "error: 5 edges: shard 3/4 is missing\n");
-    let message = refused(&["merge", &one, &two, &four, &two]);
+    assert_eq!(
+        refused(&["check", "--add", &one, &two, &four]),
+        "error: 5 edges: shard 3/4 is missing\n"
+    );
+    let message = refused(&["check", "--add", &one, &two, &four, &two]);
     let twice = format!("5 edges: shard 2/4 occurs twice: {two}: line 1, {two}: line 1");
     assert!(message.contains(&twice) && message.contains("3/4 is missing"), "{message}");
     let third = five("1/3");
-    let message = refused(&["merge", &one, &third]);
+    let message = refused(&["check", "--add", &one, &third]);
     assert!(
         message.contains(&format!("{third}: line 1: 5 edges: 1/3 is not one of 4")),
         "{message}"
     );
     let simple = ["--edges", "5", "--class", "simple", "--shard", "3/4"];
     let simple = shard(&folder, "simple", &simple);
-    let message = refused(&["merge", &one, &two, &simple, &four]);
+    let message = refused(&["check", "--add", &one, &two, &simple, &four]);
     assert!(message.contains("line 1: class is simple, not multigraph"), "{message}");
     let other = fs::read_to_string(&one).unwrap().replace("\"version\":\"", "\"version\":\"9.");
     let newer = folder.join("newer");
     fs::write(&newer, other).unwrap();
-    let message = refused(&["merge", &two, newer.to_str().unwrap()]);
+    let message = refused(&["check", "--add", &two, newer.to_str().unwrap()]);
     assert!(message.contains("version is 9."), "{message}");
     let whole = shard(&folder, "whole", &["--edges", "3"]);
-    let message = refused(&["merge", &whole]);
+    let message = refused(&["check", "--add", &whole]);
     assert!(message.contains("line 1: this is the result of a whole check"), "{message}");
-    let message = refused(&["merge", "README.md"]);
+    let message = refused(&["check", "--add", "README.md"]);
     assert!(
         message.contains("README.md: line 1: this is not a line of `check --json`"),
         "{message}"
     );
     let huge = fs::read_to_string(&one).unwrap().replace("1/4", "1/18446744073709551615");
     fs::write(&newer, huge).unwrap();
-    let message = refused(&["merge", newer.to_str().unwrap()]);
+    let message = refused(&["check", "--add", newer.to_str().unwrap()]);
     assert!(message.contains("2/18446744073709551615 is missing"), "{message}");
 }
 
@@ -124,12 +127,12 @@ fn a_wrong_map_in_one_shard_is_the_first_of_the_whole() {
     let one = shard(&folder, "one", &["--edges", "3", "--shard", "1/2"]);
     let two = shard(&folder, "two", &["--edges", "3", "--shard", "2/2"]);
     with_wrong_map(&two, "the map is wrong");
-    let output = run(["merge", "--json", &one, &two]);
+    let output = run(["check", "--add", "--json", &one, &two]);
     assert_eq!(output.status.code(), Some(1));
     let line = &objects(&stdout(&output))[0];
     assert_eq!((&line["failed"], &line["holds"]), (&1.into(), &false.into()));
     assert_eq!(line["failure"]["cause"], "the map is wrong");
-    let text = stdout(&run(["merge", &one, &two]));
+    let text = stdout(&run(["check", "--add", &one, &two]));
     assert!(text.contains("Wrong: the map is wrong") && text.contains("violated"), "{text}");
 }
 
@@ -140,7 +143,7 @@ fn a_wrong_map_is_followed_by_the_command_that_explores_its_world() {
     let shard = |n: &str| shard(&folder, &n.replace('/', "-"), &[&folding[..], &[n]].concat());
     let [one, two] = ["1/2", "2/2"].map(shard);
     with_wrong_map(&two, "the map is wrong");
-    let text = stdout(&run(["merge", &one, &two]));
+    let text = stdout(&run(["check", "--add", &one, &two]));
     let words: Vec<_> = text.split_whitespace().collect();
     let command = "`toposlam explore --marker directional --algorithm folding`";
     assert!(words.join(" ").contains(command), "{text}");
@@ -152,11 +155,11 @@ fn a_wrong_map_is_reported_although_its_shard_has_no_larger_sizes() {
     let folder = folder("merge_stopped");
     let one = shard(&folder, "one", &["--edges", "1..=4", "--shard", "1/2"]);
     let two = shard(&folder, "two", &["--edges", "1..=6", "--shard", "2/2"]);
-    let message = refused(&["merge", &one, &two]);
+    let message = refused(&["check", "--add", &one, &two]);
     assert!(message.contains("5 edges: shard 1/2 is missing\n6 edges: shard 1/2"), "{message}");
     with_wrong_map(&one, "the map is wrong");
     let junit = folder.join("merged.xml");
-    let output = run(["merge", &one, &two, "--json", "--junit", junit.to_str().unwrap()]);
+    let output = run(["check", "--add", &one, &two, "--json", "--junit", junit.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let lines = objects(&stdout(&output));
     let sizes: Vec<_> = lines.iter().map(|line| (&line["edges"], &line["holds"])).collect();
@@ -170,7 +173,7 @@ fn a_wrong_map_is_reported_although_its_shard_has_no_larger_sizes() {
     // Before the wrong map, each shard must be there.
     let text = fs::read_to_string(&two).unwrap();
     fs::write(&two, text.split_inclusive('\n').skip(1).collect::<String>()).unwrap();
-    let message = refused(&["merge", &one, &two]);
+    let message = refused(&["check", "--add", &one, &two]);
     assert_eq!(message, "error: 1 edge: shard 2/2 is missing\n");
 }
 
@@ -197,7 +200,7 @@ fn counts_that_contradict_each_other_are_refused() {
         (most(&good), "line 1: with this, the sum of `starts` is 2^64 or more"),
     ] {
         fs::write(&one, &text).unwrap();
-        let message = refused(&["merge", &one, &two]);
+        let message = refused(&["check", "--add", &one, &two]);
         assert!(message.contains(problem), "{text}: {message}");
     }
 }

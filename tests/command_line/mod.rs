@@ -85,7 +85,11 @@ fn interrupted(arguments: &[&str]) -> Output {
 
 fn check_exit_code(arguments: &[OsString], output: &Output) {
     static KNOWN: Mutex<BTreeMap<Vec<OsString>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
-    let words = if arguments.first().is_some_and(|verb| verb == "evaluate") { 2 } else { 1 };
+    let words = if arguments.first().is_some_and(|verb| verb == "evaluate" || verb == "camera") {
+        2
+    } else {
+        1
+    };
     let verb = arguments.get(..words).unwrap_or_default().to_vec();
     let code = output.status.code().expect("the program was killed");
     // Bad usage can be an unknown verb.

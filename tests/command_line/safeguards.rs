@@ -150,7 +150,7 @@ fn a_robot_returns_within_its_budget_and_goes_on_from_its_log() {
         };
         assert!(within && object["error"].is_string(), "{object}");
         // The log repeats the run, with its end.
-        let replayed = run(["replay", &part, "--json"]);
+        let replayed = run(["conform", "--rerun", &part, "--json"]);
         assert_eq!(replayed.status.code(), Some(3));
         let replayed = objects(&stdout(&replayed)).remove(0);
         assert_eq!(replayed["map"], true, "{replayed}");
@@ -161,7 +161,7 @@ fn a_robot_returns_within_its_budget_and_goes_on_from_its_log() {
         let spent = |object: &Value| object["moves"].as_u64().unwrap();
         assert!(spent(&again) < spent(&whole), "{again} {whole}");
     }
-    let output = run(["replay", &rest]);
+    let output = run(["conform", "--rerun", &rest]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("its robot went on from an earlier run"), "{output:?}");
     // The walks are of another building.

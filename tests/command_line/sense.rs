@@ -46,7 +46,7 @@ static FILES: LazyLock<Files> = LazyLock::new(|| {
 fn rendered(name: &str, pose: &str) -> String {
     let path = FILES.folder.join(name).to_str().unwrap().to_owned();
     stdout_of([
-        "render",
+        "draw",
         "worlds/shape-6.toml",
         "--pose",
         pose,

@@ -65,7 +65,7 @@ impl Set {
 
     fn render(&self, pose: &str, image: &str, more: &[&str]) {
         let [image, camera] = [image, "camera.toml"].map(|name| self.path(name));
-        let what = ["render", "worlds/shape-8.toml", "--with-marker", "--effects", "none"];
+        let what = ["draw", "worlds/shape-8.toml", "--with-marker", "--effects", "none"];
         let how = ["--pose", pose, "--calibration", &camera, "--out", &image];
         stdout_of([&what[..], &how, more].concat());
     }
@@ -84,7 +84,7 @@ impl Set {
         let flags = ["--images", "--labels", "--calibration", "--out"].map(str::to_owned);
         let pairs = flags.into_iter().zip(named).flat_map(|(flag, path)| [flag, path]);
         let more = more.iter().map(|&argument| argument.to_owned());
-        ["train".to_owned()].into_iter().chain(pairs).chain(more).collect()
+        ["camera", "train"].map(str::to_owned).into_iter().chain(pairs).chain(more).collect()
     }
 
     /// The JSON object.

@@ -22,7 +22,7 @@ use toposlam_model::{
     enumerate::Watch,
 };
 
-use crate::cli::{CliError, output};
+use crate::cli::{CliError, output, version::release};
 
 /// The check that a journal is of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl JournalHeader {
     fn fields(&self) -> [(&'static str, String); 8] {
         [
             ("the format", self.journal.to_string()),
-            ("the version", self.version.clone()),
+            ("the version", release(&self.version).to_owned()),
             ("the class", self.class.clone()),
             ("the number of edges", self.edges.to_string()),
             ("the marker", self.marker.clone()),

@@ -10,7 +10,7 @@ use toposlam_model::{
     marker::{Directional, Marker},
 };
 
-use crate::cli::{CliError, Outcome, RunChoices, text::counted, version::VERSION};
+use crate::cli::{CliError, Outcome, RunChoices, text::counted, version::version};
 
 /// The algorithm that is checked, and its marker.
 #[derive(Clone, Copy)]
@@ -217,7 +217,7 @@ impl SizeLine {
                 RunChoices::Default => None,
             },
             shard: is_shard.then(|| shard.to_string()),
-            version: is_shard.then(|| VERSION.to_owned()),
+            version: is_shard.then(|| version().to_owned()),
             interrupted: tally.interrupted,
             failure: tally.failure.as_ref().map(|failure| FailureLine::new(failure, subject)),
             holds: false,

@@ -18,7 +18,7 @@ use crate::cli::{
     progress::Progress,
     terminal,
     text::{counted, grouped},
-    version::VERSION,
+    version::version,
 };
 
 /// A process of a cluster.
@@ -67,7 +67,7 @@ impl ClusterSession {
         }
         let owned = |(name, value): &SharedSetting| ((*name).to_owned(), value.clone());
         let mut settings: Vec<_> = settings.iter().map(owned).collect();
-        settings.insert(0, ("the version".to_owned(), VERSION.to_owned()));
+        settings.insert(0, ("the version".to_owned(), version().to_owned()));
         let progress = Progress::new("connecting", "processes")?.hidden();
         let waiting = |names: &[String]| remark!("waiting for {}", names.join(", "));
         let lost = move |name: &str| {

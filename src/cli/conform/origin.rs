@@ -14,7 +14,7 @@ use crate::{
 pub(super) fn origin() -> ReportOrigin {
     let words = env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     let command = [vec!["toposlam".to_owned()], words.collect()].concat().join(" ");
-    ReportOrigin { version: version::VERSION.to_owned(), command }
+    ReportOrigin { version: version::version().to_owned(), command }
 }
 
 /// A log and the world in which it was checked, with their hashes.

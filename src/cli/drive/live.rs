@@ -196,7 +196,7 @@ impl DriveArguments {
         let (world, world_hash, start) = known.unwrap_or_default();
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: version::VERSION.to_owned(),
+            version: version::version().to_owned(),
             world,
             world_hash,
             start,

@@ -92,7 +92,7 @@ pub(super) struct EvaluateVisionArguments {
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Set one effect in every view (repeatable); they are listed by `toposlam render --help`. Colours are
+    /// Set one effect in every view (repeatable); they are listed by `toposlam draw --help`. Colours are
     /// learned without it
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<EffectSetting>,

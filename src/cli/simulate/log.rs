@@ -24,7 +24,7 @@ impl SimulateArguments {
         let Some(path) = &self.log else { return Ok(None) };
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: version::VERSION.to_owned(),
+            version: version::version().to_owned(),
             world: simulation.world.name.clone(),
             world_hash: world_hash(&simulation.world.graph, simulation.facing),
             start: simulation.world.start_text(simulation.facing),

@@ -85,7 +85,7 @@ impl ColourModel {
         let Self { stripe, floor: [red, green, blue], priors, smoothing, .. } = self;
         let mut text = format!(
             "\
-# The colours of a building, learned by `toposlam train`.
+# The colours of a building, learned by `toposlam camera train`.
 version = {VERSION}
 
 [stripe]

@@ -1,6 +1,10 @@
-//! `toposlam replay LOG`: the off-line version on a log. Section 6.
+//! `toposlam conform --rerun LOG`: the off-line version on a log. Section 6.
+//!
+//! Each recorded image is sensed again, and Algorithm 2 and the mapping algorithm run again. Scenes, commands,
+//! percepts, doors and the map are compared with the recorded ones, and the computing time with the robot's time.
+//! If the log has no images, its scenes are used.
 
-use std::{io::Write, path::PathBuf, time::Instant};
+use std::{io::Write, path::Path, time::Instant};
 
 use serde::Serialize;
 use toposlam_model::{
@@ -16,7 +20,6 @@ use toposlam_robot::{
 use super::{
     CliError, Outcome,
     certificate_cost::CertificateCost,
-    exit_codes::help_end,
     json::{TruncatedLine, print_line},
     mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
@@ -24,41 +27,17 @@ use super::{
     text::{counted, grouped, print_hanging, since_start, tenths, vertices},
 };
 
-/// Run sensing and mapping again on the images of a log, without a robot
-///
-/// Each recorded image is sensed again, and Algorithm 2 and the mapping algorithm run again. Scenes, commands,
-/// percepts, doors and the map are compared with the recorded ones, and the computing time with the
-/// robot's time. If the log has no images, its scenes are used.
-#[derive(clap::Args)]
-#[command(after_help = help_end(
-    "\
-Example:
-  toposlam simulate worlds/shape-6.toml --log run.mcap
-  toposlam replay run.mcap",
-    &[
-        (0, "all results are as recorded"),
-        (1, "a result differs"),
-        (2, "bad usage or input"),
-        (3, "not known: the log is truncated, its run is incomplete, or --max-darts was reached"),
-    ],
-))]
-pub(super) struct ReplayArguments {
-    /// The log
-    log: PathBuf,
-    #[command(flatten)]
-    sources: LogOptions,
-    /// The algorithm that makes the map: algorithm1 or folding [default: the one in the log]
-    #[arg(long, hide_possible_values = true)]
-    algorithm: Option<AlgorithmOption>,
-    /// Stop if the map has more darts [default: the limit in the log, or 1000]
-    #[arg(long, value_name = "N")]
-    max_darts: Option<usize>,
-    /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
-    #[arg(long, value_name = "FILE")]
-    map: Option<PathBuf>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
+/// A log, and how it is mapped again.
+pub(super) struct Rerun<'a> {
+    pub(super) log: &'a Path,
+    pub(super) sources: &'a LogOptions,
+    /// Instead of the algorithm in the log.
+    pub(super) algorithm: Option<AlgorithmOption>,
+    /// Instead of the limit in the log.
+    pub(super) max_darts: Option<usize>,
+    /// Where the map is written.
+    pub(super) map: Option<&'a Path>,
+    pub(super) json: bool,
 }
 
 /// What `--json` prints.
@@ -92,18 +71,18 @@ struct DifferenceJson {
     found: String,
 }
 
-impl ReplayArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        if let Some(map) = &self.map {
+impl Rerun<'_> {
+    pub(super) fn run(&self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        if let Some(map) = self.map {
             output::check_world_place(map, false)?;
         }
-        let opened = OpenLog::new(&self.log, &self.sources)?;
+        let opened = OpenLog::new(self.log, self.sources)?;
         let begun = Instant::now();
         let RecordedSettings { method, budget, is_resumed, dart_bound } =
-            opened.settings(&self.log, self.algorithm)?;
+            opened.settings(self.log, self.algorithm)?;
         if is_resumed {
             let cause = "its robot went on from an earlier run, which is not in this log";
-            return Err(CliError::in_file(&self.log, cause));
+            return Err(CliError::in_file(self.log, cause));
         }
         let dart_bound = self.max_darts.unwrap_or(dart_bound);
         let settings = RunSettings { budget, ..RunSettings::new(method, dart_bound) };
@@ -111,9 +90,9 @@ impl ReplayArguments {
         let replay = replay(log, topics, opened.sensor(), &settings);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
-            ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
-            ReplayError::Calibration(error) => opened.wrong_calibration(&self.log, &error),
-            error => CliError::in_file(&self.log, error),
+            ReplayError::TopicMap(error) => opened.wrong_mapping(self.log, &error),
+            ReplayError::Calibration(error) => opened.wrong_calibration(self.log, &error),
+            error => CliError::in_file(self.log, error),
         })?;
         if self.json {
             print_line(out, "replay", &self.line(&opened, &replay, seconds))?;
@@ -123,7 +102,7 @@ impl ReplayArguments {
                 writeln!(out, "The log is {truncation}.")?;
             }
         }
-        if let Some(path) = &self.map {
+        if let Some(path) = self.map {
             let complete = replay.mapping.map().complete();
             match complete.filter(|_| replay.error.is_none()) {
                 None => remark!("the map is not written: the run ended early"),

@@ -1,4 +1,4 @@
-//! `toposlam train`: learns the colours of a building from labelled images of it. Section 3.
+//! `toposlam camera train`: learns the colours of a building from labelled images of it. Section 3.
 
 mod report;
 
@@ -18,7 +18,7 @@ use toposlam_vision::{
     colour::{ExampleError, PixelClass, Stripe, StripeKind, Training, TrainingError},
 };
 
-use super::{
+use crate::cli::{
     CliError, Outcome, exit_codes::help_end, input, output, picture_file, progress::Progress,
     text::counted,
 };
@@ -33,8 +33,8 @@ use report::{LeftOut, TrainingReport, Validation};
 #[derive(clap::Args)]
 #[command(
     override_usage = "\
-toposlam train [OPTIONS] --images <DIR> --labels <DIR>
-                      --calibration <FILE> --out <FILE>",
+toposlam camera train [OPTIONS] --images <DIR> --labels <DIR>
+                             --calibration <FILE> --out <FILE>",
     after_help = help_end("\
 Colours of labels:
   floor (0,255,0)   stripe (255,0,0)   marker (0,0,255)
@@ -43,13 +43,13 @@ Colours of labels:
 Example, with rendered images and labels:
   mkdir -p images labels
   for n in 1 2 3 4 5 6 7; do
-    toposlam render worlds/shape-8.toml --with-marker --pose 0,$n,$((50 * n)) \\
+    toposlam draw worlds/shape-8.toml --with-marker --pose 0,$n,$((50 * n)) \\
       --seed $n --out images/$n.png --labels labels/$n.png
   done
-  toposlam calibrate images/*.png --out camera.toml
-  toposlam train --images images --labels labels --calibration camera.toml \\
-    --out colours.toml
-  toposlam render worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 \\
+  toposlam camera calibrate images/*.png --out camera.toml
+  toposlam camera train --images images --labels labels \\
+    --calibration camera.toml --out colours.toml
+  toposlam draw worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 \\
     --seed 8 --out view.png
   toposlam sense view.png --calibration camera.toml --colours colours.toml",
         &[(0, "the colours are learned"), (2, "bad usage or input"), (3, "interrupted")],

@@ -1,9 +1,8 @@
-//! Citations of the paper in source text. The build script uses this file, too, and runs it over all
-//! sources.
+//! Citations of the paper in source text.
 
 /// Whether the requirement is implemented or tested at the citation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CitationKind {
+pub(super) enum CitationKind {
     /// In code.
     Code,
     /// In a test: in a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`,
@@ -13,21 +12,21 @@ pub enum CitationKind {
 
 /// A place in the sources that cites a requirement of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Citation<'a> {
+pub(super) struct Citation<'a> {
     /// The id of the requirement, as written.
-    pub id: &'a str,
+    pub(super) id: &'a str,
     /// The file, relative to the root of the workspace, with `/` between folders.
-    pub file: &'a str,
+    pub(super) file: &'a str,
     /// The line in the file; the first is 1.
-    pub line: usize,
+    pub(super) line: usize,
     /// Code or a test.
-    pub kind: CitationKind,
+    pub(super) kind: CitationKind,
 }
 
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
 /// the end of a line: `// paper: id`, or several ids separated by commas; in a Coq file,
 /// `(* paper: id *)`.
-pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
+pub(super) fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
     let in_coq = file.rsplit('.').next() == Some("v");
     let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
     let mut kind = if tested || in_coq { CitationKind::Test } else { CitationKind::Code };

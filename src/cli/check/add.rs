@@ -1,56 +1,17 @@
-//! `toposlam merge`: adds up the shards of a check.
+//! `toposlam check --add FILE...`: adds up the shards of a check.
+//!
+//! Each shard of each size must be there exactly once, and all must be of the same version, class and algorithm.
+//! A shard stops after a size with a wrong map. If later sizes of it are missing, the result ends there, too.
 
-use std::{
-    collections::BTreeMap,
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, io::Write, path::Path};
 
 use serde::Deserialize;
 use toposlam_model::check::{MappingAlgorithm, Shard};
 
 use super::{
-    CliError, Outcome, RunChoices,
-    check::{AlgorithmInfo, CheckReport, SizeLine},
-    ci_report::{CiCase, CiOptions},
-    exit_codes::help_end,
-    input,
-    text::counted,
+    AlgorithmInfo, CheckArguments, CheckReport, CiCase, CliError, Outcome, RunChoices, SizeLine,
+    counted, input,
 };
-
-/// Add up the results of the shards of a check
-///
-/// Reads the lines that `check --shard I/N --json` printed, and prints the result of the whole check. Each
-/// shard of each size must be there exactly once, and all must be of the same version, class and algorithm.
-/// Otherwise the error lists what is missing, duplicated or different.
-///
-/// A shard stops after a size with a wrong map. If later sizes of it are missing, the result ends there, too.
-#[derive(clap::Args)]
-#[command(after_help = help_end(
-    "\
-Examples:
-  toposlam check --edges 6 --shard 1/2 --json > one.jsonl
-  toposlam check --edges 6 --shard 2/2 --json > two.jsonl
-  toposlam merge one.jsonl two.jsonl",
-    &[
-        (0, "every map is right"),
-        (1, "a map is wrong"),
-        (2, "bad usage or input, also a shard that is missing or occurs twice"),
-        (3, "there is nothing to check, or a limit was reached"),
-    ],
-))]
-pub(super) struct MergeArguments {
-    /// Files with the lines of shards
-    #[arg(value_name = "FILES", required = true)]
-    files: Vec<PathBuf>,
-
-    /// Print one JSON object for each number of edges
-    #[arg(long)]
-    json: bool,
-
-    #[command(flatten)]
-    ci: CiOptions,
-}
 
 /// The beginning of a line.
 #[derive(Deserialize)]
@@ -82,15 +43,15 @@ fn subject(line: &SizeLine) -> [(&'static str, String); 5] {
     ]
 }
 
-impl MergeArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        self.ci.check_places()?;
+impl CheckArguments {
+    /// Prints the result of the whole check whose shards are in some files.
+    pub(super) fn add_shards(&self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut shards = Vec::new();
-        for file in &self.files {
+        for file in &self.shards {
             read_shards(file, &mut shards)?;
         }
         let Some(first) = shards.first() else {
-            let files: Vec<_> = self.files.iter().map(|file| file.display().to_string()).collect();
+            let files: Vec<_> = self.shards.iter().map(|file| file.display().to_string()).collect();
             return Err(CliError::at(files.join(", "), "there is no line of a shard"));
         };
         let algorithm = algorithm_of(first)?;

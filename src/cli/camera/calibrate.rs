@@ -1,4 +1,4 @@
-//! `toposlam calibrate IMAGE...`: finds centre, rim and focal length of a spherical mirror in images, or
+//! `toposlam camera calibrate IMAGE...`: finds centre, rim and focal length of a spherical mirror in images, or
 //! takes the rim that is given.
 //! Section 3.
 
@@ -18,7 +18,7 @@ use toposlam_vision::camera::{
     unchanging,
 };
 
-use super::{
+use crate::cli::{
     CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
     progress::watch_for_interrupt, text::three_numbers,
 };
@@ -34,9 +34,9 @@ use super::{
 #[command(after_help = help_end(
     "\
 Example:
-  toposlam calibrate view-*.png --out camera.toml --picture fit.png \\
-    --mask-out mask.png
-  toposlam calibrate view.png --rim 611,480,652 --out camera.toml
+  toposlam camera calibrate view-*.png --out camera.toml \\
+    --picture fit.png --mask-out mask.png
+  toposlam camera calibrate view.png --rim 611,480,652 --out camera.toml
 
 Missing values are taken from --initial. Without it they are the SuperScout's: \
 radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
