@@ -1,5 +1,5 @@
-//! The structure of the workspace, read from its source: no circles of modules, no forbidden imports, the order
-//! of modules that the documents state, no public type name twice.
+//! The structure of the crates, read from their source: no circles of modules, the order of modules that the documents
+//! state, no public type name twice.
 //!
 //! A module is a file. It depends on the files that its `use` items and its paths name; a name that a
 //! module only re-exports counts for the file that defines it. A file is part of its ancestors, so that
@@ -11,35 +11,22 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The crates, lowest first: name, folder of the source, and the crates that it may use.
-const CRATES: [(&str, &str, &[&str]); 8] = [
-    ("toposlam_model", "model/src", &[]),
-    ("toposlam_vision", "vision/src", &["toposlam_model"]),
-    ("toposlam_render", "render/src", &["toposlam_model", "toposlam_vision"]),
-    ("toposlam_robot", "robot/src", &["toposlam_model", "toposlam_vision", "toposlam_render"]),
-    ("toposlam_proofs", "proofs/src", &["toposlam_model"]),
-    ("toposlam_cluster", "cluster/src", &["toposlam_model"]),
-    (
-        "toposlam",
-        "src",
-        &[
-            "toposlam_model",
-            "toposlam_vision",
-            "toposlam_robot",
-            "toposlam_proofs",
-            "toposlam_cluster",
-        ],
-    ),
+/// The crates: name, and folder of the source. Cargo enforces which of them use which.
+const CRATES: [(&str, &str); 12] = [
+    ("toposlam_model", "model/src"),
+    ("toposlam_vision", "vision/src"),
+    ("toposlam_logs", "logs/src"),
+    ("toposlam_robot", "robot/src"),
+    ("toposlam_conform", "conform/src"),
+    ("toposlam_simulator", "simulator/src"),
+    ("toposlam_draw", "draw/src"),
+    ("toposlam_terminal", "terminal/src"),
+    ("toposlam_proofs", "proofs/src"),
+    ("toposlam_cluster", "cluster/src"),
+    ("toposlam", "src"),
     // The extension module of the Python package, a workspace of its own.
-    ("_core", "python/src", &["toposlam_model", "toposlam_vision", "toposlam_robot", "toposlam"]),
+    ("_core", "python/src"),
 ];
-
-/// In the robot's crate, the modules that simulate. No other module depends on them, even through other modules.
-const SIMULATES: [&str; 4] = ["evaluation", "ros1::simulated", "run", "simulator"];
-
-/// In the robot's crate, a module and one on which it must not depend, even through other modules.
-const INDEPENDENT: [(&str, &str); 4] =
-    [("run", "evaluation"), ("simulator", "evaluation"), ("record", "log"), ("explorer", "log")];
 
 /// A token of Rust source; of literals only that there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -430,65 +417,34 @@ fn module_path(file: &Path) -> Vec<String> {
     path
 }
 
-fn crates() -> Vec<(Crate, &'static [&'static str])> {
+fn crates() -> Vec<Crate> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    CRATES
-        .iter()
-        .map(|&(name, folder, below)| (Crate::read(name, &root.join(folder)), below))
-        .collect()
+    CRATES.iter().map(|&(name, folder)| Crate::read(name, &root.join(folder))).collect()
 }
 
-/// All that can be reached from a module, and the module before each on the way.
-fn reached<'c>(edges: &Edges<'c>, from: &'c [String]) -> BTreeMap<&'c [String], &'c [String]> {
-    let mut before = BTreeMap::new();
+/// All that can be reached from a module.
+fn reached<'c>(edges: &Edges<'c>, from: &'c [String]) -> BTreeSet<&'c [String]> {
+    let mut found = BTreeSet::new();
     let mut open = vec![from];
     while let Some(here) = open.pop() {
-        for &next in edges.get(here).into_iter().flatten() {
-            before.entry(next).or_insert_with(|| {
-                open.push(next);
-                here
-            });
-        }
+        let next = edges.get(here).into_iter().flatten();
+        open.extend(next.filter(|&&next| found.insert(next)));
     }
-    before
-}
-
-fn starts_with(module: &[String], prefix: &str) -> bool {
-    let prefix: Vec<_> = prefix.split("::").collect();
-    module.len() >= prefix.len() && module.iter().zip(prefix).all(|(part, other)| part == other)
-}
-
-/// The files on the way to a module, the last first.
-fn way(
-    krate: &Crate,
-    before: &BTreeMap<&[String], &[String]>,
-    from: &[String],
-    to: &[String],
-) -> String {
-    let mut files = vec![krate.file(to)];
-    let mut here = to;
-    while let Some(&earlier) = before.get(here) {
-        files.push(krate.file(earlier));
-        if earlier == from {
-            break;
-        }
-        here = earlier;
-    }
-    files.join("\n  is used by ")
+    found
 }
 
 #[test]
 fn no_modules_depend_on_each_other() {
     let mut circles = BTreeSet::new();
-    for (krate, _) in &crates() {
+    for krate in &crates() {
         let edges = krate.edges();
         assert!(edges.len() * 2 > krate.modules.len(), "{}: imports were not found", krate.name);
         for &module in edges.keys() {
             let below = reached(&edges, module);
-            if below.contains_key(module) {
-                let back = |other: &&&[String]| reached(&edges, other).contains_key(module);
+            if below.contains(module) {
+                let back = |other: &&&[String]| reached(&edges, other).contains(module);
                 let circle: Vec<_> =
-                    below.keys().filter(back).map(|other| krate.file(other)).collect();
+                    below.iter().filter(back).map(|other| krate.file(other)).collect();
                 circles.insert(circle.join(", "));
             }
         }
@@ -499,7 +455,7 @@ fn no_modules_depend_on_each_other() {
 
 #[test]
 fn no_folders_depend_on_each_other() {
-    for (krate, _) in &crates() {
+    for krate in &crates() {
         let mut below: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
         for (from, targets) in krate.edges() {
             let Some(from) = from.first() else { continue };
@@ -519,74 +475,6 @@ fn no_folders_depend_on_each_other() {
     }
 }
 
-#[test]
-fn crates_use_only_crates_below_them() {
-    for (krate, below) in crates() {
-        for module in krate.modules.values() {
-            let paths = module.uses.iter().map(|(path, _)| path).chain(&module.paths);
-            for first in paths.filter_map(|path| path.first()) {
-                let other = CRATES.iter().any(|(name, ..)| name == first) && first != krate.name;
-                assert!(
-                    !other || below.contains(&first.as_str()),
-                    "{} uses {first}",
-                    relative(&module.file)
-                );
-            }
-        }
-    }
-}
-
-/// The ways from modules to others on which they must not depend.
-fn forbidden(
-    krate: &Crate,
-    edges: &Edges,
-    from: impl Fn(&[String]) -> bool,
-    to: impl Fn(&[String]) -> bool,
-) -> Vec<String> {
-    let mut forbidden = Vec::new();
-    for &module in edges.keys().filter(|module| from(module)) {
-        let before = reached(edges, module);
-        if let Some(other) = before.keys().find(|other| to(other)) {
-            forbidden.push(way(krate, &before, module, other));
-        }
-    }
-    forbidden
-}
-
-#[test]
-fn only_evaluation_and_simulated_robots_use_the_simulator() {
-    let crates = crates();
-    let (robot, _) = crates.iter().find(|(krate, _)| krate.name == "toposlam_robot").unwrap();
-    let edges = robot.edges();
-    let simulates = |module: &[String]| SIMULATES.iter().any(|name| starts_with(module, name));
-    // A module that only hands on what is in a module below it.
-    let contains_one = |module: &[String]| {
-        SIMULATES.iter().any(|name| name.starts_with(&format!("{}::", module.join("::"))))
-    };
-    let mut found =
-        forbidden(robot, &edges, |from| !simulates(from) && !contains_one(from), simulates);
-    for (module, other) in INDEPENDENT {
-        found.extend(forbidden(
-            robot,
-            &edges,
-            |from| starts_with(from, module),
-            |to| starts_with(to, other),
-        ));
-    }
-    assert!(found.is_empty(), "forbidden imports:\n{}", found.join("\n"));
-    // Nor does any other module use the crate that renders images.
-    for (path, module) in &robot.modules {
-        let paths = module.uses.iter().map(|(path, _)| path).chain(&module.paths);
-        let renders = paths.filter_map(|path| path.first()).any(|first| first == "toposlam_render");
-        assert!(!renders || simulates(path), "{} renders", relative(&module.file));
-    }
-    let named = INDEPENDENT.into_iter().flat_map(|(one, other)| [one, other]).chain(SIMULATES);
-    for name in named {
-        let exists = robot.modules.keys().any(|module| starts_with(module, name));
-        assert!(exists, "there is no module {name}");
-    }
-}
-
 /// The modules that the documentation of a crate lists, in its order.
 fn listed_modules(source: &str) -> Vec<&str> {
     let listed = source.lines().filter_map(|line| line.strip_prefix("//! * [`"));
@@ -596,7 +484,7 @@ fn listed_modules(source: &str) -> Vec<&str> {
 #[test]
 fn the_modules_of_the_model_import_only_from_those_that_are_listed_before_them() {
     let crates = crates();
-    let (model, _) = crates.iter().find(|(krate, _)| krate.name == "toposlam_model").unwrap();
+    let model = crates.iter().find(|krate| krate.name == "toposlam_model").unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let source = fs::read_to_string(root.join("model/src/lib.rs")).unwrap();
     let order = listed_modules(&source);
@@ -631,8 +519,8 @@ fn no_public_type_name_is_used_twice() {
     let crates = crates();
     let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     // The classes of Python have the names of what they wrap.
-    let rust = crates.iter().filter(|(krate, _)| krate.name != "_core");
-    for module in rust.flat_map(|(krate, _)| krate.modules.values()) {
+    let rust = crates.iter().filter(|krate| krate.name != "_core");
+    for module in rust.flat_map(|krate| krate.modules.values()) {
         for name in &module.types {
             places.entry(name).or_default().push(relative(&module.file));
         }

@@ -6,7 +6,7 @@
 use std::{collections::BTreeSet, fs, path::Path, process::Command};
 
 use serde_json::Value;
-use toposlam::model::{
+use toposlam_model::{
     enumerate::Class,
     format::world_file,
     marker::{MARKERS, Marker},

@@ -4,13 +4,8 @@
 
 use std::{fs, io::Cursor, path::Path};
 
-use toposlam::{
-    model::{
-        folding::fold,
-        format::world_file,
-        percept::Door,
-        world::{GraphWorld, World},
-    },
+use toposlam_conform::{ConformVerdict, FaultClass};
+use toposlam_draw::{
     page::conform_page,
     picture::{OpenGraph, WorldPicture, open_svg, svg},
     report::{
@@ -18,9 +13,12 @@ use toposlam::{
         MessagePlace, ReportOrigin, SourceFile,
     },
 };
-use toposlam_robot::{
-    conform::{ConformVerdict, FaultClass},
-    log::error::OffsetUnit,
+use toposlam_logs::error::OffsetUnit;
+use toposlam_model::{
+    folding::fold,
+    format::world_file,
+    percept::Door,
+    world::{GraphWorld, World},
 };
 
 use crate::browser;

@@ -10,10 +10,8 @@ use std::{
     process::{Command, Output},
 };
 
-use toposlam::{
-    model::format::{named_world::NamedWorld, world_file},
-    picture::{WorldPicture, svg},
-};
+use toposlam_draw::picture::{WorldPicture, svg};
+use toposlam_model::format::{named_world::NamedWorld, world_file};
 
 fn read(path: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()

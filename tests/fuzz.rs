@@ -16,16 +16,16 @@ use proptest::{
     sample::{Index, select},
     test_runner::{RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner},
 };
-use toposlam_model::format::{
-    plantri::{self, PlantriCode},
-    world_file,
-};
-use toposlam_robot::log::{
+use toposlam_logs::{
     decode::decode,
     definition::{Definition, Dialect},
     reader::Log,
     rosbag2,
     topic_map::TopicMap,
+};
+use toposlam_model::format::{
+    plantri::{self, PlantriCode},
+    world_file,
 };
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
 
@@ -47,9 +47,9 @@ fn targets() -> Vec<FuzzTarget> {
     });
     let vision = toposlam_vision::fuzz::TARGETS.iter();
     let vision = vision.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_vision" });
-    let robot = toposlam_robot::fuzz::TARGETS.iter();
-    let robot = robot.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_robot" });
-    proofs.chain(vision).chain(robot).collect()
+    let logs = toposlam_conform::fuzz::TARGETS.iter();
+    let logs = logs.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_conform" });
+    proofs.chain(vision).chain(logs).collect()
 }
 
 /// A file or folder of the repository.
@@ -367,7 +367,7 @@ fn the_names_of_seeds_show_whether_they_are_valid() {
                 "rosbag2_metadata" => rosbag2::file_names(&bytes).is_ok(),
                 #[cfg(feature = "sqlite")]
                 "database_rows" => {
-                    is_log(&toposlam_robot::fuzz::database::of_rows(&bytes).unwrap())
+                    is_log(&toposlam_conform::fuzz::database::of_rows(&bytes).unwrap())
                 }
                 #[cfg(not(feature = "sqlite"))]
                 "database_rows" => !name.starts_with("error-"),

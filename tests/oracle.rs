@@ -6,7 +6,7 @@
 use std::{collections::HashMap, process::Command};
 
 use serde_json::{Value, json};
-use toposlam::model::{
+use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     folding::{FoldedTrail, certificate_length, fold},
     format::world_file,

@@ -11,7 +11,7 @@ use std::{
 };
 
 use serde_json::{Value, json};
-use toposlam::model::{
+use toposlam_model::{
     check::{ExploredMap, Flaw, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
@@ -156,7 +156,7 @@ fn the_judge_of_the_game_agrees_with_the_specification() {
     let (walks, open) = folded_walks();
     let file = folder().join("cases.jsonl");
     fs::write(&file, maps + &walks).unwrap();
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/page/browser");
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("draw/src/page/browser");
     let arguments = [scripts.as_os_str(), file.as_os_str()];
     let Some(printed) = browser::run_in_node("play_judge.mjs", &arguments) else { return };
     let lines: Vec<_> = printed.lines().collect();

@@ -4,7 +4,7 @@
 
 use std::{fs, io::Cursor, path::Path};
 
-use toposlam::{
+use toposlam_draw::{
     page::run_page,
     picture::{png, run_svg},
 };

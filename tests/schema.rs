@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use validator::problem;
 
 /// Commands for each schema, by its name. They are run from top to bottom, in one folder.
-const COMMANDS: [(&str, &[&str]); 19] = [
+const COMMANDS: [(&str, &[&str]); 13] = [
     (
         "proofs",
         &[
@@ -110,56 +110,20 @@ const COMMANDS: [(&str, &[&str]); 19] = [
             "sense nothing.mcap",
         ],
     ),
-    (
-        "evaluate-control",
-        &[
-            "evaluate control --traversals 60",
-            "evaluate control --traversals 300 --noise 5",
-            "evaluate control --traversals 0",
-        ],
-    ),
-    (
-        "evaluate-laser",
-        &[
-            "evaluate laser --walks 2 --runs 1 --traversals 2",
-            "evaluate laser --walk 1 --drift 30",
-            "evaluate laser --walks 0 --runs 1 --traversals 0 --recover",
-        ],
-    ),
-    (
-        "evaluate-lengths",
-        &[
-            "evaluate lengths --plan worlds/shape-6.toml --traversals 300",
-            "evaluate lengths --plans 1 --traversals 10",
-        ],
-    ),
-    (
-        "evaluate-mistakes",
-        &[
-            "evaluate mistakes --edges 1..=3",
-            "evaluate mistakes --edges 1..=2 --algorithm folding --recover",
-        ],
-    ),
-    (
-        "evaluate-runs",
-        &[
-            "evaluate runs --plans 2 --starts 1",
-            "evaluate runs --plans 2 --starts 1 --faults",
-            "evaluate runs --plans 2 --starts 1 --faults 2 --algorithm folding --recover",
-        ],
-    ),
-    (
-        "evaluate-vision",
-        &[
-            "evaluate vision --size 640x480 --look tiles --views 12 --visits 1",
-            "evaluate vision --size 640x480 --look tiles --view 5 --out-dir view",
-            "evaluate vision --size 640x480 --look tiles --views 4 --clutter",
-        ],
-    ),
 ];
 
-/// One needs a live robot, the other a build with the feature `cluster`: `tests/cluster.rs` checks its line.
-const NOT_RUN: [&str; 2] = ["drive", "cluster"];
+/// One needs a live robot, the next a build with the feature `cluster`: `tests/cluster.rs` checks its line. The others
+/// are of the program `evaluate`: `simulator/tests/evaluate` checks them.
+const NOT_RUN: [&str; 8] = [
+    "drive",
+    "cluster",
+    "evaluate-control",
+    "evaluate-laser",
+    "evaluate-lengths",
+    "evaluate-mistakes",
+    "evaluate-runs",
+    "evaluate-vision",
+];
 
 fn path(of: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(of)

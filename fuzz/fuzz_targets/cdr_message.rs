@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_robot::fuzz::cdr_message(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_conform::fuzz::cdr_message(bytes));

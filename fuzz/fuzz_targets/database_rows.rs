@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_robot::fuzz::database_rows(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_conform::fuzz::database_rows(bytes));

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_robot::fuzz::ros1_message(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| toposlam_conform::fuzz::ros1_message(bytes));

@@ -1,37 +1,13 @@
 //! A log, checked against the specification.
 
 use pyo3::{prelude::*, types::PyDict};
-use toposlam_model::{
-    embedded_graph::Dart,
-    enumerate::Class,
-    folding::{SmallestWorld, WorldSearch},
-    format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
-    marker::{Marker, NoMarker},
-    percept::{Percept as ModelPercept, Sighting},
-    trace::{AlgorithmCase, anywhere},
-    world::{GraphWorld, State},
-};
-use toposlam_robot::{
-    conform::{
-        CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement,
-        KnownWorld, LogHead, Quirks, RESUMED, RunDriver, assume_marker, extract, judge,
-        marker_at_start,
-    },
-    log::topic_map::TopicMap,
-    run_settings::RecordedSettings,
-};
-use toposlam_vision::{
-    camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
-};
+use toposlam_model::{embedded_graph::Dart, enumerate::Class, folding::{SmallestWorld, WorldSearch}, format::named_world::NamedWorld, mapping::DirectionalAlgorithm, marker::{Marker, NoMarker}, percept::{Percept as ModelPercept, Sighting}, trace::{AlgorithmCase, anywhere}, world::{GraphWorld, State}};
+use toposlam_conform::{CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement, KnownWorld, LogHead, Quirks, RESUMED, RunDriver, assume_marker, extract, judge, marker_at_start};
+use toposlam_logs::topic_map::TopicMap;
+use toposlam_robot::run_settings::RecordedSettings;
+use toposlam_vision::{camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor};
 
-use crate::{
-    error::{error, interrupted},
-    log::{LogReader, shown},
-    long_work::{Watcher, run_watched},
-    percept::Percept,
-    world::{CoreWorld, named_marker},
-};
+use crate::{error::{error, interrupted}, log::{LogReader, shown}, long_work::{Watcher, run_watched}, percept::Percept, world::{CoreWorld, named_marker}};
 
 /// How a log is checked.
 struct Question {
@@ -266,7 +242,7 @@ fn events(judgement: &Judgement) -> Vec<EventFields> {
         let state = poses.alone.get(judgement.trace.index_of(index))?.as_ref()?;
         Some(state.pose.0)
     };
-    let fields = |(index, event): (usize, &toposlam_robot::conform::CheckedEvent)| {
+    let fields = |(index, event): (usize, &toposlam_conform::CheckedEvent)| {
         let time = event.source.time.saturating_sub(begun) as f64 / 1e9;
         let (kind, percept, door) = match &event.kind {
             CheckedKind::Arrival { arrival, .. } => {

@@ -2,28 +2,10 @@
 
 use pyo3::prelude::*;
 use thiserror::Error;
-use toposlam::story::{Story, StoryDetail, head};
-use toposlam_model::{
-    check::{Algorithm, Algorithm1, Folding, MovableMarker, RunState, judge},
-    embedded_graph::Dart,
-    enumerate::Watch,
-    folding,
-    format::named_world::NamedWorld,
-    isomorphism::Candidate,
-    mapping::{
-        FACING, Journey, MappingError, MappingEvent, Nearest, Observer, map_by_folding,
-        map_with_movable_marker, map_world,
-    },
-    marker::Marker,
-    percept::{Door, Percept},
-    world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World},
-};
+use toposlam_draw::story::{Story, StoryDetail, head};
+use toposlam_model::{check::{Algorithm, Algorithm1, Folding, MovableMarker, RunState, judge}, embedded_graph::Dart, enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, Journey, MappingError, MappingEvent, Nearest, Observer, map_by_folding, map_with_movable_marker, map_world}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World}};
 
-use crate::{
-    error::{error, interrupted},
-    long_work::{Watcher, run_watched},
-    world::CoreWorld,
-};
+use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, world::CoreWorld};
 
 /// A run that mapped its world.
 #[derive(IntoPyObject)]

@@ -3,32 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
-use toposlam::picture::{LaserRunPicture, laser_run_svg};
-use toposlam_model::{
-    driving::{
-        odometry::Odometry,
-        scene::{Place, Scene},
-    },
-    enumerate::Watch,
-    percept::{Door, Percept as ModelPercept},
-};
-use toposlam_robot::{
-    log::{
-        Format,
-        entries::{Content, Entry},
-        error::LogError,
-        messages::Run,
-        reader::Log,
-        topic_map::{Role, TopicMap},
-    },
-    record::{Arrival, EventKind, Frame, RunEnding},
-};
+use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
+use toposlam_model::{driving::{odometry::Odometry, scene::{Place, Scene}}, enumerate::Watch, percept::{Door, Percept as ModelPercept}};
+use toposlam_logs::{Format, entries::{Content, Entry}, error::LogError, messages::Run, reader::Log, topic_map::{Role, TopicMap}, record::{Arrival, EventKind, Frame, RunEnding}};
 
-use crate::{
-    error::{error, interrupted},
-    long_work::{Watcher, run_watched},
-    percept::Percept,
-};
+use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, percept::Percept};
 
 /// A log that is open for reading.
 #[pyclass(frozen, module = "toposlam._core")]

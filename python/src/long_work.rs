@@ -1,19 +1,10 @@
 //! Long work: without the interpreter lock, on a thread of its own, while the thread of the caller handles
 //! signals and shows progress.
 
-use std::{
-    panic::{AssertUnwindSafe, catch_unwind},
-    sync::{
-        atomic::{AtomicBool, AtomicU64, Ordering},
-        mpsc,
-    },
-    thread,
-    time::Duration,
-};
+use std::{panic::{AssertUnwindSafe, catch_unwind}, sync::{atomic::{AtomicBool, AtomicU64, Ordering}, mpsc}, thread, time::Duration};
 
 use pyo3::prelude::*;
 use toposlam_model::enumerate::Watch;
-use toposlam_robot::conform::SensingProgress;
 
 use crate::error::internal;
 
@@ -43,12 +34,6 @@ impl Watch for Watcher {
 
     fn stop(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
-    }
-}
-
-impl SensingProgress for Watcher {
-    fn sensed(&self, pictures: u64) {
-        self.count(pictures);
     }
 }
 

@@ -3,18 +3,8 @@
 use std::path::PathBuf;
 
 use pyo3::{prelude::*, types::PyBytes};
-use toposlam::picture::{Placement, WorldPicture, png, svg};
-use toposlam_model::{
-    embedded_graph::{Dart, EmbeddedGraph, GraphError},
-    format::{
-        dot,
-        named_world::NamedWorld,
-        plantri,
-        world_file::{self, WorldFileErrorKind},
-    },
-    isomorphism::{canonical, code},
-    marker::{self, Marker},
-};
+use toposlam_draw::picture::{Placement, WorldPicture, png, svg};
+use toposlam_model::{embedded_graph::{Dart, EmbeddedGraph, GraphError}, format::{dot, named_world::NamedWorld, plantri, world_file::{WorldFileErrorKind, self}}, isomorphism::{canonical, code}, marker::{Marker, self}};
 
 use crate::error::{error, guarded};
 

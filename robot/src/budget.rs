@@ -20,10 +20,13 @@ pub struct RunBudget {
 
 /// What a run has spent, or a part of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Spent {
-    pub(crate) moves: u64,
-    pub(crate) seconds: f64,
-    pub(crate) metres: f64,
+pub struct Spent {
+    /// Moves.
+    pub moves: u64,
+    /// Seconds by the robot's clock.
+    pub seconds: f64,
+    /// Metres by odometry.
+    pub metres: f64,
 }
 
 /// The limit of a budget that the run comes near.
@@ -102,7 +105,7 @@ struct Leg {
 
 /// A robot's budget, and its way back to the marker.
 #[derive(Clone, Debug)]
-pub(crate) struct Allowance {
+pub struct Allowance {
     budget: RunBudget,
     spent: Spent,
     longest: Option<Spent>,
@@ -127,7 +130,8 @@ enum Leaving {
 
 impl Allowance {
     /// The allowance of a robot that begins.
-    pub(crate) fn new(budget: RunBudget) -> Self {
+    #[must_use]
+    pub fn new(budget: RunBudget) -> Self {
         Self {
             budget,
             spent: Spent::default(),
@@ -150,7 +154,8 @@ impl Allowance {
     }
 
     /// The limit that would not allow to take a door and to return to the marker.
-    pub(crate) fn forbids(&self, door: Door, spent: Spent) -> Option<BudgetLimit> {
+    #[must_use]
+    pub fn forbids(&self, door: Door, spent: Spent) -> Option<BudgetLimit> {
         if !self.legs.is_empty() && self.door(door) == 0 {
             return None;
         }
@@ -160,7 +165,7 @@ impl Allowance {
     }
 
     /// The robot takes a door.
-    pub(crate) fn leave(&mut self, door: Door, spent: Spent) {
+    pub fn leave(&mut self, door: Door, spent: Spent) {
         self.spent = spent;
         let door = self.door(door);
         let back = !self.legs.is_empty() && door == 0;
@@ -168,12 +173,12 @@ impl Allowance {
     }
 
     /// The robot has come to the next junction, and perceives it.
-    pub(crate) fn perceive(&mut self, Percept { degree, sighting }: Percept, spent: Spent) {
+    pub fn perceive(&mut self, Percept { degree, sighting }: Percept, spent: Spent) {
         self.arrive(degree, matches!(sighting, Sighting::Pointing(_)), spent);
     }
 
     /// The robot has come to the next junction.
-    pub(crate) fn arrive(&mut self, degree: u32, sees_marker: bool, spent: Spent) {
+    pub fn arrive(&mut self, degree: u32, sees_marker: bool, spent: Spent) {
         let cost = Spent { moves: 1, ..spent.since(self.spent) };
         let leaving = self.leaving.take();
         if leaving.is_some() {
@@ -199,7 +204,7 @@ impl Allowance {
     }
 
     /// The robot got lost.
-    pub(crate) fn lose_way(&mut self) {
+    pub fn lose_way(&mut self) {
         self.knows_way = false;
         self.leaving = None;
         self.legs.clear();
@@ -207,13 +212,15 @@ impl Allowance {
     }
 
     /// The door of the way back; `None` at the marker, or if the way is not known.
-    pub(crate) fn door_back(&self) -> Option<Door> {
+    #[must_use]
+    pub fn door_back(&self) -> Option<Door> {
         let is_away = self.knows_way && !self.legs.is_empty();
         is_away.then(|| Door(self.entry).inverse(self.degree.max(1)))
     }
 
     /// Whether the robot is at the marker.
-    pub(crate) fn is_at_marker(&self) -> bool {
+    #[must_use]
+    pub fn is_at_marker(&self) -> bool {
         self.knows_way && self.legs.is_empty() && self.leaving.is_none()
     }
 }

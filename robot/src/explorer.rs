@@ -6,6 +6,10 @@ mod obstacle;
 mod relocation;
 
 use thiserror::Error;
+use toposlam_logs::record::{
+    Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
+    RunObserver, SensingError, nanoseconds,
+};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
@@ -19,10 +23,6 @@ use toposlam_model::{
 use crate::{
     budget::{Allowance, BudgetLimit, RunBudget, Spent},
     measured_hallway::{MeasuredHallway, direction},
-    record::{
-        Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
-        RunObserver, SensingError, nanoseconds,
-    },
     robot::{Robot, RobotError, Sample},
     run_settings::RunSettings,
 };
@@ -452,13 +452,14 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    use toposlam_logs::record::NoSensor;
     use toposlam_model::driving::{
         odometry::Odometry,
         scene::{CentreLine, JunctionView, Place},
     };
 
     use super::*;
-    use crate::{record::NoSensor, robot::TimedOdometry};
+    use crate::robot::TimedOdometry;
 
     /// A robot at the turning point of an L.
     struct Still {

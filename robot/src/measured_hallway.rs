@@ -23,7 +23,7 @@ pub fn log_noise() -> MeasurementNoise {
 
 /// A hallway since the robot arrived at a junction.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct MeasuredHallway {
+pub struct MeasuredHallway {
     way: WayLength,
     /// The direction in which the robot left, if it is known.
     exit: Option<f64>,
@@ -33,7 +33,8 @@ pub(crate) struct MeasuredHallway {
 
 impl MeasuredHallway {
     /// The robot stands at a junction, perhaps at this odometry.
-    pub(crate) fn from(odometry: Option<Odometry>) -> Self {
+    #[must_use]
+    pub fn from(odometry: Option<Odometry>) -> Self {
         let mut hallway = Self::default();
         if let Some(odometry) = odometry {
             hallway.way.add(odometry);
@@ -42,25 +43,27 @@ impl MeasuredHallway {
     }
 
     /// It leaves in this direction, if it is known.
-    pub(crate) fn leave(&mut self, direction: Option<f64>) {
+    pub fn leave(&mut self, direction: Option<f64>) {
         self.exit = direction;
     }
 
     /// The next odometry.
-    pub(crate) fn add(&mut self, odometry: Odometry) {
+    pub fn add(&mut self, odometry: Odometry) {
         self.way.add(odometry);
         self.moved = true;
     }
 
     /// The measurement up to an arrival with this direction of the entry door.
-    pub(crate) fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
+    #[must_use]
+    pub fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
         let length = self.way.length().filter(|_| self.moved)?;
         Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
     }
 }
 
 /// The turn from the direction of the door by which a robot left to that in which it comes in.
-pub(crate) fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
+#[must_use]
+pub fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
     exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
 }
 

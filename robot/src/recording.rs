@@ -1,11 +1,9 @@
 //! A recording in memory, and a robot that plays it back: the off-line version. Section 6.
 
+use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
 use toposlam_model::driving::algorithm2::Command;
 
-use crate::{
-    record::{Event, EventKind, Frame, RunObserver},
-    robot::{Robot, RobotError, TimedOdometry},
-};
+use crate::robot::{Robot, RobotError, TimedOdometry};
 
 /// The frames and the commands of a run.
 #[derive(Clone, Debug, Default, PartialEq)]

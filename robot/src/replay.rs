@@ -4,6 +4,13 @@
 use std::{collections::HashMap, fmt};
 
 use thiserror::Error;
+use toposlam_logs::{
+    entries::{Content, Entries},
+    error::LogError,
+    reader::Log,
+    record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
+    topic_map::{Role, TopicMap, TopicMapError},
+};
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
     mapping::{MappingError, MappingRun},
@@ -13,13 +20,6 @@ use toposlam_vision::sensing::{Sensor, WrongSize};
 
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
-    log::{
-        entries::{Content, Entries},
-        error::LogError,
-        reader::Log,
-        topic_map::{Role, TopicMap, TopicMapError},
-    },
-    record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
     robot::{Robot, RobotError, TimedOdometry},
     run_settings::RunSettings,
 };
@@ -349,89 +349,5 @@ impl ReplayComparison {
             let (recorded, found) = (format!("{recorded:?}"), format!("{found:?}"));
             self.difference = Some(ReplayDifference { frame, time, what, recorded, found });
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use toposlam_model::mapping::DirectionalAlgorithm;
-
-    use super::*;
-    use crate::{
-        evaluation::{plans, run_sampler::starts_of},
-        log::recorder::Recorder,
-        record::NoSensor,
-        run::run,
-        simulator::SimulationConfig,
-    };
-
-    fn recorded(seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
-        recorded_in("shape-6", seed, algorithm)
-    }
-
-    fn recorded_in(world: &str, seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
-        let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == world).unwrap();
-        let facing = starts_of(&plan)[0];
-        let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
-        setting.keeps_track = true;
-        let mut log = Vec::new();
-        let mut recorder =
-            Recorder::new(&mut log, &crate::log::messages::Run::default(), None).unwrap();
-        let robot = setting.by_scene();
-        let run =
-            run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
-        recorder.finish().unwrap();
-        (Log::of_bytes(log).unwrap(), run.mapping)
-    }
-
-    // paper: exp.off-line
-    #[test]
-    fn a_replay_reproduces_the_map_and_all_results() {
-        for seed in 0..4 {
-            let algorithm = DirectionalAlgorithm::ALL[seed as usize % 2];
-            let (log, mapping) = recorded(seed, algorithm);
-            let topics = TopicMap::unambiguous(&log);
-            let replay = replay(&log, &topics, None, &RunSettings::new(algorithm, 200)).unwrap();
-            let to = replay.comparison;
-            assert_eq!((replay.error, to.difference), (None, None));
-            assert_eq!(replay.mapping.map(), mapping.map());
-            assert_eq!(to.map, Some(true));
-            let moves = mapping.moves();
-            assert_eq!(to.doors, Agreement { agree: moves, of: moves });
-            assert_eq!(to.percepts, Agreement { agree: moves + 1, of: moves + 1 });
-            assert!(to.commands.is_whole() && to.commands.of > 20, "{:?}", to.commands);
-        }
-    }
-
-    #[test]
-    fn another_algorithm_than_the_recorded_one_takes_another_door() {
-        let [algorithm1, folding] = DirectionalAlgorithm::ALL;
-        let (log, _) = recorded_in("building-12", 0, algorithm1);
-        let replay =
-            replay(&log, &TopicMap::unambiguous(&log), None, &RunSettings::new(folding, 200))
-                .unwrap();
-        assert_eq!(replay.comparison.difference.unwrap().what, "door");
-    }
-
-    #[test]
-    fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
-        let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
-        let mapping = TopicMap::unambiguous(&log);
-        let replay =
-            replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 4))
-                .unwrap();
-        assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
-        let to = replay.comparison;
-        assert!(!to.doors.is_whole());
-        assert_eq!((to.map, to.difference), (None, None));
-    }
-
-    #[test]
-    fn a_log_without_commands_is_not_replayed() {
-        let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
-        let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-        let replay =
-            replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 200));
-        assert!(matches!(replay, Err(ReplayError::Nothing)));
     }
 }

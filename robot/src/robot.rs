@@ -1,9 +1,8 @@
 //! What Algorithm 2 needs of a robot: it takes a frame, turns, and goes ahead. Sections 2.5 and 4.
 
 use thiserror::Error;
+use toposlam_logs::record::Frame;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose};
-
-use crate::record::Frame;
 
 /// A robot with a camera. An action may fail, be late, or be inexact; odometry reports its result.
 pub trait Robot {

@@ -21,14 +21,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ci_cases::{ci_case, required_case, unread_case};
 use clap::ValueEnum;
+use judged_log::JudgedLog;
+use robot_marker::RobotMarker;
+use toposlam_conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCoverage};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
 };
-use toposlam_robot::conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCoverage};
 
 use super::{
     CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input, json::print_unread,
@@ -39,9 +42,6 @@ use crate::{
     page,
     report::{ConformReports, LogReport, UnreadLog},
 };
-use ci_cases::{ci_case, required_case, unread_case};
-use judged_log::JudgedLog;
-use robot_marker::RobotMarker;
 
 /// Check logs of runs against the specification
 ///

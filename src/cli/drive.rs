@@ -7,7 +7,7 @@ mod result;
 
 use std::path::PathBuf;
 
-use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
+use toposlam_logs::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 
 use super::{
     CliError, Outcome,

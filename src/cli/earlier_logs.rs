@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use toposlam_conform::earlier_walks::earlier_walks;
 use toposlam_model::mapping::EarlierWalk;
-use toposlam_robot::earlier_walks::earlier_walks;
 
 use super::{
     CliError,

@@ -7,7 +7,7 @@ use std::{
 };
 
 use serde::Serialize;
-use toposlam_robot::log::{
+use toposlam_logs::{
     FileCompression, Format,
     error::LogError,
     reader::Log,

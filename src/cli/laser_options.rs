@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use toposlam_robot::conform::Evidence;
+use toposlam_conform::Evidence;
 use toposlam_vision::laser::params::LaserParams;
 
 use super::{CliError, input};

@@ -1,16 +1,9 @@
-//! The verbs of the command line, and what they share: exit codes, errors, files, text output.
+//! The verbs of the command line, and what they share: exit codes, errors, text output.
 
-/// Prints a remark on standard error, unless `--quiet` is given.
-macro_rules! remark {
-    ($($text:tt)*) => { $crate::cli::terminal::remark(format_args!($($text)*)) };
-}
-
-mod appearance;
 mod budget_options;
 mod camera;
 mod certificate_cost;
 mod check;
-mod children;
 mod ci_report;
 mod cluster;
 mod compare;
@@ -19,38 +12,21 @@ mod counterexample;
 mod draw;
 mod drive;
 mod earlier_logs;
-mod edge_range;
-mod evaluate;
-mod exit_codes;
 mod explore;
-mod files;
 mod info;
-mod input;
-mod json;
 mod laser_options;
 mod mapping_marker;
-mod method_options;
 mod old_names;
 mod open_log;
-mod outcome;
-mod output;
-mod picture_file;
 mod play;
-mod progress;
 mod proofs;
-mod report_output;
 mod rerun;
-mod robot_sensor;
 mod run_options;
 mod safeguards;
-mod scene;
 mod sense;
 mod simulate;
 mod skipped_lines;
 mod story_lines;
-mod temporary_folder;
-mod terminal;
-mod text;
 mod version;
 mod walk_page;
 
@@ -65,13 +41,19 @@ use clap::{
     Command, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
-use toposlam_model::check::DEFAULT_STATE_BUDGET;
-use toposlam_model::marker::{self, MARKERS, Marker};
-use toposlam_robot::simulator::MotionNoise;
-
-use outcome::{CliError, Outcome};
-use report_output::ReportOutput;
-use terminal::TerminalOptions;
+use toposlam_model::{
+    check::DEFAULT_STATE_BUDGET,
+    marker::{self, MARKERS, Marker},
+};
+use toposlam_simulator::options::{appearance, noise, robot_sensor};
+use toposlam_terminal::{
+    CliError, Outcome, children, edge_range, exit_codes, input, json, method_options, outcome,
+    output, picture_file, progress,
+    report_output::ReportOutput,
+    scene, temporary_folder,
+    terminal::{self, TerminalOptions},
+    text, use_threads,
+};
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
 /// algorithm, and a checker that runs it on every small world
@@ -112,7 +94,6 @@ enum Verb {
     Drive(drive::DriveArguments),
     Camera(camera::CameraArguments),
     Sense(sense::SenseArguments),
-    Evaluate(evaluate::EvaluateArguments),
     Info(info::InfoArguments),
     Conform(conform::ConformArguments),
 }
@@ -162,25 +143,6 @@ fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
 }
 
-/// Parses the noise of a simulated robot, as a multiple of the default.
-fn noise(text: &str) -> Result<f64, String> {
-    let most = MotionNoise::MOST;
-    match text.parse() {
-        Ok(times) if (0.0..=most).contains(&times) => Ok(times),
-        Ok(times) if times > most => {
-            Err(format!("with more than {most} times the default noise a robot cannot navigate"))
-        }
-        _ => Err(format!("write a number from 0 to {most}")),
-    }
-}
-
-/// Sets the number of threads, if one is given.
-fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
-    let Some(threads) = threads else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-    pool.build_global().map_err(|error| CliError::at("--threads", error))
-}
-
 /// The error of `--ros` in a program without the feature `ros1`.
 #[cfg(not(feature = "ros1"))]
 fn without_ros() -> CliError {
@@ -216,7 +178,6 @@ pub fn run(revision: Option<&str>) -> ExitCode {
         Some(Verb::Drive(verb)) => verb.run(&mut out),
         Some(Verb::Camera(verb)) => verb.run(&mut out),
         Some(Verb::Sense(verb)) => verb.run(&mut out),
-        Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Info(verb)) => verb.run(&mut out),
         Some(Verb::Conform(verb)) => verb.run(&mut out),
         None => print_help(&mut out),

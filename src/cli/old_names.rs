@@ -17,7 +17,11 @@ const COMMANDS: [(&str, &[&str]); 5] = [
 ];
 
 /// The commands that are gone, and what takes their place.
-const GONE: [(&str, &str); 3] = [
+const GONE: [(&str, &str); 4] = [
+    (
+        "evaluate",
+        "it is a program: `cargo run --release -p toposlam-simulator --bin evaluate` in the sources",
+    ),
     ("paper", "see docs/paper.md"),
     ("completions", "run `cargo run --example manual -- DIR` in the sources"),
     ("man", "run `cargo run --example manual -- DIR` in the sources"),
@@ -73,14 +77,12 @@ const fn renamed(
     RenamedOption { verb, old, new, action: ArgAction::Set }
 }
 
-const OPTIONS: [RenamedOption; 8] = [
+const OPTIONS: [RenamedOption; 6] = [
     renamed(&["check"], "max-edges", "--edges 1..=N"),
-    renamed(&["evaluate", "mistakes"], "max-edges", "--edges 1..=N"),
     renamed(&["counterexample"], "edges", "--max-edges"),
     renamed(&["counterexample"], "out", "--out-dir"),
     renamed(&["conform"], "edges", "--max-edges"),
     renamed(&["camera", "calibrate"], "start", "--initial"),
-    renamed(&["evaluate", "vision"], "out", "--out-dir"),
     renamed(&["simulate"], "picture-time", "--image-time"),
 ];
 

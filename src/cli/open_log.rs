@@ -2,18 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_model::marker::Marker;
-use toposlam_robot::{
-    conform::{Evidence, ExtractError, LogHead},
-    log::{
-        entries::Content,
-        messages::Run,
-        reader::Log,
-        topic_map::{Role, TopicMap, TopicMapError},
-    },
+use toposlam_conform::{Evidence, ExtractError, LogHead};
+use toposlam_logs::{
+    entries::Content,
+    messages::Run,
+    reader::Log,
     record::{EventId, EventKind},
-    run_settings::RecordedSettings,
+    topic_map::{Role, TopicMap, TopicMapError},
 };
+use toposlam_model::marker::Marker;
+use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{
     annotate,
     camera::{Camera, calibration},
@@ -48,7 +46,7 @@ pub(super) struct OpenLog {
 }
 
 /// The topic of annotated images in logs of this program.
-const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
+const ANNOTATED: &str = toposlam_logs::recorder::ANNOTATED;
 
 impl OpenLog {
     pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, CliError> {

@@ -7,12 +7,12 @@
 use std::{io::Write, path::Path, time::Instant};
 
 use serde::Serialize;
+use toposlam_logs::topic_map::Role;
 use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{FACING, MappingError},
 };
 use toposlam_robot::{
-    log::topic_map::Role,
     replay::{Agreement, Replay, ReplayDifference, ReplayError, replay},
     run_settings::{RecordedSettings, RunSettings},
 };

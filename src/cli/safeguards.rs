@@ -7,8 +7,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     mapping::{MappedWorld, MappingMethod, PartialMap},
 };
-
-use toposlam_robot::evaluation::FalsePercepts;
+use toposlam_robot::false_percepts::FalsePercepts;
 
 use super::text::{counted, grouped, print_hanging};
 

@@ -16,19 +16,23 @@ use std::{
     time::Instant,
 };
 
+use result::SimulationResult;
+use run_capture::{KeptImages, RunCapture};
+use toposlam_logs::{
+    record::{RobotSensor, StoppedBy},
+    recorder::Recorder,
+    world_hash,
+};
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
 use toposlam_robot::{
-    evaluation::{FalsePercepts, LearnedSensors, LearningError},
-    log::{recorder::Recorder, world_hash},
-    record::{RobotSensor, StoppedBy},
-    recording::Recording,
+    false_percepts::FalsePercepts, recording::Recording, run_settings::RunSettings,
+};
+use toposlam_simulator::{
+    Effects, FAULTS, FOR_EVER, IMAGE_TIME, LearnedSensors, LearningError, RobotFault,
+    SimulatedRobot, SimulationConfig,
     run::{offline, run},
-    run_settings::RunSettings,
-    simulator::{
-        Effects, FAULTS, FOR_EVER, IMAGE_TIME, RobotFault, SimulatedRobot, SimulationConfig,
-    },
 };
 use toposlam_vision::camera::Camera;
 
@@ -48,8 +52,6 @@ use crate::{
     run_page_data::RunPageData,
     story::{Story, StoryDetail},
 };
-use result::SimulationResult;
-use run_capture::{KeptImages, RunCapture};
 
 /// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
 ///

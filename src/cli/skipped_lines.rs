@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use toposlam_robot::log::SkippedLines;
+use toposlam_logs::SkippedLines;
 
 /// The lines of a log of lines that are not read, in JSON.
 #[derive(Serialize)]

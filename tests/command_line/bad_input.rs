@@ -205,7 +205,7 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
 #[test]
 fn an_option_without_effect_is_an_error() {
     const LOG: &str = "fuzz/corpus/bag/bz2";
-    let cases: [(&[&str], &str); 17] = [
+    let cases: [(&[&str], &str); 12] = [
         (&["simulate", WORLD, "--by-scene", "--look", "vinyl"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--effects", "none"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--effect", "blur=1"], "cannot be used with"),
@@ -220,11 +220,6 @@ fn an_option_without_effect_is_an_error() {
             "--effect: blur is given twice",
         ),
         (&["simulate", WORLD, "--ros", "http://x", "--max-darts", "9"], "cannot be used with"),
-        (&["evaluate", "control", "--look", "vinyl"], "--images"),
-        (&["evaluate", "control", "--size", "640x480"], "--images"),
-        (&["evaluate", "control", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
-        (&["evaluate", "runs", "--look", "vinyl"], "--images"),
-        (&["evaluate", "runs", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
         (&["draw", WORLD, "--format", "dot", "--marker", "none"], "--marker: a DOT file does not"),
         (&["draw", WORLD, "--out", "x.dot", "--marker", "none"], "--marker: a DOT file does not"),
         (

@@ -9,13 +9,13 @@ use std::{
 };
 
 use serde_json::{Value, json};
-use toposlam_model::{counts::grouped, driving};
-use toposlam_robot::log::{
+use toposlam_logs::{
     messages::{Door, Percept, ProjectMessage, Scene, Stamp},
     recorder::ODOM,
     standard::{OdometryMessage, Twist},
     writer::LogWriter,
 };
+use toposlam_model::{counts::grouped, driving};
 
 use super::{
     containers::{rewritten, set_stamp, stamp},

@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::json;
-use toposlam_robot::log::{
+use toposlam_logs::{
     messages::{Door, Percept, ProjectMessage, Run, Stamp},
     writer::LogWriter,
 };

@@ -26,7 +26,7 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 42] = [
+const OUTPUTS: [OutputOption; 41] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
     output("check", "--failed", &[("w.toml", "check --explorer cat --from IN --failed OUT")]),
@@ -112,7 +112,6 @@ const OUTPUTS: [OutputOption; 42] = [
         ],
     ),
     output("sense", "--stages", &[]),
-    output("evaluate vision", "--out-dir", &[]),
     output("info", "--write-mapping", &[("l.toml", "info IN --write-mapping OUT")]),
     output(
         "conform",
@@ -175,23 +174,13 @@ fn file_options(verb: &str) -> BTreeSet<String> {
 #[test]
 fn every_option_that_writes_a_file_is_in_the_list() {
     let verbs: BTreeSet<_> = OUTPUTS.iter().map(|output| output.verb).collect();
-    let others =
-        ["proofs", "evaluate control", "evaluate runs", "evaluate laser", "evaluate lengths"];
+    let others = ["proofs"];
     for verb in verbs.into_iter().chain(others) {
         let outputs = OUTPUTS.iter().filter(|output| output.verb == verb);
         let inputs = INPUTS.iter().filter(|(of, _)| *of == verb).flat_map(|(_, names)| *names);
         let mut known: BTreeSet<_> = outputs.map(|output| output.option.to_owned()).collect();
         known.extend(inputs.map(|&name| name.to_owned()));
         match verb {
-            "evaluate vision" => {
-                known.insert("--plan".to_owned());
-            }
-            "evaluate control" | "evaluate runs" | "evaluate lengths" => {
-                known.extend(["--plan", "--scanner"].map(str::to_owned));
-            }
-            "evaluate laser" => {
-                known.insert("--scanner".to_owned());
-            }
             "check" | "counterexample" => {
                 known.insert("--hosts".to_owned());
             }

@@ -163,34 +163,3 @@ fn a_lost_robot_gives_up_with_the_folding_explorer_too() {
     assert_eq!(output.status.code(), Some(1));
     assert!(stdout(&output).contains("The robot gave up: on move "));
 }
-
-#[test]
-fn whole_runs_are_right_with_the_folding_explorer() {
-    let words = ["evaluate", "runs", "--plans", "5", "--json"];
-    let lines = objects(&stdout_of([&words[..], &FOLDING].concat()));
-    let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
-    assert!(runs.len() > 10 && runs.iter().all(|run| run["right"] == true));
-    let last = lines.last().unwrap();
-    assert_eq!(last["algorithm"], "folding");
-    let total = |name: &str| runs.iter().filter_map(|run| run[name].as_u64()).sum::<u64>();
-    assert_eq!(last["moves_total"], total("moves"));
-    assert_eq!(last["certificate_total"], total("certificate_moves"));
-    assert!(runs.iter().all(|run| run["moves"].as_u64() >= run["certificate_moves"].as_u64()));
-    assert_eq!(lines, objects(&stdout_of(words)), "it is the default");
-    let other = objects(&stdout_of([&words[..], &["--algorithm", "algorithm1"]].concat()));
-    let moves =
-        |lines: &[Value]| -> u64 { lines.iter().filter_map(|line| line["moves"].as_u64()).sum() };
-    assert!(moves(&lines) < moves(&other));
-}
-
-#[test]
-fn runs_by_image_are_right_with_both_algorithms() {
-    let words = ["evaluate", "runs", "--images", "--look", "tiles", "--runs", "1", "--json"];
-    let words = [&words[..], &["--plan", "worlds/shape-8.toml"]].concat();
-    for algorithm in ["algorithm1", "folding"] {
-        let lines = objects(&stdout_of([&words[..], &["--algorithm", algorithm]].concat()));
-        let run = lines.iter().find(|line| line["kind"] == "run").unwrap();
-        assert!(run["right"] == true && run["frames"].as_u64() > Some(10), "{run}");
-        assert_eq!(run["moves"], run["explore_moves"], "{run}");
-    }
-}

@@ -8,7 +8,7 @@ mod manual;
 
 use super::{exit_codes, folder, run, stderr, stdout, stdout_of, toposlam};
 
-const VERBS: [(&str, &[&str]); 14] = [
+const VERBS: [(&str, &[&str]); 13] = [
     (
         "check",
         &[
@@ -66,7 +66,6 @@ const VERBS: [(&str, &[&str]); 14] = [
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
     ("camera", &["calibrate", "train"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision", "control", "runs", "laser", "mistakes", "lengths"]),
     (
         "simulate",
         &[
@@ -126,7 +125,7 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 29] = [
+    let runs: [&[&str]; 27] = [
         &[],
         &["check", "--edges", "1..=4"],
         &["check", "--edges", "6", "--estimate", "--probes", "50"],
@@ -154,8 +153,6 @@ fn no_line_is_wider_than_80_columns() {
         &["conform", &log, "--world", "worlds/shape-8.toml"],
         &["conform", &log],
         &["conform", "--rerun", &log],
-        &["evaluate", "control", "--traversals", "20"],
-        &["evaluate", "lengths", "--traversals", "20"],
     ];
     for arguments in runs {
         for line in stdout(&run(arguments)).lines() {
@@ -181,16 +178,7 @@ fn toposlam_alone_prints_its_verbs() {
 
 #[test]
 fn the_help_of_every_verb_ends_with_its_exit_codes() {
-    let parts = [
-        "evaluate vision",
-        "evaluate control",
-        "evaluate runs",
-        "evaluate laser",
-        "evaluate mistakes",
-        "evaluate lengths",
-        "camera calibrate",
-        "camera train",
-    ];
+    let parts = ["camera calibrate", "camera train"];
     let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
     // The verbs that work on what they are given, and have no verdict.
     let without_verdict =

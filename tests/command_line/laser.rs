@@ -1,5 +1,4 @@
-//! Robots with a laser scanner: `toposlam simulate --sensor`, `evaluate control` and `runs --sensor`, and
-//! `evaluate laser`, on a few cases.
+//! Robots with a laser scanner: `toposlam simulate --sensor`.
 
 use std::{fs, path::Path};
 
@@ -202,7 +201,7 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
     let far = write("far.toml", "range = 1000.0\n");
     let simulate = ["simulate", PLAN];
     let laser = ["simulate", PLAN, "--sensor", "laser"];
-    let cases: [(&[&str], &[&str], &str); 10] = [
+    let cases: [(&[&str], &[&str], &str); 7] = [
         (&simulate, &["--scanner", &far], "--scanner: the robot has no laser scanner"),
         (&laser, &["--by-scene"], "--by-scene: has no effect with --sensor laser"),
         (&laser, &["--size", "640x480"], "--size: has no effect with --sensor laser"),
@@ -210,13 +209,6 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
         (&laser, &["--effect", "blur=1"], "--effect: has no effect with --sensor laser"),
         (&laser, &["--scanner", &unknown], "unknown.toml: line 1, column 1: noises: unknown key"),
         (&laser, &["--scanner", &far], "far.toml: line 1, column 9: range: 1000 is out of range"),
-        (
-            &["evaluate", "control", "--sensor", "laser"],
-            &["--images"],
-            "--images: has no effect with --sensor laser",
-        ),
-        (&["evaluate", "runs"], &["--scanner", &far], "--scanner: the robot has no laser scanner"),
-        (&["evaluate", "laser"], &["--drift", "91"], "expected a number of degrees from 0 to 90"),
     ];
     for (verb, options, cause) in cases {
         let output = run([verb, options].concat());
@@ -226,60 +218,4 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
         assert!(output.stdout.is_empty(), "{options:?}");
     }
     fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn control_and_runs_can_be_measured_by_laser() {
-    let control = ["evaluate", "control", "--sensor", "laser", "--plan", "worlds/shape-6.toml"];
-    let folder = folder("laser_control");
-    let plain = folder.join("plain.toml");
-    fs::write(&plain, "glass = 0\nblack = 0\ndoors = 0\nfurniture = 0\npeople = 0\n").unwrap();
-    let options = ["--traversals", "26", "--scanner", plain.to_str().unwrap()];
-    let text = stdout_of([&control[..], &options].concat());
-    assert!(text.contains("Driving by scans of a laser scanner"), "{text}");
-    assert!(text.contains("holds in these traversals"), "{text}");
-    let runs = ["evaluate", "runs", "--sensor", "laser", "--plan", "worlds/shape-8.toml"];
-    let options = ["--starts", "1", "--scanner", plain.to_str().unwrap(), "--json"];
-    let lines = objects(&stdout_of([&runs[..], &options].concat()));
-    assert_eq!(lines.last().unwrap()["holds"], true);
-    fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn walks_are_measured_alike_on_any_number_of_threads() {
-    let measured = |threads| {
-        let arguments = ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1"];
-        let output =
-            run([&arguments[..], &["--traversals", "2", "--json", "--threads", threads]].concat());
-        (output.status.code(), stdout(&output))
-    };
-    let (code, text) = measured("1");
-    assert_eq!((code, text.clone()), measured("2"));
-    let lines = objects(&text);
-    let rate = |of: &str, what: &str| {
-        let line = lines.iter().find(|line| {
-            (&line["kind"], &line["of"], &line["what"])
-                == (&"rate".into(), &of.into(), &what.into())
-        });
-        line.unwrap_or_else(|| panic!("{text}")).clone()
-    };
-    let visits = rate("visit", "wrong");
-    assert!(visits["cases"].as_u64().unwrap() > 3, "{visits}");
-    assert_eq!(rate("walk", "wrong")["cases"], 3);
-    assert_eq!(rate("run", "wrong")["cases"], 1);
-    assert!(rate("percept", "wrong")["cases"].as_u64().unwrap() > 1);
-    assert_eq!(rate("control", "wrong")["cases"], 2);
-    assert!(rate("hallway", "called junction")["cases"].as_u64().unwrap() > 30);
-    // Three walks are too few to show anything but a miss.
-    let expected = if lines.last().unwrap()["target"] == "missed" { 1 } else { 3 };
-    assert_eq!(code, Some(expected));
-}
-
-#[test]
-fn one_walk_is_printed_visit_by_visit() {
-    let output = run(["evaluate", "laser", "--walk", "4", "--places", "6"]);
-    let text = stdout(&output);
-    assert!(text.contains("Laser scanner on 1 walk with ") && text.contains("walk 4, "), "{text}");
-    assert!(text.contains(" doors, left by door "), "{text}");
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }

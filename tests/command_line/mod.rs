@@ -11,7 +11,6 @@ mod conform_report;
 mod containers;
 mod counterexample;
 mod draw;
-mod evaluate;
 mod explore;
 mod explorer;
 mod files;
@@ -23,7 +22,6 @@ mod laser_logs;
 mod lines;
 mod log;
 mod merge;
-mod mistakes;
 mod names;
 mod options;
 mod play;
@@ -85,11 +83,7 @@ fn interrupted(arguments: &[&str]) -> Output {
 
 fn check_exit_code(arguments: &[OsString], output: &Output) {
     static KNOWN: Mutex<BTreeMap<Vec<OsString>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
-    let words = if arguments.first().is_some_and(|verb| verb == "evaluate" || verb == "camera") {
-        2
-    } else {
-        1
-    };
+    let words = if arguments.first().is_some_and(|verb| verb == "camera") { 2 } else { 1 };
     let verb = arguments.get(..words).unwrap_or_default().to_vec();
     let code = output.status.code().expect("the program was killed");
     // Bad usage can be an unknown verb.

@@ -66,10 +66,9 @@ fn an_old_command_works_and_says_its_new_name() {
 fn a_quiet_verb_prints_only_errors_on_standard_error() {
     let folder = folder("quiet");
     let page = folder.join("page.html");
-    let calls: [(&[&str], i32); 5] = [
+    let calls: [(&[&str], i32); 4] = [
         (&["check", "--edges", "3"], 0),
         (&["simulate", "worlds/building-12.toml", "--by-scene"], 0),
-        (&["evaluate", "control", "--traversals", "20"], 0),
         (
             &[
                 "counterexample",
@@ -127,14 +126,12 @@ fn colours_are_used_if_they_are_asked_for_and_not_in_a_pipe() {
 
 #[test]
 fn an_option_with_another_name_now_is_refused_with_its_new_name() {
-    let calls: [(&[&str], &str, &str); 7] = [
+    let calls: [(&[&str], &str, &str); 5] = [
         (&["check", "--max-edges", "4"], "--max-edges", "--edges"),
-        (&["evaluate", "mistakes", "--max-edges", "4"], "--max-edges", "--edges"),
         (&["counterexample", "--edges", "4"], "--edges", "--max-edges"),
         (&["counterexample", "--out", "x"], "--out", "--out-dir"),
         (&["conform", "x.mcap", "--edges", "30"], "--edges", "--max-edges"),
         (&["camera", "calibrate", "x.png", "--start", "x.toml"], "--start", "--initial"),
-        (&["evaluate", "vision", "--out", "x"], "--out", "--out-dir"),
     ];
     for (call, old, new) in calls {
         let output = run(call);
@@ -143,8 +140,7 @@ fn an_option_with_another_name_now_is_refused_with_its_new_name() {
         assert!(message.starts_with(&format!("error: unexpected argument '{old}")), "{message}");
         assert!(message.contains(new), "{message}");
         let words: Vec<_> = call.iter().take_while(|word| **word != old).copied().collect();
-        let verb =
-            if ["evaluate", "camera"].contains(&words[0]) { &words[..] } else { &words[..1] };
+        let verb = if words[0] == "camera" { &words[..] } else { &words[..1] };
         let help = stdout_of([verb, &["--help"]].concat());
         assert!(!help.contains(&format!(" {old} ")) && help.contains(new), "{help}");
     }
@@ -158,7 +154,6 @@ fn the_option_o_is_out_or_out_dir_in_every_verb() {
         ("camera calibrate", "--out <FILE>"),
         ("camera train", "--out <FILE>"),
         ("sense", "--out <FILE>"),
-        ("evaluate vision", "--out-dir <DIR>"),
     ];
     for (verb, long) in calls {
         let help = stdout_of(verb.split(' ').chain(["--help"]));
@@ -268,7 +263,7 @@ fn images_calibrations_and_colours_can_come_from_standard_input() {
 
 /// The colours of the building, as the head of a log has them.
 fn colours_of(log: &str) -> String {
-    use toposlam_robot::log::{entries::Content, reader::Log, topic_map::TopicMap};
+    use toposlam_logs::{entries::Content, reader::Log, topic_map::TopicMap};
     let log = Log::open(Path::new(log)).unwrap();
     let mapping = TopicMap::unambiguous(&log);
     let bound = mapping.bind(&log).unwrap();

@@ -4,10 +4,7 @@ use std::{fs, path::PathBuf, sync::LazyLock};
 
 use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::Value;
-use toposlam_robot::{
-    evaluation::{learned, view_sampler::ViewSampler},
-    simulator::{BuildingLook, Rig},
-};
+use toposlam_simulator::{BuildingLook, Rig, learned, view_sampler::ViewSampler};
 use toposlam_vision::camera::{Camera, calibration};
 
 use super::{folder, names_in, objects, run, stderr, stdout, stdout_of};

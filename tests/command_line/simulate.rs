@@ -1,4 +1,4 @@
-//! `toposlam simulate`, and `toposlam evaluate control` and `runs`: small parts of long measurements.
+//! `toposlam simulate`.
 
 use std::fs;
 
@@ -124,52 +124,6 @@ fn a_robot_with_too_few_darts_is_incomplete() {
     let output = run(["simulate", SHAPE_8, "--by-scene", "--max-darts", "6"]);
     assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));
     assert!(stdout(&output).contains("more than 6"), "{}", stdout(&output));
-}
-
-#[test]
-fn control_is_as_specified_on_any_number_of_threads() {
-    let arguments = ["evaluate", "control", "--traversals", "3000", "--plans", "10", "--json"];
-    let text = stdout_of(arguments);
-    assert_eq!(text, stdout_of([&arguments[..], &["--threads", "3"]].concat()));
-    let lines = objects(&text);
-    let last = lines.last().unwrap();
-    assert_eq!((&last["kind"], &last["holds"]), (&"control".into(), &true.into()), "{text}");
-    assert_eq!(last["traversals"], 3000);
-    let table = stdout_of(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
-    // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
-    assert!(table.contains("  26 pairs of entry door and exit door in 1 floor plan\n"), "{table}");
-    assert!(
-        table.contains("holds in these traversals: every door leads where it should"),
-        "{table}"
-    );
-}
-
-#[test]
-fn a_few_doors_are_taken_with_images() {
-    let arguments = ["evaluate", "control", "--images", "--look", "tiles", "--traversals", "4"];
-    let output = run([&arguments[..], &["--plan", SHAPE_8]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
-    assert!(
-        stdout(&output).contains("Driving by rendered images of 640x480"),
-        "{}",
-        stdout(&output)
-    );
-}
-
-// paper: exp.simulated
-#[test]
-fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
-    let text = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--json"]);
-    let lines = objects(&text);
-    let last = lines.last().unwrap();
-    assert_eq!((&last["kind"], &last["holds"]), (&"runs".into(), &true.into()), "{text}");
-    let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
-    assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
-    let table = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
-    let verdict = "holds in these runs: every map is right, or the robot gave up or was carried";
-    for part in ["dropped", "frozen", "carried", verdict] {
-        assert!(table.contains(part), "{part}\n{table}");
-    }
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use toposlam::run_page_data::{PageArrival, PageFrame, RunPageData};
+use toposlam_draw::run_page_data::{PageArrival, PageFrame, RunPageData};
+use toposlam_logs::record::{Event, EventKind, NoSensor, RunObserver};
 use toposlam_model::{
     driving::{algorithm2::PathState, scene::Place},
     embedded_graph::Dart,
@@ -11,12 +12,8 @@ use toposlam_model::{
     mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, Journey, MappingEvent},
     percept::Door,
 };
-use toposlam_robot::{
-    record::{Event, EventKind, NoSensor, RunObserver},
-    run::run,
-    run_settings::RunSettings,
-    simulator::SimulationConfig,
-};
+use toposlam_robot::run_settings::RunSettings;
+use toposlam_simulator::{SimulationConfig, run::run};
 
 /// Records a run.
 struct Keeper {

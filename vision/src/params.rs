@@ -6,7 +6,7 @@
 //! The paper gives the steps of sensing but none of their thresholds. The values come from:
 //!
 //! * **geometry**: the robot, the camera or the building gives the value;
-//! * **views**: chosen on rendered views, where it meets the targets of `toposlam evaluate vision`
+//! * **views**: chosen on rendered views, where it meets the targets of `evaluate vision`
 //!   (`docs/sensing.md`).
 //!
 //! Not here: the resolution and the range of the ground view and of the bearings and the number of edges on one,

@@ -5,11 +5,13 @@
 
 mod error;
 mod floor;
+mod walls;
 
 use std::collections::HashMap;
 
 pub use error::FloorPlanError;
 pub use floor::Rectangle;
+pub use walls::{BuildingWall, walls};
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use toposlam_logs::record::{Arrival, EventKind, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, PathExecution, Standing},
@@ -13,10 +14,7 @@ use toposlam_model::{
 };
 
 use super::{ExplorerError, RobotExplorer, Standpoint};
-use crate::{
-    record::{Arrival, EventKind, FrameSensor, RunObserver},
-    robot::Robot,
-};
+use crate::robot::Robot;
 
 /// The percept at an obstacle.
 pub(super) const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use toposlam_logs::record::{EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState, Standing, UNIT},
@@ -11,10 +12,7 @@ use toposlam_model::{
 };
 
 use super::{ExplorerError, RobotExplorer, Unusable};
-use crate::{
-    record::{EventKind, Frame, FrameSensor, RunObserver},
-    robot::Robot,
-};
+use crate::robot::Robot;
 
 /// A robot that got lost tries these directions, relative to its heading, until it comes to a junction.
 const DIRECTIONS: [f64; 4] = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];

@@ -1,11 +1,11 @@
-//! Message types as ROS 1 names and defines them, made from their definitions in ROS 2 (`robot/msgs`).
+//! Message types as ROS 1 names and defines them, made from their definitions in ROS 2 (`logs/msgs`).
 //!
 //! In ROS 1 a type has no `/msg` in its name, a time is built in, a header begins with a sequence number, and
 //! a field has no default.
 
 use std::fmt::Write;
 
-use crate::log::message::{Message, TIME, TypeDefinition};
+use toposlam_logs::message::{Message, TIME, TypeDefinition};
 
 /// The type that begins with a sequence number in ROS 1.
 const HEADER: &str = "std_msgs/Header";
@@ -40,12 +40,12 @@ fn fields(definition: &str) -> String {
 #[cfg(test)]
 mod tests {
     use roslibrust::md5sum::from_message_definition;
-
-    use super::*;
-    use crate::log::standard::{
+    use toposlam_logs::standard::{
         CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped, TFMessage,
         Twist,
     };
+
+    use super::*;
 
     /// Nodes compare these checksums to check that their types agree. ROS computes the same values.
     fn checksum<M: Message>(name: &str, sum: &str) {

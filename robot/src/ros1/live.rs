@@ -2,6 +2,11 @@
 
 use std::{sync::Arc, time::Duration};
 
+use toposlam_logs::{
+    record::{CameraImage, Frame},
+    standard::Twist,
+};
+
 use super::{
     RobotTopics,
     base::LiveBase,
@@ -13,8 +18,6 @@ use super::{
     wheels::Wheels,
 };
 use crate::{
-    log::standard::Twist,
-    record::{CameraImage, Frame},
     robot::{Robot, RobotError, Sample, TimedOdometry},
     superscout::{Base, Drive, WheelReading},
 };

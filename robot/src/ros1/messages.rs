@@ -10,36 +10,36 @@ use serde::{
     Deserialize, Deserializer, Serialize,
     de::{DeserializeOwned, Visitor},
 };
+use toposlam_logs::{
+    messages::Stamp,
+    standard::{
+        BASE, CompressedImage, Header, LaserScanMessage, OdometryMessage, PoseMessage, PoseStamped,
+        Twist,
+    },
+};
 use toposlam_model::driving::{
     odometry,
     scene::{MarkerView, undirected},
 };
 use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
 
-use crate::{
-    log::{
-        messages::Stamp,
-        standard::{
-            BASE, CompressedImage, Header, LaserScanMessage, OdometryMessage, PoseMessage,
-            PoseStamped, Twist,
-        },
-    },
-    superscout::WheelSpeeds,
-};
+use crate::superscout::WheelSpeeds;
 
 /// Nanoseconds since the beginning of 1970, or since a robot was switched on.
-pub(super) type Nanoseconds = u64;
+pub type Nanoseconds = u64;
 
 /// A second.
-pub(super) const SECOND: Nanoseconds = 1_000_000_000;
+pub const SECOND: Nanoseconds = 1_000_000_000;
 
 /// What is read of odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reckoning {
-    pub(super) stamp: Nanoseconds,
-    pub(super) at: odometry::Odometry,
+pub struct Reckoning {
+    /// When it was measured.
+    pub stamp: Nanoseconds,
+    /// The robot's pose by odometry.
+    pub at: odometry::Odometry,
     /// How fast the robot goes by it, and turns.
-    pub(super) wheels: WheelSpeeds,
+    pub wheels: WheelSpeeds,
 }
 
 /// What is read of an image.
@@ -105,12 +105,13 @@ pub(super) fn twist(wheels: WheelSpeeds) -> Vec<u8> {
 }
 
 /// The command to the wheels; `None` if it is no such message.
-pub(super) fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
+pub fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
     read(bytes).map(wheel_speeds)
 }
 
 /// The body of odometry.
-pub(super) fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
+#[must_use]
+pub fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&(number, odometry_message(reckoning)))
 }
 
@@ -127,12 +128,14 @@ pub(super) fn read_odometry(bytes: &[u8]) -> Option<Reckoning> {
 }
 
 /// The body of the transform from the frame of odometry to the robot.
-pub(super) fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
+#[must_use]
+pub fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&vec![(number, odometry_message(reckoning).transform())])
 }
 
 /// The body of an image.
-pub(super) fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
+#[must_use]
+pub fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
     write(&(number, CompressedImage::new(time(stamp), file)))
 }
 
@@ -144,7 +147,8 @@ pub(super) fn read_image(bytes: &[u8]) -> Option<LiveImage> {
 }
 
 /// The body of a scan.
-pub(super) fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
+#[must_use]
+pub fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
     write(&(number, LaserScanMessage::new(time(stamp), scan)))
 }
 
@@ -162,7 +166,8 @@ pub(super) fn read_scan(bytes: &[u8]) -> Option<LiveScan> {
 }
 
 /// The body of the marker's pose in the robot's frame.
-pub(super) fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
+#[must_use]
+pub fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
     let at = odometry::Odometry { position: marker.position, heading: marker.axis };
     let header = Header { stamp: time(stamp), frame_id: BASE };
     write(&(number, PoseStamped { header, pose: PoseMessage::on_floor(&at) }))
@@ -202,9 +207,9 @@ fn wheel_speeds(twist: Twist) -> WheelSpeeds {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use toposlam_logs::standard::ODOM;
 
     use super::*;
-    use crate::log::standard::ODOM;
 
     fn reckoning() -> Reckoning {
         let at = odometry::Odometry { position: [1.5, -0.25], heading: 2.5 };

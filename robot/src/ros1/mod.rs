@@ -7,15 +7,13 @@
 mod base;
 mod definition;
 mod live;
-mod messages;
-mod node;
-mod simulated;
+pub mod messages;
+pub mod node;
 mod wheels;
 
 pub use live::{LiveRobot, LiveSensor};
-pub use simulated::{MOST_SPEED, ServeSummary, serve};
 
-use crate::log::recorder;
+use toposlam_logs::recorder;
 
 /// The master and the topics of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -12,9 +12,10 @@ use tokio::{
     runtime::{Builder, Runtime},
     time::timeout,
 };
+use toposlam_logs::message::Message;
 
 use super::definition::{definition, type_name};
-use crate::{log::message::Message, robot::RobotError};
+use crate::robot::RobotError;
 
 /// The longest time until the master answers.
 const ANSWER: Duration = Duration::from_secs(10);
@@ -27,7 +28,7 @@ const LENGTH: usize = 4;
 
 /// A node. When it is dropped, it unregisters from the master. Its publishers must be dropped
 /// before it.
-pub(super) struct Node {
+pub struct Node {
     handle: Option<NodeHandle>,
     /// `None` once it is dropped.
     runtime: Option<Runtime>,
@@ -37,7 +38,10 @@ pub(super) struct Node {
 
 impl Node {
     /// A node of this master. The process number is added to the name.
-    pub(super) fn new(master: &str, name: &str) -> Result<Self, RobotError> {
+    ///
+    /// # Errors
+    /// Returns an error if the master or the connection fails.
+    pub fn new(master: &str, name: &str) -> Result<Self, RobotError> {
         let unreachable =
             |cause: String| RobotError::Unreachable { master: master.to_owned(), cause };
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build();
@@ -55,7 +59,10 @@ impl Node {
     }
 
     /// Advertises a topic.
-    pub(super) fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
+    ///
+    /// # Errors
+    /// Returns an error if the master or the connection fails.
+    pub fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let advertised = async {
             let (name, text) = (type_name::<M>(), definition::<M>());
@@ -70,7 +77,10 @@ impl Node {
     }
 
     /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
-    pub(super) fn subscribe<T: Send + 'static>(
+    ///
+    /// # Errors
+    /// Returns an error if the master or the connection fails.
+    pub fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
         read: fn(&[u8]) -> Option<T>,
@@ -125,7 +135,7 @@ impl Drop for Node {
 }
 
 /// A topic to which a node publishes.
-pub(super) struct Publisher {
+pub struct Publisher {
     sender: PublisherAny,
     runner: tokio::runtime::Handle,
     topic: String,
@@ -133,7 +143,10 @@ pub(super) struct Publisher {
 
 impl Publisher {
     /// Publishes the body of a message.
-    pub(super) fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
+    ///
+    /// # Errors
+    /// Returns an error if the master or the connection fails.
+    pub fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
         let message = [&length[..], body].concat();
         let published = self.runner.block_on(self.sender.publish(message));
@@ -143,7 +156,7 @@ impl Publisher {
 
 /// A topic to which a node subscribes.
 #[derive(Debug)]
-pub(super) struct Subscription<T> {
+pub struct Subscription<T> {
     shared: Arc<Shared<T>>,
     topic: String,
 }
@@ -185,7 +198,8 @@ const STOP_INTERVAL: Duration = Duration::from_millis(20);
 
 impl<T> Subscription<T> {
     /// Takes the last message, if it was not taken yet.
-    pub(super) fn take(&self) -> Option<T> {
+    #[must_use]
+    pub fn take(&self) -> Option<T> {
         self.shared.last().message.take()
     }
 
@@ -194,7 +208,7 @@ impl<T> Subscription<T> {
     /// # Errors
     /// Returns [`RobotError::Silent`] if none is accepted in time, [`RobotError::Stopped`] if the
     /// run is to stop, and [`RobotError::Closed`] if no more messages can come.
-    pub(super) fn wait<W>(
+    pub fn wait<W>(
         &self,
         patience: Duration,
         stop: &dyn Fn() -> bool,

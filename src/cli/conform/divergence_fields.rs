@@ -1,11 +1,11 @@
 //! The first divergence, what is allowed instead, and a shorter log, as fields of the JSON line of a log.
 
 use serde::Serialize;
+use toposlam_conform::{CheckedEvent, CheckedKind, DivergenceCause};
 use toposlam_model::{
     percept::Sighting,
     trace::{AllowedStep, MisfitReason},
 };
-use toposlam_robot::conform::{CheckedEvent, CheckedKind, DivergenceCause};
 
 use super::{JudgedLog, LISTED};
 

@@ -1,14 +1,12 @@
 //! The facts of a report as fields of its JSON line.
 
 use serde::Serialize;
+use toposlam_conform::{Evidence, LogHead, MeasuredHallways, SkippedMessages};
+use toposlam_logs::record::RunEnding;
 use toposlam_model::{
     folding::SmallestWorld,
     format::named_world::NamedWorld,
     trace::{AlgorithmMatch, MatchedChoices},
-};
-use toposlam_robot::{
-    conform::{Evidence, LogHead, MeasuredHallways, SkippedMessages},
-    record::RunEnding,
 };
 
 use super::{

@@ -1,11 +1,11 @@
 //! What a log proves about its world: its folded trail, and the doors that were never followed.
 
+use toposlam_conform::Judgement;
 use toposlam_model::{
     embedded_graph::Dart,
     folding::{FoldedTrail, SmallestWorld},
     percept::Door,
 };
-use toposlam_robot::conform::Judgement;
 
 use super::{JudgedLog, LISTED, known_world::Known};
 use crate::{

@@ -2,21 +2,17 @@
 
 use std::path::Path;
 
+use toposlam_conform::{
+    ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, JudgeError, Judgement,
+    LogHead, Quirks, RESUMED, RunDriver, SightingError, extract, judge,
+};
 use toposlam_model::{
-    enumerate::Watch,
     folding::WorldSearch,
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
     marker::{Marker, NoMarker},
 };
-use toposlam_robot::{
-    budget::RunBudget,
-    conform::{
-        ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, JudgeError, Judgement,
-        LogHead, Quirks, RESUMED, RunDriver, SensingProgress, SightingError, extract, judge,
-    },
-    run_settings::RecordedSettings,
-};
+use toposlam_robot::{budget::RunBudget, run_settings::RecordedSettings};
 
 use super::{
     ConformArguments, Who, known_world::Known, other_world::OtherWorld, robot_marker::AddedMarker,
@@ -55,12 +51,6 @@ impl JudgedLog<'_> {
     pub(super) fn is_folding(&self) -> bool {
         let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
         compared == Some(DirectionalAlgorithm::Folding)
-    }
-}
-
-impl SensingProgress for Progress {
-    fn sensed(&self, pictures: u64) {
-        self.part_done(pictures);
     }
 }
 

@@ -1,5 +1,7 @@
 //! The known world of a log.
 
+use toposlam_conform::{KnownWorld, LogHead};
+use toposlam_logs::messages::Run;
 use toposlam_model::{
     driving::{pose::Pose, visit::JunctionShape},
     embedded_graph::{Dart, EmbeddedGraph},
@@ -10,11 +12,7 @@ use toposlam_model::{
     trace::{self, anywhere},
     world::{GraphWorld, State},
 };
-use toposlam_robot::{
-    conform::{KnownWorld, LogHead},
-    log::messages::Run,
-    truth::{JunctionTruth, angle},
-};
+use toposlam_simulator::truth::{JunctionTruth, angle};
 
 use super::{CliError, expected_run::ExpectedRun, robot_marker::MarkerStart};
 use crate::cli::input;

@@ -2,13 +2,11 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use toposlam_robot::{
-    conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction},
-    log::{
-        entries::Content,
-        topic_map::{MarkerPlace, Role},
-    },
+use toposlam_conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction};
+use toposlam_logs::{
+    entries::Content,
     record::{EventKind, Frame},
+    topic_map::{MarkerPlace, Role},
 };
 
 use super::{CliError, JudgedLog, robot_marker::AddedMarker};

@@ -2,29 +2,27 @@
 
 use std::{f64::consts::PI, path::Path};
 
+use toposlam_conform::{
+    CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
+    RunDriver, RunEvents, SensedScene, ShortenedRun, extract, infer_events, judge, shorten_frames,
+    shorten_run,
+};
+use toposlam_logs::{
+    arrival_message, door_message,
+    messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
+    reader::Log,
+    record::Arrival,
+    recorder::ODOM,
+    scene_message, standard,
+    topic_map::TopicMap,
+    writer::{LogWriteError, LogWriter},
+};
 use toposlam_model::{
     driving::odometry::Odometry,
     enumerate::Class,
     marker::{Marker, NoMarker},
 };
-use toposlam_robot::{
-    conform::{
-        CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
-        RunDriver, RunEvents, SensedScene, ShortenedRun, extract, infer_events, judge,
-        shorten_frames, shorten_run,
-    },
-    log::{
-        arrival_message, door_message,
-        messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
-        reader::Log,
-        recorder::ODOM,
-        scene_message, standard,
-        topic_map::TopicMap,
-        writer::{LogWriteError, LogWriter},
-    },
-    measured_hallway::direction,
-    record::Arrival,
-};
+use toposlam_robot::measured_hallway::direction;
 
 use super::{CliError, ConformArguments, JudgedLog};
 use crate::cli::{output, text::quoted};

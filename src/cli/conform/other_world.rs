@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 use serde_json::Value;
+use toposlam_conform::Judgement;
 use toposlam_model::{
     ambiguity::{Twin, Twins, twins},
     embedded_graph::{Dart, EmbeddedGraph},
@@ -13,7 +14,6 @@ use toposlam_model::{
     trace::poses,
     world::State,
 };
-use toposlam_robot::conform::Judgement;
 
 use super::known_world::Known;
 use crate::{

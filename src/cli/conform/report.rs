@@ -2,6 +2,14 @@
 
 use std::path::Path;
 
+use toposlam_conform::{
+    CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, FORMS,
+    LogHead, MeasuredHallways, Quirks, ReachedLimit, RunDriver, UndecidedCause,
+};
+use toposlam_logs::{
+    Format,
+    record::{Arrival, RunEnding},
+};
 use toposlam_model::{
     embedded_graph::Dart,
     folding::{SearchLimit, SmallestWorld},
@@ -9,15 +17,6 @@ use toposlam_model::{
     mapping::{DirectionalAlgorithm, PartialMap},
     percept::{Percept, Sighting},
     trace::{AlgorithmCase, Departure, MatchEnd, MatchedChoices, MisfitReason, TraceEventKind},
-};
-use toposlam_robot::{
-    conform::{
-        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, LogHead,
-        MeasuredHallways, Quirks, ReachedLimit, RunDriver, UndecidedCause,
-    },
-    evaluation::scene_class::FORMS,
-    log::Format,
-    record::{Arrival, RunEnding},
 };
 
 use super::{JudgedLog, LISTED, folded_trail, minimise::Minimised, other_world::OtherWorld};

@@ -3,10 +3,10 @@
 use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
-use toposlam_model::folding::SearchLimit;
-use toposlam_robot::conform::{
+use toposlam_conform::{
     CheckedEvent, CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents,
 };
+use toposlam_model::folding::SearchLimit;
 
 use super::{
     CliError, JudgedLog,

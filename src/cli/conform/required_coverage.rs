@@ -4,8 +4,8 @@ use std::io::Write;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use toposlam_conform::{FORMS, RunCoverage};
 use toposlam_model::trace::AlgorithmCase;
-use toposlam_robot::{conform::RunCoverage, evaluation::scene_class::FORMS};
 
 use super::{CliError, Outcome};
 use crate::{

@@ -4,11 +4,9 @@ use std::path::Path;
 
 use clap::{ValueEnum, builder::PossibleValue};
 use serde::Serialize;
+use toposlam_conform::{Evidence, ExtractedRun, assume_marker, mark_visits, marker_at_start};
+use toposlam_logs::topic_map::{MarkerPlace, Role};
 use toposlam_model::marker::{Directional, Marker, NoMarker, Undirected};
-use toposlam_robot::{
-    conform::{Evidence, ExtractedRun, assume_marker, mark_visits, marker_at_start},
-    log::topic_map::{MarkerPlace, Role},
-};
 
 use super::{CliError, ConformArguments, Who, required_coverage};
 use crate::cli::{open_log::OpenLog, text::counted};

@@ -11,7 +11,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
 };
-use toposlam_robot::simulator::{
+use toposlam_simulator::{
     Building, EffectScope, KNOBS, Rig, label_mask, labels, render, start_pose,
 };
 use toposlam_vision::camera::Camera;

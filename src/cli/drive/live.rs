@@ -7,6 +7,13 @@ use std::{
     time::Duration,
 };
 
+use toposlam_logs::{
+    messages,
+    record::{Event, EventKind, RobotSensor, RunObserver},
+    recorder::{self, Recorder},
+    world_hash,
+    writer::LogWriteError,
+};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -14,15 +21,8 @@ use toposlam_model::{
     mapping::{Journey, MappingEvent, Observer},
 };
 use toposlam_robot::{
-    evaluation::FalsePercepts,
     explorer::RobotExplorer,
-    log::{
-        messages,
-        recorder::{self, Recorder},
-        world_hash,
-        writer::LogWriteError,
-    },
-    record::{Event, EventKind, RobotSensor, RunObserver},
+    false_percepts::FalsePercepts,
     robot::{Robot, RobotError},
     ros1::{LiveRobot, LiveSensor, RobotTopics},
     run_settings::RunSettings,

@@ -7,7 +7,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
 };
-use toposlam_robot::{evaluation::FalsePercepts, explorer::ExplorerError};
+use toposlam_robot::{explorer::ExplorerError, false_percepts::FalsePercepts};
 
 use super::{CliError, Outcome};
 use crate::cli::{

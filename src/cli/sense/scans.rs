@@ -3,15 +3,13 @@
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use toposlam_model::enumerate::Watch;
-use toposlam_robot::{
-    conform::Evidence,
-    log::{
-        entries::Content,
-        topic_map::{Role, TopicMap},
-    },
+use toposlam_conform::Evidence;
+use toposlam_logs::{
+    entries::Content,
     record::{EventKind, Frame},
+    topic_map::{Role, TopicMap},
 };
+use toposlam_model::enumerate::Watch;
 use toposlam_vision::laser::{
     junctions::LaserJunction,
     pictures,

@@ -9,11 +9,9 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     percept::Door,
 };
-use toposlam_robot::{
-    evaluation::{LearnedSensors, run_sampler::starts_of},
-    simulator::{Building, BuildingLook, Effects, render},
-    superscout::{CLEARANCE, RADIUS},
-    truth::angle,
+use toposlam_robot::superscout::{CLEARANCE, RADIUS};
+use toposlam_simulator::{
+    Building, BuildingLook, Effects, LearnedSensors, render, starts_of, truth::angle,
 };
 
 use super::CliError;

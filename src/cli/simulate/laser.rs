@@ -1,6 +1,6 @@
 //! A simulated robot with a laser scanner: which options have an effect.
 
-use toposlam_robot::simulator::ScannerParams;
+use toposlam_simulator::ScannerParams;
 
 use super::{CliError, SimulateArguments};
 use crate::cli::robot_sensor::{SensorChoice, needs_camera};

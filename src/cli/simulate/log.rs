@@ -2,10 +2,8 @@
 
 use std::fs::File;
 
-use toposlam_robot::{
-    log::{messages, recorder::Recorder, world_hash, writer::LogWriteError},
-    simulator::IMAGE_TIME,
-};
+use toposlam_logs::{messages, recorder::Recorder, world_hash, writer::LogWriteError};
+use toposlam_simulator::IMAGE_TIME;
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,

@@ -3,10 +3,9 @@
 use std::io::Write;
 
 use toposlam_model::enumerate::Watch;
-use toposlam_robot::{
-    ros1::{RobotTopics, ServeSummary, serve},
-    simulator::SimulatedRobot,
-};
+use toposlam_robot::ros1::RobotTopics;
+use toposlam_simulator::SimulatedRobot;
+use toposlam_simulator::ros1::{ServeSummary, serve};
 
 use super::{CliError, Outcome};
 use crate::cli::{progress::Progress, text::grouped};

@@ -8,11 +8,10 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{FACING, MappingError, MappingRun},
 };
-use toposlam_robot::{
-    evaluation::FalsePercepts,
-    explorer::ExplorerError,
+use toposlam_robot::{explorer::ExplorerError, false_percepts::FalsePercepts};
+use toposlam_simulator::{
+    RobotFault,
     run::{Run, RunOutcome},
-    simulator::RobotFault,
 };
 
 use super::{CliError, Outcome};

@@ -3,6 +3,7 @@
 use std::{path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
+use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState},
@@ -14,10 +15,7 @@ use toposlam_model::{
     mapping::{Journey, MappingEvent, Observer, PartialMap},
     percept::Door,
 };
-use toposlam_robot::{
-    record::{Event, EventKind, Frame, RunObserver},
-    run::Run,
-};
+use toposlam_simulator::run::Run;
 use toposlam_vision::{annotate, camera::Camera};
 
 use super::{CliError, Story};

@@ -6,7 +6,7 @@
 //!
 //! * **geometry**: the robot, the scanner or the building gives the value;
 //! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them;
-//! * **simulated buildings**: chosen on those of `toposlam evaluate laser --seed 7`.
+//! * **simulated buildings**: chosen on those of `evaluate laser --seed 7`.
 
 use crate::params::params;
 

@@ -1,0 +1,107 @@
+//! A robot with a budget turns back before it is over: then it goes to its marker by the way by which it came.
+
+use toposlam_logs::record::RunEnding;
+use toposlam_model::{
+    percept::WalkEvent,
+    trace::{AlgorithmMatch, AllowedStep, Departure, MatchEnd, StepPurpose, Trace},
+};
+use toposlam_robot::budget::{Allowance, RunBudget, Spent};
+
+use super::events::RunEvents;
+
+/// The match of a robot with a budget. Whether it turns back in time is decided for moves alone: what it had measured of
+/// time and way is not in the trace.
+pub(super) fn within_budget(
+    followed: AlgorithmMatch,
+    trace: &Trace,
+    events: &RunEvents,
+    budget: RunBudget,
+) -> AlgorithmMatch {
+    let turned_back =
+        matches!(events.end.as_ref().map(|end| &end.ending), Some(RunEnding::OutOfBudget(_)));
+    let departed = match &followed.reached {
+        MatchEnd::Departure(departure) => Some(departure),
+        _ => None,
+    };
+    let moves_before = |id| WalkEvent::at(trace.index_of(id)).moves();
+    let last = departed.map_or(trace.doors().len(), |it| moves_before(it.event.id));
+    let moves_alone = RunBudget { moves: budget.moves, ..RunBudget::default() };
+    let mut allowance = Allowance::new(moves_alone);
+    for (number, &door) in trace.doors().iter().enumerate() {
+        arrive(&mut allowance, trace, number);
+        let spent = spent(number);
+        if number < last && allowance.forbids(door, spent).is_some() {
+            let allowed =
+                AllowedStep { door: allowance.door_back(), purpose: StepPurpose::TurnBack };
+            return departing(followed, trace, number, allowed);
+        }
+        if number == last && turned_back {
+            let could_go_on = moves_alone == budget
+                && departed.is_some_and(|departure| {
+                    let mut doors = departure.allowed.iter().filter_map(|allowed| allowed.door);
+                    doors.all(|door| allowance.forbids(door, spent).is_none())
+                });
+            return if could_go_on {
+                followed
+            } else {
+                on_way_back(allowance, followed, trace, number)
+            };
+        }
+        allowance.leave(door, spent);
+    }
+    followed
+}
+
+fn spent(moves: usize) -> Spent {
+    Spent { moves: moves as u64, ..Spent::default() }
+}
+
+/// The robot stands where it was after some moves.
+fn arrive(allowance: &mut Allowance, trace: &Trace, number: usize) {
+    if trace.is_relocation(number) {
+        allowance.lose_way();
+    }
+    if let Some(percept) = trace.percepts().get(number) {
+        allowance.perceive(*percept, spent(number));
+    }
+}
+
+/// The match if all doors from here on are those of the way back.
+fn on_way_back(
+    mut allowance: Allowance,
+    followed: AlgorithmMatch,
+    trace: &Trace,
+    first: usize,
+) -> AlgorithmMatch {
+    for (number, &door) in trace.doors().iter().enumerate().skip(first) {
+        if number > first {
+            arrive(&mut allowance, trace, number);
+        }
+        let back = allowance.door_back();
+        if back != Some(door) {
+            // If it has not turned back, its departure from the algorithm is the fault.
+            if number == first {
+                return followed;
+            }
+            let allowed = AllowedStep { door: back, purpose: StepPurpose::TurnBack };
+            return departing(followed, trace, number, allowed);
+        }
+        allowance.leave(door, spent(number));
+    }
+    AlgorithmMatch { reached: MatchEnd::EndOfTrace, ..followed }
+}
+
+/// The match with another departure, at a door.
+fn departing(
+    followed: AlgorithmMatch,
+    trace: &Trace,
+    number: usize,
+    allowed: AllowedStep,
+) -> AlgorithmMatch {
+    let departure = Departure {
+        algorithm: followed.algorithm,
+        event: trace.door_event(number),
+        allowed: vec![allowed],
+    };
+    AlgorithmMatch { reached: MatchEnd::Departure(departure), ..followed }
+}

@@ -1,0 +1,134 @@
+//! Contradictions within a log: in single events, and in its end.
+
+use toposlam_logs::record::{Arrival, MapRecord, RunEnding};
+use toposlam_model::{
+    driving::visit::JunctionShape,
+    embedded_graph::EmbeddedGraph,
+    isomorphism::code,
+    mapping::FACING,
+    trace::{AlgorithmMatch, MatchEnd, Trace, TraceClaim},
+};
+
+use super::{
+    divergence::{DivergenceCause, OFF},
+    events::{CheckedKind, RunEvents},
+    known_world::KnownWorld,
+};
+
+impl RunEvents {
+    /// The contradictions of single events, in order.
+    pub(super) fn own_faults(&self) -> Vec<(usize, DivergenceCause)> {
+        let mut faults = Vec::new();
+        let mut moves = 0;
+        for (place, event) in self.events.iter().enumerate() {
+            let mut fault = |cause| faults.push((place, cause));
+            match &event.kind {
+                CheckedKind::Arrival { arrival, entry_off, .. } => {
+                    let Arrival { degree, number, form, .. } = *arrival;
+                    if let Some(recorded) = number.filter(|&number| number != moves) {
+                        fault(DivergenceCause::Number { expected: moves, recorded });
+                    }
+                    let doors = form.map_or(degree, JunctionShape::degree);
+                    if doors != degree {
+                        fault(DivergenceCause::Form { degree, doors });
+                    }
+                    if let Some(off) = entry_off.filter(|&off| off > OFF) {
+                        fault(DivergenceCause::Entry { off });
+                    }
+                }
+                CheckedKind::Door { number, off, .. } => {
+                    moves += 1;
+                    if let Some(recorded) = number.filter(|&number| number != moves) {
+                        fault(DivergenceCause::Number { expected: moves, recorded });
+                    }
+                    // An event of its own follows if the robot took no door.
+                    let own = self.events.get(place + 1).map(|event| &event.kind);
+                    let reported = matches!(own, Some(CheckedKind::Aside { .. }));
+                    if let Some(off) = off.filter(|&off| off > OFF && !reported) {
+                        fault(DivergenceCause::Aside { off });
+                    }
+                }
+                CheckedKind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
+                CheckedKind::TurnedBack if !self.may_turn_back => {
+                    fault(DivergenceCause::TurnedBack);
+                }
+                CheckedKind::TurnedBack => {
+                    if let Some(cause) = self.false_return(place) {
+                        fault(cause);
+                    }
+                }
+                CheckedKind::Undecided(cause) => fault(DivergenceCause::Undecided(*cause)),
+            }
+        }
+        faults
+    }
+
+    /// The contradiction between two percepts of a junction that the robot left, and entered again after it
+    /// turned back at this event.
+    fn false_return(&self, back: usize) -> Option<DivergenceCause> {
+        let arrival = |place: Option<usize>| match &self.events.get(place?)?.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival.degree),
+            _ => None,
+        };
+        let before = arrival(back.checked_sub(2))?;
+        let now = arrival(back.checked_add(1))?;
+        Some(DivergenceCause::Return { before, now })
+    }
+
+    /// The contradictions between the recorded end and the algorithm.
+    pub(super) fn false_ending(
+        &self,
+        followed: &AlgorithmMatch,
+        known: Option<&KnownWorld>,
+    ) -> Vec<DivergenceCause> {
+        let map = followed.run.map();
+        let mapped = self.is_said_whole();
+        let mut faults = Vec::new();
+        match (&followed.reached, map.complete()) {
+            (MatchEnd::EndOfTrace, _) if mapped => {
+                faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
+            }
+            (MatchEnd::Mapped, Some(graph)) => {
+                let code_of = |graph: &EmbeddedGraph| code(graph, FACING);
+                let is_other = |recorded: &MapRecord| {
+                    recorded.graph().as_ref().map(code_of) != Some(code_of(graph))
+                };
+                if self.map.as_ref().is_some_and(is_other) {
+                    faults.push(DivergenceCause::Map { algorithm: followed.algorithm });
+                }
+                if known.is_some_and(|known| !known.has(graph)) {
+                    faults.push(DivergenceCause::WrongMap);
+                }
+            }
+            _ => {}
+        }
+        faults
+    }
+
+    /// Whether the log says that the map is complete at its end.
+    fn is_said_whole(&self) -> bool {
+        self.end.as_ref().is_some_and(|end| end.ending == RunEnding::Mapped)
+    }
+
+    /// What the log claims to be.
+    pub(super) fn claim(&self) -> TraceClaim {
+        if self.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part }
+    }
+
+    /// The recorded number of moves, if it is wrong. The door by which a robot left before it got lost is no move.
+    pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
+        let made = trace.percepts().len() - 1 - trace.lost().len();
+        let recorded = self.end.as_ref()?.moves;
+        (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
+    }
+
+    /// Whether the log has the whole run; if an algorithm drives, until its map is complete.
+    pub(super) fn is_whole(&self, driven: bool) -> bool {
+        let ended = match &self.end {
+            Some(_) => self.is_said_whole() || !driven,
+            // Logs of other programs have neither a head nor an end.
+            None => !self.has_head,
+        };
+        ended && !self.truncated
+    }
+}

@@ -1,0 +1,283 @@
+//! The events of a recorded run that are checked: arrivals, doors, and what a robot should not do. The
+//! measurements stay beside their discrete values.
+//!
+//! They are no [events of a run](toposlam_logs::record::Event). Those are what a robot reports: frames, commands,
+//! odometry. The checked ones are concluded from them: some exist in no log, such as a visit that cannot be
+//! recognised or a robot that turned back, and each has what odometry measured on the way to it.
+
+use thiserror::Error;
+use toposlam_logs::record::{Arrival, EventId, MapRecord, RunEnd};
+use toposlam_model::{
+    mapping::ArrivalMeasurement,
+    marker::{Directional, Marker, NoMarker, Undirected},
+    measurement::{HallwayMeasurement, MeasurementNoise},
+    percept::{Door, Percept, Sighting},
+    trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
+};
+
+/// The log message that an event came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct EventSource {
+    /// When it was written, in nanoseconds.
+    pub time: u64,
+    /// Its number.
+    pub id: EventId,
+    /// The offset of its record in the file, in bytes.
+    pub offset: u64,
+}
+
+/// An event that is checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckedEvent {
+    /// Where it came from.
+    pub source: EventSource,
+    /// What happened.
+    pub kind: CheckedKind,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CheckedKind {
+    /// The robot stood at a junction.
+    Arrival {
+        /// What it perceived.
+        arrival: Arrival,
+        /// The angle between the entry door and the direction that the robot came from by odometry, in
+        /// radians; `None` if it is not known.
+        entry_off: Option<f64>,
+        /// What odometry measured since the arrival before; `None` if it is not known.
+        hallway: Option<HallwayMeasurement>,
+    },
+    /// The robot left a junction.
+    Door {
+        /// The number of the move in the log, counted from 1.
+        number: Option<u32>,
+        /// The door.
+        door: Door,
+        /// The angle between the door and the direction in which the robot drove by odometry, in radians;
+        /// `None` if it is not known.
+        off: Option<f64>,
+    },
+    /// The robot left a junction in a direction without a door.
+    Aside {
+        /// The angle to the nearest door, in radians.
+        off: f64,
+    },
+    /// The robot turned back without having been at a junction.
+    TurnedBack,
+    /// The robot was, or may have been, at a junction that could not be recognised.
+    Undecided(UndecidedCause),
+}
+
+/// Why a visit is undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UndecidedCause {
+    /// Its images or scans do not show the junction clearly.
+    Unclear,
+    /// There may be an arm that the laser scanner did not look into.
+    UnseenArm,
+    /// The robot drove in a direction in which the laser scanner did not look.
+    UnseenWay,
+}
+
+/// The part of a run that is checked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunEvents {
+    /// The events in order.
+    pub events: Vec<CheckedEvent>,
+    /// Whether the log has a head.
+    pub has_head: bool,
+    /// How the run ended, if that is recorded.
+    pub end: Option<RunEnd>,
+    /// The last recorded map.
+    pub map: Option<MapRecord>,
+    /// Whether the log is truncated.
+    pub truncated: bool,
+    /// Whether the robot may turn back between junctions. The excursions that fit are not among the events.
+    pub may_turn_back: bool,
+    /// The uncertainty of the measurements of hallways.
+    pub measurement_noise: MeasurementNoise,
+}
+
+/// An event that is earlier than the one before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("the events are out of order: this one is at {:.3} s, the one before it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+pub struct OutOfOrder {
+    /// Its time, in nanoseconds.
+    pub time: u64,
+    /// The time of the event before it.
+    pub before: u64,
+}
+
+impl OutOfOrder {
+    /// Checks that an event is not earlier than the one before it.
+    ///
+    /// # Errors
+    /// Returns an error if it is.
+    pub fn check(before: u64, time: u64) -> Result<(), Self> {
+        if time < before { Err(Self { time, before }) } else { Ok(()) }
+    }
+}
+
+/// Why arrivals are not those of a robot with a marker of a kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum SightingError {
+    /// An arrival does not record whether the robot saw its marker.
+    #[error("its percepts do not record whether the robot saw its marker")]
+    NotRecorded,
+    /// An arrival records a directional marker without its direction.
+    #[error("its percepts do not record along which door the marker points")]
+    NoDoor,
+}
+
+impl RunEvents {
+    /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
+    /// along which an undirected marker points is left out.
+    ///
+    /// # Errors
+    /// Returns an error if an arrival does not record what a robot with this marker sees.
+    pub fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
+        let is = |other: &dyn Marker| marker.name() == other.name();
+        let [is_none, is_directional, is_undirected] =
+            [is(&NoMarker), is(&Directional), is(&Undirected)];
+        for event in &mut self.events {
+            let CheckedKind::Arrival { arrival, .. } = &mut event.kind else { continue };
+            match arrival.sighting {
+                None if is_none => arrival.sighting = Some(Sighting::Nothing),
+                None => return Err(SightingError::NotRecorded),
+                Some(Sighting::Pointing(_)) if is_undirected => {
+                    arrival.sighting = Some(Sighting::Lying(1));
+                }
+                Some(Sighting::Lying(_)) if is_directional => return Err(SightingError::NoDoor),
+                Some(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
+    #[must_use]
+    pub fn may_show_marker(&self) -> bool {
+        self.events.iter().any(|event| match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => {
+                arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
+            }
+            _ => false,
+        })
+    }
+
+    /// The trace of the arrivals and doors. The id of an event is its index here. An arrival that does not
+    /// record whether the marker was seen counts as one without it.
+    ///
+    /// # Errors
+    /// Returns the first event that is out of turn.
+    pub fn trace(&self) -> Result<Trace, TraceOrderError> {
+        let event = |(id, event): (usize, &CheckedEvent)| {
+            let kind = match &event.kind {
+                CheckedKind::Arrival { arrival: Arrival { degree, sighting, .. }, .. } => {
+                    let sighting = sighting.unwrap_or(Sighting::Nothing);
+                    TraceEventKind::Percept(Percept { degree: *degree, sighting })
+                }
+                CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
+                CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {
+                    return None;
+                }
+            };
+            Some(TraceEvent { id, kind })
+        };
+        let trace = Trace::from_events(self.events.iter().enumerate().filter_map(event))?;
+        Ok(trace.with_relocations(self.relocations()))
+    }
+
+    /// The arrivals of a robot that got lost before, by their indices. A log of this project counts the moves to all
+    /// others. In logs of other programs numbers may be missing.
+    pub(crate) fn relocations(&self) -> impl Iterator<Item = usize> + '_ {
+        let number = |event: &CheckedEvent| match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival.number),
+            _ => None,
+        };
+        let is_counted =
+            self.has_head && self.events.iter().any(|event| matches!(number(event), Some(Some(_))));
+        let is_lost = move |event: &CheckedEvent| is_counted && number(event) == Some(None);
+        self.events.iter().enumerate().filter(move |(_, event)| is_lost(event)).map(|(at, _)| at)
+    }
+
+    /// What is recorded of the visits of a trace of these events, besides their percepts.
+    pub(super) fn recorded_visits(&self, trace: &Trace) -> Vec<RecordedVisit> {
+        let visit = |number| {
+            let event = self.events.get(trace.percept_event(number).id).map(|event| &event.kind);
+            let Some(CheckedKind::Arrival { arrival, hallway, .. }) = event else {
+                return RecordedVisit::default();
+            };
+            RecordedVisit {
+                measured: ArrivalMeasurement { hallway: *hallway, shape: arrival.form },
+                is_blocked: arrival.is_at_obstacle(),
+            }
+        };
+        (0..trace.percepts().len()).map(visit).collect()
+    }
+
+    /// The events without the excursions of a robot that left a junction, turned back and entered it again:
+    /// it has stood there all the time, and takes the door that it takes in the end. An excursion stays if
+    /// the two percepts contradict each other.
+    #[must_use]
+    pub fn without_excursions(&self) -> Self {
+        let mut events: Vec<CheckedEvent> = Vec::new();
+        // By how many doors clockwise the next door is farther from the entry of the last arrival.
+        let mut turned = Door::BACK;
+        // The number of moves that are left out.
+        let mut left_out = 0;
+        for event in &self.events {
+            let mut event = event.clone();
+            match (&mut event.kind, &events[..]) {
+                (
+                    CheckedKind::Arrival { arrival: again, .. },
+                    [
+                        ..,
+                        CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. },
+                        left,
+                        back,
+                    ],
+                ) => {
+                    if let CheckedKind::Door { door, .. } = left.kind
+                        && back.kind == CheckedKind::TurnedBack
+                        && arrival.is_same_from(again, door)
+                    {
+                        turned = door;
+                        left_out += 1;
+                        events.truncate(events.len() - 2);
+                        continue;
+                    }
+                    turned = Door::BACK;
+                }
+                (
+                    CheckedKind::Door { door, .. },
+                    [.., CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. }],
+                ) if door.0 < arrival.degree => {
+                    let entry = std::mem::replace(&mut turned, Door::BACK);
+                    *door = door.seen_from(entry.inverse(arrival.degree), arrival.degree);
+                }
+                _ => turned = Door::BACK,
+            }
+            match &mut event.kind {
+                CheckedKind::Arrival { arrival: Arrival { number: Some(number), .. }, .. }
+                | CheckedKind::Door { number: Some(number), .. } => {
+                    *number = number.saturating_sub(left_out);
+                }
+                _ => {}
+            }
+            events.push(event);
+        }
+        // A robot that has turned back at the end has not arrived again.
+        events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
+        Self { events, may_turn_back: true, ..self.clone() }
+    }
+
+    /// The events up to and including one, by its index.
+    #[must_use]
+    pub fn up_to(&self, index: usize) -> Self {
+        let events = self.events.iter().take(index + 1).cloned().collect();
+        let Self { has_head, may_turn_back, measurement_noise, .. } = *self;
+        Self { events, has_head, may_turn_back, measurement_noise, ..Self::default() }
+    }
+}

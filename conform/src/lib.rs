@@ -1,0 +1,62 @@
+//! Checks a recorded run against the specification: the first divergence, what the specification allows
+//! there instead, and the class of the fault. Sections 2 and 4 to 6.
+
+// Tests compare exact numbers.
+#![cfg_attr(test, allow(clippy::float_cmp))]
+
+mod bends;
+mod budget_check;
+mod config;
+mod consistency;
+mod divergence;
+pub mod earlier_walks;
+mod events;
+mod extract;
+pub mod fuzz;
+mod impossible;
+mod inferred_events;
+mod judgement;
+mod junction_forms;
+mod known_world;
+mod laser_events;
+mod laser_visit;
+mod log_head;
+mod marked_visits;
+mod measured_hallways;
+mod message_clock;
+mod placed_scenes;
+mod quirks;
+mod recorded_events;
+mod scan_odometry;
+mod seen_junctions;
+mod shorten;
+mod shorten_measured;
+mod tolerance;
+mod unseen_way;
+
+#[cfg(test)]
+mod tests;
+
+pub use config::{ConformConfig, RunDriver};
+pub use divergence::{Divergence, DivergenceCause, FaultClass};
+pub use events::{
+    CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, SightingError, UndecidedCause,
+};
+pub use extract::{
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
+};
+pub use impossible::{FoldedTrace, Impossibility};
+pub use inferred_events::{InferredEvents, NEAR};
+pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
+pub use junction_forms::FORMS;
+pub use known_world::KnownWorld;
+pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};
+pub use log_head::{LogHead, MarkerNotShown, RESUMED};
+pub use marked_visits::{
+    MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
+};
+pub use measured_hallways::MeasuredHallways;
+pub use placed_scenes::{SceneClockError, SensedScene};
+pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
+pub use recorded_events::RecordedEvents;
+pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

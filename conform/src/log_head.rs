@@ -1,0 +1,108 @@
+//! What the head of a log records about its run, as a check of the log needs it: the marker, the settings, the
+//! start and the world.
+
+use thiserror::Error;
+use toposlam_logs::{messages::Run, world_hash};
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
+    marker::{self, Directional, Marker, UnknownMarker},
+};
+use toposlam_robot::run_settings::RecordedSettings;
+
+use super::events::RunEvents;
+
+/// The head of a log. A log that has none records nothing of this.
+#[derive(Clone, Copy)]
+pub struct LogHead<'r>(pub Option<&'r Run>);
+
+/// The robot of a log is only assumed to have a marker, and no percept shows one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("no percept in it shows a marker, which {} needs", .algorithm.in_words())]
+pub struct MarkerNotShown {
+    /// The algorithm whose doors would be compared.
+    pub algorithm: DirectionalAlgorithm,
+}
+
+impl LogHead<'_> {
+    /// The name of the marker, if it is recorded.
+    fn marker_name(&self) -> Option<&str> {
+        self.0.map(|run| run.marker.as_str()).filter(|name| !name.is_empty())
+    }
+
+    /// The marker of the robot: without a record, a directional one.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such marker.
+    pub fn marker(&self) -> Result<&'static dyn Marker, UnknownMarker> {
+        self.marker_name().map_or(Ok(&Directional), marker::named)
+    }
+
+    /// How the robot mapped, and within which limits, by this algorithm if one is given; without either by
+    /// Algorithm 1.
+    ///
+    /// # Errors
+    /// Returns the recorded text if it is not understood, and no algorithm is given.
+    pub fn settings(
+        &self,
+        algorithm: Option<DirectionalAlgorithm>,
+    ) -> Result<RecordedSettings, String> {
+        let head = self.0.map_or("", |run| &run.algorithm);
+        let recorded = match head {
+            "" => Ok(RecordedSettings::default()),
+            head => RecordedSettings::from_head(head),
+        };
+        match (algorithm, recorded) {
+            (Some(algorithm), recorded) => {
+                Ok(recorded.unwrap_or_default().with_algorithm(algorithm))
+            }
+            (None, Ok(recorded)) => Ok(recorded),
+            (None, Err(_)) => Err(head.to_owned()),
+        }
+    }
+
+    /// The start, if the log was recorded in this world.
+    #[must_use]
+    pub fn start(&self, world: &NamedWorld) -> Option<Dart> {
+        let run = self.0?;
+        let start = world.start_from_text(&run.start).ok()?;
+        (world_hash(&world.graph, start) == run.world_hash).then_some(start)
+    }
+
+    /// Whether the log was recorded in another world.
+    #[must_use]
+    pub fn is_of_other_world(&self, graph: &EmbeddedGraph) -> bool {
+        let recorded = self.0.map_or("", |run| &run.world_hash);
+        !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
+    }
+
+    /// Whether doors can be compared with an algorithm, which needs a marker: it is recorded, or a percept shows
+    /// it, or may.
+    ///
+    /// # Errors
+    /// Returns an error if the marker is only assumed, and no percept shows it.
+    pub fn check_marker(
+        &self,
+        events: &RunEvents,
+        algorithm: DirectionalAlgorithm,
+    ) -> Result<(), MarkerNotShown> {
+        if self.marker_name().is_some() || events.may_show_marker() {
+            return Ok(());
+        }
+        Err(MarkerNotShown { algorithm })
+    }
+
+    /// A remark if the log was recorded in another world.
+    #[must_use]
+    pub fn other_world(&self, graph: &EmbeddedGraph) -> Option<String> {
+        let name = self.0.map_or("", |run| &run.world);
+        let comma = if name.is_empty() { "" } else { ", " };
+        self.is_of_other_world(graph)
+            .then(|| format!("the log was recorded in another world{comma}{name}"))
+    }
+}
+
+/// The remark on a log whose robot went on from an earlier run.
+pub const RESUMED: &str = "its robot went on from an earlier run, which is not in this log; its doors are \
+                           compared with no algorithm";

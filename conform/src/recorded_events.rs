@@ -1,0 +1,163 @@
+//! The recorded arrivals and doors of a log, compared with its odometry.
+
+use std::{collections::VecDeque, f64::consts::PI};
+
+use toposlam_logs::record::{Arrival, EventKind};
+use toposlam_model::{
+    driving::{odometry::Odometry, scene::wrapped},
+    percept::Door,
+};
+use toposlam_robot::measured_hallway::{MeasuredHallway, direction};
+
+use super::events::{CheckedEvent, CheckedKind, EventSource};
+
+/// A direction by odometry needs this distance, in metres. Over much more, odometry drifts.
+const FAR_ENOUGH: f64 = 1.0;
+
+/// Collects arrivals and doors, and measures the directions between them.
+#[derive(Clone, Debug, Default)]
+pub struct RecordedEvents {
+    events: Vec<CheckedEvent>,
+    /// The last odometry, as far back as a direction needs.
+    way: VecDeque<Odometry>,
+    /// Where the robot last left a junction, the index of the event, and the direction of the door.
+    left: Option<(Odometry, usize, f64)>,
+    /// The hallway since the last arrival.
+    hallway: Option<MeasuredHallway>,
+}
+
+impl RecordedEvents {
+    /// The next event of the log.
+    pub fn observe(&mut self, source: EventSource, kind: &EventKind) {
+        match kind {
+            EventKind::Odometry(odometry) => self.moved(*odometry),
+            EventKind::Arrival(arrival) => self.arrived(source, *arrival),
+            EventKind::Door { number, door } => self.left(source, *number, *door),
+            _ => {}
+        }
+    }
+
+    /// An event that is neither an arrival nor a door.
+    pub fn note(&mut self, source: EventSource, kind: CheckedKind) {
+        (self.left, self.hallway) = (None, None);
+        self.events.push(CheckedEvent { source, kind });
+    }
+
+    fn moved(&mut self, odometry: Odometry) {
+        if let Some(hallway) = &mut self.hallway {
+            hallway.add(odometry);
+        }
+        if let Some((from, event, direction)) = self.left
+            && from.distance(&odometry) >= FAR_ENOUGH
+        {
+            self.left = None;
+            if let Some(CheckedEvent { kind: CheckedKind::Door { off, .. }, .. }) =
+                self.events.get_mut(event)
+            {
+                *off = Some(wrapped(way(&from, &odometry) - direction).abs());
+            }
+        }
+        while self.way.get(1).is_some_and(|second| second.distance(&odometry) >= FAR_ENOUGH) {
+            self.way.pop_front();
+        }
+        self.way.push_back(odometry);
+    }
+
+    fn arrived(&mut self, source: EventSource, arrival: Arrival) {
+        let now = self.way.back();
+        let came_from = if self.events.is_empty() {
+            // At the start the robot stands with its back to the entry door.
+            now.map(|now| now.whither(PI))
+        } else {
+            let ends = self.way.front().zip(now);
+            let far_enough = ends.filter(|(from, now)| from.distance(now) >= FAR_ENOUGH);
+            far_enough.map(|(from, now)| way(now, from))
+        };
+        let entry_off =
+            arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
+        let hallway = self.hallway.take().and_then(|hallway| hallway.measured(arrival.entry));
+        self.hallway = Some(MeasuredHallway::from(now.copied()));
+        let kind = CheckedKind::Arrival { arrival, entry_off, hallway };
+        self.events.push(CheckedEvent { source, kind });
+    }
+
+    fn left(&mut self, source: EventSource, number: Option<u32>, door: Door) {
+        let direction = match self.events.last().map(|event| &event.kind) {
+            Some(CheckedKind::Arrival {
+                arrival: Arrival { form: Some(form), entry: Some(entry), .. },
+                ..
+            }) => direction(*form, *entry, door),
+            _ => None,
+        };
+        let now = self.way.back().copied();
+        if let Some(hallway) = &mut self.hallway {
+            hallway.leave(direction);
+        }
+        self.left = now.zip(direction).map(|(now, direction)| (now, self.events.len(), direction));
+        // The next direction starts here.
+        self.way.clear();
+        self.way.extend(now);
+        self.events
+            .push(CheckedEvent { source, kind: CheckedKind::Door { door, number, off: None } });
+    }
+
+    /// The events.
+    #[must_use]
+    pub fn finish(self) -> Vec<CheckedEvent> {
+        self.events
+    }
+}
+
+/// The direction from one position to another.
+fn way(from: &Odometry, to: &Odometry) -> f64 {
+    let [x, y] = [0, 1].map(|axis| to.position[axis] - from.position[axis]);
+    y.atan2(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use toposlam_model::{driving::visit::JunctionShape, percept::Sighting};
+
+    use super::*;
+
+    fn arrival(number: u32, form: [bool; 4], entry: f64) -> EventKind {
+        let form = JunctionShape(form);
+        let (degree, sighting) = (form.degree(), Some(Sighting::Nothing));
+        let (number, form, entry) = (Some(number), Some(form), Some(entry));
+        EventKind::Arrival(Arrival { number, degree, sighting, form, entry })
+    }
+
+    /// A robot that comes to a T by its stem, leaves by a door as the log says, and drives somewhere.
+    fn offs(door: u32, to: [f64; 2], entry: f64) -> (Option<f64>, Option<f64>) {
+        let mut recorded = RecordedEvents::default();
+        let at = |position| EventKind::Odometry(Odometry { position, heading: 0.0 });
+        for kind in [
+            at([0.0, 0.0]),
+            arrival(0, [true, true, false, true], PI),
+            EventKind::Door { number: Some(1), door: Door(door) },
+            at(to),
+            arrival(1, [true; 4], entry),
+        ] {
+            recorded.observe(EventSource::default(), &kind);
+        }
+        let events = recorded.finish();
+        let CheckedKind::Door { off, .. } = events[1].kind else { panic!("{events:?}") };
+        let CheckedKind::Arrival { entry_off, .. } = events[2].kind else { panic!("{events:?}") };
+        (off, entry_off)
+    }
+
+    #[test]
+    fn odometry_decides_whether_a_door_was_taken() {
+        // Door 1 is to the left, door 2 to the right.
+        let (off, entry_off) = offs(1, [0.0, 4.0], -FRAC_PI_2);
+        assert!(off.unwrap() < 1e-9 && entry_off.unwrap() < 1e-9);
+        assert!((offs(2, [0.0, 4.0], -FRAC_PI_2).0.unwrap() - PI).abs() < 1e-9);
+        assert!((offs(1, [0.0, 4.0], PI).1.unwrap() - FRAC_PI_2).abs() < 1e-9);
+        // A door that does not exist has no direction.
+        assert_eq!(offs(3, [0.0, 4.0], PI).0, None);
+        // Half a metre is too short to decide.
+        assert_eq!(offs(1, [0.0, 0.5], PI), (None, None));
+    }
+}

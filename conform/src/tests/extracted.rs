@@ -1,0 +1,243 @@
+//! What is extracted of a log, besides its events.
+
+use std::f64::consts::PI;
+
+use toposlam_logs::{
+    messages::{self, ProjectMessage, Stamp},
+    reader,
+    recorder::{IMAGE, ODOM, SCAN},
+    standard::{CompressedImage, LaserScanMessage, OdometryMessage, Twist},
+    topic_map::TopicMap,
+    writer::LogWriter,
+};
+use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
+
+use super::*;
+
+const SECOND: u64 = 1_000_000_000;
+
+/// A log that is written one message a second.
+struct Written {
+    writer: LogWriter<Vec<u8>>,
+    seconds: u64,
+}
+
+impl Written {
+    fn new() -> Self {
+        let mut writer = LogWriter::new(Vec::new()).unwrap();
+        writer.write(messages::Run::TOPIC, 0, &messages::Run::default()).unwrap();
+        Self { writer, seconds: 5000 }
+    }
+
+    fn stamp(&mut self) -> Stamp {
+        self.seconds += 1;
+        Stamp::of(self.seconds * SECOND)
+    }
+
+    fn odometry(&mut self) {
+        let stamp = self.stamp();
+        let message = OdometryMessage::new(stamp, &Odometry::default(), Twist::default());
+        self.writer.write(ODOM, stamp.nanoseconds(), &message).unwrap();
+    }
+
+    /// Odometry whose stamp is wrong.
+    fn late_odometry(&mut self) {
+        let time = self.stamp().nanoseconds();
+        let stamp = Stamp::of(time - 100 * SECOND);
+        let message = OdometryMessage::new(stamp, &Odometry::default(), Twist::default());
+        self.writer.write(ODOM, time, &message).unwrap();
+    }
+
+    fn scan(&mut self) {
+        let stamp = self.stamp();
+        let geometry = ScanGeometry {
+            angle_min: -PI / 2.0,
+            angle_increment: PI / 4.0,
+            range_min: 0.1,
+            range_max: 9.0,
+        };
+        let scan = Scan::new(geometry, vec![1.0; 5], ScannerPose::default()).unwrap();
+        let message = LaserScanMessage::new(stamp, &scan);
+        self.writer.write(SCAN, stamp.nanoseconds(), &message).unwrap();
+    }
+
+    fn scene(&mut self) {
+        let stamp = self.stamp();
+        let [place, status] = ["hallway", "clear"].map(str::to_owned);
+        let message = messages::Scene { stamp, place, status, ..messages::Scene::default() };
+        self.writer.write(messages::Scene::TOPIC, stamp.nanoseconds(), &message).unwrap();
+    }
+
+    fn image(&mut self) {
+        let stamp = self.stamp();
+        let message = CompressedImage::new(stamp, b"no image");
+        self.writer.write(IMAGE, stamp.nanoseconds(), &message).unwrap();
+    }
+
+    /// A robot that passes a junction, with all kinds of evidence.
+    fn passing() -> Self {
+        let mut log = Self::new();
+        log.odometry();
+        log.visit();
+        log.scene();
+        log.scan();
+        log
+    }
+
+    /// An arrival, and the door by which the robot leaves.
+    fn visit(&mut self) {
+        let stamp = self.stamp();
+        let form = [true, false, true, false];
+        let message = messages::Percept { stamp, degree: 2, form, ..messages::Percept::default() };
+        self.writer.write(messages::Percept::TOPIC, stamp.nanoseconds(), &message).unwrap();
+        let stamp = self.stamp();
+        let message = messages::Door { stamp, r#move: 1, door: 1 };
+        self.writer.write(messages::Door::TOPIC, stamp.nanoseconds(), &message).unwrap();
+    }
+
+    fn end(&mut self) {
+        let stamp = self.stamp();
+        let map = messages::Map::default();
+        self.writer.write(messages::Map::TOPIC, stamp.nanoseconds(), &map).unwrap();
+        let end = messages::End { ending: "mapped".to_owned(), ..messages::End::default() };
+        self.writer.write(messages::End::TOPIC, stamp.nanoseconds(), &end).unwrap();
+    }
+
+    fn open(self) -> (reader::Log, TopicMap) {
+        let log = reader::Log::of_bytes(self.writer.finish().unwrap()).unwrap();
+        let mapping = TopicMap::unambiguous(&log);
+        (log, mapping)
+    }
+
+    fn extract(self, evidence: Evidence) -> Result<ExtractedRun, ExtractError> {
+        let (log, mapping) = self.open();
+        extract(&log, &mapping, &ExtractConfig::new(evidence), &())
+    }
+}
+
+#[test]
+fn the_first_source_of_events_that_is_complete_is_chosen() {
+    let source = |write: &[fn(&mut Written)]| {
+        let mut log = Written::new();
+        for write in write {
+            write(&mut log);
+        }
+        Evidence::of(&log.open().1)
+    };
+    assert_eq!(
+        source(&[Written::visit, Written::scene, Written::odometry]),
+        Some(Evidence::Recorded)
+    );
+    let all: [fn(&mut Written); 4] =
+        [Written::scan, Written::image, Written::scene, Written::odometry];
+    assert_eq!(source(&all), Some(Evidence::Scenes));
+    assert_eq!(
+        source(&[Written::scan, Written::image, Written::odometry]),
+        Some(Evidence::Pictures)
+    );
+    assert_eq!(source(&[Written::scan, Written::odometry]), Some(Evidence::Laser));
+    assert_eq!(source(&[Written::scan]), None);
+}
+
+#[test]
+fn the_end_of_a_run_is_left_out_where_corners_are_no_junctions() {
+    let run = |evidence| {
+        let mut log = Written::passing();
+        log.end();
+        log.extract(evidence).unwrap()
+    };
+    for evidence in [Evidence::Recorded, Evidence::Scenes] {
+        let RunEvents { has_head, end, map, .. } = run(evidence).events;
+        assert!(has_head && end.is_some() && map.is_some(), "{evidence:?}");
+    }
+    let by_laser = run(Evidence::Laser);
+    let RunEvents { has_head, end, map, .. } = by_laser.events;
+    assert!(!has_head && end.is_none() && map.is_none());
+    assert_eq!((by_laser.scans, by_laser.seen.len()), (1, 0));
+    // 180 degrees.
+    assert!((by_laser.field_of_view - PI).abs() < 1e-6, "{}", by_laser.field_of_view);
+    // A log without an end keeps its head.
+    let mut log = Written::new();
+    log.odometry();
+    log.scan();
+    assert!(log.extract(Evidence::Laser).unwrap().events.has_head);
+    let recorded = run(Evidence::Recorded);
+    assert_eq!((recorded.events.events.len(), recorded.scans, recorded.seen.len()), (2, 0, 0));
+    assert_eq!(run(Evidence::Scenes).seen.len(), 1);
+}
+
+#[test]
+fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
+    let mut log = Written::new();
+    (0..53).for_each(|_| log.scan());
+    log.odometry();
+    (0..20).for_each(|_| log.scan());
+    log.seconds += 3601;
+    log.scan();
+    let run = log.extract(Evidence::Laser).unwrap();
+    // Fifty scans wait for their odometry.
+    let skipped = SkippedMessages { off_clock: 1, scans_without_odometry: 3 };
+    assert_eq!((run.scans, run.skipped), (70, skipped));
+    assert_eq!(
+        run.skipped.in_words().unwrap(),
+        "skipped messages: 1 whose time is far from that of all others, 3 scans without odometry"
+    );
+    assert_eq!(SkippedMessages::default().in_words(), None);
+    let one = SkippedMessages { off_clock: 0, scans_without_odometry: 1 };
+    assert_eq!(one.in_words().unwrap(), "skipped messages: 1 scan without odometry");
+    let nowhere = |write: fn(&mut Written)| {
+        let mut log = Written::new();
+        write(&mut log);
+        log.extract(Evidence::Laser)
+    };
+    assert!(matches!(nowhere(Written::scan), Err(ExtractError::NoOdometry { scans: 1 })));
+    assert_eq!(nowhere(Written::scene).unwrap().scans, 0);
+}
+
+/// Recorded events and scans are compared with odometry in the order of the log.
+#[test]
+fn stamps_of_odometry_matter_only_to_scenes() {
+    let run = |evidence| {
+        let mut log = Written::passing();
+        log.late_odometry();
+        log.extract(evidence)
+    };
+    assert_eq!(run(Evidence::Recorded).unwrap().events.events.len(), 2);
+    assert_eq!(run(Evidence::Laser).unwrap().scans, 1);
+    let by_scenes = run(Evidence::Scenes).unwrap_err();
+    assert!(matches!(by_scenes, ExtractError::SceneClock(SceneClockError::Back { .. })));
+}
+
+#[test]
+fn images_need_a_sensor() {
+    let mut log = Written::new();
+    log.odometry();
+    log.image();
+    assert!(matches!(log.extract(Evidence::Pictures), Err(ExtractError::NoSensor)));
+}
+
+#[test]
+fn a_robot_that_turned_back_is_not_one_at_a_junction_that_was_not_recognised() {
+    let kinds = |line: &str| {
+        let log = reader::Log::of_bytes(line.as_bytes().to_vec()).unwrap();
+        let mapping = TopicMap::unambiguous(&log);
+        let run = extract(&log, &mapping, &ExtractConfig::new(Evidence::Recorded), &()).unwrap();
+        run.events.events.into_iter().map(|event| event.kind).collect::<Vec<_>>()
+    };
+    let unclear = CheckedKind::Undecided(UndecidedCause::Unclear);
+    let turned = "{\"kind\":\"event\",\"degree\":null,\"door\":null,\"turned_back\":true}\n";
+    assert_eq!(kinds(turned), [CheckedKind::TurnedBack, unclear.clone()]);
+    assert_eq!(kinds("{\"kind\":\"event\",\"degree\":null,\"door\":null}\n"), [unclear]);
+}
+
+#[test]
+fn scans_without_any_odometry_are_an_error_with_their_number() {
+    let mut log = Written::new();
+    for _ in 0..3 {
+        log.scan();
+    }
+    let (log, mapping) = log.open();
+    let error = extract(&log, &mapping, &ExtractConfig::new(Evidence::Laser), &()).unwrap_err();
+    assert!(matches!(error, ExtractError::NoOdometry { scans: 3 }), "{error}");
+    assert_eq!(error.to_string(), "no odometry is recorded with its 3 laser scans");
+}

@@ -1,0 +1,13 @@
+//! What people look at: pictures of worlds and runs ([`picture`]), pages for a browser ([`page`]), the story of a mapping
+//! run ([`story`]) and the conformance report of a log ([`report`]).
+
+// Tests compare exact numbers.
+#![cfg_attr(test, allow(clippy::float_cmp))]
+
+pub mod moment;
+pub mod page;
+pub mod picture;
+pub mod report;
+pub mod run_page_data;
+pub mod story;
+pub mod text;

@@ -1,0 +1,120 @@
+//! The junctions as the robot saw them: a dot where it stood, a cross if the arrival is not as specified,
+//! and beside the junction the number of doors that it counted.
+
+use std::collections::BTreeMap;
+
+use toposlam_model::embedded_graph::Vertex;
+
+use super::{
+    super::{
+        geometry::{Extent, Point},
+        svg::{INK, MARKER, Page, short},
+    },
+    ground::{Ground, along},
+};
+use crate::run_page_data::PageArrival;
+
+/// The radius of a badge, and the distance between two badges.
+const BADGE: f64 = 8.0;
+const APART: f64 = 17.5;
+
+/// The numbers of doors counted at each junction: each number once, and once more if it was wrong.
+pub(super) struct Badges(Vec<Badge>);
+
+struct Badge {
+    at: Point,
+    degree: u32,
+    conforms: bool,
+    /// The number of frames before it was first counted.
+    rounds: usize,
+}
+
+impl Badges {
+    pub(super) fn of(ground: &Ground, calls: &[PageArrival]) -> Self {
+        let mut counted: BTreeMap<_, BTreeMap<_, PageArrival>> = BTreeMap::new();
+        for (number, call) in calls.iter().enumerate() {
+            // What is at no junction stands for itself.
+            let place = junction(ground, call).ok_or(number);
+            let there = counted.entry(place).or_default();
+            there.entry((!call.conforms, call.percept.degree)).or_insert_with(|| call.clone());
+        }
+        let mut badges = Vec::new();
+        for (place, there) in &counted {
+            for (number, call) in there.values().enumerate() {
+                let at = match place {
+                    Ok(vertex) => beside(ground, *vertex, number as f64),
+                    Err(_) => ground.at(call.pose.position) + Point::new(1.0, -1.0) * (1.4 * BADGE),
+                };
+                let PageArrival { rounds, percept, conforms, .. } = *call;
+                badges.push(Badge { at, degree: percept.degree, conforms, rounds });
+            }
+        }
+        Self(badges)
+    }
+
+    pub(super) fn extents(&self) -> impl Iterator<Item = Extent> + '_ {
+        self.0.iter().map(|badge| Extent::around(badge.at, BADGE + 1.0, BADGE + 1.0))
+    }
+
+    pub(super) fn write(&self, page: &mut Page, shift: Point) {
+        for Badge { at, degree, conforms, rounds } in &self.0 {
+            let at = *at + shift;
+            let (class, fill, ink) = if *conforms {
+                ("badge", "#ffffff", INK)
+            } else {
+                ("badge wrong", MARKER, "#ffffff")
+            };
+            let edge = if *conforms { INK } else { MARKER };
+            page.line(&format!("<g class=\"{class}\" data-rounds=\"{rounds}\">"));
+            page.line(&format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{BADGE}\" fill=\"{fill}\" stroke=\"{edge}\" \
+                 stroke-width=\"1.2\"/>",
+                short(at.x),
+                short(at.y)
+            ));
+            page.text(&degree.to_string(), at + Point::new(0.0, 4.0), 11.0, ink, "degree");
+            page.line("</g>");
+        }
+    }
+}
+
+/// Draws where the robot stood at each call.
+pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[PageArrival], shift: Point) {
+    for call in calls {
+        let at = ground.at(call.pose.position) + shift;
+        let (x, y, rounds) = (short(at.x), short(at.y), call.rounds);
+        page.line(&if call.conforms {
+            format!(
+                "<circle class=\"call\" data-rounds=\"{rounds}\" cx=\"{x}\" cy=\"{y}\" r=\"2.4\" \
+                 fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"1.1\"/>"
+            )
+        } else {
+            format!(
+                "<path class=\"call wrong\" data-rounds=\"{rounds}\" \
+                 d=\"M{x} {y}m-5 -5l10 10m0 -10l-10 10\" fill=\"none\" stroke=\"{MARKER}\" \
+                 stroke-width=\"2.6\"/>"
+            )
+        });
+    }
+}
+
+/// The junction at which the robot stood.
+fn junction(ground: &Ground, call: &PageArrival) -> Option<Vertex> {
+    let at = ground.at(call.pose.position);
+    let off = |vertex: Vertex| {
+        let off = at - ground.turning_point(vertex);
+        off.x.abs().max(off.y.abs())
+    };
+    ground.plan.graph().vertices().find(|&vertex| off(vertex) <= ground.half())
+}
+
+/// The position of a junction's n-th badge: along its walls, away from its doors.
+fn beside(ground: &Ground, vertex: Vertex, number: f64) -> Point {
+    let closed: Vec<_> = ground.closed(vertex).map(along).collect();
+    let whole = closed.iter().fold(Point::default(), |sum, &side| sum + side);
+    let away = (ground.half() - BADGE - 3.0).min(2.0 * BADGE + 4.0);
+    let at = ground.turning_point(vertex) + whole * away;
+    // Further ones follow along the wall, towards the middle.
+    let on = if closed.len() == 2 { closed[0] * -1.0 } else { whole.quarter_turn() };
+    at + on * (APART * number)
+}

@@ -1,0 +1,75 @@
+//! A small run, for tests: two hallways meet at an L; the robot drives through the northern one and comes
+//! back.
+
+use std::sync::Arc;
+
+use toposlam_model::{
+    driving::{
+        algorithm2::{Command, PathState},
+        pose::Pose,
+    },
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
+    percept::{Door, Percept, Sighting},
+    world::GraphWorld,
+};
+
+use crate::run_page_data::{PageArrival, PageFrame, RunPageData};
+
+/// Seven frames; the last three images are the same, and the third call is wrong.
+pub(crate) fn run_page_data() -> RunPageData {
+    let places = [("corner", [0.0, 0.0]), ("north", [0.0, 4.0]), ("east", [4.0, 0.0])];
+    let places = places.map(|(name, place)| (name.to_owned(), place));
+    let hallways = [("corner", "north"), ("corner", "east")];
+    let hallways = hallways.map(|(from, to)| (from.to_owned(), to.to_owned()));
+    let plan = Arc::new(FloorPlan::new(1.6, &places, &hallways).unwrap());
+    let facing = Dart(0);
+    let maps = maps(&plan, facing);
+    let round = |(number, y): (usize, f64)| PageFrame {
+        time: 2.5 * number as f64,
+        pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
+        moves: number.div_ceil(3) as u64,
+        state: PathState::Hallway,
+        scene: format!("scene {number}"),
+        command: Some(Command { turn: 0.0, forward: 0.5 }),
+        image: (number > 0).then(|| vec![number.min(4) as u8; 3]),
+        story: number / 2,
+        maps: 1.min(number),
+    };
+    let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
+    let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
+    let call = |(frames, degree): (usize, u32)| PageArrival {
+        rounds: frames,
+        pose: rounds[frames - 1].pose,
+        door: (frames > 1).then_some(Door(0)),
+        percept: Percept { degree, sighting: Sighting::Nothing },
+        conforms: frames < 7,
+    };
+    RunPageData {
+        name: "two hallways".to_owned(),
+        calls: [(1, 2), (4, 1), (7, 3)].map(call).to_vec(),
+        plan,
+        facing,
+        rounds,
+        story: ["one", "two", "three", "four"].map(str::to_owned).to_vec(),
+        maps,
+        ending: "the robot gave up".to_owned(),
+    }
+}
+
+/// The map of a plan whenever Algorithm 1 adds to it.
+pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
+    let mut maps = Vec::new();
+    let mut watch = |_: &mut _, journey: &Journey, event: MappingEvent| match event {
+        MappingEvent::Started { .. }
+        | MappingEvent::LoopClosed { .. }
+        | MappingEvent::VertexAdded { .. } => {
+            maps.push(journey.map().clone());
+        }
+        _ => {}
+    };
+    let mut world = GraphWorld::new(plan.graph(), facing);
+    map_world(&mut world, &mut Nearest, &mut Exploration::new(1000), &mut watch).unwrap();
+    maps
+}

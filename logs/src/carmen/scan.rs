@@ -1,0 +1,95 @@
+//! The scan and the odometry in a line of a laser scanner.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
+
+use super::Parameters;
+use crate::value::Value;
+
+/// At this range the SICK scanners of these robots see nothing; 81.9 m is their sign of an error.
+const OLD_RANGE: f64 = 50.0;
+
+/// A scan, and the odometry that its line records with it.
+pub(crate) struct RecordedScan {
+    pub(crate) scan: Scan,
+    pub(crate) odometry: Odometry,
+}
+
+/// The scan in a line of one of the types `carmen/FLASER`, `carmen/RLASER` and `carmen/ROBOTLASER1`.
+pub(crate) fn reading(
+    type_name: &str,
+    line: &Value<'_>,
+    parameters: &Parameters,
+) -> Result<RecordedScan, String> {
+    let ranges = line.at("ranges").and_then(|ranges| ranges.elements());
+    let ranges = ranges.ok_or("it has no list `ranges`")?;
+    let ranges: Vec<_> =
+        ranges.iter().map(|range| range.f64().unwrap_or(f64::NAN) as f32).collect();
+    let odometry = pose(line, ["odom_x", "odom_y", "odom_theta"])?;
+    let (geometry, mount) = if type_name == "carmen/ROBOTLASER1" {
+        (geometry(line)?, between(&odometry, &pose(line, ["laser_x", "laser_y", "laser_theta"])?))
+    } else {
+        let (ahead, heading) = match type_name {
+            "carmen/RLASER" => (parameters.rear_offset, PI),
+            _ => (parameters.front_offset, 0.0),
+        };
+        (old_geometry(ranges.len()), ScannerPose { position: [ahead, 0.0], heading })
+    };
+    let scan = Scan::new(geometry, ranges, mount).map_err(|error| error.to_string())?;
+    Ok(RecordedScan { scan, odometry })
+}
+
+/// The angles of a line that does not record them, by the number of its readings, as CARMEN guesses them.
+/// The scanners of that time see half a circle.
+fn old_geometry(readings: usize) -> ScanGeometry {
+    let (first, increment) = match readings {
+        180 | 181 => (-FRAC_PI_2, 1_f64.to_radians()),
+        360 | 361 => (-FRAC_PI_2, 0.5_f64.to_radians()),
+        // 100 degrees.
+        201 => (-50_f64.to_radians(), 0.5_f64.to_radians()),
+        401 => (-50_f64.to_radians(), 0.25_f64.to_radians()),
+        other => (-FRAC_PI_2, PI / (other.max(2) - 1) as f64),
+    };
+    ScanGeometry {
+        angle_min: first,
+        angle_increment: increment,
+        range_min: 0.0,
+        range_max: OLD_RANGE,
+    }
+}
+
+/// The angles that a line records.
+fn geometry(line: &Value<'_>) -> Result<ScanGeometry, String> {
+    let most = number(line, "maximum_range")?;
+    Ok(ScanGeometry {
+        angle_min: number(line, "start_angle")?,
+        angle_increment: number(line, "angular_resolution")?,
+        range_min: 0.0,
+        range_max: if most > 0.0 { most } else { OLD_RANGE },
+    })
+}
+
+fn pose(line: &Value<'_>, names: [&str; 3]) -> Result<Odometry, String> {
+    let [x, y, heading] = names.map(|name| number(line, name));
+    Ok(Odometry { position: [x?, y?], heading: wrapped(heading?) })
+}
+
+/// The pose of a scanner on its robot, by the poses of both.
+fn between(robot: &Odometry, scanner: &Odometry) -> ScannerPose {
+    let [x, y] = [0, 1].map(|axis| scanner.position[axis] - robot.position[axis]);
+    let (sine, cosine) = robot.heading.sin_cos();
+    ScannerPose {
+        position: [x * cosine + y * sine, y * cosine - x * sine],
+        heading: wrapped(scanner.heading - robot.heading),
+    }
+}
+
+fn number(line: &Value<'_>, name: &str) -> Result<f64, String> {
+    match line.at(name).and_then(|value| value.f64()) {
+        Some(number) if number.is_finite() => Ok(number),
+        Some(number) => Err(format!("its `{name}` is {number}")),
+        None => Err(format!("it has no `{name}`")),
+    }
+}

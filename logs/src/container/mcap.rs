@@ -1,0 +1,225 @@
+//! MCAP files (mcap.dev/spec): a record has an opcode, a length and its content.
+
+use std::{collections::BTreeMap, io, ops::Range};
+
+use super::{
+    Compression, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at, unreadable,
+};
+use crate::{
+    error::{LogError, LogErrorKind, Truncation, TruncationKind},
+    source::{Source, Window},
+};
+
+/// How an MCAP file begins and ends.
+pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+pub(super) const FOOTER: u8 = 2;
+const SCHEMA: u8 = 3;
+const CHANNEL: u8 = 4;
+const MESSAGE: u8 = 5;
+const CHUNK: u8 = 6;
+const MESSAGE_INDEX: u8 = 7;
+pub(super) const STATISTICS: u8 = 11;
+pub(super) const DATA_END: u8 = 15;
+
+/// The opcode and length of a record.
+pub(super) const HEAD: usize = 9;
+/// The fields before the bytes of a message: channel, sequence, and two times.
+const MESSAGE_HEAD: usize = 22;
+
+/// A text or a list of bytes behind its length, and where it ends.
+fn text_at(bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
+    let start = at.checked_add(4)?;
+    let end = start.checked_add(u32_at(bytes, at)? as usize)?;
+    Some((bytes.get(start..end)?, end))
+}
+
+fn message(content: &[u8]) -> Option<(u32, u64)> {
+    Some((u16_at(content, 0)?.into(), u64_at(content, 6)?))
+        .filter(|_| content.len() >= MESSAGE_HEAD)
+}
+
+fn schema(content: &[u8]) -> Option<Record<'_>> {
+    let id = u16_at(content, 0)?;
+    let (name, at) = text_at(content, 2)?;
+    let (encoding, at) = text_at(content, at)?;
+    let (text, _) = text_at(content, at)?;
+    Some(Record::Schema { id, name, encoding, text })
+}
+
+fn channel(content: &[u8]) -> Option<Record<'_>> {
+    let [id, schema] = [u16_at(content, 0)?, u16_at(content, 2)?];
+    let (topic, at) = text_at(content, 4)?;
+    let (encoding, _) = text_at(content, at)?;
+    Some(Record::Channel { id, schema, topic, encoding })
+}
+
+/// The first record of some bytes, and how long it is.
+pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> {
+    let read = || {
+        let length = usize::try_from(u64_at(bytes, 1)?).ok()?;
+        let end = HEAD.checked_add(length)?;
+        Some((*bytes.first()?, bytes.get(HEAD..end)?, end))
+    };
+    let (op, content, end) = read().ok_or("it ends after its chunk")?;
+    let record = match op {
+        MESSAGE => message(content).map(|(connection, time)| Record::Message {
+            connection,
+            time,
+            bytes: HEAD + MESSAGE_HEAD..end,
+        }),
+        SCHEMA => schema(content),
+        CHANNEL => channel(content),
+        _ => Some(Record::Other),
+    };
+    Ok((record.ok_or("it is shorter than its length field")?, end))
+}
+
+/// Looks through an MCAP file.
+pub(super) fn scan(
+    source: &Source,
+    listener: &mut Listener<'_>,
+) -> Result<FileStructure, LogError> {
+    let mut scan = FileStructure::default();
+    let mut window = Window::new(source);
+    let mut at = MAGIC.len() as u64;
+    let mut total = None;
+    loop {
+        let head = window.get(at, HEAD as u64).map_err(unreadable(at))?;
+        let head = head.and_then(|head| Some((*head.first()?, u64_at(head, 1)?)));
+        let content = head.and_then(|(op, length)| {
+            let start = at + HEAD as u64;
+            Some((op, start..start.checked_add(length)?))
+        });
+        let Some((op, content)) = content.filter(|(_, content)| window.within(content.end)) else {
+            let cause = if at == source.length() {
+                TruncationKind::End
+            } else {
+                TruncationKind::RestOfRecord
+            };
+            return Ok(scan.truncated(Truncation::at_byte(at, cause)));
+        };
+        let record = at..content.end;
+        let taken = one(&mut window, op, &record, &content, &mut scan, listener, &mut total);
+        taken.map_err(unreadable(at))?.map_err(|cause| cause.at(at))?;
+        at = content.end;
+        if op == FOOTER {
+            break;
+        }
+    }
+    let end = window.get(at, MAGIC.len() as u64).map_err(unreadable(at))?;
+    if end != Some(MAGIC) {
+        return Ok(scan.truncated(Truncation::at_byte(at, TruncationKind::End)));
+    }
+    scan.end_loose();
+    // An incomplete index is not used.
+    let counts = scan.sections.iter().filter_map(|section| section.counts.as_ref());
+    let counted: u64 = counts.flat_map(BTreeMap::values).fold(0, |sum, n| sum.saturating_add(*n));
+    if total.is_some_and(|total| total != counted) {
+        for section in &mut scan.sections {
+            section.counts = None;
+        }
+    }
+    Ok(scan)
+}
+
+/// Reads one record; `total` becomes the number of messages by the statistics of the file.
+fn one(
+    window: &mut Window<'_>,
+    op: u8,
+    record: &Range<u64>,
+    content: &Range<u64>,
+    scan: &mut FileStructure,
+    listener: &mut Listener<'_>,
+    total: &mut Option<u64>,
+) -> io::Result<Result<(), LogErrorKind>> {
+    const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than its length field");
+    let most = match op {
+        MESSAGE => MESSAGE_HEAD as u64,
+        SCHEMA | CHANNEL => u64::MAX,
+        CHUNK => 1 << 10,
+        MESSAGE_INDEX => 6,
+        STATISTICS => 8,
+        _ => return Ok(Ok(())),
+    };
+    let length = (content.end - content.start).min(most);
+    let bytes = window.get(content.start, length)?.unwrap_or_default();
+    Ok(match op {
+        MESSAGE => match message(bytes) {
+            Some(message) => {
+                scan.add_loose(record.clone(), Some(message));
+                Ok(())
+            }
+            None => Err(SHORT),
+        },
+        SCHEMA | CHANNEL => {
+            let definition = if op == SCHEMA { schema(bytes) } else { channel(bytes) };
+            match definition {
+                Some(definition) => {
+                    listener(&definition);
+                    scan.add_loose(record.clone(), None);
+                    Ok(())
+                }
+                None => Err(SHORT),
+            }
+        }
+        CHUNK => {
+            scan.end_loose();
+            match chunk(record.start, content, bytes) {
+                Some(Ok(chunk)) => {
+                    scan.sections.push(chunk);
+                    Ok(())
+                }
+                Some(Err(cause)) => Err(cause),
+                None => Err(SHORT),
+            }
+        }
+        MESSAGE_INDEX => {
+            let entry = u16_at(bytes, 0).zip(u32_at(bytes, 2));
+            match (entry, scan.sections.last_mut()) {
+                (Some((channel, length)), Some(chunk)) => {
+                    let counts = chunk.counts.get_or_insert_default();
+                    *counts.entry(channel.into()).or_default() += u64::from(length) / 16;
+                    Ok(())
+                }
+                (None, _) => Err(SHORT),
+                (_, None) => Ok(()),
+            }
+        }
+        STATISTICS => {
+            *total = u64_at(bytes, 0);
+            Ok(())
+        }
+        _ => Ok(()),
+    })
+}
+
+/// The chunk that begins with some bytes; `None` if it is too short.
+fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Section, LogErrorKind>> {
+    let times = [u64_at(bytes, 0)?, u64_at(bytes, 8)?];
+    let (size, checksum) = (u64_at(bytes, 16)?, u32_at(bytes, 24)?);
+    // A longer name is of no known compression.
+    let name_length = u32_at(bytes, 28)? as usize;
+    let name = bytes.get(32..).map(|rest| rest.get(..name_length).unwrap_or(rest))?;
+    let compression = match Compression::of_mcap(name) {
+        Ok(compression) => compression,
+        Err(cause) => return Some(Err(cause)),
+    };
+    let (_, at) = text_at(bytes, 28)?;
+    let start = content.start + at as u64 + 8;
+    let length = u64_at(bytes, at)?;
+    let end = start.checked_add(length).filter(|end| *end <= content.end)?;
+    Some(Ok(Section {
+        file: 0,
+        offset,
+        bytes: start..end,
+        compression,
+        size,
+        checksum,
+        // An end before the start is ignored.
+        times: (size > 0 && times[0] <= times[1]).then_some(times),
+        counts: (size == 0).then(BTreeMap::new),
+        in_chunk: true,
+        text: None,
+    }))
+}

@@ -1,0 +1,87 @@
+//! What an MCAP file stores about itself: checksums, and the number of its messages.
+
+use std::io;
+
+use super::{
+    checksum::StoredChecksum,
+    mcap::{DATA_END, FOOTER, HEAD, MAGIC, STATISTICS},
+    u32_at, u64_at,
+};
+use crate::{
+    error::{CheckedPart, LogError, LogErrorKind},
+    source::{Source, Window},
+};
+
+const ATTACHMENT: u8 = 9;
+
+/// Of an MCAP file that is not truncated.
+#[derive(Default)]
+pub(crate) struct SelfDescription {
+    pub(crate) checksums: Vec<StoredChecksum>,
+    /// The offset of the statistics, and the number of messages by them.
+    pub(crate) messages: Option<(u64, u64)>,
+    /// What is wrong with the structure of the file.
+    pub(crate) damage: Vec<LogError>,
+}
+
+/// Reads the records outside of chunks.
+pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
+    let mut found = SelfDescription::default();
+    let mut window = Window::new(source);
+    let mut at = MAGIC.len() as u64;
+    let mut data_end = None;
+    while let Some(head) = window.get(at, HEAD as u64)? {
+        let (Some(&op), Some(length)) = (head.first(), u64_at(head, 1)) else { break };
+        let content = at + HEAD as u64;
+        let Some(end) = content.checked_add(length).filter(|end| window.within(*end)) else {
+            break;
+        };
+        match op {
+            // The checksum is at the end of the record, and covers the fields before it.
+            ATTACHMENT if length >= 4 => {
+                let covered = content..end - 4;
+                let value = window.u32(covered.end)?.unwrap_or_default();
+                found.add(at, CheckedPart::Attachment, covered, value);
+            }
+            DATA_END if length >= 4 => {
+                let value = window.u32(content)?.unwrap_or_default();
+                found.add(at, CheckedPart::DataSection, 0..at, value);
+                data_end = Some(end);
+            }
+            STATISTICS if length >= 8 => {
+                let count = window.get(content, 8)?.and_then(|bytes| u64_at(bytes, 0));
+                found.messages = count.map(|count| (at, count));
+            }
+            FOOTER => {
+                let fields = window.get(content, length.min(20))?.unwrap_or_default();
+                if let (Some(summary), Some(value)) = (u64_at(fields, 0), u32_at(fields, 16)) {
+                    let start = if summary == 0 { at } else { summary };
+                    let covered = start.min(content)..content + 16;
+                    found.add(at, CheckedPart::SummarySection, covered, value);
+                }
+                let rest = end + MAGIC.len() as u64;
+                if rest < source.length() {
+                    let extra = "it stands after the end of the log";
+                    found.damage.push(LogErrorKind::Malformed(extra).at(rest));
+                }
+                break;
+            }
+            _ => {}
+        }
+        at = end;
+    }
+    if data_end.is_none() {
+        let missing = "no record before it ends the data section";
+        found.damage.push(LogErrorKind::Malformed(missing).at(at));
+    }
+    Ok(found)
+}
+
+impl SelfDescription {
+    /// Adds a checksum. The value 0 means that there is none.
+    fn add(&mut self, offset: u64, part: CheckedPart, bytes: std::ops::Range<u64>, value: u32) {
+        if value != 0 {
+            self.checksums.push(StoredChecksum { offset, part, bytes, value });
+        }
+    }
+}

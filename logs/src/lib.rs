@@ -1,0 +1,47 @@
+//! Logs of runs: rosbag2 and MCAP of ROS 2, ROS 1 bags, CARMEN logs, lists of events; and the record of a run that
+//! live, simulated and recorded runs share. Sections 5 and 6.
+
+// Tests compare exact numbers.
+#![cfg_attr(test, allow(clippy::float_cmp))]
+
+mod carmen;
+mod compressed;
+mod container;
+pub mod decode;
+pub mod definition;
+mod encode;
+pub mod entries;
+pub mod error;
+mod event_line;
+pub mod fiducials;
+mod from_value;
+mod image;
+mod laser_scan;
+mod mcap_writer;
+mod merge;
+pub mod message;
+pub mod messages;
+#[cfg(feature = "sqlite")]
+mod published_types;
+pub mod reader;
+pub mod record;
+pub mod recorder;
+pub mod rosbag2;
+mod skipped_lines;
+mod source;
+pub mod standard;
+mod storage;
+pub mod topic;
+pub mod topic_map;
+mod transforms;
+pub mod value;
+pub mod verify;
+mod world_hash;
+pub mod writer;
+
+pub use compressed::FileCompression;
+pub use container::{Format, MOST_GROWTH};
+pub use encode::{arrival as arrival_message, door as door_message, scene as scene_message};
+pub use merge::{RawMessage, RawMessages};
+pub use skipped_lines::SkippedLines;
+pub use world_hash::world_hash;

@@ -1,0 +1,175 @@
+//! Writes the log of a run as it goes on. Sections 5 and 6.
+
+use std::{collections::BTreeMap, io::Write};
+
+use image::codecs::jpeg::JpegEncoder;
+use toposlam_vision::{annotate, camera::Camera};
+
+use super::{
+    encode,
+    message::Message,
+    messages::{self, ProjectMessage, Stamp},
+    standard::{CompressedImage, LaserScanMessage, OdometryMessage, TFMessage, Twist},
+    writer::{LogWriteError, LogWriter},
+};
+use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
+
+/// The topic of the images that were used, as the camera gave them.
+pub const IMAGE: &str = "/camera/image/compressed";
+/// The topic of the same images with the scene drawn over them.
+pub const ANNOTATED: &str = "/camera/annotated/compressed";
+/// The topic of the scans of the laser scanner.
+pub const SCAN: &str = "/scan";
+/// The topic on which a live robot's detector reports the marker. A log has the marker in its scenes.
+pub const MARKER: &str = "/marker";
+/// The topic of the commands of the wheels.
+pub const CMD_VEL: &str = "/cmd_vel";
+/// The topic of odometry.
+pub const ODOM: &str = "/odom";
+/// The topic of odometry as a transform.
+pub const TF: &str = "/tf";
+/// The name of the note with the content of the message [`Run`](messages::Run).
+pub const NOTE: &str = "toposlam";
+
+/// The quality of annotated images.
+const QUALITY: u8 = 85;
+
+/// Writes the events of a run.
+///
+/// An error stops the run, and [`Recorder::finish`] returns it. Times are the robot's, and never go back.
+/// A message is written at the time of its event; its stamp is the time that it is about, for an image
+/// the time when it was taken.
+pub struct Recorder<W: Write> {
+    out: LogWriter<W>,
+    /// The first error.
+    error: Option<LogWriteError>,
+    camera: Option<Camera>,
+    /// The time of the last event, in nanoseconds.
+    now: u64,
+    /// The last command of the wheels.
+    twist: Twist,
+}
+
+impl<W: Write> Recorder<W> {
+    /// Begins a log with its head. Images are also written annotated if their camera is known.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn new(out: W, run: &messages::Run, camera: Option<Camera>) -> Result<Self, LogWriteError> {
+        let mut out = LogWriter::new(out)?;
+        out.note(NOTE, &entries(run))?;
+        out.write(messages::Run::TOPIC, 0, run)?;
+        out.flush()?;
+        Ok(Self { out, error: None, camera, now: 0, twist: Twist::default() })
+    }
+
+    /// Closes the log.
+    ///
+    /// # Errors
+    /// Returns an error if the log could not be written, now or before.
+    pub fn finish(self) -> Result<(), LogWriteError> {
+        match self.error {
+            Some(error) => Err(error),
+            None => self.out.finish().map(|_| ()),
+        }
+    }
+
+    /// Writes a message now.
+    fn write<M: Message>(&mut self, topic: &str, message: &M) {
+        if self.error.is_none() {
+            self.error = self.out.write(topic, self.now, message).err();
+        }
+    }
+
+    /// Writes a message of the project now.
+    fn write_own<M: ProjectMessage>(&mut self, message: &M) {
+        self.write(M::TOPIC, message);
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        let taken = Stamp::of(nanoseconds(frame.taken));
+        if let Some(file) = frame.image.as_ref().and_then(|image| image.file()) {
+            self.write(IMAGE, &CompressedImage::new(taken, file));
+            if let Some(annotated) = self.annotated(frame) {
+                self.write(ANNOTATED, &CompressedImage::new(taken, &annotated));
+            }
+        }
+        if let Some(scan) = &frame.scan {
+            self.write(SCAN, &LaserScanMessage::new(taken, scan));
+        }
+        if let Some(scene) = &frame.scene {
+            self.write_own(&encode::scene(taken, scene));
+        }
+    }
+
+    /// The image with the scene drawn over it, as a JPEG file.
+    fn annotated(&self, frame: &Frame) -> Option<Vec<u8>> {
+        let image = frame.image.as_ref()?.pixels().ok()?;
+        let drawn = annotate::over(image, self.camera.as_ref()?, frame.scene.as_ref()?);
+        let mut bytes = Vec::new();
+        drawn.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, QUALITY)).ok()?;
+        Some(bytes)
+    }
+}
+
+impl<W: Write> RunObserver for Recorder<W> {
+    fn event(&mut self, event: &Event) {
+        self.now = self.now.max(event.time);
+        let stamp = Stamp::of(self.now);
+        match &event.kind {
+            EventKind::Frame(frame) => self.frame(frame),
+            EventKind::Command { state, command } => {
+                if let Some(command) = command {
+                    self.write_own(&encode::command(stamp, *state, *command));
+                }
+            }
+            EventKind::LookAround { .. } => {}
+            EventKind::Door { number, door } => {
+                self.write_own(&encode::door(stamp, *number, *door));
+            }
+            EventKind::Arrival(arrival) => self.write_own(&encode::arrival(stamp, arrival)),
+            EventKind::Hypothesis { moves, event } => {
+                if let Some(step) = encode::hypothesis(stamp, *moves, *event) {
+                    self.write_own(&step);
+                }
+            }
+            EventKind::Map(map) => self.write_own(&encode::map(stamp, map)),
+            EventKind::Motion { forward, turn } => {
+                let twist = Twist::new(*forward, *turn);
+                // A robot that stands is not commanded again to stand.
+                if twist != Twist::default() || self.twist != twist {
+                    self.write(CMD_VEL, &twist);
+                }
+                self.twist = twist;
+            }
+            EventKind::Odometry(odometry) => {
+                let stamp = Stamp::of(event.time);
+                let odometry = OdometryMessage::new(stamp, odometry, self.twist);
+                self.write(ODOM, &odometry);
+                self.write(TF, &TFMessage { transforms: &[odometry.transform()] });
+            }
+            EventKind::End(end) => self.write_own(&encode::end(stamp, end)),
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.error.is_some()
+    }
+}
+
+/// The head of a log, as a note.
+fn entries(run: &messages::Run) -> BTreeMap<String, String> {
+    let entries = [
+        ("version", run.version.clone()),
+        ("world", run.world.clone()),
+        ("world_hash", run.world_hash.clone()),
+        ("start", run.start.clone()),
+        ("marker", run.marker.clone()),
+        ("seed", run.seed.to_string()),
+        ("calibration", run.calibration.clone()),
+        ("colours", run.colours.clone()),
+        ("command", run.command.clone()),
+        ("algorithm", run.algorithm.clone()),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}

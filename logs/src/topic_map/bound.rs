@@ -1,0 +1,158 @@
+//! A mapping that fits its log: each topic that carries something, and the paths in its messages.
+
+use std::collections::BTreeMap;
+
+use super::{
+    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
+    role::APRIL_TAGS,
+};
+use crate::{
+    definition::{Count, Definition, FieldType},
+    topic::Topic,
+    transforms::is_transforms,
+};
+
+/// A mapping that fits a log.
+#[derive(Clone, Debug)]
+pub struct BoundTopicMap {
+    pub(crate) carried: Vec<Carried>,
+}
+
+/// A role that a topic carries, and the paths in its messages. A topic may carry several roles.
+#[derive(Clone, Debug)]
+pub(crate) struct Carried {
+    pub(crate) role: Role,
+    pub(crate) topic: usize,
+    /// None for messages that are read by their type.
+    pub(crate) paths: BTreeMap<MessagePart, String>,
+    /// Whether its messages are read by their type.
+    pub(crate) own: bool,
+    /// The type of its messages.
+    pub(crate) type_name: String,
+    pub(crate) length: LengthUnit,
+    pub(crate) angle: AngleUnit,
+    /// The name or the number of the marker, among several.
+    pub(crate) id: Option<String>,
+    /// The frame of the marker, if it is not the usual one.
+    pub(crate) frame: Option<String>,
+}
+
+impl BoundTopicMap {
+    /// Whether a role is carried.
+    pub(crate) fn carries(&self, role: Role) -> bool {
+        self.carried.iter().any(|carried| carried.role == role)
+    }
+
+    /// The topics of the log that carry something.
+    #[must_use]
+    pub fn topics(&self) -> Vec<usize> {
+        self.carried.iter().map(|carried| carried.topic).collect()
+    }
+}
+
+pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap, TopicMapError> {
+    let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
+    let mut carried = carried.collect::<Result<Vec<_>, _>>()?;
+    // The poses of these tags are transforms.
+    if let Some(tags) = carried.iter().find(|carried| carried.type_name == APRIL_TAGS).cloned() {
+        let is_transforms = |topic: &Topic| is_transforms(&topic.short_type());
+        let transforms = topics.iter().enumerate().filter(|(_, topic)| is_transforms(topic));
+        carried.extend(transforms.map(|(topic, named)| Carried {
+            topic,
+            type_name: named.short_type(),
+            ..tags.clone()
+        }));
+    }
+    Ok(BoundTopicMap { carried })
+}
+
+fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
+    let wrong = |cause: TopicMapErrorKind| cause.at(carrier.place.clone());
+    let (index, topic) = named(&carrier.topic, topics).map_err(wrong)?;
+    let definition = topic.definition.as_ref().map_err(|why| {
+        wrong(TopicMapErrorKind::Undecodable { topic: carrier.topic.clone(), why: why.to_string() })
+    })?;
+    let type_name = topic.short_type();
+    let usual = role.usual(&type_name);
+    let own = usual.is_some_and(<[_]>::is_empty) && carrier.paths.is_empty();
+    if usual.is_none() && role.parts().is_empty() {
+        return Err(wrong(TopicMapErrorKind::WrongType { role, type_name }));
+    }
+    let mut paths = carrier.paths.clone();
+    if !own {
+        let heading_mapped = [MessagePart::Heading, MessagePart::Quaternion]
+            .iter()
+            .any(|part| paths.contains_key(part));
+        for (part, path) in usual.unwrap_or_default() {
+            let is_heading = matches!(part, MessagePart::Heading | MessagePart::Quaternion);
+            if !(is_heading && heading_mapped) {
+                paths.entry(*part).or_insert_with(|| (*path).to_owned());
+            }
+        }
+        for part in needed(role, &paths) {
+            if !paths.contains_key(&part) {
+                return Err(wrong(TopicMapErrorKind::NoPath { part, type_name }));
+            }
+        }
+    }
+    for (part, path) in &paths {
+        let place = carrier.places.get(part).unwrap_or(&carrier.place);
+        let expected = if *part == MessagePart::Quaternion { "a quaternion" } else { "a number" };
+        if !leads(definition, path, *part) {
+            let (path, type_name) = (path.clone(), type_name.clone());
+            return Err(
+                TopicMapErrorKind::WrongPath { path, expected, type_name }.at(place.clone())
+            );
+        }
+    }
+    let Carrier { length, angle, ref id, ref frame, .. } = *carrier;
+    let (id, frame) = (id.clone(), frame.clone());
+    Ok(Carried { role, topic: index, paths, own, type_name, length, angle, id, frame })
+}
+
+/// The parts without which there is nothing.
+fn needed(role: Role, paths: &BTreeMap<MessagePart, String>) -> Vec<MessagePart> {
+    match role {
+        Role::Odometry if paths.contains_key(&MessagePart::Quaternion) => {
+            vec![MessagePart::X, MessagePart::Y]
+        }
+        Role::Odometry => vec![MessagePart::X, MessagePart::Y, MessagePart::Heading],
+        Role::Motion => vec![MessagePart::Forward, MessagePart::Turn],
+        Role::Percept => vec![MessagePart::Degree],
+        Role::Door => vec![MessagePart::Door],
+        _ => Vec::new(),
+    }
+}
+
+fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), TopicMapErrorKind> {
+    let mut found = topics.iter().enumerate().filter(|(_, topic)| topic.name == name);
+    let Some(first) = found.next() else {
+        const SHOWN: usize = 12;
+        let names = topics.iter().take(SHOWN).map(|topic| topic.name.escape_debug().to_string());
+        let more = (topics.len() > SHOWN).then(|| "...".to_owned());
+        let known: Vec<_> = names.chain(more).collect();
+        return Err(TopicMapErrorKind::NoTopic { topic: name.to_owned(), known: known.join(", ") });
+    };
+    match found.next() {
+        None => Ok(first),
+        Some(_) => Err(TopicMapErrorKind::TwoTopics(name.to_owned())),
+    }
+}
+
+/// Whether a path leads to the type of a part.
+fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
+    let found = definition.at(path);
+    if part != MessagePart::Quaternion {
+        // A marker that points nowhere is seen or not.
+        let may_be_bool = part == MessagePart::Marker;
+        let number = |kind| match kind {
+            FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_) => true,
+            kind => kind == FieldType::Bool && may_be_bool,
+        };
+        return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);
+    }
+    ["x", "y", "z", "w"].iter().all(|name| {
+        let part = definition.at(&format!("{path}.{name}"));
+        part.is_some_and(|(kind, count)| matches!(kind, FieldType::Float(_)) && count == Count::One)
+    })
+}

@@ -1,0 +1,140 @@
+//! Bags that ROS recorded in a session of turtlesim. They are not part of the repository.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use toposlam_logs::{decode::decode, reader::Log};
+
+/// The bags, if they exist; `TOPOSLAM_LOGS` names their folder.
+fn folder() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/logs");
+    let folder = env::var_os("TOPOSLAM_LOGS").map_or(beside, PathBuf::from);
+    let found = folder.join("example.bag").is_file();
+    if !found {
+        eprintln!(
+            "skipped: there are no recorded bags in {}; TOPOSLAM_LOGS names a folder",
+            folder.display()
+        );
+    }
+    found.then_some(folder)
+}
+
+fn topics(log: &Log) -> Vec<(String, String, u64)> {
+    let topics = log.topics().iter().filter(|topic| topic.messages > 0);
+    let mut topics: Vec<_> =
+        topics.map(|topic| (topic.name.clone(), topic.type_name.clone(), topic.messages)).collect();
+    topics.sort();
+    topics
+}
+
+/// The counts of PyPI's `rosbags` 0.11.9.
+const SESSION: [(&str, &str, u64); 9] = [
+    ("/rosout", "rosgraph_msgs/Log", 10),
+    ("/tf", "tf/tfMessage", 2688),
+    ("/tf_static", "tf2_msgs/TFMessage", 1),
+    ("/turtle1/cmd_vel", "geometry_msgs/Twist", 357),
+    ("/turtle1/color_sensor", "turtlesim/Color", 1351),
+    ("/turtle1/pose", "turtlesim/Pose", 1344),
+    ("/turtle2/cmd_vel", "geometry_msgs/Twist", 208),
+    ("/turtle2/color_sensor", "turtlesim/Color", 1344),
+    ("/turtle2/pose", "turtlesim/Pose", 1344),
+];
+
+#[test]
+fn a_session_is_the_same_with_any_compression() {
+    let Some(folder) = folder() else { return };
+    let mut all = Vec::new();
+    for name in ["example.bag", "example-bz2.bag", "example-lz4.bag"] {
+        let log = Log::open(&folder.join(name)).unwrap();
+        assert_eq!(log.truncation(), None);
+        let expected =
+            SESSION.map(|(name, type_name, count)| (name.into(), type_name.into(), count));
+        assert_eq!(topics(&log), expected);
+        assert_eq!(log.messages_total(), 8647);
+        assert_eq!(log.start(), Some(1_396_293_887_844_783_943));
+        assert_eq!(log.end(), Some(1_396_293_909_544_870_199));
+        let mut last = 0;
+        let messages = log.read_all().map(|message| {
+            let message = message.unwrap();
+            let topic = &log.topics()[message.topic];
+            let definition = topic.definition.as_ref().unwrap();
+            let value = decode(definition, &message.bytes).unwrap();
+            assert!(message.time >= last);
+            last = message.time;
+            format!("{} {} {value:?}", topic.name, message.time)
+        });
+        let messages: Vec<_> = messages.collect();
+        assert_eq!(messages.len(), 8647);
+        all.push(messages);
+    }
+    assert!(all[0] == all[1] && all[0] == all[2]);
+}
+
+#[test]
+fn a_bag_whose_chunks_are_out_of_order_is_read_in_order() {
+    let Some(folder) = folder() else { return };
+    let log = Log::open(&folder.join("example-unsorted-chunks.bag")).unwrap();
+    let times: Vec<_> = log.read_all().map(|message| message.unwrap().time).collect();
+    assert_eq!(times, [1_000_000_000, 2_000_000_000, 3_000_000_000]);
+    let log = Log::open(&folder.join("no-messages.bag")).unwrap();
+    assert_eq!((log.messages_total(), log.start(), log.read_all().count()), (0, None, 0));
+}
+
+#[test]
+fn a_truncated_recorded_bag_is_read_up_to_the_cut() {
+    let Some(folder) = folder() else { return };
+    for (name, step) in
+        [("example.bag", 9973), ("example-bz2.bag", 9973), ("example-unsorted-chunks.bag", 1)]
+    {
+        let bytes = fs::read(folder.join(name)).unwrap();
+        for length in (13..bytes.len()).step_by(step) {
+            let log = Log::of_bytes(bytes[..length].to_vec()).unwrap();
+            assert!(log.truncation().is_some(), "{name}: {length}");
+            let read = log.read_all().map(Result::unwrap).fold(0, |read, _| read + 1);
+            assert_eq!(read, log.messages_total());
+        }
+    }
+}
+
+/// Prints time, topic and byte sum of each message.
+const OTHER_READER: &str = "
+import sys
+from rosbags.rosbag1 import Reader
+with Reader(sys.argv[1]) as reader:
+    for connection, time, raw in reader.messages():
+        print(time, connection.topic, sum(raw), len(raw))
+";
+
+#[test]
+fn another_reader_reads_the_same() {
+    let Some(folder) = folder() else { return };
+    let python = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+    for name in ["example.bag", "example-bz2.bag", "example-lz4.bag", "example-unsorted-chunks.bag"]
+    {
+        let path = folder.join(name);
+        let output = Command::new(&python).args(["-c", OTHER_READER]).arg(&path).output();
+        let output = match output {
+            Ok(output) if output.status.success() => output,
+            _ => return eprintln!("skipped: there is no Python with rosbags"),
+        };
+        let log = Log::open(&path).unwrap();
+        let mut ours: Vec<String> = log
+            .read_all()
+            .map(|message| {
+                let message = message.unwrap();
+                let sum: u64 = message.bytes.iter().map(|byte| u64::from(*byte)).sum();
+                let topic = &log.topics()[message.topic].name;
+                format!("{} {topic} {sum} {}", message.time, message.bytes.len())
+            })
+            .collect();
+        let theirs = String::from_utf8(output.stdout).unwrap();
+        let mut theirs: Vec<_> = theirs.lines().map(str::to_owned).collect();
+        // Readers order messages with equal times differently.
+        ours.sort();
+        theirs.sort();
+        assert_eq!(ours, theirs);
+    }
+}

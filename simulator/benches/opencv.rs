@@ -1,0 +1,156 @@
+//! Benchmark of sensing against OpenCV, frame by frame in turn, on one thread each. It compares the
+//! common stages, from an image of 1280 x 960 pixels to pieces of wall in a ground view of 800 x
+//! 800.
+//!
+//! `cargo bench -p toposlam-robot --bench opencv` needs Python with
+//! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Without them it prints a
+//! message and measures nothing.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use std::{
+    hint::black_box,
+    io::{BufRead, BufReader, Write},
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    time::Instant,
+};
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{counts::grouped, driving::pose::Pose};
+use toposlam_simulator::{
+    Building, BuildingLook, Effects, Rig, label_mask, labels, learned, render,
+    view_sampler::ViewSampler,
+};
+use toposlam_vision::{
+    boundary::Bearings,
+    camera::Camera,
+    cluster::clusters,
+    colour::FloorRing,
+    ground_view::{GroundView, Unwrapping},
+    params::SensingParams,
+};
+
+/// The number of frames of each.
+const FRAMES: usize = 101;
+const OURS: [&str; 3] = ["common light", "classes on the ground", "boundary, clusters"];
+const THEIRS: [&str; 4] = ["HSV", "back-projection", "unwrapping", "connected components"];
+
+fn main() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("opencv");
+    std::fs::create_dir_all(&folder).unwrap();
+    let look = BuildingLook::named("laboratory").unwrap();
+    let camera = Camera::superscout();
+    let rig = Rig::new(&camera);
+    let views = ViewSampler::of([look], camera.image, 7).unwrap();
+    let colours = learned(&views, look, &camera, &rig, &()).unwrap();
+    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
+    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
+    let pose = Pose { position: [-0.1, 3.6], heading: 1.7 };
+    let image = render(&rig, &building, pose, &effects, 7);
+    image.save(folder.join("image.png")).unwrap();
+    let mask = label_mask(&rig, &labels(&rig, &building, pose, &effects));
+    mask.save(folder.join("labels.png")).unwrap();
+    write_maps(&camera, &folder);
+
+    let Some(mut opencv) = OpenCv::start(&folder) else {
+        println!("skipped: there is no Python with opencv-python-headless (PYTHON names one)");
+        return;
+    };
+    let (ring, table) = (FloorRing::new(&camera), colours.table());
+    let unwrapping = Unwrapping::new(&camera);
+    let params = SensingParams::default();
+    let bearings = Bearings::new(colours.stripe, camera.eye_height(), &params.boundary);
+    let mut view = GroundView::unseen();
+    let mut ours = || {
+        let begun = Instant::now();
+        let gain = colours.gain(&ring.colours(&image)).unwrap();
+        let lit = table.lit(gain);
+        let lighted = Instant::now();
+        unwrapping.view(&image, &lit, &mut view);
+        let classified = Instant::now();
+        black_box(clusters(&bearings.look(&view), &params.cluster));
+        let done = Instant::now();
+        [lighted - begun, classified - lighted, done - classified]
+            .map(|time| time.as_secs_f64() * 1e6)
+    };
+    let mut times = (Vec::new(), Vec::new());
+    for _ in 0..FRAMES {
+        times.0.push(ours());
+        times.1.push(opencv.frame());
+    }
+    let whole_ours = print("toposlam", &OURS, &times.0);
+    let whole_theirs = print(&opencv.version, &THEIRS, &times.1);
+    println!("OpenCV takes {:.1} times as long, at the median", whole_theirs / whole_ours);
+}
+
+/// Prints the median of each stage. Returns the median of their sum, in microseconds.
+fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64; STAGES]]) -> f64 {
+    let median = |time: &dyn Fn(&[f64; STAGES]) -> f64| {
+        let mut times: Vec<f64> = times.iter().map(time).collect();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    let whole = median(&|times| times.iter().sum());
+    let number = |microseconds: f64| grouped(microseconds.round() as u128);
+    println!("{name}: {} us a frame, median of {}", number(whole), times.len());
+    for (at, stage) in stages.iter().enumerate() {
+        println!("  {stage:<22} {:>6} us", number(median(&|times| times[at])));
+    }
+    whole
+}
+
+/// The pixel of the image for each pixel of the ground view, for OpenCV's remap.
+fn write_maps(camera: &Camera, folder: &Path) {
+    let pixels: Vec<[f32; 2]> = (0..GroundView::SIDE * GroundView::SIDE)
+        .map(|index| camera.ground_to_pixel(GroundView::ground(index)))
+        .map(|pixel| pixel.map_or([-1.0; 2], |pixel| pixel.map(|part| part as f32)))
+        .collect();
+    for (axis, name) in ["u.f32", "v.f32"].into_iter().enumerate() {
+        let bytes: Vec<u8> = pixels.iter().flat_map(|pixel| pixel[axis].to_le_bytes()).collect();
+        std::fs::write(folder.join(name), bytes).unwrap();
+    }
+}
+
+/// A Python process that times OpenCV.
+struct OpenCv {
+    child: Child,
+    answers: BufReader<std::process::ChildStdout>,
+    version: String,
+}
+
+impl OpenCv {
+    fn start(folder: &Path) -> Option<Self> {
+        let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/opencv.py");
+        let mut child = Command::new(python)
+            .args([script.as_path(), folder])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .ok()?;
+        let mut answers = BufReader::new(child.stdout.take()?);
+        let mut ready = String::new();
+        answers.read_line(&mut ready).ok()?;
+        let version = format!("OpenCV {}", ready.strip_prefix("ready ")?.trim());
+        Some(Self { child, answers, version })
+    }
+
+    /// The microseconds of each stage of a frame.
+    fn frame(&mut self) -> [f64; 4] {
+        self.child.stdin.as_mut().unwrap().write_all(b"go\n").unwrap();
+        let mut answer = String::new();
+        self.answers.read_line(&mut answer).unwrap();
+        let times: Vec<f64> = answer.split_whitespace().map(|time| time.parse().unwrap()).collect();
+        times.try_into().unwrap()
+    }
+}
+
+impl Drop for OpenCv {
+    fn drop(&mut self) {
+        drop(self.child.stdin.take());
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,250 @@
+//! `evaluate mistakes`: what one mistake does to the map of every small start.
+
+use std::{io::Write, path::PathBuf, time::Instant};
+
+use serde_json::json;
+use toposlam_model::{
+    check::{
+        MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UndetectedMistake,
+    },
+    enumerate::Class,
+    format::named_world::NamedWorld,
+    mapping::MappingMethod,
+};
+
+use toposlam_terminal::{
+    CliError, Outcome,
+    edge_range::EdgeRange,
+    exit_codes::help_end,
+    json::print_line,
+    method_options::{MethodOptions, safeguards_in_words},
+    output,
+    progress::Progress,
+    remark,
+    text::{capital, counted, grouped, print_paragraph, print_rows},
+    use_threads,
+};
+
+/// Measure what one mistake does: is the map right, or is the mistake detected?
+///
+/// From each start of every world of a size, the robot explores once for each place of its run and for each
+/// mistake that can happen there: another degree (from 1 to twice the number of edges), a marker where none
+/// lies, a marker that is not seen, one along another door, or that somebody carries the robot to another
+/// place. Everything else is true.
+///
+/// With --audit, the robot walks once more when its map is complete. The walk is the shortest one that can
+/// show that the map is right. With --recover, it also goes on after a contradiction, with the percepts that it
+/// keeps.
+#[derive(clap::Args)]
+#[command(after_help = help_end(
+    "\
+Examples:
+  evaluate mistakes                      the folding explorer alone
+  evaluate mistakes --audit              and with an audit
+  evaluate mistakes --recover --edges 1..=4
+  evaluate mistakes --algorithm algorithm1 --audit
+  evaluate mistakes --out-dir mistakes   the smallest ones, as worlds
+
+A wrong pose is not a violation if the robot was carried to a place that looks the \
+same.",
+    &[
+        (0, "each run ends with the right map, or the mistake is detected"),
+        (1, "a mistake that can be detected is not detected"),
+        (2, "bad usage or input"),
+        (3, "not all runs were made"),
+    ],
+))]
+pub(super) struct EvaluateMistakesArguments {
+    /// Number of edges, as in 4, or a range, as in 1..=5
+    #[arg(long, default_value = "1..=5", value_name = "SIZES", allow_hyphen_values = true)]
+    edges: EdgeRange,
+    /// Class of worlds: multigraph, simple, corridor or planar
+    #[arg(long, default_value_t = Class::Multigraph)]
+    class: Class,
+    #[command(flatten)]
+    method: MethodOptions,
+    /// Write the smallest start with an undetected mistake of each kind into this folder
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print JSON objects, one per line
+    #[arg(long)]
+    json: bool,
+}
+
+impl EvaluateMistakesArguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        use_threads(self.threads)?;
+        let method = self.method.method()?;
+        let check = |edges| {
+            let check = MistakeCheck::new(self.class, edges, method);
+            check.map_err(|error| CliError::at("--edges", error))
+        };
+        let checks = self.edges.iter().map(check).collect::<Result<Vec<_>, _>>()?;
+        if let Some(folder) = &self.out_dir {
+            output::make_folder(folder)?;
+        }
+        let begun = Instant::now();
+        let mut tally = MistakeTally::default();
+        for (edges, check) in self.edges.iter().zip(checks) {
+            let progress = Progress::new(&counted(edges, "edge"), "runs")?;
+            tally.merge(check.run(&progress));
+            progress.finish();
+            if tally.interrupted {
+                break;
+            }
+        }
+        let outcome = match () {
+            () if violations(&tally) > 0 => Outcome::Violated,
+            () if tally.interrupted || tally.all().runs() == 0 => Outcome::Incomplete,
+            () => Outcome::Holds,
+        };
+        if self.json {
+            self.print_json(method, &tally, outcome, out)?;
+        } else {
+            self.print(method, &tally, outcome, out)?;
+        }
+        self.write_mistakes(&tally)?;
+        remark!("{:.1} s", begun.elapsed().as_secs_f64());
+        Ok(outcome)
+    }
+
+    fn print(
+        &self,
+        method: MappingMethod,
+        tally: &MistakeTally,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let algorithm = capital(method.algorithm().in_words());
+        let safeguards = match safeguards_in_words(method) {
+            none if none.is_empty() => "alone".to_owned(),
+            safeguards => safeguards,
+        };
+        writeln!(out, "{algorithm} {safeguards}, one mistake a run, class {}", self.class)?;
+        let starts = counted(tally.starts as usize, "start");
+        let mean = tally.moves as f64 / tally.starts.max(1) as f64;
+        writeln!(out, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
+        let heads = ["mistake", "     runs", "    right", " detected", "wrong pose", "wrong map"];
+        let mut rows: Vec<_> = MISTAKE_KINDS
+            .into_iter()
+            .zip(tally.counts)
+            .map(|(kind, counts)| row(kind.name(), counts))
+            .collect();
+        rows.push(row("all", tally.all()));
+        print_rows(out, heads, &rows)?;
+        let all = tally.all();
+        if method.recovers() {
+            let extra = all.extra_moves as f64 / all.right.max(1) as f64;
+            writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
+        }
+        for (kind, mistake) in first_mistakes(tally) {
+            writeln!(out)?;
+            print_paragraph(out, &in_words(kind, mistake))?;
+        }
+        let verdict = match outcome {
+            Outcome::Holds => {
+                "holds: each run ends with the right map, or the mistake is detected".to_owned()
+            }
+            Outcome::Violated => format!(
+                "violated: {} of {} runs end with a detectable mistake that was not detected",
+                grouped(violations(tally).into()),
+                grouped(all.runs().into()),
+            ),
+            Outcome::Incomplete if tally.interrupted => "incomplete, interrupted".to_owned(),
+            Outcome::Incomplete => "incomplete: there is nothing to check".to_owned(),
+        };
+        writeln!(out)?;
+        Ok(print_paragraph(out, &verdict)?)
+    }
+
+    fn write_mistakes(&self, tally: &MistakeTally) -> Result<(), CliError> {
+        let Some(folder) = &self.out_dir else { return Ok(()) };
+        for (kind, mistake) in first_mistakes(tally) {
+            let name = kind.name().replace(' ', "-");
+            let UndetectedMistake { graph, facing, .. } = mistake;
+            let world = NamedWorld::discovered(&name, &in_words(kind, mistake), graph, *facing);
+            output::write_world(&folder.join(format!("{name}.toml")), &world)?;
+        }
+        Ok(())
+    }
+
+    fn print_json(
+        &self,
+        method: MappingMethod,
+        tally: &MistakeTally,
+        outcome: Outcome,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+            let counts = tally.counts[at];
+            let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, extra_moves } =
+                counts;
+            let first = tally.first[at].as_ref().map(|first| {
+                json!({
+                    "edges": first.graph.edge_count(), "moves": first.mistake.moves,
+                    "what": first.mistake.to_string(), "flaw": first.flaw.to_string(),
+                })
+            });
+            let line = json!({
+                "mistake": kind.name(), "runs": counts.runs(), "right": right,
+                "reported": reported, "gave_up": too_large, "wrong_pose": wrong_pose,
+                "wrong_map": wrong_map, "extra_moves": extra_moves, "first": first,
+            });
+            print_line(out, "mistake", &line)?;
+        }
+        let all = tally.all();
+        let line = json!({
+            "class": self.class.name(), "algorithm": method.algorithm().name(),
+            "audits": method.audits(), "recover": method.recovers(),
+            "starts": tally.starts, "runs": all.runs(), "right": all.right,
+            "unnoticed": all.undetected(), "moves_total": tally.moves,
+            "interrupted": tally.interrupted, "verdict": outcome.verdict(),
+            "holds": outcome == Outcome::Holds,
+        });
+        print_line(out, "mistakes", &line)
+    }
+}
+
+/// The first undetected mistake of each kind.
+fn first_mistakes(
+    tally: &MistakeTally,
+) -> impl Iterator<Item = (MistakeKind, &UndetectedMistake)> + '_ {
+    let first = MISTAKE_KINDS.into_iter().zip(&tally.first);
+    first.filter_map(|(kind, first)| first.as_ref().map(|first| (kind, first)))
+}
+
+/// The number of runs with a detectable mistake that was not detected. A robot cannot detect that it was carried to
+/// a place that looks the same, but an audit detects a wrong map.
+fn violations(tally: &MistakeTally) -> u64 {
+    let of = |(kind, counts): (MistakeKind, MistakeCounts)| match kind {
+        MistakeKind::Carried => counts.wrong_map,
+        _ => counts.undetected(),
+    };
+    MISTAKE_KINDS.into_iter().zip(tally.counts).map(of).sum()
+}
+
+fn row(name: &str, counts: MistakeCounts) -> [String; 6] {
+    let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, .. } = counts;
+    let number = |number: u64, width: usize| format!("{:>width$}", grouped(number.into()));
+    [
+        name.to_owned(),
+        number(counts.runs(), 9),
+        number(right, 9),
+        number(reported + too_large, 9),
+        number(wrong_pose, 10),
+        number(wrong_map, 9),
+    ]
+}
+
+/// An undetected mistake in words.
+fn in_words(kind: MistakeKind, undetected: &UndetectedMistake) -> String {
+    let UndetectedMistake { graph, mistake, flaw, .. } = undetected;
+    let edges = counted(graph.edge_count(), "edge");
+    format!(
+        "{}, the smallest that is not detected: in a world with {edges}, {mistake}; {flaw}.",
+        capital(kind.name())
+    )
+}

@@ -1,0 +1,379 @@
+//! Random buildings for laser scanners: corridors at any angle and of different widths, junctions with up to
+//! five doors, bends, dead ends, alcoves and round lobbies.
+//!
+//! Corridors join neighbours in a lattice whose points are moved a little. Every corridor is longer than the 10 m
+//! that make an arm of a junction.
+
+use std::f64::consts::{SQRT_2, TAU};
+
+use rand::{RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::driving::scene::wrapped;
+use toposlam_vision::laser::plane::{direction, distance};
+
+use crate::{Corridor, CorridorPlan, Lobby};
+
+/// A building whose graph is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorridorWorld {
+    /// Where corridors end, in metres.
+    pub places: Vec<[f64; 2]>,
+    /// The places that each corridor joins.
+    pub links: Vec<[usize; 2]>,
+    /// The corridors, in the order of the links; then the alcoves. The lobbies.
+    pub plan: CorridorPlan,
+}
+
+/// A corridor that begins at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CorridorArm {
+    /// The place at its other end.
+    pub to: usize,
+    /// Its direction, in radians.
+    pub direction: f64,
+    /// Its width, in metres.
+    pub width: f64,
+}
+
+/// The kind of a random building.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BuildingKind {
+    /// Square, triangular and hexagonal lattices.
+    #[default]
+    Mixed,
+    /// Square lattices with long corridors and many loops.
+    Long,
+    /// Square lattices with diagonals: corridors that bend by 45 degrees, and fork.
+    Diagonal,
+}
+
+/// Least and greatest distance of neighbouring points, in metres.
+const SPACING: [f64; 2] = [16.0, 22.0];
+/// The same in a building with long corridors.
+const LONG_SPACING: [f64; 2] = [28.0, 45.0];
+/// Least and greatest number of corridors.
+const CORRIDORS: [usize; 2] = [6, 14];
+/// The greatest number of doors.
+const MOST_ARMS: usize = 5;
+/// The least angle between two arms, in radians.
+const LEAST_ANGLE: f64 = 0.9;
+/// Least and greatest width, in metres.
+const WIDTHS: [f64; 2] = [1.65, 2.4];
+/// The greatest length of an alcove from the middle of its corridor, in metres. At 10 m it would be an arm.
+const ALCOVE: f64 = 7.5;
+
+/// Points, those that may be joined, and how far they may be moved, as a part of their distance.
+struct Lattice {
+    points: Vec<[f64; 2]>,
+    pairs: Vec<[usize; 2]>,
+    moved: f64,
+}
+
+impl CorridorWorld {
+    /// The random building of a kind and a seed. It has a junction with at least three doors.
+    #[must_use]
+    pub fn random(kind: BuildingKind, seed: u64) -> Self {
+        let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
+        loop {
+            let world = Self::drawn(kind, &mut chance);
+            if (0..world.places.len()).any(|place| world.arms(place).len() >= 3) {
+                return world;
+            }
+        }
+    }
+
+    fn drawn(kind: BuildingKind, chance: &mut Xoshiro256PlusPlus) -> Self {
+        let lattice = match kind {
+            BuildingKind::Mixed => match chance.random_range(0..3) {
+                0 => Lattice::square(),
+                1 => Lattice::triangular(|_, _| true),
+                _ => Lattice::triangular(|x, y| (x + 2 * y) % 3 != 0),
+            },
+            BuildingKind::Long => Lattice::square(),
+            BuildingKind::Diagonal => Lattice::with_diagonals(),
+        };
+        let [least, most] = match kind {
+            BuildingKind::Long => LONG_SPACING,
+            BuildingKind::Mixed | BuildingKind::Diagonal => SPACING,
+        };
+        let spacing = chance.random_range(least..most);
+        let (sine, cosine) = chance.random_range(0.0..TAU).sin_cos();
+        let mut place = |point: [f64; 2]| {
+            let moved = point.map(|part| part + lattice.moved * chance.random_range(-1.0..=1.0));
+            let [x, y] = moved.map(|part| spacing * part);
+            [x * cosine - y * sine, x * sine + y * cosine]
+        };
+        let places: Vec<[f64; 2]> = lattice.points.iter().map(|&point| place(point)).collect();
+        let links = grown(&places, &lattice.pairs, chance);
+        let plan = planned(&places, &links, chance);
+        Self { places, links, plan }
+    }
+
+    /// The corridors that begin at a place, clockwise.
+    #[must_use]
+    pub fn arms(&self, place: usize) -> Vec<CorridorArm> {
+        let arm = |(&link, corridor): (&[usize; 2], &Corridor)| {
+            let to = other_end(link, place)?;
+            let direction = direction(self.places[place], self.places[to]);
+            Some(CorridorArm { to, direction, width: corridor.width })
+        };
+        let mut arms: Vec<_> =
+            self.links.iter().zip(&self.plan.corridors).filter_map(arm).collect();
+        arms.sort_by(|one, other| other.direction.total_cmp(&one.direction));
+        arms
+    }
+
+    /// The corridors that begin at a place, clockwise from the one to another place.
+    #[must_use]
+    pub fn arms_from(&self, place: usize, from: usize) -> Vec<CorridorArm> {
+        let mut arms = self.arms(place);
+        let entry = arms.iter().position(|arm| arm.to == from).unwrap_or_default();
+        arms.rotate_left(entry);
+        arms
+    }
+
+    /// The radius of the free circle around a place, in metres.
+    #[must_use]
+    pub fn clearance(&self, place: usize) -> f64 {
+        let lobby = self.lobby(place).map(|lobby| lobby.radius);
+        let widest = self.arms(place).iter().map(|arm| arm.width / 2.0).fold(0.0, f64::max);
+        lobby.unwrap_or(widest)
+    }
+
+    /// Whether a place is a round lobby.
+    #[must_use]
+    pub fn is_lobby(&self, place: usize) -> bool {
+        self.lobby(place).is_some()
+    }
+
+    fn lobby(&self, place: usize) -> Option<&Lobby> {
+        let middle = self.places[place];
+        self.plan.lobbies.iter().find(|lobby| distance(lobby.middle, middle) < 0.1)
+    }
+}
+
+impl Lattice {
+    /// Points of the square lattice.
+    fn square() -> Self {
+        let points = (0..12).map(|number| [f64::from(number % 4), f64::from(number / 4)]);
+        Self::near(points.collect(), 0.12)
+    }
+
+    /// The same, and one diagonal of each square may be a corridor, too.
+    fn with_diagonals() -> Self {
+        let square = Self::square();
+        let is_even = |[x, y]: [f64; 2]| ((x + y) as u32).is_multiple_of(2);
+        let diagonals =
+            (0..square.points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
+        let diagonals = diagonals.filter(|pair| {
+            let [one, other] = pair.map(|point| square.points[point]);
+            is_even(one) && (distance(one, other) - SQRT_2).abs() < 0.01
+        });
+        let pairs = square.pairs.iter().copied().chain(diagonals).collect();
+        Self { pairs, ..square }
+    }
+
+    /// Points of the triangular lattice; those that leave out every third are corners of hexagons.
+    fn triangular(is_point: fn(i32, i32) -> bool) -> Self {
+        let all = (0..4).flat_map(|row| (0..5).map(move |column| (column, row)));
+        let kept = all.filter(|&(column, row)| is_point(column, row));
+        let height = 0.75_f64.sqrt();
+        let point = |(column, row): (i32, i32)| {
+            [f64::from(column) + 0.5 * f64::from(row), height * f64::from(row)]
+        };
+        Self::near(kept.map(point).collect(), 0.05)
+    }
+
+    /// Points at a distance of 1 may be joined.
+    fn near(points: Vec<[f64; 2]>, moved: f64) -> Self {
+        let near =
+            |one: usize, other: usize| (distance(points[one], points[other]) - 1.0).abs() < 0.01;
+        let pairs = (0..points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
+        let pairs = pairs.filter(|&[one, other]| near(one, other)).collect();
+        Self { points, pairs, moved }
+    }
+}
+
+/// Connected links.
+fn grown(
+    places: &[[f64; 2]],
+    pairs: &[[usize; 2]],
+    chance: &mut Xoshiro256PlusPlus,
+) -> Vec<[usize; 2]> {
+    let wanted = chance.random_range(CORRIDORS[0]..=CORRIDORS[1]);
+    let mut links: Vec<[usize; 2]> = Vec::new();
+    let fits = |links: &[[usize; 2]], pair: [usize; 2]| {
+        pair.into_iter().zip([pair[1], pair[0]]).all(|(here, there)| {
+            let ahead = direction(places[here], places[there]);
+            let arms: Vec<_> = links.iter().filter_map(|&link| other_end(link, here)).collect();
+            let is_apart = |&to: &usize| {
+                wrapped(direction(places[here], places[to]) - ahead).abs() >= LEAST_ANGLE
+            };
+            arms.iter().all(is_apart) && arms.len() < MOST_ARMS
+        })
+    };
+    for _ in 0..40 * wanted {
+        let Some(&pair) = pairs.choose(chance) else { break };
+        let is_joined = links.is_empty()
+            || links.iter().any(|link| pair.iter().any(|place| link.contains(place)));
+        if is_joined && !links.contains(&pair) && fits(&links, pair) {
+            links.push(pair);
+        }
+        if links.len() == wanted {
+            break;
+        }
+    }
+    links
+}
+
+/// The corridors of links, alcoves and lobbies.
+fn planned(
+    places: &[[f64; 2]],
+    links: &[[usize; 2]],
+    chance: &mut Xoshiro256PlusPlus,
+) -> CorridorPlan {
+    let usual = chance.random_range(WIDTHS[0]..WIDTHS[1]);
+    let is_varied = chance.random::<bool>();
+    let corridor = |&[one, other]: &[usize; 2]| {
+        let width = if is_varied { chance.random_range(WIDTHS[0]..WIDTHS[1]) } else { usual };
+        Corridor { ends: [places[one], places[other]], width }
+    };
+    let corridors: Vec<Corridor> = links.iter().map(corridor).collect();
+    let mut plan = CorridorPlan { corridors, lobbies: Vec::new() };
+    let often = if chance.random() { 0.5 } else { 0.0 };
+    for (place, &middle) in places.iter().enumerate() {
+        let at = links.iter().zip(&plan.corridors).filter(|(link, _)| link.contains(&place));
+        let (count, widest) = at.fold((0, 0.0_f64), |(count, widest), (_, corridor)| {
+            (count + 1, widest.max(corridor.width))
+        });
+        let radius = widest / 2.0 * chance.random_range(1.2..2.0);
+        if chance.random::<f64>() < often && count >= 3 {
+            plan.lobbies.push(Lobby { middle, radius });
+        }
+    }
+    for number in 0..links.len() {
+        let corridor = plan.corridors[number];
+        let along = corridor.length() * chance.random_range(0.35..0.65);
+        let side = if chance.random() { 1.0 } else { -1.0 };
+        let deep = chance.random_range(2.5..ALCOVE);
+        let width = chance.random_range(1.2..2.2);
+        // Its floor begins in the middle of the corridor.
+        let ends = [width / 2.0, deep].map(|left| corridor.point(along, side * left));
+        let alcove = Corridor { ends, width };
+        let others = plan.floor();
+        let mut others = others.iter().enumerate().filter(|&(other, _)| other != number);
+        if chance.random::<f64>() < 0.25 && others.all(|(_, other)| !other.meets(&alcove.floor())) {
+            plan.corridors.push(alcove);
+        }
+    }
+    plan
+}
+
+/// The other end of a link.
+fn other_end([one, other]: [usize; 2], place: usize) -> Option<usize> {
+    match place {
+        _ if place == one => Some(other),
+        _ if place == other => Some(one),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{collections::BTreeSet, f64::consts::FRAC_PI_2};
+
+    use super::*;
+
+    fn mixed(seed: u64) -> CorridorWorld {
+        CorridorWorld::random(BuildingKind::Mixed, seed)
+    }
+
+    fn worlds() -> impl Iterator<Item = CorridorWorld> {
+        (0..300).map(mixed)
+    }
+
+    /// Buildings of the other kinds.
+    fn others() -> impl Iterator<Item = CorridorWorld> {
+        let kinds = [BuildingKind::Long, BuildingKind::Diagonal];
+        kinds
+            .into_iter()
+            .flat_map(|kind| (0..100).map(move |seed| CorridorWorld::random(kind, seed)))
+    }
+
+    #[test]
+    fn corridors_are_longer_than_the_shortest_arm_and_apart_from_each_other() {
+        for world in worlds().chain(others()) {
+            let floor = world.plan.floor();
+            for (number, link) in world.links.iter().enumerate() {
+                let corridor = world.plan.corridors[number];
+                assert!(corridor.length() > 11.5, "{}", corridor.length());
+                for (other, other_link) in world.links.iter().enumerate().take(number) {
+                    let meet = link.iter().any(|place| other_link.contains(place));
+                    assert!(meet || !floor[number].meets(&floor[other]));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn worlds_have_every_degree_any_angle_lobbies_and_alcoves() {
+        let mut degrees = BTreeSet::new();
+        let (mut lobbies, mut alcoves) = (0, 0);
+        let mut slants = BTreeSet::new();
+        for world in worlds() {
+            degrees.extend((0..world.places.len()).map(|place| world.arms(place).len()));
+            lobbies += world.plan.lobbies.len();
+            alcoves += world.plan.corridors.len() - world.links.len();
+            for corridor in &world.plan.corridors {
+                let slant = corridor.direction().rem_euclid(FRAC_PI_2);
+                slants.insert((slant.to_degrees() / 10.0) as u32);
+            }
+            for place in 0..world.places.len() {
+                let arms = world.arms(place);
+                for (number, arm) in arms.iter().enumerate() {
+                    for other in &arms[..number] {
+                        let apart = wrapped(arm.direction - other.direction).abs();
+                        assert!(apart >= LEAST_ANGLE, "{apart}");
+                    }
+                }
+            }
+        }
+        assert!((1..=5).all(|degree| degrees.contains(&degree)), "{degrees:?}");
+        assert_eq!(slants.len(), 9, "{slants:?}");
+        assert!(lobbies > 50 && alcoves > 100, "{lobbies} {alcoves}");
+    }
+
+    #[test]
+    fn corridors_are_long_or_bend_by_half_a_right_angle() {
+        let worlds = |kind| (0..100).map(move |seed| CorridorWorld::random(kind, seed));
+        for world in worlds(BuildingKind::Long) {
+            let corridors = &world.plan.corridors[..world.links.len()];
+            assert!(corridors.iter().all(|corridor| corridor.length() > 20.0));
+        }
+        let is_slanted = |world: &CorridorWorld| {
+            (0..world.places.len()).any(|place| {
+                let arms = world.arms(place);
+                let bend = |two: &[CorridorArm]| {
+                    wrapped(two[0].direction - two[1].direction).abs().to_degrees()
+                };
+                arms.len() == 2 && (125.0..145.0).contains(&bend(&arms))
+            })
+        };
+        assert!(worlds(BuildingKind::Diagonal).filter(is_slanted).count() > 30);
+    }
+
+    #[test]
+    fn an_alcove_is_too_short_to_be_an_arm() {
+        for world in worlds() {
+            for alcove in &world.plan.corridors[world.links.len()..] {
+                assert!(alcove.length() + alcove.width / 2.0 < 9.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_building() {
+        assert_eq!(mixed(3), mixed(3));
+        assert_ne!(mixed(3), mixed(4));
+    }
+}

@@ -1,0 +1,565 @@
+//! A robot that maps a building by its laser scanner alone: it goes on with what it derives, right or wrong.
+//!
+//! It drives along a corridor until it is within what may be a junction. There it turns around once, and drives into
+//! each arm of which it does not see enough, until it has driven as far as makes an arm, or cannot go on. A pilot keeps it
+//! on the floor, and a detector of its own reports the marker.
+
+use std::f64::consts::{PI, TAU};
+
+use thiserror::Error;
+use toposlam_conform::{EventSource, LaserEvents, StandingPercept, StandingPlace};
+use toposlam_model::{
+    driving::{odometry::Odometry, pose::Pose, scene::wrapped},
+    embedded_graph::Dart,
+    enumerate::Watch,
+    mapping::Relocate,
+    percept::{Door, Percept, Sighting},
+    world::World,
+};
+use toposlam_vision::laser::{
+    junctions::LaserJunction,
+    params::LaserParams,
+    plane::{Motion, direction, distance},
+    scan::Scan,
+    sensor::LaserView,
+    way_graph::WayGraph,
+};
+
+use super::{
+    corridor_pilot::{CorridorPilot, PilotLeg},
+    corridor_world::CorridorWorld,
+    smoothed_world::SmoothedWorld,
+    walk::{WalkDriver, WalkStep, clockwise},
+};
+use crate::LaserScanner;
+
+/// Why a robot cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum ScanFailure {
+    /// It stands where it derives no junction.
+    #[error("no junction is seen")]
+    Missed,
+    /// What it sees does not decide how many doors a junction has.
+    #[error("the number of doors is undecided")]
+    Undecided,
+    /// It left by a door, and could not go on before it had driven as far as makes an arm.
+    #[error("the door is that of an alcove")]
+    Alcove,
+    /// It has driven too far.
+    #[error("the run takes too long")]
+    TooFar,
+    /// The run was ended.
+    #[error("the run was ended")]
+    Stopped,
+}
+
+/// What the robot has derived, compared with the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PerceptTally {
+    /// The percepts.
+    pub percepts: u64,
+    /// Those whose number of doors is wrong, or that are of no junction.
+    pub wrong: u64,
+    /// The junctions that it passed without noticing them.
+    pub passed: u64,
+}
+
+/// The robot.
+pub(super) struct LaserRobot<'w> {
+    pub(super) world: &'w CorridorWorld,
+    pub(super) smoothed: &'w SmoothedWorld,
+    pub(super) pilot: CorridorPilot<'w>,
+    pub(super) scanner: LaserScanner,
+    pub(super) events: LaserEvents,
+    pub(super) driver: WalkDriver,
+    pub(super) params: LaserParams,
+    /// The facing dart: where the marker lies.
+    pub(super) facing: Dart,
+    pub(super) watch: &'w dyn Watch,
+    /// The number of steps that were sensed.
+    pub(super) sensed: usize,
+    /// From the local map to the frame of odometry, in the last view.
+    pub(super) to_odometry: Motion,
+    /// What may be junctions, in each view since it began to look around.
+    pub(super) seen: Vec<Vec<LaserJunction>>,
+    /// The centre and the extent of the place that it left last, while it is near, on the local map.
+    pub(super) left: Option<([f64; 2], f64)>,
+    /// Where it turned around last, on the local map, and the length of its way then.
+    pub(super) looked: Option<([f64; 2], f64)>,
+    /// Whether the last view shows an opening beside it into which its scanner may not have looked.
+    pub(super) is_at_opening: bool,
+    /// Where it stands.
+    pub(super) here: Option<Here>,
+    pub(super) tally: PerceptTally,
+}
+
+/// Where the robot stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Here {
+    /// The directions of the doors on the plan, clockwise from the one by which it came in.
+    doors: Vec<f64>,
+}
+
+/// Why a drive along a leg ended.
+enum LegResult {
+    /// At the leg's end.
+    Driven,
+    /// Beside an opening, where it has looked around.
+    LookedAround,
+    /// Within what may be a junction, and the direction on the plan from there to where it came in.
+    AtPlace(StandingPlace, f64),
+}
+
+/// A place is left when the robot is this far from its walls, in metres.
+const AWAY: f64 = 2.5;
+/// The robot has come in by the direction of where it was when it was this far from the junction's walls, in metres.
+const BEFORE: f64 = 1.0;
+/// A place in a view this near is the one where the robot stands, in metres.
+const HERE: f64 = 3.0;
+/// Directions nearer to each other are those of one arm, in radians.
+const SAME_ARM: f64 = 0.6;
+/// Ways that meet this near to the robot are an opening beside it, in metres.
+const OPENING: f64 = 1.0;
+/// Where it has turned around within this distance, and has not driven this far since, it need not do so again, in
+/// metres.
+const LOOKED: f64 = 2.0;
+const FORGOTTEN: f64 = 10.0;
+/// A scanner with a larger field of view sees what is behind the robot, in radians.
+const ALL_AROUND: f64 = 6.0;
+/// What is this near to the centre of a place in a view is the same place, in metres.
+const AT_CENTRE: f64 = 2.0;
+/// An arm is certain if it is in this part of so many last views.
+const CERTAIN: f64 = 0.75;
+const VIEWS: usize = 6;
+/// How often it looks again.
+const LOOKS: usize = 8;
+/// How far it goes on to look again, in metres.
+const FURTHER: f64 = 1.5;
+/// How often a robot that got lost tries to come to a junction.
+const TRIES: usize = 6;
+/// The marker is seen from up to this far from its place, in metres besides the clearance.
+const MARKER: f64 = 2.0;
+/// The longest way of a run, in metres.
+const FARTHEST: f64 = 30_000.0;
+
+impl LaserRobot<'_> {
+    /// Drives away in a direction on the plan until it is at a junction, or cannot go on.
+    pub(super) fn drive(&mut self, towards: f64) -> Result<(), ScanFailure> {
+        self.here = None;
+        let begin = self.driver.at();
+        let mut leg = self.pilot.leave(begin, towards);
+        // The way from there without what it drove to look into arms, in metres.
+        let (mut along, mut before) = (0.0, begin);
+        let mut points = vec![begin];
+        loop {
+            match self.drive_leg(&leg)? {
+                LegResult::AtPlace(place, entry) => {
+                    if let Some(doors) = self.decide(place, entry)? {
+                        self.arrive(doors);
+                        return Ok(());
+                    }
+                }
+                LegResult::LookedAround => {}
+                LegResult::Driven => {
+                    let is_other = distance(begin, leg.to) > 2.0 * AWAY;
+                    let is_junction = leg.junction(self.world).is_some();
+                    self.tally.passed += u64::from(is_other && is_junction);
+                    points.push(leg.to);
+                    let Some(next) = self.pilot.after(&leg) else {
+                        along += distance(before, self.driver.at());
+                        break;
+                    };
+                    leg = next;
+                }
+            }
+            along += distance(before, self.driver.at());
+            before = self.driver.at();
+            if self.driver.way > FARTHEST {
+                return Err(ScanFailure::TooFar);
+            }
+        }
+        if along < self.params.arm.min_arm {
+            for &point in points.iter().rev() {
+                self.driver.drive_to(point);
+                self.sense()?;
+            }
+            self.left = Some((self.on_local_map(), 1.0));
+            return Err(ScanFailure::Alcove);
+        }
+        self.left = None;
+        let back = self.driver.heading().unwrap_or_default() + PI;
+        self.arrive(vec![wrapped(back)]);
+        Ok(())
+    }
+
+    /// Stands at a place with doors in these directions.
+    fn arrive(&mut self, doors: Vec<f64>) {
+        self.tally.percepts += 1;
+        let here = Here { doors };
+        let is_true = self.truly_at(&here).is_some_and(|dart| {
+            self.smoothed.graph.degree_around(dart) as usize == here.doors.len()
+        });
+        self.tally.wrong += u64::from(!is_true);
+        self.here = Some(here);
+    }
+
+    /// Drives along a leg until it is in the middle of what may be a junction, if it comes to one.
+    fn drive_leg(&mut self, leg: &PilotLeg) -> Result<LegResult, ScanFailure> {
+        self.driver.drive_near(leg.to);
+        let mut nearest: Option<(f64, StandingPlace)> = None;
+        while self.sensed < self.driver.step_count() {
+            self.sense_step()?;
+            let place = self.events.standing().filter(|place| !self.is_left(place));
+            let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
+            match (place, &nearest) {
+                (None, None) if self.is_at_opening => {
+                    self.driver.stop_after(self.sensed);
+                    self.look_around()?;
+                    return Ok(LegResult::LookedAround);
+                }
+                (None, None) => {}
+                (Some(place), None) => nearest = Some(place),
+                (Some(place), Some((least, _))) if place.0 < *least => nearest = Some(place),
+                _ => break,
+            }
+        }
+        let Some((_, place)) = nearest else { return Ok(LegResult::Driven) };
+        self.driver.stop_after(self.sensed);
+        let entry = self.came_from(&place);
+        self.go_to(&place)?;
+        Ok(LegResult::AtPlace(place, entry))
+    }
+
+    /// Goes to the centre of a place, if it can stand there.
+    fn go_to(&mut self, place: &StandingPlace) -> Result<(), ScanFailure> {
+        let centre = self.to_plan().point(place.centre);
+        if self.pilot.has_space_at(centre) && distance(centre, self.driver.at()) > 0.2 {
+            self.driver.drive_to(centre);
+            self.sense()?;
+        }
+        Ok(())
+    }
+
+    /// The directions on the plan of the doors of the place where it stands, clockwise from the entry; `None` if it is no
+    /// junction.
+    fn decide(
+        &mut self,
+        place: StandingPlace,
+        entry: f64,
+    ) -> Result<Option<Vec<f64>>, ScanFailure> {
+        self.look_around()?;
+        // The directions of the arms that it has looked into, and whether they are arms.
+        let mut known: Vec<(f64, bool)> = Vec::new();
+        let (mut last, mut has_moved, mut tries) = (place, false, 0);
+        for _ in 0..LOOKS {
+            let Some(place) = self.events.standing() else {
+                let off = |seen: &&LaserJunction| distance(seen.centre, self.on_local_map());
+                let near = self.seen.last().into_iter().flatten().filter(|seen| off(seen) < HERE);
+                let near = near.min_by(|one, other| off(one).total_cmp(&off(other)));
+                let Some(seen) = near.filter(|_| !has_moved) else {
+                    self.left = Some((last.centre, last.clearance));
+                    return Ok(None);
+                };
+                let (centre, clearance) = (seen.centre, seen.clearance);
+                has_moved = true;
+                let percept = StandingPercept::Undecided;
+                self.go_to(&StandingPlace { centre, clearance, percept })?;
+                self.look_around()?;
+                continue;
+            };
+            let turn = self.to_plan().turn;
+            last = place.clone();
+            let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
+            let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
+            let next = uncertain.into_iter().find(|&arm| !is_same(arm, entry) && !is_known(arm));
+            if let Some(arm) = next {
+                let is_arm = self.look_into(arm)?;
+                known.push((arm, is_arm));
+                continue;
+            }
+            let doors = match place.percept {
+                StandingPercept::Junction(doors) => doors,
+                StandingPercept::Corridor => Vec::new(),
+                StandingPercept::Undecided if tries < 2 && known.is_empty() => {
+                    tries += 1;
+                    let towards = entry + PI * f64::from(tries);
+                    self.look_from_further(towards)?;
+                    continue;
+                }
+                StandingPercept::Undecided if known.is_empty() => {
+                    self.left = Some((place.centre, place.clearance));
+                    return Err(ScanFailure::Undecided);
+                }
+                StandingPercept::Undecided => {
+                    let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
+                    Self::seen_at(view, &place).map(|seen| seen.arms.clone()).unwrap_or_default()
+                }
+            };
+            let mut doors: Vec<f64> = doors.into_iter().map(|door| wrapped(door + turn)).collect();
+            for &(arm, is_arm) in &known {
+                if !is_arm {
+                    doors.retain(|&door| !is_same(door, arm));
+                } else if !doors.iter().any(|&door| is_same(door, arm)) {
+                    doors.push(arm);
+                }
+            }
+            self.left = Some((place.centre, place.clearance));
+            return Ok((doors.len() >= 3).then(|| in_order(doors, entry)));
+        }
+        self.left = Some((last.centre, last.clearance));
+        Err(ScanFailure::Undecided)
+    }
+
+    /// Drives into an arm and back. Returns whether it could drive as far as makes an arm.
+    fn look_into(&mut self, towards: f64) -> Result<bool, ScanFailure> {
+        let begin = self.driver.at();
+        let mut points = vec![begin];
+        let mut leg = Some(self.pilot.leave(begin, towards));
+        let (mut left, mut at) = (self.params.arm.min_arm, begin);
+        while let Some(next) = leg {
+            let length = distance(at, next.to);
+            let share = (left / length.max(1e-9)).min(1.0);
+            let to = [0, 1].map(|axis| at[axis] + share * (next.to[axis] - at[axis]));
+            self.driver.drive_to(to);
+            self.sense()?;
+            points.push(to);
+            left -= length;
+            at = next.to;
+            if left <= 0.0 {
+                break;
+            }
+            leg = self.pilot.after(&next);
+        }
+        for &point in points.iter().rev().skip(1) {
+            self.driver.drive_to(point);
+            self.sense()?;
+        }
+        self.look_around()?;
+        Ok(left <= 0.0)
+    }
+
+    /// Goes a little further, looks around there, and comes back.
+    fn look_from_further(&mut self, towards: f64) -> Result<(), ScanFailure> {
+        let begin = self.driver.at();
+        let leg = self.pilot.leave(begin, towards);
+        let share = (FURTHER / distance(begin, leg.to).max(1e-9)).min(1.0);
+        self.driver.drive_to([0, 1].map(|axis| begin[axis] + share * (leg.to[axis] - begin[axis])));
+        self.driver.look_around();
+        self.driver.drive_to(begin);
+        self.sense()?;
+        self.look_around()
+    }
+
+    fn look_around(&mut self) -> Result<(), ScanFailure> {
+        self.looked = Some((self.on_local_map(), self.driver.way));
+        self.seen.clear();
+        self.driver.look_around();
+        self.sense()?;
+        self.is_at_opening = false;
+        Ok(())
+    }
+
+    /// Whether a view shows ways that meet where the robot is, if its scanner does not look behind it and it has not
+    /// turned around nearby.
+    fn is_opening(&self, view: &LaserView, scan: &Scan) -> bool {
+        let robot = view.robot.position;
+        let has_looked = self.looked.is_some_and(|(at, way)| {
+            distance(at, robot) < LOOKED && self.driver_way() - way < FORGOTTEN
+        });
+        if has_looked || scan.field_of_view() > ALL_AROUND {
+            return false;
+        }
+        let Some(skeleton) = &view.skeleton else { return false };
+        let ways = WayGraph::new(skeleton, &view.grid, &view.clearances);
+        let is_meet = |&node: &usize| ways.at(node).len() >= 3;
+        let near = |node: &usize| distance(ways.nodes[*node].point, robot) < OPENING;
+        (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))
+    }
+
+    /// The length of its way up to the last scan, in metres.
+    fn driver_way(&self) -> f64 {
+        self.last_step().map_or(0.0, |step| step.way)
+    }
+
+    /// What may be a junction at a place, in a view.
+    fn seen_at<'v>(view: &'v [LaserJunction], place: &StandingPlace) -> Option<&'v LaserJunction> {
+        let off = |seen: &&LaserJunction| distance(seen.centre, place.centre);
+        let near = view.iter().filter(|seen| off(seen) < place.clearance.max(AT_CENTRE));
+        near.min_by(|one, other| off(one).total_cmp(&off(other)))
+    }
+
+    /// The directions of the arms of a place that are not certain in most of the last views.
+    fn uncertain_arms(&self, place: &StandingPlace) -> Vec<f64> {
+        let views = &self.seen[self.seen.len().saturating_sub(VIEWS)..];
+        // The direction, the number of views that show the arm, and of those in which it is certain.
+        let mut arms: Vec<(f64, usize, usize)> = Vec::new();
+        for seen in views.iter().filter_map(|view| Self::seen_at(view, place)) {
+            for &arm in &seen.arms {
+                let certain = usize::from(!seen.uncertain.contains(&arm));
+                match arms.iter_mut().find(|known| is_same(known.0, arm)) {
+                    Some(known) => (known.1, known.2) = (known.1 + 1, known.2 + certain),
+                    None => arms.push((arm, 1, certain)),
+                }
+            }
+        }
+        let enough = (CERTAIN * views.len() as f64).ceil() as usize;
+        let uncertain = arms.iter().filter(|arm| arm.1 > 1 && arm.2 < enough);
+        uncertain.map(|&(arm, ..)| arm).collect()
+    }
+
+    /// The direction on the plan from a place to where the robot was before.
+    fn came_from(&self, place: &StandingPlace) -> f64 {
+        let centre = self.to_plan().point(place.centre);
+        let far = place.clearance.max(1.0) + BEFORE;
+        self.driver.before_entering(centre, far).map_or_else(
+            || self.driver.heading().unwrap_or_default() + PI,
+            |point| direction(centre, point),
+        )
+    }
+
+    /// Whether a place is the one that it left last.
+    fn is_left(&self, place: &StandingPlace) -> bool {
+        self.left.is_some_and(|(centre, clearance)| {
+            distance(centre, place.centre) < AWAY.max(1.5 * clearance)
+        })
+    }
+
+    fn sense(&mut self) -> Result<(), ScanFailure> {
+        while self.sensed < self.driver.step_count() {
+            self.sense_step()?;
+        }
+        Ok(())
+    }
+
+    /// Takes the scan of the next step.
+    fn sense_step(&mut self) -> Result<(), ScanFailure> {
+        if self.watch.stop() {
+            return Err(ScanFailure::Stopped);
+        }
+        let number = self.sensed;
+        self.sensed += 1;
+        let Some(step) = self.driver.steps.get(number) else { return Ok(()) };
+        let Ok(scan) = self.scanner.scan(step.pose, number as u64, step.time) else {
+            return Ok(());
+        };
+        let source = EventSource { time: number as u64, ..EventSource::default() };
+        if let Some(view) = self.events.see(source, &scan, &step.odometry) {
+            self.to_odometry = view.to_odometry;
+            self.is_at_opening = self.is_opening(&view, &scan);
+            self.seen.push(view.possible_junctions);
+        }
+        let at = self.on_local_map();
+        if self.left.is_some_and(|(left, clearance)| distance(left, at) > clearance + 2.0 * AWAY) {
+            self.left = None;
+        }
+        Ok(())
+    }
+
+    /// Where it is on the local map.
+    fn on_local_map(&self) -> [f64; 2] {
+        let at = self.last_step().map_or(self.driver.at(), |step| step.odometry.position);
+        self.to_odometry.inverse().point(at)
+    }
+
+    /// From the local map to the plan, which is right near the robot.
+    fn to_plan(&self) -> Motion {
+        let to_plan = self.last_step().map_or_else(Motion::default, |step| {
+            let Pose { position, heading } = step.pose;
+            Motion::between(&step.odometry, &Odometry { position, heading })
+        });
+        to_plan.after(&self.to_odometry)
+    }
+
+    /// The step of the last scan.
+    fn last_step(&self) -> Option<&WalkStep> {
+        self.driver.steps.get(self.sensed.checked_sub(1)?)
+    }
+
+    /// The dart by which a robot has truly come in that stands here.
+    fn truly_at(&self, here: &Here) -> Option<Dart> {
+        let at = self.driver.at();
+        let entry = *here.doors.first()?;
+        let is_here = |dart: &Dart| {
+            let place = self.smoothed.place_of(*dart);
+            distance(self.world.places[place], at) < self.world.clearance(place) + MARKER
+        };
+        let off = |dart: &Dart| wrapped(self.direction_of(*dart) - entry).abs();
+        let darts = self.smoothed.graph.darts().filter(is_here);
+        darts.min_by(|one, other| off(one).total_cmp(&off(other)))
+    }
+
+    /// The dart by which the robot has truly come in.
+    pub(super) fn truth(&self) -> Option<Dart> {
+        self.here.as_ref().and_then(|here| self.truly_at(here))
+    }
+
+    /// The direction on the plan in which a dart leaves its vertex.
+    fn direction_of(&self, dart: Dart) -> f64 {
+        let [from, to] = self.smoothed.first_corridor(dart).map(|place| self.world.places[place]);
+        direction(from, to)
+    }
+
+    /// What the robot sees of the marker.
+    fn sighting(&self, here: &Here) -> Sighting {
+        let place = self.smoothed.place_of(self.facing);
+        let off = distance(self.world.places[place], self.driver.at());
+        if off > self.world.clearance(place) + MARKER {
+            return Sighting::Nothing;
+        }
+        let towards = self.direction_of(self.facing);
+        let off = |door: usize| wrapped(here.doors[door] - towards).abs();
+        let nearest = (0..here.doors.len()).min_by(|&one, &other| off(one).total_cmp(&off(other)));
+        nearest.map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door as u32)))
+    }
+}
+
+impl World for LaserRobot<'_> {
+    type Error = ScanFailure;
+
+    fn percept(&mut self) -> Result<Percept, ScanFailure> {
+        let here = self.here.as_ref().ok_or(ScanFailure::Missed)?;
+        Ok(Percept { degree: here.doors.len() as u32, sighting: self.sighting(here) })
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), ScanFailure> {
+        let here = self.here.as_ref().ok_or(ScanFailure::Missed)?;
+        let towards = here.doors.get(door.0 as usize).ok_or(ScanFailure::Missed)?;
+        self.drive(*towards)
+    }
+}
+
+impl Relocate for LaserRobot<'_> {
+    /// Drives on, or back, until it derives a junction or comes to a dead end.
+    fn relocate(&mut self, error: ScanFailure) -> Result<(), ScanFailure> {
+        if matches!(error, ScanFailure::Stopped | ScanFailure::TooFar) {
+            return Err(error);
+        }
+        for number in 0..TRIES {
+            let ahead = self.driver.heading().unwrap_or_default();
+            let towards = if number % 2 == 0 { ahead } else { ahead + PI };
+            match self.drive(towards) {
+                Ok(()) => return Ok(()),
+                Err(failure @ (ScanFailure::Stopped | ScanFailure::TooFar)) => return Err(failure),
+                Err(_) => {}
+            }
+        }
+        Err(error)
+    }
+}
+
+fn is_same(one: f64, other: f64) -> bool {
+    wrapped(one - other).abs() < SAME_ARM
+}
+
+/// Directions clockwise from the one that is nearest to the entry.
+fn in_order(mut doors: Vec<f64>, entry: f64) -> Vec<f64> {
+    let off = |door: &f64| wrapped(door - entry).abs();
+    let nearest = doors.iter().copied().min_by(|one, other| off(one).total_cmp(&off(other)));
+    let first = nearest.unwrap_or(entry);
+    let turn = |door: f64| {
+        let turn = clockwise(first, door);
+        if turn > TAU - 1e-9 { 0.0 } else { turn }
+    };
+    doors.sort_by(|&one, &other| turn(one).total_cmp(&turn(other)));
+    doors
+}

@@ -1,0 +1,196 @@
+//! Checks a robot against the embedded graph of its floor plan: after each move, where it is and what
+//! it perceives there. Section 2.1.
+
+use std::fmt;
+
+use toposlam_logs::record::{Event, EventKind, RunObserver};
+use toposlam_model::{
+    driving::{algorithm2::Standing, odometry::Odometry, pose::Pose, scene::wrapped},
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    percept::{Door, Percept},
+    world::{GraphWorld, State, World},
+};
+
+use crate::truth::{JunctionTruth, angle};
+
+/// A robot is at a junction up to this distance from its turning point, in metres.
+const THERE: f64 = 0.5;
+
+/// Follows a robot in the embedded graph of its floor plan, and checks each arrival at a junction.
+#[derive(Clone, Debug)]
+pub struct GroundTruthMonitor<'p> {
+    plan: &'p FloorPlan,
+    world: GraphWorld<'p>,
+    arrivals: Vec<CheckedArrival>,
+    /// The door that the robot has taken, and the odometry of the last frame.
+    door: Option<Door>,
+    odometry: Odometry,
+}
+
+/// An arrival at a junction, and the expected one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckedArrival {
+    /// The door of the last junction; `None` at the start.
+    pub door: Option<Door>,
+    /// The expected entry dart.
+    pub expected: Dart,
+    /// The true entry dart; `None` if the robot is not at a junction.
+    pub reached: Option<Dart>,
+    /// The expected percept.
+    pub expected_percept: Percept,
+    /// The robot's percept.
+    pub perceived: Percept,
+    /// The robot's true pose.
+    pub pose: Pose,
+    /// The true entry dart, also if the specification says that the robot could not come there.
+    truly: Option<Dart>,
+}
+
+impl CheckedArrival {
+    /// Whether the robot is where it should be, and perceives what it should.
+    #[must_use]
+    pub fn conforms(&self) -> bool {
+        self.reached == Some(self.expected) && self.perceived == self.expected_percept
+    }
+}
+
+/// The first arrival that is not as expected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruthDivergence {
+    /// The number of moves before it.
+    pub moves: usize,
+    /// The arrival.
+    pub arrival: CheckedArrival,
+    /// The expected place and the reached one, in words.
+    names: [String; 2],
+}
+
+impl fmt::Display for TruthDivergence {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { moves, arrival, names: [expected, reached] } = self;
+        write!(out, "after move {moves} ")?;
+        if arrival.reached == Some(arrival.expected) {
+            let CheckedArrival { expected_percept, perceived, .. } = arrival;
+            write!(
+                out,
+                "at {reached} the robot perceived {perceived}; there are {expected_percept}"
+            )
+        } else {
+            write!(out, "the robot was at {reached}; by the specification it was at {expected}")
+        }
+    }
+}
+
+impl<'p> GroundTruthMonitor<'p> {
+    /// A robot that stands at the facing dart's junction, its back to the dart's hallway.
+    #[must_use]
+    pub fn new(plan: &'p FloorPlan, facing: Dart) -> Self {
+        Self::at(plan, facing, facing)
+    }
+
+    /// A robot that came to the entry dart's junction by that dart; the marker lies along the facing
+    /// dart.
+    #[must_use]
+    pub fn at(plan: &'p FloorPlan, facing: Dart, entry: Dart) -> Self {
+        let world = GraphWorld::new(plan.graph(), facing);
+        let state = State { pose: entry, ..world.state() };
+        let world = world.at(state);
+        Self { plan, world, arrivals: Vec::new(), door: None, odometry: Odometry::default() }
+    }
+
+    /// Checks an arrival. `entry` is the direction in the plan of what the robot takes for its entry door.
+    fn check(&mut self, perceived: Percept, pose: Pose, entry: f64) {
+        let door = self.door.take();
+        // A door that does not exist leads nowhere; the robot is then somewhere else.
+        let refused = door.is_some_and(|door| self.world.traverse(door).is_err());
+        let truly = self.dart_at(pose, entry);
+        let reached = truly.filter(|_| !refused);
+        let arrival = CheckedArrival {
+            door,
+            expected: self.world.pose(),
+            reached,
+            expected_percept: self.world.sensed(),
+            perceived,
+            pose,
+            truly,
+        };
+        self.arrivals.push(arrival);
+    }
+
+    /// The dart of the junction at a pose whose hallway leads in a direction.
+    fn dart_at(&self, pose: Pose, entry: f64) -> Option<Dart> {
+        let graph = self.plan.graph();
+        let off = |vertex: &_| {
+            let [x, y] = self.plan.junction(*vertex).position;
+            (x - pose.position[0]).hypot(y - pose.position[1])
+        };
+        let vertex = graph
+            .vertices()
+            .filter(|vertex| off(vertex) <= THERE)
+            .min_by(|one, other| off(one).total_cmp(&off(other)))?;
+        let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
+        graph.darts_of(vertex).min_by(|one, other| turned(one).total_cmp(&turned(other)))
+    }
+
+    /// What a robot at a pose knows if it is at the expected junction; `None` at a junction of a kind that
+    /// robots do not know.
+    #[must_use]
+    pub fn standing(&self, pose: Pose) -> Option<Standing> {
+        let dart = self.world.pose();
+        let entry = wrapped(angle(self.plan.direction(dart)) - pose.heading);
+        let from = Pose { heading: angle(self.plan.direction(dart).reversed()), ..pose };
+        let form = JunctionTruth::of(self.plan, self.plan.graph().vertex(dart), from).form?;
+        Some(Standing { form, percept: self.world.sensed(), entry })
+    }
+
+    /// Every arrival so far, the start first.
+    #[must_use]
+    pub fn arrivals(&self) -> &[CheckedArrival] {
+        &self.arrivals
+    }
+
+    /// The first arrival that is not as expected.
+    #[must_use]
+    pub fn divergence(&self) -> Option<TruthDivergence> {
+        let moves = self.arrivals.iter().position(|arrival| !arrival.conforms())?;
+        let arrival = self.arrivals[moves].clone();
+        let name = |dart: Dart| {
+            let graph = self.plan.graph();
+            let junction = |dart| &self.plan.junction(graph.vertex(dart)).name;
+            format!("{}, having come from {}", junction(dart), junction(graph.opposite(dart)))
+        };
+        let reached = arrival.reached.map_or_else(|| "no junction".to_owned(), name);
+        Some(TruthDivergence { moves, names: [name(arrival.expected), reached], arrival })
+    }
+
+    /// The robot's true entry dart, whatever happened before.
+    #[must_use]
+    pub fn truly_reached(&self) -> Option<Dart> {
+        self.arrivals.last()?.truly
+    }
+
+    /// The robot's true entry dart.
+    #[must_use]
+    pub fn reached(&self) -> Option<Dart> {
+        self.arrivals.last()?.reached
+    }
+}
+
+/// Only events with the robot's true pose are checked.
+impl RunObserver for GroundTruthMonitor<'_> {
+    fn event(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Frame(frame) => self.odometry = frame.odometry,
+            EventKind::Door { door, .. } => self.door = Some(*door),
+            EventKind::Arrival(arrival) => {
+                if let (Some(pose), Some(entry), Some(percept)) =
+                    (event.truth, arrival.entry, arrival.percept())
+                {
+                    self.check(percept, pose, pose.heading + self.odometry.seen(entry));
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! A simulated robot in a simulated building, and the evaluation of sensing, driving and mapping there. Sections
+//! 2.4, 2.5 and 4 to 6.
+//!
+//! A [`SimulatedRobot`] drives in a [`Building`], with [`MotionNoise`] and [`RobotFault`]s. It has a camera, whose images
+//! [`mod@render`] makes, a [`LaserScanner`], or both.
+
+// Tests compare exact numbers.
+#![cfg_attr(test, allow(clippy::float_cmp))]
+#![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
+
+mod cameras;
+mod colour_learning;
+mod config;
+mod equipment;
+pub mod evaluation;
+mod faults;
+pub mod ground_truth_monitor;
+mod learned_sensors;
+mod motion;
+mod obstacle_judge;
+#[cfg(feature = "evaluate")]
+pub mod options;
+mod plans;
+#[cfg(test)]
+mod question_limit;
+pub mod random_plan;
+pub mod render;
+pub mod rendered_view;
+#[cfg(feature = "ros1")]
+pub mod ros1;
+pub mod run;
+mod scanner;
+mod simulated_robot;
+mod surroundings;
+pub mod truth;
+pub mod view_sampler;
+
+pub use crate::render::{
+    Building, BuildingLook, CameraRay, Colour, EffectScope, EffectSettings, Effects, FloorCovering,
+    KNOBS, Knob, KnobError, LOOKS, RayPath, Rig, RigErrors, label_mask, labels, render,
+};
+pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
+pub use colour_learning::{LearningError, learned};
+pub use config::{IMAGE_TIME, SimulationConfig, start_pose, starts_of};
+pub use equipment::RobotEquipment;
+pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
+pub use learned_sensors::LearnedSensors;
+pub use motion::{MotionNoise, SimulatedBase};
+pub use plans::plans;
+pub use scanner::{
+    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
+    ScannerParams, WallSurface,
+};
+pub use simulated_robot::SimulatedRobot;

@@ -1,0 +1,57 @@
+//! The class of each pixel, to train and judge the colour classifier. Section 3.
+
+use image::{Rgb, RgbImage};
+use toposlam_model::driving::pose::Pose;
+use toposlam_vision::colour::PixelClass;
+
+use crate::render::{
+    building::{Building, WallPart},
+    effects::Effects,
+    renderer::Shot,
+    rig::Rig,
+    sight_lines::SightLines,
+    surfaces::Surface,
+};
+
+/// The class of the middle of each pixel, row by row: [`PixelClass::Unseen`] on the robot, its
+/// struts and outside the mirror, and never [`PixelClass::Unknown`].
+#[must_use]
+pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<PixelClass> {
+    let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
+    let shot = Shot::new(rig, building, &lines, pose, effects);
+    let [width, height] = rig.image();
+    let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
+    pixels
+        .map(|(u, v)| match shot.surface(u, v) {
+            Surface::Floor => PixelClass::Floor,
+            Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => PixelClass::Stripe,
+            Surface::Marker => PixelClass::Marker,
+            Surface::Wall(..)
+            | Surface::Cable
+            | Surface::Furniture(_)
+            | Surface::Overhead(_)
+            | Surface::Ceiling
+            | Surface::Lamp
+            | Surface::Nothing => PixelClass::Other,
+            Surface::Robot(_) | Surface::Holder => PixelClass::Unseen,
+        })
+        .collect()
+}
+
+/// The label image of these classes: floor green, stripe red, marker blue, ignored pixels white,
+/// anything else black.
+#[must_use]
+pub fn label_mask(rig: &Rig, classes: &[PixelClass]) -> RgbImage {
+    let [width, height] = rig.image();
+    let mut mask = RgbImage::new(width, height);
+    for (pixel, class) in mask.pixels_mut().zip(classes) {
+        *pixel = Rgb(match class {
+            PixelClass::Floor => [0, 255, 0],
+            PixelClass::Stripe => [255, 0, 0],
+            PixelClass::Marker => [0, 0, 255],
+            PixelClass::Other => [0, 0, 0],
+            PixelClass::Unseen | PixelClass::Unknown => [255, 255, 255],
+        });
+    }
+    mask
+}

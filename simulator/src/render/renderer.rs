@@ -1,0 +1,355 @@
+//! Renders the camera's image of a building from a pose. Section 2.5.
+
+use image::RgbImage;
+use toposlam_model::driving::pose::Pose;
+
+use crate::render::{
+    body::Body,
+    building::Building,
+    effects::Effects,
+    exposure::{RowRenderer, compressed, expose},
+    furniture::BlocksAround,
+    optics::RayPath,
+    rig::{PixelRay, Rig},
+    sight_lines::SightLines,
+    surfaces::{BuildingView, Surface},
+    world_ray::WorldRay,
+};
+
+/// The number of rays along and across a pixel in which several surfaces meet.
+const FINE: usize = 3;
+
+/// The share of the light that reaches the camera past the mirror.
+const BESIDE_MIRROR: f32 = 0.35;
+
+/// The image of a building that a rig takes from a pose.
+///
+/// The same arguments give the same image, byte for byte. From a pose that is not on the floor, the
+/// image is meaningless.
+#[must_use]
+pub fn render(
+    rig: &Rig,
+    building: &Building,
+    pose: Pose,
+    effects: &Effects,
+    seed: u64,
+) -> RgbImage {
+    compressed(exposed(rig, building, pose, effects, seed), effects)
+}
+
+/// The image before it is compressed.
+#[must_use]
+pub fn exposed(
+    rig: &Rig,
+    building: &Building,
+    pose: Pose,
+    effects: &Effects,
+    seed: u64,
+) -> RgbImage {
+    let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
+    let shot = Shot::new(rig, building, &lines, pose, effects);
+    expose(&mut Rows::new(&shot), rig, effects, seed)
+}
+
+/// A rig in a building, at a pose.
+pub(crate) struct Shot<'a> {
+    rig: &'a Rig,
+    view: BuildingView<'a>,
+    body: Body,
+    /// The robot's position, its heading as cosine and sine, and its heading in 1/65,536 of a turn.
+    position: [f32; 2],
+    heading: [f32; 2],
+    turn: u16,
+    /// The light on the robot's body.
+    light: f32,
+    holder: f32,
+}
+
+impl<'a> Shot<'a> {
+    pub(crate) fn new(
+        rig: &'a Rig,
+        building: &'a Building,
+        lines: &'a SightLines,
+        pose: Pose,
+        effects: &Effects,
+    ) -> Self {
+        let position = pose.position.map(|coordinate| coordinate as f32);
+        let (sine, cosine) = pose.heading.sin_cos();
+        let turns = (pose.heading / std::f64::consts::TAU).rem_euclid(1.0);
+        Self {
+            rig,
+            view: BuildingView {
+                building,
+                lines,
+                blocks: BlocksAround::new(pose.position, rig.off_axis, &building.furniture),
+            },
+            body: Body::new(rig.optics.height, rig.image()[0], effects),
+            position,
+            heading: [cosine as f32, sine as f32],
+            turn: (turns * 65_536.0) as u32 as u16,
+            light: building.light.on_floor(position),
+            holder: rig.optics.rim() as f32 * (1.0 + effects.holder) as f32,
+        }
+    }
+
+    /// The surface in the middle of a pixel.
+    pub(crate) fn surface(&self, u: u32, v: u32) -> Surface {
+        let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
+        let from_middle = || self.off_middle([u as f32, v as f32]);
+        if let Some(part) = self.body.met(ray, from_middle) {
+            Surface::Robot(part)
+        } else if ray.by == RayPath::Direct {
+            Surface::Holder
+        } else {
+            let ray = self.world(ray);
+            let overhead = self.view.building.overhead.met(&ray);
+            overhead
+                .map_or_else(|| self.view.surface(&ray), |piece| Surface::Overhead(piece.number))
+        }
+    }
+
+    /// The surface that a ray through a place in the image meets, and its light; for a pixel of
+    /// this size.
+    #[inline]
+    fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
+        if let Some(part) = self.body.met(ray, || self.off_middle(place)) {
+            let light = self.light;
+            return (Surface::Robot(part), part.colour().map(|channel| channel * light));
+        }
+        if ray.by == RayPath::Direct {
+            if self.off_middle(place) < self.holder {
+                return (Surface::Holder, [0.01; 3]);
+            }
+            let (surface, colour) = self.view.seen(&self.world(ray), || [0.0; 2]);
+            return (surface, colour.map(|channel| channel * BESIDE_MIRROR));
+        }
+        let world = self.world(ray);
+        if let Some(piece) = self.view.building.overhead.met(&world) {
+            return (Surface::Overhead(piece.number), piece.colour());
+        }
+        self.view.seen(&world, || {
+            let from_middle = self.off_middle(place);
+            let [x, y, down] = ray.direction;
+            let range = -ray.origin[2] / down * (x * x + y * y).sqrt();
+            [self.rig.stride(from_middle) * size, range / from_middle.max(1.0) * size]
+        })
+    }
+
+    /// The light at a pixel, as the mean of many rays.
+    #[cold]
+    fn finely(&self, u: usize, v: usize) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        let bundle = Bundle::new(self.rig, u, v);
+        let step = |number: usize| (number as f32 + 0.5) / FINE as f32 - 0.5;
+        for row in 0..FINE {
+            for column in 0..FINE {
+                let [right, down] = [step(column), step(row)];
+                let ray = bundle.ray(right, down);
+                let place = [u as f32 + right, v as f32 + down];
+                let (_, colour) = self.seen(&ray, place, 1.0 / FINE as f32);
+                for (sum, channel) in sum.iter_mut().zip(colour) {
+                    *sum += channel;
+                }
+            }
+        }
+        sum.map(|channel| channel / (FINE * FINE) as f32)
+    }
+
+    fn off_middle(&self, place: [f32; 2]) -> f32 {
+        let [u, v] = self.rig.optics.centre;
+        let [u, v] = [place[0] - u as f32, place[1] - v as f32];
+        (u * u + v * v).sqrt()
+    }
+
+    /// The ray in the building's coordinates.
+    #[inline]
+    fn world(&self, ray: &PixelRay) -> WorldRay {
+        let [cosine, sine] = self.heading;
+        let turned = |[x, y, z]: [f32; 3]| [x * cosine - y * sine, x * sine + y * cosine, z];
+        let [x, y, z] = turned(ray.origin);
+        WorldRay {
+            origin: [x + self.position[0], y + self.position[1], z],
+            direction: turned(ray.direction),
+            turn: ray.turn.wrapping_add(self.turn),
+        }
+    }
+}
+
+/// The rays within a pixel.
+enum Bundle<'a> {
+    /// Linear interpolation between the pixel's neighbours, which is exact enough within a pixel.
+    Straight { middle: PixelRay, rightwards: [f32; 7], downwards: [f32; 7] },
+    /// At the mirror's rim and the image's border, each ray is computed.
+    Each { rig: &'a Rig, pixel: [f64; 2] },
+}
+
+impl<'a> Bundle<'a> {
+    fn new(rig: &'a Rig, u: usize, v: usize) -> Self {
+        let [width, height] = rig.image().map(|length| length as usize);
+        let each = Self::Each { rig, pixel: [u as f64, v as f64] };
+        if u == 0 || v == 0 || u + 1 >= width || v + 1 >= height {
+            return each;
+        }
+        let at = v * width + u;
+        let around = [at - 1, at + 1, at - width, at + width].map(|at| rig.rays[at]);
+        let middle = rig.rays[at];
+        // In the middle of the mirror, interpolation is not exact enough.
+        if around.iter().any(|ray| ray.by != middle.by) || middle.direction[2] < -0.98 {
+            return each;
+        }
+        let [left, right, above, below] = around;
+        Self::Straight {
+            middle,
+            rightwards: change(&left, &right),
+            downwards: change(&above, &below),
+        }
+    }
+
+    fn ray(&self, right: f32, down: f32) -> PixelRay {
+        match self {
+            Self::Each { rig, pixel: [u, v] } => {
+                rig.optics.ray([u + f64::from(right), v + f64::from(down)]).into()
+            }
+            Self::Straight { middle, rightwards, downwards } => {
+                let by = |number: usize| right * rightwards[number] + down * downwards[number];
+                PixelRay {
+                    origin: [0, 1, 2].map(|axis| middle.origin[axis] + by(axis)),
+                    direction: [0, 1, 2].map(|axis| middle.direction[axis] + by(3 + axis)),
+                    turn: middle.turn.wrapping_add_signed(by(6) as i16),
+                    by: middle.by,
+                }
+            }
+        }
+    }
+}
+
+/// Half of the difference of two rays: origin, direction and turn.
+fn change(one: &PixelRay, other: &PixelRay) -> [f32; 7] {
+    let half = |one: f32, other: f32| (other - one) / 2.0;
+    let [x, y, z] = [0, 1, 2].map(|axis| half(one.origin[axis], other.origin[axis]));
+    let [along, left, up] = [0, 1, 2].map(|axis| half(one.direction[axis], other.direction[axis]));
+    let turn = f32::from(other.turn.wrapping_sub(one.turn).cast_signed()) / 2.0;
+    [x, y, z, along, left, up, turn]
+}
+
+/// The rows of an image, from the first to the last.
+struct Rows<'a> {
+    shot: &'a Shot<'a>,
+    width: usize,
+    height: usize,
+    /// The latest rows: the surface and the light of each pixel.
+    looked: [Row; 3],
+}
+
+#[derive(Default)]
+struct Row {
+    surfaces: Vec<u32>,
+    light: Vec<[f32; 3]>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(shot: &'a Shot<'a>) -> Self {
+        let [width, height] = shot.rig.image().map(|length| length as usize);
+        let mut rows = Self { shot, width, height, looked: Default::default() };
+        rows.look(0);
+        rows
+    }
+
+    /// Renders a row with one ray per pixel.
+    fn look(&mut self, v: usize) {
+        if v >= self.height {
+            return;
+        }
+        let row = &mut self.looked[v % 3];
+        row.surfaces.clear();
+        row.light.clear();
+        let rays = &self.shot.rig.rays[v * self.width..][..self.width];
+        for (u, ray) in rays.iter().enumerate() {
+            let (surface, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
+            row.surfaces.push(surface.number());
+            row.light.push(light);
+        }
+    }
+}
+
+impl RowRenderer for Rows<'_> {
+    /// Rows must be requested in order. Pixels whose neighbours show other surfaces get more rays.
+    fn row(&mut self, v: usize, out: &mut [f32]) {
+        self.look(v + 1);
+        let here = &self.looked[v % 3];
+        let above = &self.looked[v.saturating_sub(1) % 3].surfaces;
+        let below = &self.looked[(v + 1).min(self.height - 1) % 3].surfaces;
+        let last = self.width - 1;
+        for (u, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            let surface = here.surfaces[u];
+            let other = (surface ^ above[u])
+                | (surface ^ below[u])
+                | (surface ^ here.surfaces[u.saturating_sub(1)])
+                | (surface ^ here.surfaces[(u + 1).min(last)]);
+            *out = if other == 0 { here.light[u] } else { self.shot.finely(u, v) };
+        }
+    }
+
+    /// The mean light of some pixels.
+    fn mean(&self) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        let mut count = 0;
+        for v in (0..self.height).step_by(16) {
+            for u in (0..self.width).step_by(16) {
+                let ray = &self.shot.rig.rays[v * self.width + u];
+                let (_, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
+                for (sum, channel) in sum.iter_mut().zip(light) {
+                    *sum += channel;
+                }
+                count += 1;
+            }
+        }
+        sum.map(|sum| sum / count.max(1) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::camera::Camera;
+
+    use super::*;
+    use crate::render::{RigErrors, sight_lines::TURN_ERROR};
+
+    fn apart(one: &PixelRay, other: &PixelRay) -> f32 {
+        let square = |axis: usize| (one.direction[axis] - other.direction[axis]).powi(2);
+        (0..3).map(square).sum::<f32>().sqrt()
+    }
+
+    #[test]
+    fn interpolated_rays_are_exact_enough() {
+        for width in [640, 1280] {
+            let camera = Camera::superscout().sized([width, width * 3 / 4]);
+            let errors = RigErrors { tilt: 0.03, towards: 1.0, ..RigErrors::default() };
+            let rig = Rig::with_errors(&camera, &errors);
+            let [width, height] = rig.image();
+            let mut straight = 0;
+            let pixels =
+                (0..width).step_by(7).flat_map(|u| (0..height).step_by(5).map(move |v| [u, v]));
+            for [u, v] in pixels {
+                let bundle = Bundle::new(&rig, u as usize, v as usize);
+                straight += u32::from(matches!(bundle, Bundle::Straight { .. }));
+                let [u, v] = [u, v].map(f64::from);
+                let exact = |right, down| PixelRay::from(rig.ray([u + right, v + down]));
+                let here = exact(0.0, 0.0);
+                let pixel = apart(&here, &exact(1.0, 0.0)).max(apart(&here, &exact(0.0, 1.0)));
+                // At the rim the mirror is curved more and more.
+                let [middle_u, middle_v] = rig.optics.centre;
+                let within = (u - middle_u).hypot(v - middle_v) < 0.97 * rig.optics.rim();
+                let allowed = if within { 0.03 } else { 0.5 };
+                for [right, down] in [[-0.375, 0.25], [0.5, 0.5], [0.0, -0.5]] {
+                    let ray = bundle.ray(right as f32, down as f32);
+                    let exact = exact(right, down);
+                    assert!(apart(&ray, &exact) < allowed * pixel, "{u} {v}");
+                    let turned = ray.turn.wrapping_sub(exact.turn).cast_signed();
+                    assert!(i64::from(turned.abs()) < TURN_ERROR, "{u} {v}: {turned}");
+                }
+            }
+            assert!(straight > width * height / 70, "{straight}");
+        }
+    }
+}

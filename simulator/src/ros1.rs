@@ -1,0 +1,178 @@
+//! A simulated robot as a ROS 1 node. To its driver it looks like a live robot.
+
+use std::{
+    thread,
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+use toposlam_logs::{
+    record::Frame,
+    recorder,
+    standard::{
+        CompressedImage, FileBytes, LaserScanMessage, OdometryMessage, PoseStamped, TFMessage,
+    },
+};
+use toposlam_robot::{
+    robot::RobotError,
+    ros1::{
+        RobotTopics,
+        messages::{
+            Nanoseconds, Reckoning, SECOND, frames, image, marker, odometry, read_twist, scan,
+        },
+        node::{Node, Publisher, Subscription},
+    },
+    superscout::{Base, WheelSpeeds},
+};
+
+use crate::SimulatedRobot;
+
+/// Wheel speeds take effect after at most this time, in seconds of simulated time.
+const TICK: f64 = 0.05;
+/// Odometry is published every this many ticks: ten times a second.
+const READING: u64 = 2;
+/// Interval between images in seconds, if the camera is fast enough. Rendering takes most of the
+/// time.
+const IMAGE_EVERY: f64 = 1.0;
+/// The greatest speed of simulated time relative to real time. At higher speeds a motion would be
+/// over before odometry reports it.
+pub const MOST_SPEED: f64 = 20.0;
+
+/// Summary of a served run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ServeSummary {
+    /// Simulated time, in seconds.
+    pub seconds: f64,
+    /// Real time, in seconds.
+    pub real_seconds: f64,
+    /// The number of images.
+    pub frames: u64,
+}
+
+/// Serves a simulated robot on topics until `stop` returns true.
+///
+/// Simulated time passes `speed` times as fast as real time or slower, without jumps: it stands
+/// still while an image is rendered. The watchdog stops the wheels half a second of simulated time
+/// after the last command. Time stamps begin at the present time.
+///
+/// # Errors
+/// Returns an error if there is no master or the connection is closed.
+pub fn serve(
+    robot: SimulatedRobot,
+    topics: &RobotTopics,
+    speed: f64,
+    stop: impl Fn() -> bool,
+) -> Result<ServeSummary, RobotError> {
+    let node = Node::new(&topics.master, "/toposlam_simulator")?;
+    let mut scout = Scout {
+        commands: node.subscribe(&topics.wheels, read_twist)?,
+        odometry: node.advertise::<OdometryMessage>(&topics.odometry)?,
+        frames: node.advertise::<TFMessage>(recorder::TF)?,
+        images: node.advertise::<CompressedImage<FileBytes>>(&topics.images)?,
+        scans: node.advertise::<LaserScanMessage<&[f32]>>(&topics.scans)?,
+        markers: node.advertise::<PoseStamped>(&topics.marker)?,
+        epoch: now(),
+        ignores: false,
+        exposed: None,
+        next_image: 0.0,
+        robot,
+    };
+    let begun = Instant::now();
+    let tick = Duration::from_secs_f64(TICK / speed.clamp(0.01, MOST_SPEED));
+    let mut due = begun;
+    let mut ticks = 0;
+    while !stop() {
+        scout.tick(ticks)?;
+        ticks += 1;
+        // Lost time is not made up for.
+        due = (due + tick).max(Instant::now());
+        thread::sleep(due.saturating_duration_since(Instant::now()));
+    }
+    let (seconds, frames) = (scout.robot.time(), scout.robot.frames());
+    Ok(ServeSummary { seconds, real_seconds: begun.elapsed().as_secs_f64(), frames })
+}
+
+fn now() -> Nanoseconds {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    since.as_secs() * SECOND
+}
+
+/// A simulated robot and its topics.
+struct Scout {
+    commands: Subscription<WheelSpeeds>,
+    odometry: Publisher,
+    scans: Publisher,
+    markers: Publisher,
+    frames: Publisher,
+    images: Publisher,
+    /// The stamp of its time 0.
+    epoch: Nanoseconds,
+    /// Whether the present motion is ignored.
+    ignores: bool,
+    /// An image that is on its way, and its time of arrival.
+    exposed: Option<(f64, Frame)>,
+    next_image: f64,
+    robot: SimulatedRobot,
+}
+
+impl Scout {
+    /// Advances by one tick, with this number.
+    fn tick(&mut self, number: u64) -> Result<(), RobotError> {
+        if let Some(wheels) = self.commands.take() {
+            self.command(wheels);
+        }
+        self.robot.base().wait(TICK);
+        if number.is_multiple_of(READING) {
+            self.publish_odometry((number / READING) as u32)?;
+        }
+        self.photograph()
+    }
+
+    /// A motion begins when the wheels are set in motion.
+    fn command(&mut self, wheels: WheelSpeeds) {
+        let base = self.robot.base();
+        let stood = base.wheels() == WheelSpeeds::STOP;
+        if wheels == WheelSpeeds::STOP {
+            self.ignores = false;
+        } else if stood && !self.ignores {
+            self.ignores = !base.begin();
+        }
+        base.command(if self.ignores { WheelSpeeds::STOP } else { wheels });
+    }
+
+    fn stamp(&self, seconds: f64) -> Nanoseconds {
+        self.epoch + (seconds * SECOND as f64).round() as Nanoseconds
+    }
+
+    /// Publishes odometry, also as a transform.
+    fn publish_odometry(&mut self, number: u32) -> Result<(), RobotError> {
+        let base = self.robot.base();
+        let (reading, wheels) = (base.reading(), base.wheels());
+        let reckoning = Reckoning { stamp: self.stamp(reading.time), at: reading.odometry, wheels };
+        self.odometry.publish(&odometry(number, &reckoning))?;
+        self.frames.publish(&frames(number, &reckoning))
+    }
+
+    /// Takes an image if one is due, and publishes it when it has arrived.
+    fn photograph(&mut self) -> Result<(), RobotError> {
+        let time = self.robot.time();
+        if let Some((_, exposed)) = self.exposed.take_if(|(there, _)| *there <= time) {
+            let number = self.robot.frames() as u32;
+            let stamp = self.stamp(exposed.taken);
+            if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
+                self.images.publish(&image(number, stamp, file))?;
+            }
+            if let Some(seen) = &exposed.marker {
+                self.markers.publish(&marker(number, stamp, seen))?;
+            }
+            if let Some(sweep) = &exposed.scan {
+                self.scans.publish(&scan(number, stamp, sweep))?;
+            }
+        }
+        if time >= self.next_image {
+            let takes = self.robot.image_time();
+            self.next_image = time + takes.max(IMAGE_EVERY);
+            self.exposed = self.robot.expose().map(|image| (time + takes, image));
+        }
+        Ok(())
+    }
+}

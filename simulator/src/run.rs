@@ -1,0 +1,397 @@
+//! A whole run: a simulated robot maps its building, and the result is checked against the specification.
+//! Section 6.
+
+use std::borrow::Cow;
+
+use thiserror::Error;
+use toposlam_logs::record::{FrameSensor, RunObserver};
+use toposlam_model::{
+    check::{Algorithm, Algorithm1, ExploredMap, Flaw, Folding, judge_map},
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    isomorphism::Candidate,
+    mapping::{DirectionalAlgorithm, FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
+    world::GraphWorld,
+};
+use toposlam_robot::{
+    explorer::{ExplorerError, RobotExplorer},
+    recording::Recording,
+    robot::Robot as _,
+    run_settings::RunSettings,
+};
+
+use crate::{
+    SimulatedRobot,
+    ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
+    obstacle_judge::{TruePlace, judge_with_obstacle},
+};
+
+pub use crate::obstacle_judge::WayToMarker;
+
+/// A whole run, and its checks.
+#[derive(Debug)]
+pub struct Run<'p> {
+    /// How the robot mapped.
+    pub method: MappingMethod,
+    /// The state of the algorithm: its map, and the robot's pose in it.
+    pub mapping: MappingRun,
+    /// What the complete map took; `None` if the run ended early.
+    pub mapped: Option<MappedWorld>,
+    /// Why it ended early, if it did.
+    pub error: Option<MappingError<ExplorerError>>,
+    /// What is wrong with the map or the pose of a complete run.
+    pub flaw: Option<Flaw>,
+    /// The moves, with those of recoveries and audits.
+    pub moves: u64,
+    /// Every arrival, checked.
+    pub monitor: GroundTruthMonitor<'p>,
+    /// Whether at the end the robot can come to its marker.
+    pub way_to_marker: WayToMarker,
+    /// The number of moves that the algorithm makes in the plan's embedded graph.
+    pub explore_moves: u64,
+    /// The simulated time, in seconds.
+    pub seconds: f64,
+    /// The number of images or scans that the robot asked for.
+    pub frames: u64,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RunOutcome {
+    /// The map and the pose are right, and each move is as specified. The map of a robot that recovers may lack
+    /// hallways that are blocked.
+    #[error("the map is right")]
+    Right,
+    /// The robot gave up, for this reason.
+    #[error("the robot gave up: {0}")]
+    GaveUp(MappingError<ExplorerError>),
+    /// The map or the pose is wrong, and the robot did not detect it.
+    #[error("{0}")]
+    Wrong(String),
+}
+
+impl Run<'_> {
+    /// The darts of the map whose hallways are blocked.
+    #[must_use]
+    pub fn blocked(&self) -> &[Dart] {
+        self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
+    }
+
+    /// The first arrival that is not as expected.
+    #[must_use]
+    pub fn divergence(&self) -> Option<TruthDivergence> {
+        self.monitor.divergence()
+    }
+
+    /// Whether the map is isomorphic to the plan, with the starts matched.
+    #[must_use]
+    pub fn isomorphic(&self) -> bool {
+        self.error.is_none()
+            && matches!(self.flaw, None | Some(Flaw::WrongPose { .. } | Flaw::TooManyMoves { .. }))
+    }
+
+    /// Whether the robot is where it believes it is.
+    #[must_use]
+    pub fn pose_true(&self) -> bool {
+        self.isomorphic() && !matches!(self.flaw, Some(Flaw::WrongPose { .. }))
+    }
+
+    /// How it ended.
+    #[must_use]
+    pub fn outcome(&self) -> RunOutcome {
+        // A robot that recovers may have made mistakes on its way.
+        let divergence = self.divergence().filter(|_| !self.method.recovers());
+        let audit_moves = self.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
+        let (moves, expected) = (self.moves, self.explore_moves + audit_moves);
+        match (&self.error, &self.flaw, divergence) {
+            (Some(error), ..) => RunOutcome::GaveUp(error.clone()),
+            (None, Some(flaw), Some(divergence)) => {
+                RunOutcome::Wrong(format!("{flaw}; {divergence}"))
+            }
+            (None, Some(flaw), None) => RunOutcome::Wrong(flaw.to_string()),
+            (None, None, Some(divergence)) => RunOutcome::Wrong(divergence.to_string()),
+            (None, None, None) if !self.method.recovers() && moves != expected => {
+                RunOutcome::Wrong(format!("it took {moves} moves instead of {expected}"))
+            }
+            (None, None, None) => RunOutcome::Right,
+        }
+    }
+}
+
+/// A simulated robot that stands at a dart's junction maps its building.
+// paper: exp.simulated
+pub fn run<'p>(
+    plan: &'p FloorPlan,
+    facing: Dart,
+    robot: SimulatedRobot,
+    sensor: impl FrameSensor,
+    observer: impl RunObserver,
+    settings: &RunSettings,
+) -> Run<'p> {
+    let &RunSettings { method, dart_bound, .. } = settings;
+    let monitor = GroundTruthMonitor::new(plan, facing);
+    let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
+    let (mapping, mapped) = explorer.map(settings);
+    let (moves, is_at_obstacle) = (explorer.moves(), explorer.is_at_obstacle());
+    let (robot, (monitor, _)) = explorer.into_parts();
+    let (mapped, error) = match mapped {
+        Ok(mapped) => (Some(mapped), None),
+        Err(error) => (None, Some(error)),
+    };
+    let place = match robot.truth() {
+        Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
+        _ => TruePlace::Junction(monitor.truly_reached()),
+    };
+    let way_to_marker =
+        WayToMarker::of(plan, facing, place, robot.obstacle(), |place| robot.may_reach(place));
+    let flaw = mapped.as_ref().and_then(|mapped| {
+        if method.recovers() {
+            let map = mapping.map().complete();
+            let judge = |map| {
+                judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle())
+            };
+            map.map_or(Err(Flaw::WrongMap), judge).err()
+        } else {
+            flaw(plan, facing, &mapping, mapped.pose, monitor.reached())
+        }
+    });
+    let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
+    let (seconds, frames) = (robot.time(), robot.frames());
+    Run {
+        method,
+        mapping,
+        mapped,
+        error,
+        flaw,
+        moves,
+        monitor,
+        way_to_marker,
+        explore_moves,
+        seconds,
+        frames,
+    }
+}
+
+/// What is wrong with the map, the pose or the number of moves.
+fn flaw(
+    plan: &FloorPlan,
+    facing: Dart,
+    mapping: &MappingRun,
+    pose: Dart,
+    reached: Option<Dart>,
+) -> Option<Flaw> {
+    let Some(map) = mapping.map().complete() else {
+        return Some(Flaw::Unfinished { unexplored: mapping.map().unexplored_count() });
+    };
+    let map = ExploredMap { graph: Cow::Borrowed(map), facing: FACING, pose };
+    // A robot at no junction is not at its pose in the map.
+    let truly = reached.unwrap_or(Dart(u32::MAX));
+    let mut candidate = Candidate::default();
+    if let Err(flaw) = judge_map(&map, (plan.graph(), facing), truly, &mut candidate) {
+        return Some(flaw);
+    }
+    let (edges, vertices) = (plan.graph().edge_count(), plan.graph().vertex_count());
+    let bound = match mapping {
+        MappingRun::Algorithm1(_) => Algorithm1.move_bound(edges, vertices),
+        MappingRun::Folding(_) => Folding.move_bound(edges, vertices),
+    };
+    let moves = mapping.moves();
+    (moves > bound).then_some(Flaw::TooManyMoves { moves, bound })
+}
+
+/// The number of moves that an algorithm makes in the plan's embedded graph.
+#[must_use]
+pub fn explored(
+    plan: &FloorPlan,
+    facing: Dart,
+    algorithm: DirectionalAlgorithm,
+    dart_bound: usize,
+) -> u64 {
+    let mut mapping = MappingRun::new(algorithm, dart_bound);
+    // An error here is also an error of the robot's run.
+    let _ = mapping.map_world(&mut GraphWorld::new(plan.graph(), facing), &mut ());
+    mapping.moves()
+}
+
+/// The off-line version: the mapping algorithm on a recording, without a robot that moves.
+///
+/// # Errors
+/// Returns an error if the recorded run ended early, if a command is not the recorded one, or if the
+/// observer stops.
+// paper: exp.off-line
+pub fn offline(
+    recording: &Recording,
+    sensor: impl FrameSensor,
+    observer: impl RunObserver,
+    settings: &RunSettings,
+) -> Result<MappingRun, MappingError<ExplorerError>> {
+    let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
+    let (mapping, mapped) = explorer.map(settings);
+    mapped.map(|_| mapping)
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_logs::record::NoSensor;
+    use toposlam_model::mapping::RecoveryConfig;
+
+    use super::*;
+    use crate::{
+        FaultKind, RobotEquipment, RobotFault, SimulationConfig,
+        evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
+        plans, starts_of,
+    };
+
+    const DARTS: usize = 200;
+
+    // paper: validation.traverse
+    // paper: validation.motion
+    // paper: exp.simulated
+    // paper: alg2.3
+    #[test]
+    fn each_plan_is_mapped_with_the_moves_of_the_specification() {
+        for (name, plan) in plans().unwrap() {
+            for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
+                for algorithm in DirectionalAlgorithm::ALL {
+                    let robot =
+                        SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
+                    let run = run(
+                        &plan,
+                        facing,
+                        robot,
+                        NoSensor,
+                        (),
+                        &RunSettings::new(algorithm, DARTS),
+                    );
+                    let what = format!("{name} from {facing:?} by {algorithm}");
+                    assert_eq!(run.outcome(), RunOutcome::Right, "{what}");
+                    assert!(run.isomorphic() && run.pose_true());
+                    let arrivals = run.monitor.arrivals().len() as u64;
+                    assert_eq!(arrivals, run.explore_moves + 1, "{what}");
+                }
+            }
+        }
+    }
+
+    // paper: exp.off-line
+    #[test]
+    fn a_recording_gives_the_same_map_off_line() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let config = SimulationConfig::at_start(plan.clone(), facing, 5);
+        for algorithm in DirectionalAlgorithm::ALL {
+            let mut recording = Recording::default();
+            let robot = config.by_scene();
+            let run = run(
+                &plan,
+                facing,
+                robot,
+                NoSensor,
+                &mut recording,
+                &RunSettings::new(algorithm, DARTS),
+            );
+            assert_eq!(recording.len() as u64, run.frames);
+            let again =
+                offline(&recording, NoSensor, (), &RunSettings::new(algorithm, DARTS)).unwrap();
+            assert_eq!(again.map(), run.mapping.map());
+            assert_eq!(again.moves(), run.mapping.moves());
+        }
+    }
+
+    #[test]
+    fn a_lost_robot_reports_the_reason() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
+        let outcome = |setting: &SimulationConfig| {
+            let robot = setting.by_scene();
+            let algorithm = DirectionalAlgorithm::Algorithm1;
+            run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS))
+                .outcome()
+                .to_string()
+        };
+        for (kind, why) in [
+            (FaultKind::LightsOut, "7 images in a row do not show where the robot is"),
+            (FaultKind::Blocked, "3 commands in a row were not carried out"),
+        ] {
+            setting.faults = vec![RobotFault::at(kind, 20)];
+            let text = outcome(&setting);
+            assert!(
+                text.contains(why) && text.starts_with("the robot gave up: on move "),
+                "{text}"
+            );
+        }
+        setting.faults =
+            vec![RobotFault { lasting: 100, ..RobotFault::at(FaultKind::Dropped, 20) }];
+        assert!(outcome(&setting).contains("the camera gives no image"));
+        for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
+            setting.faults = vec![RobotFault::at(kind, 20)];
+            assert_eq!(outcome(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
+        }
+    }
+
+    fn recovering() -> MappingMethod {
+        MappingMethod::Recovering(RecoveryConfig::default())
+    }
+
+    fn runs(faults: Faults, count: u64) -> Vec<JudgedRun> {
+        let plans = plans().unwrap();
+        let runs = RunSampler::new(plans, 4, faults, 1, 1.0, recovering());
+        runs.judged(0..count, &RobotEquipment::Scenes, &())
+    }
+
+    #[test]
+    fn without_faults_a_robot_makes_the_same_moves_and_audits_its_map() {
+        for run in runs(Faults::None, 16) {
+            assert_eq!(run.ending, RunOutcome::Right);
+            let mapped = run.mapped.unwrap();
+            assert_eq!((mapped.recoveries, mapped.blocked.len()), (0, 0));
+            assert_eq!(run.moves[0], run.moves[1] + mapped.audit_moves);
+        }
+    }
+
+    #[test]
+    fn after_one_or_two_faults_no_map_is_wrong_and_most_are_right() {
+        for (count, most_given_up) in [(1, 5), (2, 8)] {
+            let runs = runs(Faults::Each(count), 54);
+            let is_wrong = |run: &&JudgedRun| matches!(run.ending, RunOutcome::Wrong(_));
+            let wrong = runs.iter().find(is_wrong);
+            assert!(wrong.is_none(), "{wrong:?}");
+            let gave_up = runs.iter().filter(|run| run.ending != RunOutcome::Right).count();
+            assert!(gave_up <= most_given_up, "{gave_up} of {}", runs.len());
+            let is_free = |run: &&JudgedRun| {
+                run.ending != RunOutcome::Right && run.way_to_marker == WayToMarker::Free
+            };
+            let without_reason = runs.iter().find(is_free);
+            assert!(without_reason.is_none(), "{without_reason:?}");
+            assert!(runs.iter().any(|run| !run.blocked().is_empty()));
+        }
+    }
+
+    /// Wherever the obstacle stands, in a hallway or before a junction, and also if the lights go out there.
+    #[test]
+    fn a_robot_that_gives_up_before_an_obstacle_has_no_other_way() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let settings = RunSettings::new(recovering(), DARTS);
+        let (mut right, mut gave_up) = (0, 0);
+        for frame in 2..=100 {
+            let mut config = SimulationConfig::at_start(plan.clone(), facing, frame);
+            config.faults = vec![RobotFault::at(FaultKind::Blocked, frame)];
+            if frame.is_multiple_of(2) {
+                config.faults.push(RobotFault::at(FaultKind::LightsOut, frame + 3));
+            }
+            let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
+            match run.outcome() {
+                RunOutcome::Right => right += 1,
+                RunOutcome::GaveUp(error) => {
+                    gave_up += 1;
+                    let way = run.way_to_marker;
+                    assert_ne!(way, WayToMarker::Free, "blocked at frame {frame}: {error}");
+                }
+                RunOutcome::Wrong(why) => panic!("blocked at frame {frame}: {why}"),
+            }
+        }
+        assert!(right > 2 * gave_up, "{right} right, {gave_up} given up");
+    }
+}

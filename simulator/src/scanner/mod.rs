@@ -1,0 +1,326 @@
+//! A simulated laser scanner: rays that are cast on the walls of a plan. A [`CorridorPlan`] is floor plan with
+//! corridors at any angle; a [`ScannedBuilding`] has its walls, and what makes scans harder to read.
+
+mod corridors;
+mod params;
+mod polygon;
+mod scanned_building;
+
+use std::{f64::consts::TAU, sync::Arc};
+
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+use toposlam_model::driving::{pose::Pose, scene::wrapped};
+use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry, ScannerPose};
+
+use crate::render::{StreamPurpose, stream};
+
+pub use corridors::{Corridor, CorridorPlan, Lobby};
+pub use params::ScannerParams;
+pub use polygon::ConvexPolygon;
+pub use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
+
+/// A laser scanner in a building, in the robot's centre.
+#[derive(Clone, Debug)]
+pub struct LaserScanner {
+    building: Arc<ScannedBuilding>,
+    params: ScannerParams,
+    seed: u64,
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    range: f64,
+    surface: WallSurface,
+    /// The angle between the ray and the normal of the surface, in radians.
+    slant: f64,
+}
+
+/// Glass reflects a ray up to this angle from its normal, in radians.
+const MIRRORING: f64 = 0.15;
+/// A black surface reflects from up to this range, in metres.
+const DARK: f64 = 3.0;
+/// Two walls that meet have this much of their bearings in common, in radians, so that no ray passes between them.
+const OVERLAP: f64 = 1e-9;
+
+impl LaserScanner {
+    /// A scanner in a building. The noise of its scans follows from the seed.
+    #[must_use]
+    pub fn new(building: Arc<ScannedBuilding>, params: &ScannerParams, seed: u64) -> Self {
+        Self { building, params: *params, seed }
+    }
+
+    /// The scan with this number, from a pose, at a time in seconds.
+    ///
+    /// # Errors
+    /// Returns an error if the scanner's parameters are impossible.
+    pub fn scan(&self, pose: Pose, number: u64, time: f64) -> Result<Scan, ScanError> {
+        let params = &self.params;
+        let step = params.angular_step.to_radians();
+        let angle_min = -params.field_of_view.to_radians() / 2.0;
+        let all = (params.field_of_view / params.angular_step + 1e-6).floor() as usize + 1;
+        // The last reading of a full circle is the first one.
+        let count = if params.field_of_view >= 360.0 { all - 1 } else { all };
+        let mut chance = stream(self.seed, StreamPurpose::Ranges, number as usize);
+        let met = self.sweep(pose, angle_min, step, count, time);
+        let ranges = met.into_iter().map(|met| {
+            // Each reading takes the same random numbers, whatever it meets.
+            let (spoilt, noise) = (chance.random::<f64>(), StandardNormal.sample(&mut chance));
+            let noise: f64 = noise;
+            let range = met.and_then(|met| met.returned(params));
+            match range {
+                _ if spoilt < params.dropouts => f32::NAN,
+                Some(range) => (range + params.noise * noise).max(0.0) as f32,
+                None => f32::INFINITY,
+            }
+        });
+        let geometry = ScanGeometry {
+            angle_min,
+            angle_increment: step,
+            range_min: params.least_range,
+            range_max: params.range,
+        };
+        Scan::new(geometry, ranges.collect(), ScannerPose::default())
+    }
+
+    /// What each of a number of rays meets, from an angle on, counter-clockwise.
+    fn sweep(
+        &self,
+        Pose { position, heading }: Pose,
+        angle_min: f64,
+        step: f64,
+        count: usize,
+        time: f64,
+    ) -> Vec<Option<Met>> {
+        let first = heading + angle_min;
+        let rays: Vec<[f64; 2]> = (0..count)
+            .map(|index| (first + index as f64 * step).sin_cos())
+            .map(|(sine, cosine)| [cosine, sine])
+            .collect();
+        let mut nearest: Vec<Option<Met>> = vec![None; count];
+        for ScannedWall { ends, surface } in self.building.surfaces(time) {
+            let [one, other] = ends.map(|end| [end[0] - position[0], end[1] - position[1]]);
+            let wall = [other[0] - one[0], other[1] - one[1]];
+            let [from, to] = [one, other].map(|[x, y]| y.atan2(x));
+            let turn = wrapped(to - from);
+            let begin = (if turn < 0.0 { to } else { from }) - first;
+            let begin = begin.rem_euclid(TAU) - OVERLAP;
+            let span = turn.abs() + 2.0 * OVERLAP;
+            // The bearings of a wall may pass the first ray.
+            for begin in [begin, begin - TAU] {
+                let low = (begin / step).ceil().max(0.0) as usize;
+                let high = ((begin + span) / step).floor();
+                if high < 0.0 {
+                    continue;
+                }
+                for index in low..=(high as usize).min(count.saturating_sub(1)) {
+                    let steepness = cross(rays[index], wall);
+                    let range = cross(one, wall) / steepness;
+                    let known = nearest[index].map_or(f64::INFINITY, |met| met.range);
+                    if range > 0.0 && range < known {
+                        let slant = (steepness.abs() / wall[0].hypot(wall[1])).min(1.0).acos();
+                        nearest[index] = Some(Met { range, surface, slant });
+                    }
+                }
+            }
+        }
+        nearest
+    }
+}
+
+impl Met {
+    /// The range that comes back.
+    fn returned(self, params: &ScannerParams) -> Option<f64> {
+        let reflects = match self.surface {
+            WallSurface::Plain => true,
+            WallSurface::Glass => self.slant < MIRRORING,
+            WallSurface::Black => self.range < DARK,
+        };
+        (reflects && self.range < params.range).then_some(self.range)
+    }
+}
+
+fn cross(one: [f64; 2], other: [f64; 2]) -> f64 {
+    one[0] * other[1] - one[1] * other[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
+
+    use toposlam_vision::laser::scan::Reading;
+
+    use super::*;
+
+    fn plan(corridors: &[([[f64; 2]; 2], f64)]) -> CorridorPlan {
+        let corridor = |&(ends, width)| Corridor { ends, width };
+        CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() }
+    }
+
+    fn scanner(plan: &CorridorPlan, params: ScannerParams) -> LaserScanner {
+        LaserScanner::new(Arc::new(ScannedBuilding::new(plan, &params, 1)), &params, 1)
+    }
+
+    /// The range at a bearing, in degrees, of a plain scanner.
+    fn range(plan: &CorridorPlan, pose: Pose, degrees: f64) -> f64 {
+        let scan = scanner(plan, ScannerParams::PLAIN).scan(pose, 1, 0.0).unwrap();
+        let at = |bearing: f64| wrapped(bearing - degrees.to_radians()).abs();
+        let nearest = scan.readings().min_by(|one, other| at(one.0).total_cmp(&at(other.0)));
+        match nearest.unwrap().1 {
+            Reading::Hit(range) => range,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[track_caller]
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+    }
+
+    #[test]
+    fn ranges_are_those_of_the_walls() {
+        // A corridor 2 m wide, from x = -1 to x = 21.
+        let plan = plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]);
+        let pose = Pose { position: [5.0, 0.25], heading: 0.0 };
+        for (degrees, expected) in [
+            (0.0, 16.0),
+            (180.0, 6.0),
+            (90.0, 0.75),
+            (-90.0, 1.25),
+            (60.0, 0.75 / FRAC_PI_3.sin()),
+            (-150.0, 2.5),
+        ] {
+            close(range(&plan, pose, degrees), expected);
+        }
+        // Bearings are those of the robot.
+        let turned = Pose { heading: FRAC_PI_2, ..pose };
+        close(range(&plan, turned, 0.0), 0.75);
+        close(range(&plan, turned, -90.0), 16.0);
+    }
+
+    #[test]
+    fn corridors_have_any_angle_and_width() {
+        let (sine, cosine) = FRAC_PI_3.sin_cos();
+        let aslant = [[0.0, 0.0], [15.0 * cosine, 15.0 * sine]];
+        let plan = plan(&[([[-15.0, 0.0], [0.0, 0.0]], 2.0), (aslant, 1.6)]);
+        let middle = Pose { position: [6.0 * cosine, 6.0 * sine], heading: FRAC_PI_3 };
+        close(range(&plan, middle, 0.0), 9.0 + 0.8);
+        close(range(&plan, middle, 90.0), 0.8);
+        // Back along the corridor: the far wall of the other one is 1 m below its middle.
+        close(range(&plan, middle, 180.0), 6.0 + 1.0 / sine);
+    }
+
+    #[test]
+    fn a_lobby_is_round() {
+        let lobby = Lobby { middle: [10.0, 0.0], radius: 2.5 };
+        let plan =
+            CorridorPlan { lobbies: vec![lobby], ..plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]) };
+        let pose = Pose { position: [10.0, 0.0], heading: 0.0 };
+        for degrees in [40.0, 90.0, 135.0, -90.0] {
+            let found = range(&plan, pose, degrees);
+            assert!((found - 2.5).abs() < 0.005, "{degrees}: {found}");
+        }
+        close(range(&plan, pose, 0.0), 11.0);
+    }
+
+    #[test]
+    fn a_scan_has_a_reading_for_each_step_of_its_field_of_view() {
+        let plan = plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]);
+        let pose = Pose { position: [5.0, 0.0], heading: 0.0 };
+        for (field_of_view, angular_step, count) in
+            [(360.0, 1.0, 360), (180.0, 1.0, 181), (180.0, 0.5, 361), (270.0, 0.25, 1081)]
+        {
+            let params = ScannerParams { field_of_view, angular_step, ..ScannerParams::PLAIN };
+            let scan = scanner(&plan, params).scan(pose, 1, 0.0).unwrap();
+            assert_eq!(scan.ranges().len(), count, "{field_of_view}");
+            assert!((scan.geometry().angle_min + field_of_view.to_radians() / 2.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn beyond_its_range_there_is_no_return() {
+        let plan = plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]);
+        let pose = Pose { position: [5.0, 0.0], heading: 0.0 };
+        let params = ScannerParams { range: 10.0, ..ScannerParams::PLAIN };
+        let scan = scanner(&plan, params).scan(pose, 1, 0.0).unwrap();
+        let readings: Vec<_> = scan.readings().collect();
+        let ahead = readings.iter().find(|(bearing, _)| bearing.abs() < 0.01).unwrap();
+        assert_eq!(ahead.1, Reading::NoReturn);
+        let behind = readings.iter().find(|(bearing, _)| (bearing.abs() - PI).abs() < 0.01);
+        assert!(matches!(behind.unwrap().1, Reading::Hit(range) if (range - 6.0).abs() < 1e-4));
+    }
+
+    /// Scans from many places in a corridor.
+    fn scans(params: ScannerParams) -> Vec<Scan> {
+        let plan = plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]);
+        let scanner = scanner(&plan, params);
+        let pose = |number: u64| Pose { position: [2.0 + 0.03 * number as f64, 0.0], heading: 0.3 };
+        (0..400).map(|number| scanner.scan(pose(number), number, 0.0).unwrap()).collect()
+    }
+
+    #[test]
+    fn noise_and_dropouts_are_as_frequent_and_as_large_as_asked() {
+        let params = ScannerParams { noise: 0.02, dropouts: 0.05, ..ScannerParams::PLAIN };
+        let (noisy, plain) = (scans(params), scans(ScannerParams::PLAIN));
+        let pairs = noisy.iter().zip(&plain);
+        let pairs = pairs.flat_map(|(noisy, plain)| noisy.ranges().iter().zip(plain.ranges()));
+        let (mut invalid, mut squares, mut count) = (0, 0.0, 0);
+        for (noisy, plain) in pairs {
+            count += 1;
+            if noisy.is_nan() {
+                invalid += 1;
+            } else {
+                squares += f64::from(noisy - plain).powi(2);
+            }
+        }
+        let share = f64::from(invalid) / f64::from(count);
+        let deviation = (squares / f64::from(count - invalid)).sqrt();
+        // Of 144,000 readings: five standard deviations of the estimates.
+        assert!((share - 0.05).abs() < 0.003, "{share}");
+        assert!((deviation - 0.02).abs() < 0.0002, "{deviation}");
+    }
+
+    #[test]
+    fn glass_reflects_at_a_right_angle_and_black_surfaces_from_nearby() {
+        let met = |surface, range, slant| Met { range, surface, slant };
+        let params = ScannerParams::PLAIN;
+        assert_eq!(met(WallSurface::Plain, 9.0, 1.0).returned(&params), Some(9.0));
+        assert_eq!(met(WallSurface::Glass, 9.0, 0.1).returned(&params), Some(9.0));
+        assert_eq!(met(WallSurface::Glass, 1.0, 0.3).returned(&params), None);
+        assert_eq!(met(WallSurface::Black, 2.9, 1.0).returned(&params), Some(2.9));
+        assert_eq!(met(WallSurface::Black, 3.1, 0.0).returned(&params), None);
+        let without = |params| {
+            let readings = scans(params).into_iter().flat_map(|scan| scan.ranges().to_vec());
+            readings.filter(|range| range.is_infinite()).count()
+        };
+        assert_eq!(without(params), 0);
+        assert!(without(ScannerParams { glass: 1.0, ..params }) > 5000);
+        assert!(without(ScannerParams { black: 1.0, ..params }) > 1000);
+    }
+
+    #[test]
+    fn a_person_who_walks_by_is_seen_and_is_gone_later() {
+        let plan = plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]);
+        let params = ScannerParams { people: 5.0, ..ScannerParams::PLAIN };
+        let scanner = scanner(&plan, params);
+        let pose = Pose { position: [10.0, -0.8], heading: 0.0 };
+        let nearer = |time: f64| {
+            let empty = self::scanner(&plan, ScannerParams::PLAIN).scan(pose, 1, 0.0).unwrap();
+            let scan = scanner.scan(pose, 1, time).unwrap();
+            let pairs = scan.ranges().iter().zip(empty.ranges());
+            pairs.filter(|(range, empty)| **range < **empty - 0.05).count()
+        };
+        let counts: Vec<usize> = (0..40).map(|second| nearer(f64::from(second))).collect();
+        assert!(counts.iter().all(|&count| count < 120), "{counts:?}");
+        assert!(counts.iter().any(|&count| count > 8), "{counts:?}");
+        assert!(counts.iter().any(|&count| count < 4), "{counts:?}");
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_scans() {
+        // Not-a-number is not equal to itself.
+        let params = ScannerParams { dropouts: 0.0, ..ScannerParams::default() };
+        assert_eq!(scans(params), scans(params));
+    }
+}

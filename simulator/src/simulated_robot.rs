@@ -1,0 +1,270 @@
+//! A simulated SuperScout: a base, a camera, perhaps a laser scanner, and faults. Section 2.5.
+
+use std::sync::Arc;
+
+use rand::{RngExt, seq::IndexedRandom};
+use toposlam_logs::record::Frame;
+use toposlam_model::{
+    driving::pose::Pose,
+    floor_plan::{Direction, FloorPlan, Rectangle},
+};
+use toposlam_robot::{
+    robot::{Robot, RobotError, Sample, TimedOdometry},
+    superscout::{Base, Drive},
+};
+
+use super::{
+    cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
+    config::SimulationConfig,
+    faults::{FaultKind, RobotFault},
+    motion::SimulatedBase,
+    scanner::{CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams},
+};
+use crate::render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
+
+/// A SuperScout in a simulated building.
+#[derive(Debug)]
+pub struct SimulatedRobot {
+    plan: Arc<FloorPlan>,
+    base: SimulatedBase,
+    camera: Box<dyn SimulatedCamera>,
+    scanner: Option<LaserScanner>,
+    /// The time to take an image, in seconds.
+    image_time: f64,
+    faults: Vec<RobotFault>,
+    seed: u64,
+    frames: u64,
+    last: Option<Frame>,
+    /// What a fault has put in its way.
+    obstacle: Option<Rectangle>,
+}
+
+/// How much an overexposed image is overexposed, in stops.
+const OVEREXPOSURE: f64 = 4.0;
+/// Distance of an obstacle ahead of the robot's centre, and its depth, in metres.
+const AHEAD: f64 = 1.2;
+const DEEP: f64 = 0.3;
+
+impl SimulationConfig {
+    /// A robot with a camera that renders images of a building.
+    #[must_use]
+    pub fn with_images(
+        &self,
+        rig: &Arc<Rig>,
+        look: &BuildingLook,
+        effects: &Effects,
+    ) -> SimulatedRobot {
+        let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
+        let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
+        SimulatedRobot::new(self, camera)
+    }
+
+    /// A robot with a camera that reports scenes without images.
+    #[must_use]
+    pub fn by_scene(&self) -> SimulatedRobot {
+        SimulatedRobot::new(self, self.scene_camera())
+    }
+
+    /// A robot with a laser scanner and a detector of the marker, without a camera.
+    #[must_use]
+    pub fn by_laser(&self, params: &ScannerParams) -> SimulatedRobot {
+        let robot = SimulatedRobot::new(self, MarkerDetector(self.scene_camera()));
+        robot.with_scanner(self.scanner(params))
+    }
+
+    /// A laser scanner in the robot's building. Its rooms, furniture and people follow from the seed.
+    #[must_use]
+    pub fn scanner(&self, params: &ScannerParams) -> LaserScanner {
+        let building = ScannedBuilding::new(&CorridorPlan::from(&*self.plan), params, self.seed);
+        LaserScanner::new(Arc::new(building), params, self.seed)
+    }
+
+    fn scene_camera(&self) -> SceneCamera {
+        SceneCamera::new(self.plan.clone(), Some(self.marker), self.noise, self.seed)
+    }
+}
+
+impl SimulatedRobot {
+    fn new(config: &SimulationConfig, camera: impl SimulatedCamera + 'static) -> Self {
+        let SimulationConfig { plan, pose, image_time, faults, seed, .. } = config.clone();
+        let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
+        if config.keeps_track {
+            base.keep_track();
+        }
+        let camera = Box::new(camera);
+        let (scanner, last, obstacle) = (None, None, None);
+        Self { plan, base, camera, scanner, image_time, faults, seed, frames: 0, last, obstacle }
+    }
+
+    /// The same robot with a laser scanner.
+    #[must_use]
+    pub fn with_scanner(self, scanner: LaserScanner) -> Self {
+        Self { scanner: Some(scanner), ..self }
+    }
+
+    /// The least and the greatest corner of the obstacle that a fault has put on the floor, in metres.
+    #[must_use]
+    pub fn obstacle(&self) -> Option<[[f64; 2]; 2]> {
+        self.obstacle.map(|obstacle| [obstacle.least, obstacle.greatest])
+    }
+
+    /// Whether there may be a way for the robot's body to a place. If not, no robot of its size can go there.
+    #[must_use]
+    pub fn may_reach(&self, place: [f64; 2]) -> bool {
+        self.base.may_reach(place)
+    }
+
+    /// The true pose.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.base.pose()
+    }
+
+    /// Time since it was switched on, in seconds.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.base.time()
+    }
+
+    /// The number of images or scans that were requested.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// The frame of the next number, as it is now, unless it does not come.
+    pub(crate) fn expose(&mut self) -> Option<Frame> {
+        self.frames += 1;
+        let number = self.frames;
+        let begin: Vec<RobotFault> =
+            self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
+        let stays = |fault: &RobotFault| {
+            fault.kind == FaultKind::Blocked && fault.frame < number && !fault.has_passed(number)
+        };
+        let passes = |fault: &RobotFault| {
+            fault.kind == FaultKind::Blocked
+                && fault.has_passed(number)
+                && !fault.has_passed(number - 1)
+        };
+        if self.faults.iter().any(passes) && !self.faults.iter().any(stays) {
+            self.base.clear_obstacles();
+        }
+        for fault in &begin {
+            self.begin(fault);
+        }
+        let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
+        self.camera.set_lights(!spoilt(FaultKind::LightsOut));
+        let taken = self.base.time();
+        let stops = if spoilt(FaultKind::OverExposed) { OVEREXPOSURE } else { 0.0 };
+        let odometry = self.base.reading().odometry;
+        let frame = match &self.last {
+            Some(last) if spoilt(FaultKind::Late) => last.clone(),
+            Some(last) if spoilt(FaultKind::Frozen) => Frame { taken, odometry, ..last.clone() },
+            _ => {
+                let pose = self.base.pose();
+                let frame = self.camera.frame(pose, number, stops);
+                let scan = self.scanner.as_ref().map(|scanner| scanner.scan(pose, number, taken));
+                let scan = scan.and_then(Result::ok).map(Arc::new);
+                let frame = Frame { taken, odometry, scan, ..frame };
+                if spoilt(FaultKind::Corrupt) { corrupt(frame, number) } else { frame }
+            }
+        };
+        let dropped = spoilt(FaultKind::Dropped);
+        if dropped {
+            return None;
+        }
+        self.last = Some(frame.clone());
+        Some(frame)
+    }
+
+    /// The time to take an image, in seconds.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn image_time(&self) -> f64 {
+        self.image_time
+    }
+
+    /// The base, for a caller that controls the wheels itself.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn base(&mut self) -> &mut SimulatedBase {
+        &mut self.base
+    }
+
+    fn begin(&mut self, fault: &RobotFault) {
+        match fault.kind {
+            FaultKind::Ignored => self.base.ignore(fault.lasting),
+            FaultKind::Blocked => {
+                let obstacle = across_hallway(self.pose(), &self.plan);
+                self.obstacle = Some(obstacle);
+                self.base.put(obstacle);
+            }
+            FaultKind::Carried => {
+                let pose = elsewhere(&self.plan, self.seed, fault.frame);
+                self.base.carry(pose);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Robot for SimulatedRobot {
+    fn capture(&mut self) -> Result<Frame, RobotError> {
+        let frame = self.expose();
+        self.base.wait(self.image_time);
+        frame.ok_or(RobotError::NoImage)
+    }
+
+    fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
+        if self.base.begin() { Drive(&mut self.base).turn(angle) } else { Ok(()) }
+    }
+
+    fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
+        if self.base.begin() { Drive(&mut self.base).forward(distance) } else { Ok(()) }
+    }
+
+    fn odometry(&self) -> TimedOdometry {
+        let reading = self.base.reading();
+        TimedOdometry { time: reading.time, odometry: reading.odometry }
+    }
+
+    fn track(&self) -> &[Sample] {
+        self.base.track()
+    }
+
+    fn truth(&self) -> Option<Pose> {
+        Some(self.pose())
+    }
+}
+
+/// An obstacle across the hallway ahead of a pose.
+fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
+    let (sine, cosine) = pose.heading.sin_cos();
+    let direction = match (cosine.abs() > sine.abs(), cosine > 0.0, sine > 0.0) {
+        (true, true, _) => Direction::East,
+        (true, false, _) => Direction::West,
+        (false, _, true) => Direction::North,
+        (false, _, false) => Direction::South,
+    };
+    let [x, y] = direction.vector();
+    let middle = [pose.position[0] + AHEAD * x, pose.position[1] + AHEAD * y];
+    let half = [x, y].map(|along| if along == 0.0 { plan.hallway_width() } else { DEEP / 2.0 });
+    Rectangle {
+        least: [0, 1].map(|axis| middle[axis] - half[axis]),
+        greatest: [0, 1].map(|axis| middle[axis] + half[axis]),
+    }
+}
+
+/// A random pose in a hallway, along it.
+fn elsewhere(plan: &FloorPlan, seed: u64, frame: u64) -> Pose {
+    let mut chance = stream(seed, StreamPurpose::Faults, frame as usize);
+    let ends = plan
+        .hallways()
+        .choose(&mut chance)
+        .map(|hallway| [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position));
+    let [mut from, mut to] = ends.unwrap_or_default();
+    if chance.random() {
+        std::mem::swap(&mut from, &mut to);
+    }
+    let along = chance.random::<f64>();
+    let position = [0, 1].map(|axis| from[axis] + along * (to[axis] - from[axis]));
+    Pose { position, heading: (to[1] - from[1]).atan2(to[0] - from[0]) }
+}

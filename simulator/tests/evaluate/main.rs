@@ -1,0 +1,193 @@
+//! The program `evaluate` as a developer runs it, on a few cases.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+mod laser;
+mod mistakes;
+mod robots;
+#[path = "../../../tests/schema/validator.rs"]
+mod validator;
+mod vision;
+
+use std::{
+    collections::BTreeSet,
+    ffi::OsStr,
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+use toposlam_model::format::{named_world::NamedWorld, world_file};
+use validator::problem;
+
+/// Commands for each schema, by its name.
+const COMMANDS: [(&str, &[&str]); 6] = [
+    (
+        "evaluate-control",
+        &[
+            "control --traversals 60",
+            "control --traversals 300 --noise 5",
+            "control --traversals 0",
+        ],
+    ),
+    (
+        "evaluate-laser",
+        &[
+            "laser --walks 2 --runs 1 --traversals 2",
+            "laser --walk 1 --drift 30",
+            "laser --walks 0 --runs 1 --traversals 0 --recover",
+        ],
+    ),
+    (
+        "evaluate-lengths",
+        &[
+            "lengths --plan worlds/shape-6.toml --traversals 300",
+            "lengths --plans 1 --traversals 10",
+        ],
+    ),
+    (
+        "evaluate-mistakes",
+        &["mistakes --edges 1..=3", "mistakes --edges 1..=2 --algorithm folding --recover"],
+    ),
+    (
+        "evaluate-runs",
+        &[
+            "runs --plans 2 --starts 1",
+            "runs --plans 2 --starts 1 --faults",
+            "runs --plans 2 --starts 1 --faults 2 --algorithm folding --recover",
+        ],
+    ),
+    (
+        "evaluate-vision",
+        &[
+            "vision --size 640x480 --look tiles --views 12 --visits 1",
+            "vision --size 640x480 --look tiles --view 5 --out-dir DIR",
+            "vision --size 640x480 --look tiles --views 4 --clutter",
+        ],
+    ),
+];
+
+/// The commands, and the exit codes that their help lists: all but `control` and `runs` have targets.
+const PARTS: [&str; 6] = ["vision", "control", "runs", "laser", "mistakes", "lengths"];
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Runs the program to its end in the repository.
+fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_evaluate"));
+    program.current_dir(repository()).stdin(Stdio::null()).args(arguments).output().unwrap()
+}
+
+/// The standard output of a successful run.
+fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stdout(&output)
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// The JSON objects of an output, one a line.
+fn objects(text: &str) -> Vec<Value> {
+    assert!(text.ends_with('\n'), "{text}");
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// An empty folder for a test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("evaluate").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The names in a folder.
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn read_world(path: &Path) -> NamedWorld {
+    world_file::read(&fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn the_lines_of_each_command_fit_its_schema() {
+    let written = folder("schema");
+    for (name, commands) in COMMANDS {
+        let schema = repository().join("docs/schema").join(name).with_extension("json");
+        let schema: Value = serde_json::from_slice(&fs::read(schema).unwrap()).unwrap();
+        let mut shown = BTreeSet::new();
+        for command in commands {
+            let command = command.replace("DIR", written.to_str().unwrap());
+            let output = run(command.split(' ').chain(["--json"]));
+            let lines = objects(&stdout(&output));
+            let verdict = lines.last().unwrap();
+            let code = match verdict["verdict"].as_str() {
+                Some("holds") => Some(0),
+                Some("violated") => Some(1),
+                Some("not-known") => Some(3),
+                _ => None,
+            };
+            assert!(code.is_none() || code == output.status.code(), "{command}: {verdict}");
+            for line in lines {
+                assert_eq!(problem(&schema, &line), None, "{command}: {line}");
+                shown.insert(line["kind"].as_str().unwrap().to_owned());
+            }
+        }
+        let kinds = schema["oneOf"].as_array().unwrap().iter();
+        let kinds = kinds.map(|line| line["properties"]["kind"]["const"].as_str().unwrap());
+        assert_eq!(kinds.collect::<BTreeSet<_>>(), shown.iter().map(String::as_str).collect());
+    }
+}
+
+#[test]
+fn help_is_at_most_80_columns_wide_and_ends_with_the_exit_codes() {
+    for part in PARTS {
+        let help = stdout_of([part, "--help"]);
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+        let (_, codes) = help.rsplit_once("\nExit codes:\n").unwrap();
+        let codes: Vec<_> = codes.lines().map(|line| line.trim().split(' ').next()).collect();
+        assert_eq!(codes, ["0", "1", "2", "3"].map(Some), "{help}");
+    }
+}
+
+#[test]
+fn an_option_without_effect_is_an_error() {
+    const WORLD: &str = "worlds/shape-8.toml";
+    let folder = folder("bad");
+    let scanner = folder.join("far.toml");
+    fs::write(&scanner, "range = 40.0\n").unwrap();
+    let scanner = scanner.to_str().unwrap();
+    let cases: [(&[&str], &str); 8] = [
+        (&["control", "--look", "vinyl"], "--images"),
+        (&["control", "--size", "640x480"], "--images"),
+        (&["control", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
+        (&["runs", "--look", "vinyl"], "--images"),
+        (&["runs", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
+        (
+            &["control", "--sensor", "laser", "--images"],
+            "--images: has no effect with --sensor laser",
+        ),
+        (&["runs", "--scanner", scanner], "--scanner: the robot has no laser scanner"),
+        (&["laser", "--drift", "91"], "expected a number of degrees from 0 to 90"),
+    ];
+    for (arguments, cause) in cases {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(cause), "{}", stderr(&output));
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+}

@@ -1,0 +1,132 @@
+//! `evaluate vision`, on a few views.
+
+use std::fs;
+
+use super::{folder, names_in, objects, read_world, run, stderr, stdout};
+
+/// Arguments that measure a few views quickly.
+const FEW: [&str; 9] =
+    ["vision", "--size", "640x480", "--look", "tiles", "--views", "24", "--visits", "2"];
+
+#[test]
+fn results_are_the_same_on_any_number_of_threads() {
+    let measured = |threads| {
+        let output = run([&FEW[..], &["--json", "--threads", threads]].concat());
+        (output.status.code(), stdout(&output))
+    };
+    let (code, text) = measured("1");
+    assert_eq!((code, text.clone()), measured("3"));
+    let lines = objects(&text);
+    let verdict = lines.last().unwrap();
+    assert_eq!(verdict["kind"], "verdict");
+    assert_eq!(
+        code,
+        Some(if verdict["holds"] == true {
+            0
+        } else if verdict["missed"] == 0 {
+            3
+        } else {
+            1
+        })
+    );
+    for kind in ["source", "rate", "errors", "confusion", "failures"] {
+        assert!(lines.iter().any(|line| line["kind"] == kind), "{kind}");
+    }
+    let cases = |of: &str| {
+        let line = lines.iter().find(|line| line["kind"] == "rate" && line["of"] == of).unwrap();
+        line["cases"].as_u64().unwrap()
+    };
+    let views = ["hallway", "junction", "between", "past", "turned"].map(cases);
+    assert_eq!((views.iter().sum::<u64>(), cases("visit")), (24, 2));
+}
+
+#[test]
+fn the_text_is_a_table_with_the_targets() {
+    let output = run([&FEW[..], &["--calibration-errors"]].concat());
+    let text = stdout(&output);
+    for part in [
+        "Sensing on 24 views and 2 visits, seed 1",
+        "floor plans  building-12, building-25, shape-6, shape-8, random plans",
+        "With a right calibration",
+        "With a camera 5 pixels, 2 cm and 1 degree off its calibration",
+        "0.500 %",
+        "target 95 % 5 cm: ",
+        "True class, and the reported classes",
+    ] {
+        // Cells are wrapped.
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(part.trim()) || text.contains(part), "{part}\n{text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(stderr(&output).contains(" s on "), "{}", stderr(&output));
+}
+
+#[test]
+fn one_view_is_shown_stage_by_stage() {
+    let folder = folder("evaluate_view");
+    let output = run([
+        "vision",
+        "--size",
+        "640x480",
+        "--look",
+        "tiles",
+        "--view",
+        "5",
+        "--json",
+        "--out-dir",
+        folder.to_str().unwrap(),
+    ]);
+    let line = &objects(&stdout(&output))[0];
+    assert_eq!(line["view"], 5);
+    assert!(line["truth"].is_string() && line["verdict"].is_string());
+    assert_eq!(names_in(&folder), ["view-00005"]);
+    let view = folder.join("view-00005");
+    let names = names_in(&view).join(" ");
+    let steps = "1-classes.png 2-boundary.png 3-clusters.png 4-lines.png 5-scene.png 6-image.png";
+    assert_eq!(names, format!("0-image.png {steps} plan.toml view.json"));
+    assert!(read_world(&view.join("plan.toml")).plan.is_some());
+    assert_eq!(fs::read_to_string(view.join("view.json")).unwrap(), stdout(&output));
+}
+
+/// In this view of an L a hallway fits well in which the robot is not.
+#[test]
+fn a_view_with_a_strong_yellow_cast_is_not_called_a_hallway_elsewhere() {
+    let options =
+        ["--size", "640x480", "--look", "vinyl", "--seed", "100", "--view", "118", "--json"];
+    let effect = ["--effect", "cast=0.77"];
+    let output = run([&["vision"][..], &options, &effect].concat());
+    let line = &objects(&stdout(&output))[0];
+    assert_eq!((&line["view"], &line["truth"]), (&118.into(), &"l-left".into()));
+    let verdict = line["verdict"].as_str().unwrap();
+    assert!(["right", "unknown"].contains(&verdict), "{line}");
+}
+
+#[test]
+fn a_world_without_a_floor_plan_is_refused() {
+    let output = run(["vision", "--plan", "worlds/petersen.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        stderr(&output),
+        "error: worlds/petersen.toml: this world is not a floor plan: it has no [floor]\n"
+    );
+}
+
+#[test]
+fn too_few_traversals_do_not_show_the_rate_of_false_alarms() {
+    let words = ["lengths", "--plan", "worlds/shape-8.toml", "--traversals", "300"];
+    let output = run([&words[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(3));
+    let lines = objects(&stdout(&output));
+    let rate = |what: &str| lines.iter().find(|line| line["what"] == what).unwrap();
+    for noise in ["calibrated", "log"] {
+        let alarms = rate(&format!("false alarms, {noise}"));
+        assert_eq!(alarms["seen"], 0, "{alarms}");
+        assert!(alarms["cases"].as_u64().unwrap() >= 300, "{alarms}");
+        let found = rate(&format!("4.0 m found, {noise}"));
+        assert!(found["rate"].as_f64().unwrap() > 0.5, "{found}");
+    }
+    assert_eq!(
+        (&lines.last().unwrap()["kind"], &lines.last().unwrap()["holds"]),
+        (&"lengths".into(), &false.into())
+    );
+}

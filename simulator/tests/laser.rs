@@ -1,0 +1,515 @@
+//! Junctions from laser scans, in plans of corridors: what a scanner measures is computed here, by another way
+//! than sensing uses it.
+
+use std::{
+    env,
+    f64::consts::PI,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use toposlam_conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause};
+use toposlam_logs::{
+    entries::Content,
+    reader::Log,
+    record::{EventKind, Frame},
+    topic_map::TopicMap,
+};
+use toposlam_model::{driving::odometry::Odometry, percept::Door};
+use toposlam_vision::laser::{
+    drift::{DriftMeter, ROUNDS},
+    params::LaserParams,
+    plane::Motion,
+    scan::{Scan, ScanGeometry, ScannerPose},
+};
+
+/// A straight corridor: the ends of its middle line, and its width.
+pub(crate) type Corridor = ([f64; 2], [f64; 2], f64);
+
+/// The range at which a ray leaves the union of the corridors.
+pub(crate) fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64 {
+    let mut pieces: Vec<(f64, f64)> = corridors
+        .iter()
+        .filter_map(|&(one, other, width)| {
+            let along = [other[0] - one[0], other[1] - one[1]];
+            let length = along[0].hypot(along[1]);
+            let unit = along.map(|part| part / length);
+            // In the corridor's frame; it reaches half of its width beyond its ends.
+            let framed = |[x, y]: [f64; 2]| [x * unit[0] + y * unit[1], y * unit[0] - x * unit[1]];
+            let place = framed([from[0] - one[0], from[1] - one[1]]);
+            let ray = framed([bearing.cos(), bearing.sin()]);
+            let half = width / 2.0;
+            let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
+            for (place, ray, [low, high]) in
+                [(place[0], ray[0], [-half, length + half]), (place[1], ray[1], [-half, half])]
+            {
+                if ray.abs() < 1e-12 {
+                    if place < low || place > high {
+                        return None;
+                    }
+                    continue;
+                }
+                let ends = [(low - place) / ray, (high - place) / ray];
+                enters = enters.max(ends[0].min(ends[1]));
+                leaves = leaves.min(ends[0].max(ends[1]));
+            }
+            (leaves > enters.max(0.0)).then_some((enters, leaves))
+        })
+        .collect();
+    pieces.sort_by(|one, other| one.0.total_cmp(&other.0));
+    pieces.iter().fold(
+        0.0,
+        |reached, &(enters, leaves)| {
+            if enters <= reached + 1e-9 { leaves.max(reached) } else { reached }
+        },
+    )
+}
+
+/// A scan that covers so many degrees, one from reading to reading.
+fn scan(corridors: &[Corridor], at: &Odometry, degrees: u32) -> Scan {
+    let first = -f64::from(degrees).to_radians() / 2.0;
+    let ranges = (0..=degrees).map(|degree| {
+        range(corridors, at.position, at.heading + first + f64::from(degree).to_radians())
+    });
+    let geometry = ScanGeometry {
+        angle_min: first,
+        angle_increment: PI / 180.0,
+        range_min: 0.0,
+        range_max: 80.0,
+    };
+    Scan::new(geometry, ranges.map(|range| range as f32).collect(), ScannerPose::default()).unwrap()
+}
+
+/// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
+/// there; its odometry drifts by so many radians a metre.
+fn events(corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> RunEvents {
+    events_with(&LaserParams::default(), corridors, way, drift)
+}
+
+fn events_with(
+    params: &LaserParams,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> RunEvents {
+    events_of_scanner(180, params, corridors, way, drift)
+}
+
+/// The events for a scanner that covers so many degrees.
+fn events_of_scanner(
+    degrees: u32,
+    params: &LaserParams,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> RunEvents {
+    let mut inferred = LaserEvents::new(*params);
+    for (number, (scan, odometry)) in drive(degrees, corridors, way, drift).iter().enumerate() {
+        let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
+        inferred.see(source, scan, odometry);
+    }
+    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+}
+
+/// The scans of that robot, and its odometry.
+fn drive(
+    degrees: u32,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> Vec<(Scan, Odometry)> {
+    let mut scans = Vec::new();
+    let (mut believed, mut driven) = (way[0], 0.0);
+    let mut heading = f64::NAN;
+    let mut see = |truth: Odometry, believed: Odometry| {
+        scans.push((scan(corridors, &truth, degrees), believed));
+    };
+    for leg in way.windows(2) {
+        let off = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
+        let (length, ahead) = (off[0].hypot(off[1]), off[1].atan2(off[0]));
+        let turn =
+            if heading.is_nan() { 0.0 } else { (ahead - heading + PI).rem_euclid(2.0 * PI) - PI };
+        let turns = (turn.abs() / 0.4).ceil();
+        for part in 1..=turns as u32 {
+            let heading = ahead - turn * (1.0 - f64::from(part) / turns);
+            let position = leg[0];
+            see(
+                Odometry { position, heading },
+                Odometry { position: believed, heading: heading + drift * driven },
+            );
+        }
+        heading = ahead;
+        let steps = (length / 0.5).ceil();
+        for step in 1..=steps as u32 {
+            let part = f64::from(step) / steps;
+            let position = [0, 1].map(|axis| leg[0][axis] + part * off[axis]);
+            driven += length / steps;
+            let drifted = ahead + drift * driven;
+            believed = [
+                believed[0] + length / steps * drifted.cos(),
+                believed[1] + length / steps * drifted.sin(),
+            ];
+            see(Odometry { position, heading }, Odometry { position: believed, heading: drifted });
+        }
+    }
+    scans
+}
+
+/// The degree of each junction and the door taken, with `None` for turning back and for what is undecided.
+fn visits(events: &RunEvents) -> Vec<(Option<u32>, Option<u32>)> {
+    let mut visits: Vec<(Option<u32>, Option<u32>)> = Vec::new();
+    for event in &events.events {
+        match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => visits.push((Some(arrival.degree), None)),
+            CheckedKind::Door { door: Door(door), .. } => {
+                visits.last_mut().unwrap().1 = Some(*door);
+            }
+            _ => visits.push((None, None)),
+        }
+    }
+    visits
+}
+
+/// Two T junctions whose stems meet a long corridor from opposite sides, 14 m apart, and a crossing.
+fn comb() -> Vec<Corridor> {
+    vec![
+        ([0.0, 0.0], [60.0, 0.0], 2.0),
+        ([14.0, 0.0], [14.0, 15.0], 2.0),
+        ([28.0, -15.0], [28.0, 0.0], 2.0),
+        ([44.0, -15.0], [44.0, 15.0], 2.0),
+    ]
+}
+
+#[test]
+fn each_junction_on_the_way_is_visited_once() {
+    // Straight on: past the stem on the left, the one on the right, and the crossing.
+    let way = [[3.0, 0.0], [57.0, 0.0]];
+    let expected = [(Some(3), Some(2)), (Some(3), Some(1)), (Some(4), Some(2))];
+    for drift in [0.0_f64, 5.0, -5.0] {
+        let events = events(&comb(), &way, drift.to_radians() / 10.0);
+        assert_eq!(visits(&events), expected, "drift of {drift} degrees in 10 m");
+    }
+    // Scan matching corrects more.
+    let mut params = LaserParams::default();
+    params.matching.rounds = 8;
+    for drift in [0.0_f64, 10.0, -10.0, 20.0, -20.0] {
+        let events = events_with(&params, &comb(), &way, drift.to_radians() / 10.0);
+        assert_eq!(visits(&events), expected, "matched, drift of {drift} degrees in 10 m");
+    }
+    // Out by the stem on the left, which is the second door clockwise from the way back.
+    let events = events(&comb(), &[[3.0, 0.0], [14.0, 0.0], [14.0, 12.0]], 0.0);
+    assert_eq!(visits(&events), [(Some(3), Some(1))]);
+}
+
+#[test]
+fn a_robot_whose_log_begins_at_a_junction_has_its_back_to_door_0() {
+    // It looks round between the corridor and a stem in the north, and leaves to the east. At first it looks to
+    // the west, or to the east.
+    let [west, east] = [[13.6, 0.0], [14.4, 0.0]];
+    for (way, door) in [(vec![east, west, east], 0), (vec![west, east, west, east], 2)] {
+        let way = [way, vec![[24.0, 0.0]]].concat();
+        assert_eq!(visits(&events(&comb(), &way, 0.0)), [(Some(3), Some(door))]);
+    }
+}
+
+#[test]
+fn the_arms_of_a_junction_can_have_any_angle() {
+    // A corridor that forks: the arms are 120 degrees apart.
+    let arm = |degrees: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        ([0.0, 0.0], [15.0 * cosine, 15.0 * sine], 2.0)
+    };
+    let fork = [arm(180.0), arm(60.0), arm(-60.0)];
+    let (sine, cosine) = 60_f64.to_radians().sin_cos();
+    let left = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, 12.0 * sine]], 0.0);
+    assert_eq!(visits(&left), [(Some(3), Some(1))]);
+    let right = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, -12.0 * sine]], 0.0);
+    assert_eq!(visits(&right), [(Some(3), Some(2))]);
+    // Five arms.
+    let star: Vec<_> = [180.0, 108.0, 36.0, -36.0, -108.0].map(arm).to_vec();
+    let ahead = [12.0 * 36_f64.to_radians().cos(), 12.0 * 36_f64.to_radians().sin()];
+    let events = events(&star, &[[-12.0, 0.0], [0.0, 0.0], ahead], 0.0);
+    assert_eq!(visits(&events), [(Some(5), Some(2))]);
+}
+
+/// A corridor along x, and others that leave it at the same place, at these angles to its direction.
+fn branches(degrees: &[f64]) -> Vec<Corridor> {
+    let branch = |degrees: &f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        ([22.0, 0.0], [22.0 + 15.0 * cosine, 15.0 * sine], 2.0)
+    };
+    let corridor = ([0.0, 0.0], [44.0, 0.0], 2.0);
+    std::iter::once(corridor).chain(degrees.iter().map(branch)).collect()
+}
+
+#[test]
+fn an_arm_that_the_scanner_did_not_look_into_makes_the_visit_undecided() {
+    let way = [[2.0, 0.0], [42.0, 0.0]];
+    let params = LaserParams::default();
+    // One arm points back on the left; and another one goes off at a right angle on the right.
+    for (angles, door) in [(&[120.0][..], 2), (&[125.0], 2), (&[120.0, -90.0], 2)] {
+        let plan = branches(angles);
+        let half = events(&plan, &way, 0.0);
+        let causes: Vec<_> = half.events.iter().map(|event| &event.kind).collect();
+        let undecided = CheckedKind::Undecided(UndecidedCause::UnseenArm);
+        assert_eq!(causes, [&undecided], "{angles:?}");
+        // A robot that looks all around sees it, ...
+        let around = events_of_scanner(360, &params, &plan, &way, 0.0);
+        let degree = Some(angles.len() as u32 + 2);
+        assert_eq!(visits(&around), [(degree, Some(door))], "{angles:?}");
+        // ... and one that comes the other way.
+        let back: Vec<_> = way.into_iter().rev().collect();
+        assert_eq!(visits(&events(&plan, &back, 0.0)).len(), 1);
+        assert_eq!(visits(&events(&plan, &back, 0.0))[0].0, degree, "{angles:?}");
+    }
+}
+
+#[test]
+fn junctions_are_not_known_where_a_robot_drives_backwards_with_a_scanner_that_does_not_look_there()
+{
+    let way = [[3.0, 0.0], [57.0, 0.0]];
+    let back: Vec<_> = way.into_iter().rev().collect();
+    let forwards = visits(&events(&comb(), &way, 0.0));
+    assert_eq!(forwards, [(Some(3), Some(2)), (Some(3), Some(1)), (Some(4), Some(2))]);
+    for degrees in [90, 180, 270, 340, 350, 360] {
+        // In reverse order, the scans of a robot that drives towards the first end are those of one that drives
+        // away from it, backwards.
+        let mut inferred = LaserEvents::new(LaserParams::default());
+        for (scan, odometry) in drive(degrees, &comb(), &back, 0.0).iter().rev() {
+            inferred.see(EventSource::default(), scan, odometry);
+        }
+        let events = RunEvents { events: inferred.finish(), ..RunEvents::default() };
+        let first = &events.events[0].kind;
+        if degrees < 345 {
+            assert_eq!(*first, CheckedKind::Undecided(UndecidedCause::UnseenWay), "{degrees}");
+        } else {
+            assert_eq!(visits(&events), forwards, "{degrees}");
+        }
+    }
+}
+
+#[test]
+fn alcoves_rooms_and_bends_are_no_junctions() {
+    let corridor = ([0.0, 0.0], [50.0, 0.0], 2.0);
+    // A niche, a room behind a door of 0.9 m, an alcove that ends after 8 m.
+    let niche = ([12.0, 0.0], [12.0, 2.0], 1.6);
+    let room = [([22.0, 0.0], [22.0, 2.0], 0.9), ([18.0, 4.5], [26.0, 4.5], 6.0)];
+    let alcove = ([36.0, 0.0], [36.0, 7.0], 2.0);
+    let plan = [corridor, niche, room[0], room[1], alcove];
+    assert_eq!(visits(&events(&plan, &[[3.0, 0.0], [47.0, 0.0]], 0.0)), []);
+    // A corridor that turns by 45 degrees, and by 90.
+    let bends = [
+        ([0.0, 0.0], [15.0, 0.0], 2.0),
+        ([15.0, 0.0], [25.0, 10.0], 2.0),
+        ([25.0, 10.0], [15.0, 20.0], 2.0),
+    ];
+    let way = [[2.0, 0.0], [15.0, 0.0], [25.0, 10.0], [17.0, 18.0]];
+    assert_eq!(visits(&events(&bends, &way, 0.0)), []);
+}
+
+#[test]
+fn a_robot_that_turns_back_between_junctions_enters_the_same_one_again() {
+    // Into the stem, back, and on along the corridor.
+    let way = [[3.0, 0.0], [14.0, 0.0], [14.0, 8.0], [14.0, 0.0], [24.0, 0.0]];
+    let events = events(&comb(), &way, 0.0);
+    let back = (None, None);
+    assert_eq!(visits(&events), [(Some(3), Some(1)), back, (Some(3), Some(1))]);
+    // It stood at one junction, and took the door straight on in the end.
+    assert_eq!(visits(&events.without_excursions()), [(Some(3), Some(2))]);
+}
+
+#[test]
+fn a_robot_that_turns_back_at_the_end_of_a_corridor_was_at_a_dead_end() {
+    let plan = [([0.0, 0.0], [30.0, 0.0], 2.0), ([14.0, -14.0], [14.0, 0.0], 2.0)];
+    // Past the stem on the right to the end of the corridor, and back into the stem.
+    let way = [[2.0, 0.0], [28.0, 0.0], [14.0, 0.0], [14.0, -10.0]];
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    let events = events_with(&params, &plan, &way, 0.0);
+    assert_eq!(visits(&events), [(Some(3), Some(1)), (Some(1), Some(0)), (Some(3), Some(1))]);
+}
+
+#[test]
+fn sharp_bends_are_vertices_if_corners_are() {
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    // Two right angles, then a bend by 45 degrees.
+    let plan = [
+        ([0.0, 0.0], [20.0, 0.0], 2.0),
+        ([20.0, 0.0], [20.0, 16.0], 2.0),
+        ([20.0, 16.0], [36.0, 16.0], 2.0),
+        ([36.0, 16.0], [50.0, 30.0], 2.0),
+    ];
+    let way = [[2.0, 0.0], [20.0, 0.0], [20.0, 16.0], [36.0, 16.0], [46.0, 26.0]];
+    let corner = (Some(2), Some(1));
+    assert_eq!(visits(&events_with(&params, &plan, &way, 0.0)), [corner, corner]);
+    assert_eq!(visits(&events(&plan, &way, 0.0)), []);
+}
+
+/// A degree, and the door that was taken.
+type MarkedVisit = (u64, Option<u64>);
+/// A scan, and the odometry at its time.
+type PlacedScan = (Arc<Scan>, Odometry);
+
+/// The folder of CARMEN logs, if it exists; `TOPOSLAM_CARMEN_LOGS` names it.
+fn carmen_folder() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/carmen");
+    let folder = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);
+    let found = folder.join("aces.log.gz").is_file();
+    if !found {
+        eprintln!("skipped: there are no CARMEN logs in {}", folder.display());
+    }
+    found.then_some(folder)
+}
+
+/// The visits of junctions in a log of a real building, as they were marked by hand, and the scans of the log,
+/// each with its odometry.
+fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
+    let folder = carmen_folder()?;
+    let text = std::fs::read_to_string(folder.join(format!("{name}-visits.jsonl"))).unwrap();
+    let marked = text.lines().map(|line| {
+        let visit: serde_json::Value = serde_json::from_str(line).unwrap();
+        (visit["degree"].as_u64().unwrap(), visit["door"].as_u64())
+    });
+    let log = Log::open(&folder.join(name).with_extension("log.gz")).unwrap();
+    let bound = TopicMap::from_log(&log).unwrap().bind(&log).unwrap();
+    let scans = log.entries(&bound).filter_map(|entry| match entry.unwrap().content {
+        Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
+            Some((scan, odometry))
+        }
+        _ => None,
+    });
+    Some((marked.collect(), scans.collect()))
+}
+
+fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
+    let mut inferred = LaserEvents::new(*params);
+    for (number, (scan, odometry)) in scans.iter().enumerate() {
+        let source = EventSource { time: number as u64, ..EventSource::default() };
+        inferred.see(source, scan, odometry);
+    }
+    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+}
+
+/// The visits in a recorded log are those that were marked by hand.
+fn are_as_marked(name: &str, marked: &[MarkedVisit], events: &RunEvents) {
+    let mut found = visits(events);
+    // Turning back is no visit, and what is undecided has no degree.
+    let backs = events.events.iter().filter(|event| event.kind == CheckedKind::TurnedBack).count();
+    let all = found.len();
+    found.retain(|visit| visit.0.is_some());
+    assert_eq!(all - found.len(), backs, "{name}: undecided visits");
+    assert_eq!(found.len(), marked.len(), "{name}: {found:?}");
+    for (found, marked) in found.iter().zip(marked) {
+        assert_eq!(found.0.map(u64::from), Some(marked.0), "{name}: {found:?}");
+        // The door of the first visit is not marked if the log begins there.
+        let door = found.1.map(u64::from);
+        assert!(marked.1.is_none() || door == marked.1, "{name}: {found:?}, {marked:?}");
+    }
+}
+
+#[test]
+fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
+    for (name, count) in [("aces", 12), ("seattle", 3)] {
+        let Some((mut marked, scans)) = recorded(name) else { return };
+        marked.retain(|visit| visit.0 >= 3);
+        assert_eq!(marked.len(), count);
+        are_as_marked(name, &marked, &events_of(&scans, &LaserParams::default()));
+    }
+}
+
+/// Odometry whose heading drifts by so many degrees in 10 m.
+fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<PlacedScan> {
+    let drift = drift.to_radians() / 10.0;
+    let mut last: Option<([f64; 2], [f64; 2])> = None;
+    let mut turned = 0.0;
+    let moved = |(scan, odometry): &PlacedScan| {
+        let Odometry { position, heading } = *odometry;
+        let (before, moved) = last.unwrap_or((position, position));
+        let off = [0, 1].map(|axis| position[axis] - before[axis]);
+        let length = off[0].hypot(off[1]);
+        let (sine, cosine) = (turned + drift * length / 2.0).sin_cos();
+        turned += drift * length;
+        let moved = [
+            moved[0] + off[0] * cosine - off[1] * sine,
+            moved[1] + off[0] * sine + off[1] * cosine,
+        ];
+        last = Some((position, moved));
+        (scan.clone(), Odometry { position: moved, heading: heading + turned })
+    };
+    scans.iter().map(moved).collect()
+}
+
+fn measured_drift<'a>(scans: impl Iterator<Item = (&'a Scan, Odometry)>) -> f64 {
+    let mut meter = DriftMeter::new(LaserParams::default());
+    for (scan, odometry) in scans {
+        meter.see(scan, &odometry);
+    }
+    meter.finish().unwrap().to_degrees()
+}
+
+#[test]
+fn the_drift_of_the_heading_is_measured_by_the_walls() {
+    let way = [[3.0, 0.0], [14.0, 0.0], [14.0, 8.0], [14.0, 0.0], [26.0, 0.0]];
+    for degrees in [0.0, 2.0, -2.0, 5.0, -5.0_f64] {
+        let scans = drive(180, &comb(), &way, degrees.to_radians() / 10.0);
+        let measured = measured_drift(scans.iter().map(|(scan, odometry)| (scan, *odometry)));
+        assert!((measured - degrees.abs()).abs() < 0.5, "{measured} for {degrees}");
+    }
+}
+
+#[test]
+fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts() {
+    let limit = LaserParams::default().matching.max_drift.to_degrees();
+    let mut matched = LaserParams::default();
+    matched.matching.rounds = ROUNDS;
+    for name in ["aces", "seattle"] {
+        let Some((mut marked, scans)) = recorded(name) else { return };
+        marked.retain(|visit| visit.0 >= 3);
+        for drift in [0.0, 2.0, -2.0, 5.0, -5.0] {
+            let scans = drifted(&scans, drift);
+            let measured =
+                measured_drift(scans.iter().map(|(scan, odometry)| (&**scan, *odometry)));
+            assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
+            if drift != 0.0 {
+                are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_frame_of_odometry_does_not_matter() {
+    let mut matched = LaserParams::default();
+    matched.matching.rounds = ROUNDS;
+    for name in ["aces", "seattle"] {
+        let Some((_, scans)) = recorded(name) else { return };
+        for params in [LaserParams::default(), matched] {
+            let visits_from = |turn: f64, shift| {
+                let motion = Motion { turn: turn.to_radians(), shift };
+                let placed = scans.iter().map(|(scan, at)| (scan.clone(), motion.pose(at)));
+                visits(&events_of(&placed.collect::<Vec<_>>(), &params))
+            };
+            let expected = visits_from(0.0, [0.0; 2]);
+            for (turn, shift) in [(33.0, [0.03, 0.07]), (-120.0, [1000.0, -50.0])] {
+                assert_eq!(visits_from(turn, shift), expected, "{name}, turned by {turn}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_corners_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    for (name, count) in [("aces", 16), ("seattle", 12)] {
+        let Some((mut marked, scans)) = recorded(name) else { return };
+        assert_eq!(marked.len(), count);
+        if name == "seattle" {
+            // The log begins in a dead end, and ends before the robot has passed the last corner.
+            marked.remove(0);
+            marked.pop();
+        }
+        are_as_marked(name, &marked, &events_of(&scans, &params));
+    }
+}

@@ -1,0 +1,254 @@
+//! A simulated robot with a laser scanner: what it measures, how it drives by it, and its logs.
+
+use std::{
+    f64::consts::PI,
+    fs::{self, File},
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use toposlam_conform::{CheckedKind, Evidence, ExtractConfig, RunEvents, extract};
+use toposlam_logs::{
+    messages,
+    reader::Log,
+    record::{FrameSensor, NoSensor, RobotSensor},
+    recorder::Recorder,
+    topic_map::TopicMap,
+};
+use toposlam_model::{
+    driving::{odometry::Odometry, pose::Pose},
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    format::world_file,
+    mapping::DirectionalAlgorithm,
+    percept::Door,
+};
+use toposlam_robot::{recording::Recording, run_settings::RunSettings};
+use toposlam_simulator::{
+    Corridor, CorridorPlan, LaserScanner, RobotEquipment, ScannedBuilding, ScannerParams,
+    SimulatedRobot, SimulationConfig,
+    evaluation::{
+        run_sampler::{Faults, RunSampler},
+        traversals::{TraversalOutcome, TraversalSampler},
+    },
+    plans,
+    random_plan::random_plan,
+    run::{RunOutcome, offline, run},
+};
+use toposlam_vision::laser::{scan::Reading, scene::ScanPlaceSensor};
+
+use crate::laser;
+
+#[test]
+fn the_simulated_scanner_measures_what_another_ray_caster_computes() {
+    let corridors = [
+        ([-20.0, 1.0], [20.0, 1.0], 2.0),
+        ([3.0, 1.0], [14.0, 19.0], 1.7),
+        ([-9.0, 1.0], [-4.0, -16.0], 2.4),
+        ([14.0, 19.0], [-6.0, 23.0], 2.0),
+    ];
+    let corridor = |&(from, to, width): &laser::Corridor| Corridor { ends: [from, to], width };
+    let plan =
+        CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() };
+    let params = ScannerParams { range: 80.0, ..ScannerParams::PLAIN };
+    let building = Arc::new(ScannedBuilding::new(&plan, &params, 1));
+    let scanner = LaserScanner::new(building, &params, 1);
+    for (number, [x, y]) in
+        [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]].into_iter().enumerate()
+    {
+        let heading = 0.7 * number as f64;
+        let scan = scanner.scan(Pose { position: [x, y], heading }, 1, 0.0).unwrap();
+        let mut count = 0;
+        for (bearing, reading) in scan.readings() {
+            let expected = laser::range(&corridors, [x, y], heading + bearing);
+            let Reading::Hit(range) = reading else { panic!("{reading:?}, {expected}") };
+            // A ray that passes a corner by a hair is right on either side of it.
+            count += usize::from((range - expected).abs() > 1e-3);
+        }
+        assert!(count <= 1, "{count} of 360 rays from {x}, {y}");
+    }
+}
+
+fn laser_robots(params: ScannerParams) -> RobotEquipment {
+    RobotEquipment::Laser(params)
+}
+
+#[test]
+fn doors_are_taken_by_laser_as_the_specification_says() {
+    let mut all = plans().unwrap();
+    all.extend((0..6).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
+    let traversals = TraversalSampler::new(all, 5, 1.0);
+    let judged = traversals.judged(0..150, &laser_robots(ScannerParams::PLAIN), &());
+    for traversal in judged {
+        let number = traversal.traversal.number;
+        assert_eq!(traversal.outcome, TraversalOutcome::Right, "{number}");
+    }
+}
+
+#[test]
+fn among_furniture_doors_and_people_a_robot_gives_up_when_it_fails() {
+    let traversals = TraversalSampler::new(plans().unwrap(), 6, 1.0);
+    let judged = traversals.judged(0..150, &laser_robots(ScannerParams::default()), &());
+    let count = |is: fn(&TraversalOutcome) -> bool| {
+        judged.iter().filter(|traversal| is(&traversal.outcome)).count()
+    };
+    assert_eq!(count(|outcome| matches!(outcome, TraversalOutcome::Wrong(_))), 0);
+    let gave_up = count(|outcome| matches!(outcome, TraversalOutcome::GaveUp(_)));
+    assert!(gave_up <= 15, "{gave_up} of 150");
+}
+
+#[test]
+fn buildings_are_mapped_by_laser() {
+    for algorithm in DirectionalAlgorithm::ALL {
+        let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
+        for run in runs.judged(0..4, &laser_robots(ScannerParams::PLAIN), &()) {
+            assert_eq!(run.ending, RunOutcome::Right, "{}", run.case.plan_name);
+            assert_eq!(run.moves[0], run.moves[1]);
+        }
+    }
+}
+
+#[test]
+fn buildings_are_mapped_by_a_scanner_that_does_not_see_all_round() {
+    let mut all = plans().unwrap();
+    all.extend((0..3).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
+    let algorithm = DirectionalAlgorithm::Folding;
+    for field_of_view in [180.0, 240.0, 270.0] {
+        let params = ScannerParams { field_of_view, ..ScannerParams::PLAIN };
+        let runs = RunSampler::new(all.clone(), 1, Faults::None, 1, 1.0, algorithm);
+        for run in runs.judged(0..all.len() as u64, &laser_robots(params), &()) {
+            let what = format!("{} with {field_of_view} degrees", run.case.plan_name);
+            assert_eq!(run.ending, RunOutcome::Right, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_run_with_a_look_around_is_repeated_from_its_recording() {
+    let plan = long_8();
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let robot = SimulationConfig::at_start(plan.clone(), Dart(0), 3).by_laser(&params);
+    let sensor = RobotSensor::Laser(Box::default());
+    let settings = RunSettings::new(DirectionalAlgorithm::Folding, 200);
+    let mut recording = Recording::default();
+    let run = run(&plan, Dart(0), robot, sensor.clone(), &mut recording, &settings);
+    assert_eq!(run.outcome(), RunOutcome::Right);
+    assert_eq!(recording.len() as u64, run.frames);
+    let again = offline(&recording, sensor, (), &settings).unwrap();
+    assert_eq!(again.map(), run.mapping.map());
+}
+
+#[test]
+fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let robot = |config: &SimulationConfig| config.by_laser(&params);
+    let log = logged("laser-180.mcap", robot, RobotSensor::Laser(Box::default()));
+    let recorded = visits_in(&log, Evidence::Recorded);
+    assert!(recorded.len() >= 4, "{recorded:?}");
+    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
+}
+
+/// A floor plan whose hallways are long enough for arms: shape 8, 16 m a hallway.
+fn long_8() -> Arc<FloorPlan> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds/laser/long-8.toml");
+    Arc::new(world_file::read(&fs::read(file).unwrap()).unwrap().plan.unwrap())
+}
+
+/// The log of a run through the plan.
+fn logged(
+    name: &str,
+    robot: impl Fn(&SimulationConfig) -> SimulatedRobot,
+    sensor: impl FrameSensor,
+) -> PathBuf {
+    let plan = long_8();
+    let facing = Dart(0);
+    let mut config = SimulationConfig::at_start(plan.clone(), facing, 2);
+    // The heading drifts by up to about 1.5 degrees in 10 m.
+    (config.keeps_track, config.noise) = (true, 0.1);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let file = File::create(&path).unwrap();
+    let head = messages::Run { world: "long-8".to_owned(), ..messages::Run::default() };
+    let mut recorder = Recorder::new(file, &head, None).unwrap();
+    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let run = run(
+        &plan,
+        facing,
+        robot(&config),
+        sensor,
+        &mut recorder,
+        &RunSettings::new(algorithm, 200),
+    );
+    assert_eq!(run.outcome(), RunOutcome::Right);
+    recorder.finish().unwrap();
+    path
+}
+
+/// The degree of each junction with at least three doors, and the door taken.
+fn visits(events: &RunEvents) -> Vec<(u32, Option<u32>)> {
+    let mut visits: Vec<(u32, Option<u32>)> = Vec::new();
+    for event in &events.events {
+        match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => visits.push((arrival.degree, None)),
+            CheckedKind::Door { door: Door(door), .. } => {
+                visits.last_mut().unwrap().1 = Some(*door);
+            }
+            _ => {}
+        }
+    }
+    visits.retain(|(degree, _)| *degree >= 3);
+    visits
+}
+
+fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
+    let log = Log::open(log).unwrap();
+    let mapping = TopicMap::from_log(&log).unwrap();
+    let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
+    let run = extract(&log, &mapping, &config, &()).unwrap();
+    assert!(run.scans > 0 || evidence != Evidence::Laser);
+    visits(&run.events)
+}
+
+#[test]
+fn the_scans_of_a_run_show_the_visits_that_it_records() {
+    // Among furniture and people some visits are missed: `evaluate laser` measures how many.
+    let sensor = RobotSensor::Laser(Box::default());
+    let robot = |config: &SimulationConfig| config.by_laser(&ScannerParams::PLAIN);
+    let log = logged("laser-plain.mcap", robot, sensor);
+    let recorded = visits_in(&log, Evidence::Recorded);
+    assert!(recorded.len() >= 4, "{recorded:?}");
+    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
+}
+
+#[test]
+fn a_log_with_camera_and_laser_can_be_judged_by_either() {
+    let params = ScannerParams::default();
+    let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
+    let log = logged("camera-and-laser.mcap", robot, NoSensor);
+    let recorded = visits_in(&log, Evidence::Recorded);
+    assert!(recorded.len() >= 4, "{recorded:?}");
+    assert_eq!(visits_in(&log, Evidence::Scenes), recorded);
+    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
+}
+
+/// A scanner that does not see behind remembers what it saw on its way.
+#[test]
+fn a_scanner_of_180_degrees_knows_the_door_by_which_it_came() {
+    use toposlam_model::driving::scene::Place;
+    let plan = long_8();
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let config = SimulationConfig::at_start(plan.clone(), Dart(0), 1);
+    let scanner = config.scanner(&params);
+    let mut sensor = ScanPlaceSensor::default();
+    // Up to the T in the west, from the south.
+    let mut last = None;
+    for step in 0..=30_u32 {
+        let position = [0.0, 12.7 + 0.1 * f64::from(step)];
+        let pose = Pose { position, heading: PI / 2.0 };
+        let scan = scanner.scan(pose, step.into(), 0.0).unwrap();
+        last = Some(sensor.sense(&scan, &Odometry { position, heading: pose.heading }));
+    }
+    let Some(Place::Junction(junction)) = last else { panic!("{last:?}") };
+    let doors: Vec<i32> =
+        junction.doors.iter().map(|door| door.direction.to_degrees().round() as i32).collect();
+    assert!(matches!(doors[..], [180 | -180, 0, -90]), "{doors:?}");
+}

@@ -1,0 +1,62 @@
+//! Sensing on a few hundred rendered views against the floor plan: a small `evaluate
+//! vision`.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use toposlam_simulator::{
+    LOOKS,
+    evaluation::{
+        calibration::Calibration,
+        judge::Judge,
+        judged_view::{JudgedView, Zone},
+        report::{TargetStatus, VisionReport},
+        verdict::{MarkerVerdict, PlaceVerdict},
+    },
+    view_sampler::ViewSampler,
+};
+use toposlam_vision::camera::Camera;
+
+/// The numbers of views and visits.
+const VIEWS: u64 = 240;
+const VISITS: u64 = 16;
+
+fn views() -> ViewSampler {
+    ViewSampler { random_plans: true, ..ViewSampler::of(&LOOKS, [640, 480], 2024).unwrap() }
+}
+
+/// The number of views in a zone, and the number of right ones.
+fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
+    let there = judged.iter().filter(|judged| judged.zone() == zone);
+    (there.clone().count(), there.filter(|judged| judged.verdict == PlaceVerdict::Right).count())
+}
+
+// paper: sense.place
+// paper: sense.junction.type
+// paper: sense.junction.entry
+#[test]
+fn sensing_is_never_wrong_and_seldom_unknown() {
+    let views = views();
+    let judge = Judge::new(&Camera::superscout(), &views, &[Calibration::Right], &()).unwrap();
+    let judged = judge.views(&views, 0..VIEWS, Calibration::Right, &()).unwrap();
+    for judged in &judged {
+        assert!(!judged.verdict.is_wrong(), "{judged:#?}");
+        assert_ne!(judged.marker, MarkerVerdict::Phantom, "{judged:#?}");
+    }
+    let zones = [Zone::Hallway, Zone::Between, Zone::Before, Zone::Past, Zone::Turned];
+    let counted = zones.map(|zone| right(&judged, zone));
+    assert_eq!(counted.map(|(all, _)| all), [59, 100, 51, 24, 6]);
+    let least = [59, 99, 51, 23, 6];
+    let enough = counted.iter().zip(least).all(|((_, right), least)| *right >= least);
+    assert!(enough, "of each, and right: {counted:?}");
+    let visits = judge.visits(&views, 0..VISITS, Calibration::Right, &()).unwrap();
+    let decided = visits.iter().filter(|visit| visit.decided.is_some());
+    assert!(decided.clone().count() >= 15, "{}", decided.count());
+    for visit in decided {
+        assert_eq!(visit.decided, Some((visit.form, visit.percept)), "{visit:#?}");
+    }
+    let errors = VisionReport::of(&judged, &visits, Calibration::Right).errors;
+    for errors in errors {
+        // These views are too few to show some targets.
+        assert_ne!(errors.standing(), TargetStatus::Missed, "{errors:?}");
+    }
+}

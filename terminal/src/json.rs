@@ -1,0 +1,91 @@
+//! The output of `--json`: one object a line, with actions and percepts. `docs/schema` describes each kind
+//! of line.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::{Value, json};
+use toposlam_logs::error::Truncation;
+use toposlam_model::{percept::Percept, world::Action};
+
+use super::CliError;
+
+/// The version of the lines.
+const SCHEMA: u32 = 1;
+
+/// A line: its version, its kind and its content.
+#[derive(Serialize)]
+struct Line<'c, C> {
+    schema: u32,
+    kind: &'static str,
+    #[serde(flatten)]
+    content: &'c C,
+}
+
+fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String> {
+    Ok(serde_json::to_string(&Line { schema: SCHEMA, kind, content })?)
+}
+
+/// Prints an object on a line of its own, after its version and its kind.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn print_line(
+    out: &mut dyn Write,
+    kind: &'static str,
+    content: &impl Serialize,
+) -> Result<(), CliError> {
+    Ok(writeln!(out, "{}", line_text(kind, content)?)?)
+}
+
+/// Prints the beginning of a line, up to the comma after its kind.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn begin_line(out: &mut dyn Write, kind: &'static str) -> io::Result<()> {
+    let empty = line_text(kind, &())?;
+    write!(out, "{},", empty.strip_suffix('}').unwrap_or(&empty))
+}
+
+/// Where a log ends before its end.
+#[derive(Serialize)]
+pub struct TruncatedLine {
+    offset: u64,
+    cause: String,
+}
+
+impl From<&Truncation> for TruncatedLine {
+    fn from(found: &Truncation) -> Self {
+        Self { offset: found.offset, cause: found.cause.to_string() }
+    }
+}
+
+/// One of several inputs that could not be used.
+#[derive(Serialize)]
+struct UnreadLine<'f> {
+    file: &'f str,
+    cause: &'f str,
+}
+
+/// Prints that one of several inputs could not be used.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn print_unread(out: &mut dyn Write, file: &str, cause: &str) -> Result<(), CliError> {
+    print_line(out, "unread", &UnreadLine { file, cause })
+}
+
+/// A door is a number, another action is a word.
+#[must_use]
+pub fn action_json(action: Action) -> Value {
+    match action {
+        Action::Take(door) => json!(door.0),
+        other => json!(other.to_string()),
+    }
+}
+
+/// The degree, and the sighting in words.
+#[must_use]
+pub fn percept_json(percept: Percept) -> Value {
+    json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() })
+}

@@ -1,0 +1,39 @@
+//! What programs on the command line share: messages and progress on standard error, exit codes, tables and JSON lines,
+//! input and output files, and the options of how a robot maps.
+
+#![warn(clippy::print_stderr, reason = "--quiet is obeyed in `terminal.rs`")]
+
+/// Prints a remark on standard error, unless `--quiet` is given.
+#[macro_export]
+macro_rules! remark {
+    ($($text:tt)*) => { $crate::terminal::remark(format_args!($($text)*)) };
+}
+
+pub mod children;
+pub mod edge_range;
+pub mod exit_codes;
+pub mod files;
+pub mod input;
+pub mod json;
+pub mod method_options;
+pub mod outcome;
+pub mod output;
+pub mod picture_file;
+pub mod progress;
+pub mod report_output;
+pub mod scene;
+pub mod temporary_folder;
+pub mod terminal;
+pub mod text;
+
+pub use outcome::{CliError, Outcome};
+
+/// Sets the number of threads, if one is given.
+///
+/// # Errors
+/// Returns an error if the threads cannot be started.
+pub fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
+    let Some(threads) = threads else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+    pool.build_global().map_err(|error| CliError::at("--threads", error))
+}

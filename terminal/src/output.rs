@@ -1,0 +1,166 @@
+//! Output files. They are written completely or not at all, except logs, which grow. No output replaces
+//! an input or another output.
+
+use std::{
+    ffi::{OsStr, OsString},
+    fs,
+    io::{self, Read},
+    path::Path,
+    process,
+    sync::{Mutex, PoisonError},
+};
+
+use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
+
+use super::{CliError, children, files::files, input, temporary_folder};
+
+/// Locked while a file is written.
+static WRITING: Mutex<()> = Mutex::new(());
+
+/// Ends the program, and those that it started, when no file is being written. Removes temporary files.
+pub fn exit_between_files(code: i32) -> ! {
+    children::end_all();
+    let _not_writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    temporary_folder::remove_all();
+    process::exit(code)
+}
+
+/// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
+/// renamed.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    let Some(name) = path.file_name() else {
+        return Err(CliError::in_file(path, "this is not a file name"));
+    };
+    files().write(path)?;
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    // A device or a pipe is not replaced.
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return fs::write(path, bytes).map_err(|error| not_writable(path, &error));
+    }
+    let mut partial_name = OsString::from(".");
+    partial_name.push(name);
+    partial_name.push(format!(".{}.partial", process::id()));
+    let partial = path.with_file_name(partial_name);
+    fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
+        // If this fails too, the first error is the one to report.
+        let _ = fs::remove_file(&partial);
+        not_writable(path, &error)
+    })
+}
+
+/// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
+/// killed.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn create_growing(path: &Path) -> Result<fs::File, CliError> {
+    files().grow(path)?;
+    fs::File::create(path).map_err(|error| not_writable(path, &error))
+}
+
+/// Opens a file to append to, or creates it, and returns what it contains. It is locked until it is closed.
+///
+/// # Errors
+/// Returns an error if it is not a file, if another process has locked it, or if it cannot be written.
+pub fn open_growing_alone(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> {
+    files().grow(path)?;
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return Err(CliError::in_file(path, "this is not a file"));
+    }
+    let open = fs::OpenOptions::new().read(true).append(true).create(true).open(path);
+    let mut file = open.map_err(|error| not_writable(path, &error))?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(fs::TryLockError::WouldBlock) => {
+            return Err(CliError::in_file(path, "another process is writing this file"));
+        }
+        Err(fs::TryLockError::Error(error)) => {
+            return Err(CliError::in_file(path, format!("cannot be locked: {error}")));
+        }
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|error| CliError::in_file(path, error))?;
+    Ok((file, bytes))
+}
+
+/// Creates the folder if it does not exist.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn make_folder(folder: &Path) -> Result<(), CliError> {
+    files().fill_folder();
+    fs::create_dir_all(folder).map_err(|error| {
+        CliError::in_file(folder, format!("the folder cannot be created: {error}"))
+    })
+}
+
+/// Checks that a file can be written to a path, before long work begins.
+///
+/// # Errors
+/// Returns an error if the path is a folder, an input or another output, if its folder does not exist, or
+/// if its extension is not in the list.
+pub fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
+    if path.is_dir() {
+        return Err(CliError::in_file(path, "this is a folder, not a file"));
+    }
+    if input::is_standard(path) {
+        return Err(CliError::in_file(path, "an output is a file; only an input can be `-`"));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(CliError::in_file(path, format!("there is no folder {}", folder.display())));
+    }
+    // A device has no extension.
+    let fits = path.exists() && !path.is_file()
+        || path
+            .extension()
+            .and_then(OsStr::to_str)
+            .is_some_and(|found| extensions.contains(&found));
+    if !fits {
+        let extensions: Vec<_> = extensions.iter().map(|name| format!(".{name}")).collect();
+        let cause = format!("the name must end in {}", extensions.join(" or "));
+        return Err(CliError::in_file(path, cause));
+    }
+    Ok(files().plan(path)?)
+}
+
+/// The extensions of plantri's `planar_code`, which is for simple graphs only.
+const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
+
+/// Does [`check_place`] for a world that may or may not be simple.
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn check_world_place(path: &Path, simple: bool) -> Result<(), CliError> {
+    let extensions = ["toml", "json", "dot", "ec", "edge_code"];
+    if simple {
+        check_place(path, &[&extensions[..], &PLANAR_CODE].concat())
+    } else {
+        check_place(path, &extensions)
+    }
+}
+
+/// Writes a world in the format of the file's extension: `.toml`, `.json`, Graphviz's `.dot`, plantri's
+/// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
+///
+/// # Errors
+/// Returns an error with its place and cause.
+pub fn write_world(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
+    let graph = std::slice::from_ref(&world.graph);
+    let coded = |code| plantri::write(graph, code).map_err(|error| CliError::in_file(path, error));
+    let bytes = match path.extension().and_then(OsStr::to_str) {
+        Some("json") => world_file::to_json_text(world).into_bytes(),
+        Some("dot") => dot::write(world).into_bytes(),
+        Some("ec" | "edge_code") => coded(plantri::PlantriCode::Edge)?,
+        Some(ending) if PLANAR_CODE.contains(&ending) => coded(plantri::PlantriCode::Planar)?,
+        _ => world_file::to_toml(world).into_bytes(),
+    };
+    write_whole(path, &bytes)
+}
+
+fn not_writable(path: &Path, error: &io::Error) -> CliError {
+    CliError::in_file(path, format!("cannot be written: {error}"))
+}

@@ -1,0 +1,144 @@
+//! Standard error: remarks, errors, and their colours.
+//!
+//! `--quiet` leaves out remarks and progress. `--color` decides on colours, or else the environment
+//! (`NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`) and whether standard error is a terminal. On a terminal the lines are
+//! wrapped; in a file or a pipe each remark and each error stays on one line.
+
+use std::{
+    ffi::OsString,
+    fmt::Display,
+    io::{self, Write},
+    sync::{
+        LazyLock,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use anstream::AutoStream;
+use clap::{ColorChoice, ValueEnum, builder::Styles};
+
+use toposlam_draw::text::{readable, wrapped};
+
+/// Options of every verb.
+#[derive(clap::Args)]
+pub struct TerminalOptions {
+    /// Print no progress and no remarks on standard error, only errors
+    #[arg(short, long, global = true, display_order = 900)]
+    quiet: bool,
+    /// Use colours in help and errors: auto, always or never
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        hide_possible_values = true,
+        display_order = 901
+    )]
+    color: ColorChoice,
+}
+
+/// Set by `--quiet`.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+impl TerminalOptions {
+    /// Applies the options to this process.
+    pub fn apply(&self) {
+        QUIET.store(self.quiet, Ordering::Relaxed);
+        match self.color {
+            ColorChoice::Auto => anstream::ColorChoice::Auto,
+            ColorChoice::Always => anstream::ColorChoice::Always,
+            ColorChoice::Never => anstream::ColorChoice::Never,
+        }
+        .write_global();
+    }
+}
+
+/// The value of `--color` among arguments that are not parsed yet: their errors have colours, too.
+pub fn color_choice(arguments: impl IntoIterator<Item = OsString>) -> ColorChoice {
+    let mut words = arguments.into_iter().take_while(|word| word != "--");
+    let mut choice = ColorChoice::Auto;
+    while let Some(word) = words.next() {
+        let word = word.to_string_lossy();
+        let value = match word.strip_prefix("--color") {
+            Some("") => words.next().map(|value| value.to_string_lossy().into_owned()),
+            Some(rest) => rest.strip_prefix('=').map(str::to_owned),
+            None => None,
+        };
+        let value = value.and_then(|value| ColorChoice::from_str(&value, false).ok());
+        choice = value.unwrap_or(choice);
+    }
+    choice
+}
+
+/// Whether remarks and progress are left out.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether standard error has colours.
+#[must_use]
+pub fn has_colors() -> bool {
+    AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never
+}
+
+/// Prints a remark on standard error, unless `--quiet` is given.
+pub fn remark(text: impl Display) {
+    if !is_quiet() {
+        print_message(&message_lines(*WIDTH, &text.to_string()));
+    }
+}
+
+/// Prints an error.
+pub fn error(message: &str) {
+    const LABEL: &str = "error:";
+    let style = Styles::styled();
+    let style = style.get_error();
+    let lines = message_lines(*WIDTH, &format!("{LABEL} {message}"));
+    print_message(&lines.replacen(LABEL, &format!("{style}{LABEL}{style:#}"), 1));
+}
+
+/// The width of standard error, if it is a terminal.
+static WIDTH: LazyLock<Option<usize>> = LazyLock::new(|| {
+    terminal_size::terminal_size_of(io::stderr()).map(|(width, _)| readable(width.0))
+});
+
+/// The lines of a message. With a width, long ones are wrapped.
+fn message_lines(width: Option<usize>, message: &str) -> String {
+    let Some(width) = width else { return format!("{message}\n") };
+    let lines = message.lines().flat_map(|line| {
+        let text = line.trim_start();
+        let indent = line.len() - text.len();
+        wrapped(width, &line[..indent], indent, text)
+    });
+    lines.map(|line| line + "\n").collect()
+}
+
+/// Prints on standard error, also with `--quiet`. If that is closed, there is nobody to read it.
+pub fn print_message(text: &str) {
+    let _ = anstream::stderr().write_all(text.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_wrapped_on_a_terminal_only() {
+        let message = "run.txt: this is not a log\n  known are bags and MCAP files";
+        assert_eq!(message_lines(None, message), format!("{message}\n"));
+        let lines = message_lines(Some(20), message);
+        let expected = "run.txt: this is not\na log\n  known are bags and\n  MCAP files\n";
+        assert_eq!(lines, expected);
+    }
+
+    #[test]
+    fn the_choice_of_colours_is_found_before_the_arguments_are_parsed() {
+        let choice = |words: &str| color_choice(words.split(' ').map(OsString::from));
+        assert_eq!(choice("toposlam check"), ColorChoice::Auto);
+        assert_eq!(choice("toposlam --color never chekc"), ColorChoice::Never);
+        assert_eq!(choice("toposlam chekc --color=always"), ColorChoice::Always);
+        assert_eq!(choice("toposlam check --color purple"), ColorChoice::Auto);
+        assert_eq!(choice("toposlam check --color"), ColorChoice::Auto);
+        assert_eq!(choice("toposlam check -- --color never"), ColorChoice::Auto);
+    }
+}
