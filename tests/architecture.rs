@@ -555,18 +555,23 @@ fn source_is_read_without_comments_literals_and_tests() {
     assert_eq!((module.types, test_modules), (vec!["Found".to_owned()], vec!["other".to_owned()]));
 }
 
-/// The profile of a release build in a manifest, without the cluster, which the Python package does not have.
-fn release_profile(manifest: &str) -> toml::Table {
+/// The profile of a release build in a manifest: its settings, and those of each package.
+fn release_profile(manifest: &str) -> [toml::Table; 2] {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(manifest);
     let mut manifest: toml::Table = fs::read_to_string(path).unwrap().parse().unwrap();
     let profile = manifest["profile"].as_table_mut().unwrap().remove("release").unwrap();
     let toml::Value::Table(mut profile) = profile else { panic!("not a table") };
-    profile["package"].as_table_mut().unwrap().remove("toposlam-cluster");
-    profile
+    let Some(toml::Value::Table(packages)) = profile.remove("package") else { panic!("no table") };
+    [profile, packages]
 }
 
 /// So it is as fast, and what both need is compiled once.
 #[test]
 fn the_python_package_is_optimised_as_the_program_is() {
-    assert_eq!(release_profile("python/Cargo.toml"), release_profile("Cargo.toml"));
+    let [[python, its_packages], [program, packages]] =
+        ["python/Cargo.toml", "Cargo.toml"].map(release_profile);
+    assert_eq!(python, program);
+    for (name, settings) in its_packages {
+        assert_eq!(Some(&settings), packages.get(&name), "{name}");
+    }
 }
