@@ -12,11 +12,12 @@ use std::{
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    check::{ExploredMap, Flaw, judge_map},
+    check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::fold,
     isomorphism::Candidate,
+    mapping::{ExploredMap, Flaw},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, World},
 };

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use toposlam_model::{
-    check::{CheckPieces, FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm, PieceCounts},
+    check::{CheckPieces, FinishedUnits, LazyCheck, LazySweep, PieceCounts},
     enumerate::Watch,
+    mapping::MappingAlgorithm,
 };
 
 use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
@@ -40,7 +41,7 @@ impl Job for CheckJob {
 }
 
 impl ClusterProcess {
-    /// Checks an algorithm, as [`LazySweep::resume`]; `None` with all choices. In process 0, `units` has those
+    /// Checks an algorithm, as [`LazySweep::resume`]. In process 0, `units` has those
     /// that were finished before, and records others. If the watch stops process 0, its result has what is
     /// known by then.
     ///
@@ -52,8 +53,8 @@ impl ClusterProcess {
         sweep: &LazySweep,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> Result<Option<ClusterCheck>, ClusterError> {
-        let Some(pieces) = algorithm.pieces(sweep, watch) else { return Ok(None) };
+    ) -> Result<ClusterCheck, ClusterError> {
+        let pieces = algorithm.pieces(sweep, watch);
         // The pieces of a watch that stops are not all.
         watch.go_on().map_err(|_| ClusterError::Interrupted)?;
         let job = Arc::new(CheckJob { algorithm, pieces });
@@ -88,6 +89,6 @@ impl ClusterProcess {
             shared => shared?,
         };
         let check = algorithm.finished_pieces(counts);
-        Ok(check.map(|check| ClusterCheck { check, threads }))
+        Ok(ClusterCheck { check, threads })
     }
 }

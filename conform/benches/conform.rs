@@ -21,7 +21,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::{WorldSearch, fold, smallest_world},
-    mapping::{DirectionalAlgorithm, Exploration, Journey, MappingEvent, Nearest, map_world},
+    mapping::{Exploration, Journey, MappingAlgorithm, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
     trace::{Trace, TraceEvent, TraceEventKind, anywhere},
@@ -63,7 +63,7 @@ fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
     ConformConfig {
         world: Some(KnownWorld { graph: plan.graph(), states }),
         marker: &Directional,
-        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
+        driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search,
         dart_bound: 1000,

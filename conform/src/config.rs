@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     folding::WorldSearch,
-    mapping::{DirectionalAlgorithm, MappingMethod},
+    mapping::{MappingAlgorithm, MappingMethod},
     marker::Marker,
     trace::{AlgorithmMatch, Trace, match_algorithm, match_audited, match_recovering},
 };
@@ -44,8 +44,8 @@ impl ConformConfig<'_> {
     }
 }
 
-impl From<DirectionalAlgorithm> for RunDriver {
-    fn from(algorithm: DirectionalAlgorithm) -> Self {
+impl From<MappingAlgorithm> for RunDriver {
+    fn from(algorithm: MappingAlgorithm) -> Self {
         Self::Method(algorithm.into())
     }
 }
@@ -61,7 +61,7 @@ impl From<RecordedSettings> for RunDriver {
 impl RunDriver {
     /// The algorithm, if it is one.
     #[must_use]
-    pub fn algorithm(self) -> Option<DirectionalAlgorithm> {
+    pub fn algorithm(self) -> Option<MappingAlgorithm> {
         match self {
             Self::Method(method) => Some(method.algorithm()),
             Self::Anyone => None,

@@ -4,7 +4,7 @@ use std::{f64::consts::FRAC_PI_6, fmt};
 
 use toposlam_model::{
     counts::counted,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     measurement::ContradictoryMeasurement,
     trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
 };
@@ -130,7 +130,7 @@ pub enum DivergenceCause {
     /// The recorded map is not the map of the algorithm.
     Map {
         /// The algorithm.
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
     },
     /// The map of the algorithm is not the known world.
     WrongMap,
@@ -290,10 +290,10 @@ impl fmt::Display for DivergenceCause {
                     (TraceEventKind::Percept(_), _) => {
                         "this percept contradicts the percepts before it"
                     }
-                    (TraceEventKind::Door(_), DirectionalAlgorithm::Algorithm1) => {
+                    (TraceEventKind::Door(_), MappingAlgorithm::Algorithm1) => {
                         "no run of Algorithm 1 takes this door here"
                     }
-                    (TraceEventKind::Door(_), DirectionalAlgorithm::Folding) => {
+                    (TraceEventKind::Door(_), _) => {
                         "the folding explorer does not take this door here"
                     }
                 })

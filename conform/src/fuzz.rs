@@ -17,7 +17,7 @@ use toposlam_logs::{
 use toposlam_model::{
     enumerate::Class,
     folding::WorldSearch,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::{Directional, NoMarker},
 };
 use toposlam_robot::budget::RunBudget;
@@ -180,8 +180,8 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
     let algorithm =
         |algorithm| ConformConfig { driver: RunDriver::from(algorithm), ..config.clone() };
     for config in [
-        algorithm(DirectionalAlgorithm::Algorithm1),
-        algorithm(DirectionalAlgorithm::Folding),
+        algorithm(MappingAlgorithm::Algorithm1),
+        algorithm(MappingAlgorithm::Folding),
         ConformConfig { marker: &NoMarker, ..config.clone() },
     ] {
         match judge(events.clone(), &config, &Quirks::default(), &()) {

@@ -8,7 +8,7 @@ use toposlam_model::{
     driving::visit::JunctionShape,
     enumerate::Watch,
     folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::{Directional, Marker, Undirected},
     trace::{AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError, poses},
 };
@@ -123,7 +123,7 @@ pub enum JudgeError {
     #[error("{} needs the directional marker, not `{marker}`", algorithm.in_words())]
     Algorithm {
         /// The algorithm.
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
         /// The name of the marker.
         marker: &'static str,
     },
@@ -139,7 +139,7 @@ pub enum ReachedLimit {
     /// The algorithm would know more darts than a bound allows.
     Darts {
         /// The algorithm.
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
         /// The index of the event.
         event: usize,
         /// The bound.

@@ -6,7 +6,7 @@ use toposlam_logs::{messages::Run, world_hash};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::{self, Directional, Marker, UnknownMarker},
 };
 use toposlam_robot::run_settings::RecordedSettings;
@@ -22,7 +22,7 @@ pub struct LogHead<'r>(pub Option<&'r Run>);
 #[error("no percept in it shows a marker, which {} needs", .algorithm.in_words())]
 pub struct MarkerNotShown {
     /// The algorithm whose doors would be compared.
-    pub algorithm: DirectionalAlgorithm,
+    pub algorithm: MappingAlgorithm,
 }
 
 impl LogHead<'_> {
@@ -46,7 +46,7 @@ impl LogHead<'_> {
     /// Returns the recorded text if it is not understood, and no algorithm is given.
     pub fn settings(
         &self,
-        algorithm: Option<DirectionalAlgorithm>,
+        algorithm: Option<MappingAlgorithm>,
     ) -> Result<RecordedSettings, String> {
         let head = self.0.map_or("", |run| &run.algorithm);
         let recorded = match head {
@@ -85,7 +85,7 @@ impl LogHead<'_> {
     pub fn check_marker(
         &self,
         events: &RunEvents,
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
     ) -> Result<(), MarkerNotShown> {
         if self.marker_name().is_some() || events.may_show_marker() {
             return Ok(());

@@ -13,7 +13,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::WorldSearch,
-    mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig},
+    mapping::{MappingAlgorithm, MappingMethod, RecoveryConfig},
     marker::Directional,
     measurement::ContradictoryMeasurement,
     percept::{Door, Percept, Sighting},
@@ -102,7 +102,7 @@ impl RunObserver for Log {
 
 /// A good run of Algorithm 1.
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
-    log_of(DirectionalAlgorithm::Algorithm1, plan, facing, seed)
+    log_of(MappingAlgorithm::Algorithm1, plan, facing, seed)
 }
 
 /// A good run of a robot that maps.
@@ -129,7 +129,7 @@ fn without_world() -> ConformConfig<'static> {
     ConformConfig {
         world: None,
         marker: &Directional,
-        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
+        driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
         search,
         dart_bound: DARTS,
@@ -405,7 +405,7 @@ fn a_log_with_a_wrong_number_of_moves_or_a_wrong_map_diverges_at_its_end() {
     let divergence = judged(&events, &question).divergence.unwrap();
     assert_eq!(
         (divergence.event, divergence.cause),
-        (end, DivergenceCause::Map { algorithm: DirectionalAlgorithm::Algorithm1 })
+        (end, DivergenceCause::Map { algorithm: MappingAlgorithm::Algorithm1 })
     );
 }
 

@@ -8,15 +8,12 @@ use std::ops::ControlFlow;
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Comparison},
-    check::{
-        Algorithm1, Algorithm1Explorer, AllChoices, DEFAULT_STATE_BUDGET, LazySweep, MovableMarker,
-        Shard, Sweep, judge,
-    },
+    check::{DEFAULT_STATE_BUDGET, LazySweep, RunChoices, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::fold,
     isomorphism::{Candidate, isomorphism},
-    mapping::{Exploration, Nearest, map_world},
+    mapping::{Exploration, MarkerSearch, Nearest, map_world},
     marker::{MARKERS, Marker, named},
     percept::Door,
     world::{GraphWorld, World},
@@ -50,7 +47,7 @@ fn enumerate(bencher: Bencher, (class, edges, worlds): (&str, usize, u64)) {
 fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
     let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
-        assert_eq!(sweep.run(&Algorithm1, &()).mapped, starts);
+        assert_eq!(sweep.run(Exploration::default, RunChoices::Default, &()).mapped, starts);
     });
 }
 
@@ -59,7 +56,7 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
 fn check_lazily(bencher: Bencher, (edges, starts): (usize, u64)) {
     let sweep = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
-        assert_eq!(sweep.run(Algorithm1Explorer::default, &()).tally.mapped, starts);
+        assert_eq!(sweep.run(Exploration::default, &()).tally.mapped, starts);
     });
 }
 
@@ -67,9 +64,9 @@ fn check_lazily(bencher: Bencher, (edges, starts): (usize, u64)) {
 #[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
 fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
     let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
-    let all_choices = AllChoices { algorithm: Algorithm1, budget: DEFAULT_STATE_BUDGET };
+    let all = RunChoices::All { budget: DEFAULT_STATE_BUDGET };
     bencher.counter(ItemsCount::new(states)).bench(|| {
-        assert_eq!(sweep.run(&all_choices, &()).states, states);
+        assert_eq!(sweep.run(Exploration::default, all, &()).states, states);
     });
 }
 
@@ -78,7 +75,7 @@ fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
 fn check_movable(bencher: Bencher) {
     let sweep = Sweep::new(Class::Simple, 8, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(27_339_u64)).bench(|| {
-        assert_eq!(sweep.run(&MovableMarker, &()).mapped, 27_339);
+        assert_eq!(sweep.run(MarkerSearch::default, RunChoices::Default, &()).mapped, 27_339);
     });
 }
 
@@ -151,7 +148,7 @@ fn map_large_world(bencher: Bencher) {
         let mut exploration = Exploration::new(graph.dart_count());
         let mut world = GraphWorld::new(&graph, Dart(0));
         map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
-        judge(&Algorithm1, &exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
+        judge(&exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
         exploration.moves()
     };
     bencher.counter(ItemsCount::new(run())).bench(run);

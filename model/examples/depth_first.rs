@@ -7,20 +7,24 @@
 use std::error::Error;
 
 use toposlam_model::{
-    check::{ExploredMap, Explorer, ExplorerWorld, Flaw, Shard, Sweep},
+    check::{RunChoices, Shard, Sweep},
     enumerate::Class,
+    mapping::{ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer},
     marker::Directional,
     percept::{Door, Percept, Sighting, retrace},
-    world::{RefusedAction, World},
+    world::World,
 };
 
 /// A dart of the map: a vertex, and the index clockwise from the dart by which it was first entered.
 pub(crate) type End = (usize, u32);
 
-/// The map: the far end of each dart, if known. Dart 0 of a vertex leads home.
-#[derive(Default)]
+/// The state of a run.
+#[derive(Clone, Default)]
 pub(crate) struct DepthFirst {
+    /// The map: the far end of each dart, if known. Dart 0 of a vertex leads home.
     far: Vec<Vec<Option<End>>>,
+    /// The robot's pose in the map.
+    pose: End,
 }
 
 impl DepthFirst {
@@ -47,11 +51,7 @@ impl DepthFirst {
 
     /// Walks home as if the robot had come in by `pose`, and returns its pose there. If a percept
     /// shows that this is wrong, it goes back and returns nothing.
-    fn walk_home(
-        &self,
-        mut pose: End,
-        world: &mut ExplorerWorld,
-    ) -> Result<Option<End>, RefusedAction> {
+    fn walk_home<W: World>(&self, mut pose: End, world: &mut W) -> Result<Option<End>, W::Error> {
         let mut way = Vec::new();
         while let (1.., Some(next)) = (pose.0, self.far[pose.0][0]) {
             way.push((self.door(pose, 0), self.degree(pose.0)));
@@ -66,12 +66,12 @@ impl DepthFirst {
     }
 
     /// Walks from `home`, the robot's pose at the marker, to a vertex, and takes a dart of it.
-    fn take(
+    fn take<W: World>(
         &self,
         (vertex, index): End,
         home: End,
-        world: &mut ExplorerWorld,
-    ) -> Result<(), RefusedAction> {
+        world: &mut W,
+    ) -> Result<(), W::Error> {
         let mut pose = home;
         if let (1.., Some(parent)) = (vertex, self.far[vertex][0]) {
             self.take(parent, home, world)?;
@@ -82,11 +82,7 @@ impl DepthFirst {
 
     /// Looks for the dart by which the robot came to a known vertex, and returns it and the robot's
     /// pose after that. If there is none, the robot is at a new vertex.
-    fn recognise(
-        &mut self,
-        edge: End,
-        world: &mut ExplorerWorld,
-    ) -> Result<(End, End), RefusedAction> {
+    fn recognise<W: World>(&mut self, edge: End, world: &mut W) -> Result<(End, End), W::Error> {
         let degree = world.percept()?.degree;
         // The index of the dart by which it came in last, counted from that by which it arrived.
         let mut turned = 0;
@@ -107,24 +103,44 @@ impl DepthFirst {
 
 impl Explorer for DepthFirst {
     type Marker = Directional;
+    type Choice = End;
 
     fn marker(&self) -> Directional {
         Directional
     }
 
-    fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-        self.far = vec![vec![None; world.percept()?.degree as usize]];
-        let mut pose = (0, 0);
-        while let Some(&edge) = self.unexplored().last() {
-            let lost = || Flaw::GaveUp("a known way does not lead home".to_owned());
-            let home = self.walk_home(pose, world)?.ok_or_else(lost)?;
-            self.take(edge, home, world)?;
-            let (end, now) = self.recognise(edge, world)?;
-            self.far[edge.0][edge.1 as usize] = Some(end);
-            self.far[end.0][end.1 as usize] = Some(edge);
-            pose = now;
-        }
-        ExploredMap::from_far_ends(&self.far, pose)
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let degree = world.percept().map_err(MappingError::World)?.degree;
+        (self.far, self.pose) = (vec![vec![None; degree as usize]], (0, 0));
+        Ok(())
+    }
+
+    fn choose(&mut self) -> Result<Option<End>, InvalidStep> {
+        Ok(self.unexplored().last().copied())
+    }
+
+    fn step<W: World>(
+        &mut self,
+        edge: End,
+        world: &mut W,
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let lost = || MappingError::GaveUp("a known way does not lead home".to_owned());
+        let home = self.walk_home(self.pose, world).map_err(MappingError::World)?;
+        self.take(edge, home.ok_or_else(lost)?, world).map_err(MappingError::World)?;
+        let (end, pose) = self.recognise(edge, world).map_err(MappingError::World)?;
+        self.far[edge.0][edge.1 as usize] = Some(end);
+        self.far[end.0][end.1 as usize] = Some(edge);
+        self.pose = pose;
+        Ok(())
+    }
+
+    fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
+        ExploredMap::from_far_ends(&self.far, self.pose)
     }
 }
 
@@ -132,7 +148,7 @@ impl Explorer for DepthFirst {
 fn main() -> Result<(), Box<dyn Error>> {
     for edges in 1..=6 {
         let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE)?;
-        let tally = sweep.run_explorers(DepthFirst::default, &());
+        let tally = sweep.run(DepthFirst::default, RunChoices::Default, &());
         println!(
             "{edges} edges: {} of {} starts mapped correctly, with up to {} moves",
             tally.mapped,

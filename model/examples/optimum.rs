@@ -17,10 +17,11 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{MappingAlgorithm, Shard, Sweep},
+    check::{RunChoices, Shard, Sweep},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::FoldedTrail,
+    mapping::MappingAlgorithm,
     marker::{Directional, Marker},
     percept::{Door, Percept, Sighting},
 };
@@ -322,7 +323,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut search = OptimumSearch::new(class, edges)?;
         let best = search.least_total()?;
         let sweep = Sweep::new(class, edges, Shard::WHOLE)?;
-        let folding = MappingAlgorithm::Folding.sweep(&sweep, &());
+        let folding = MappingAlgorithm::Folding.sweep(&sweep, RunChoices::Default, &());
         let mean = |total: u64| total as f64 / search.start_count() as f64;
         let means = [best, folding.certificate_total, folding.moves_total].map(mean);
         println!(

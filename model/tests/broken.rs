@@ -5,21 +5,32 @@
 use std::ops::ControlFlow;
 
 use toposlam_model::{
-    check::{self, Algorithm, Algorithm1, CostOrder, OpenChoices, every_way},
+    check::every_way,
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
     mapping::{
-        Exploration, MappingChoice, MappingError, Nearest, Observer, ValidationResult, step_with,
+        self, Exploration, Explorer, InvalidStep, Journey, MappingChoice, MappingError, Observer,
+        StateKey, ValidationResult, step_with,
     },
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, RefusedAction},
+    world::World,
 };
 
-use crate::smallest_failure::{more_darts_than, new, of_algorithm};
+use crate::smallest_failure::{more_darts_than, new, smallest_failure};
 
 /// Algorithm 1 with something broken in lines 10 to 17.
-struct Broken(Flaw);
+#[derive(Clone)]
+struct Broken {
+    flaw: Flaw,
+    run: Exploration,
+}
+
+impl Broken {
+    fn new(flaw: Flaw) -> Self {
+        Self { flaw, run: Exploration::default() }
+    }
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Flaw {
@@ -45,13 +56,13 @@ const FLAWS: [Flaw; 5] = [
     Flaw::NeverConfirmed,
 ];
 
-impl Broken {
-    fn matches(&self, expected: Percept, perceived: Percept) -> bool {
-        match (self.0, expected.sighting, perceived.sighting) {
-            (Flaw::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
+impl Flaw {
+    fn matches(self, expected: Percept, perceived: Percept) -> bool {
+        match (self, expected.sighting, perceived.sighting) {
+            (Self::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
                 expected.degree == perceived.degree
             }
-            (Flaw::OffByOne, Sighting::Pointing(door), _) => {
+            (Self::OffByOne, Sighting::Pointing(door), _) => {
                 let door = Door((door.0 + 1) % expected.degree);
                 Percept { sighting: Sighting::Pointing(door), ..expected } == perceived
             }
@@ -60,17 +71,17 @@ impl Broken {
     }
 }
 
-impl Broken {
-    fn try_path<'g>(
-        &self,
+impl Flaw {
+    fn try_path<W: World>(
+        self,
         exploration: &mut Exploration,
         hypothesis: Dart,
-        world: &mut GraphWorld<'g>,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<ValidationResult, MappingError<RefusedAction>> {
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<ValidationResult, MappingError<W::Error>> {
         exploration.set_out();
         let mut pose = hypothesis;
-        if matches!(self.0, Flaw::FirstPerceptSuffices) {
+        if matches!(self, Self::FirstPerceptSuffices) {
             exploration.arrive_at_marker(pose);
             return Ok(ValidationResult::Confirmed);
         }
@@ -78,71 +89,74 @@ impl Broken {
             let expected = exploration.map().expected(next);
             let perceived = exploration.take(door, world, observer)?;
             if !self.matches(expected, perceived) {
-                match self.0 {
-                    Flaw::NoRetrace => {}
+                match self {
+                    Self::NoRetrace => {}
                     _ => exploration.retrace(world, observer)?,
                 }
                 return Ok(ValidationResult::Rejected);
             }
             pose = next;
         }
-        if matches!(self.0, Flaw::NeverConfirmed) && pose != hypothesis {
+        if matches!(self, Self::NeverConfirmed) && pose != hypothesis {
             exploration.retrace(world, observer)?;
             return Ok(ValidationResult::Rejected);
         }
-        let believed = if matches!(self.0, Flaw::LeftBehind) { hypothesis } else { pose };
+        let believed = if matches!(self, Self::LeftBehind) { hypothesis } else { pose };
         exploration.arrive_at_marker(believed);
         Ok(ValidationResult::Confirmed)
     }
 }
 
-impl OpenChoices for Broken {
-    fn step<'g>(
-        &self,
-        exploration: &mut Exploration,
-        choice: MappingChoice,
-        world: &mut GraphWorld<'g>,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<RefusedAction>> {
-        step_with(
-            exploration,
-            choice,
-            world,
-            observer,
-            |exploration, hypothesis, world, observer| {
-                self.try_path(exploration, hypothesis, world, observer)
-            },
-        )
-    }
-}
-
-impl Algorithm for Broken {
+impl Explorer for Broken {
     type Marker = Directional;
-    type State = Exploration;
+    type Choice = MappingChoice;
 
-    fn name(&self) -> &'static str {
-        "Algorithm 1, broken"
+    fn marker(&self) -> Directional {
+        Directional
     }
 
-    fn order(&self) -> CostOrder {
-        Algorithm1.order()
+    fn limit_darts(&mut self, max_darts: usize) {
+        self.run.limit_darts(max_darts);
+    }
+
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.run.begin(world, observer)
+    }
+
+    fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
+        self.run.choose()
+    }
+
+    fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
+        self.run.choices()
+    }
+
+    fn step<W: World>(
+        &mut self,
+        choice: MappingChoice,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let flaw = self.flaw;
+        step_with(&mut self.run, choice, world, observer, |run, hypothesis, world, observer| {
+            flaw.try_path(run, hypothesis, world, observer)
+        })
+    }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        self.run.map_walk()
+    }
+
+    fn state_key(&self) -> Option<StateKey> {
+        self.run.state_key()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        Algorithm1.move_bound(edges, vertices)
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g>,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<RefusedAction>> {
-        exploration.begin(world, observer)?;
-        while let Some(choice) = exploration.choose(&mut Nearest) {
-            self.step(exploration, choice, world, observer)?;
-        }
-        Ok(())
+        self.run.move_bound(edges, vertices)
     }
 }
 
@@ -150,7 +164,7 @@ impl Algorithm for Broken {
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught = FLAWS.map(|flaw| of_algorithm(&Broken(flaw), Class::Multigraph, 4));
+    let caught = FLAWS.map(|flaw| smallest_failure(|| Broken::new(flaw), Class::Multigraph, 4));
     let expected = [
         (
             3,
@@ -205,11 +219,11 @@ fn every_way_of_a_broken_variant_is_judged() {
         for edges in 1..=4 {
             let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
             let _ = starts.for_each(&mut |found| {
-                let result = every_way(&Broken(flaw), found.graph, Dart(0), 100_000, &());
+                let result = every_way(Broken::new(flaw), found.graph, Dart(0), 100_000, &());
                 let kind = match result {
                     Ok(_) => "right",
-                    Err(check::Flaw::WrongMap) => "map",
-                    Err(check::Flaw::WrongPose { .. }) => "pose",
+                    Err(mapping::Flaw::WrongMap) => "map",
+                    Err(mapping::Flaw::WrongPose { .. }) => "pose",
                     Err(_) => "error",
                 };
                 *seen.entry((format!("{flaw:?}"), kind)).or_insert(0) += 1;

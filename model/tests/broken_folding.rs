@@ -8,19 +8,20 @@
 use std::{borrow::Cow, collections::VecDeque};
 
 use toposlam_model::{
-    check::{ExploredMap, Explorer, ExplorerWorld, Flaw, Shard, Sweep},
+    check::{RunChoices, Shard, Sweep},
     embedded_graph::Dart,
     enumerate::Class,
     folding::FoldedTrail,
+    mapping::{ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer},
     marker::Directional,
     percept::{Door, Percept, Sighting},
     world::World,
 };
 
-use crate::smallest_failure::{new, of_explorer};
+use crate::smallest_failure::{new, smallest_failure};
 
 /// An explorer whose map is its folded trail.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Folding {
     broken: Option<Broken>,
     trail: FoldedTrail,
@@ -51,8 +52,8 @@ const BROKEN: [Broken; 5] = [
 ];
 
 #[allow(clippy::needless_pass_by_value, reason = "errors are mapped by value")]
-fn gave_up(reason: impl ToString) -> Flaw {
-    Flaw::GaveUp(reason.to_string())
+fn gave_up<E>(reason: impl ToString) -> MappingError<E> {
+    MappingError::GaveUp(reason.to_string())
 }
 
 impl Folding {
@@ -60,9 +61,13 @@ impl Folding {
         Self { broken: Some(broken), ..Self::default() }
     }
 
-    fn take(&mut self, door: Door, world: &mut ExplorerWorld) -> Result<Percept, Flaw> {
-        world.traverse(door)?;
-        let mut percept = world.percept()?;
+    fn take<W: World>(
+        &mut self,
+        door: Door,
+        world: &mut W,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        world.traverse(door).map_err(MappingError::World)?;
+        let mut percept = world.percept().map_err(MappingError::World)?;
         if let Some(Broken::UnionForgotten) = self.broken {
             percept.sighting = Sighting::Nothing;
         }
@@ -143,12 +148,12 @@ impl Folding {
 
     /// Goes to a place, and takes a way from there that would lead to the marker if the place were entered
     /// by the dart of the hypothesis.
-    fn test(
+    fn test<W: World>(
         &mut self,
         place: Dart,
         hypothesis: Dart,
-        world: &mut ExplorerWorld,
-    ) -> Result<(), Flaw> {
+        world: &mut W,
+    ) -> Result<(), MappingError<W::Error>> {
         if let Some(Broken::NotTested) = self.broken {
             return self.trail.unite(place, hypothesis).map_err(gave_up);
         }
@@ -178,7 +183,7 @@ impl Folding {
     }
 
     /// Goes to the nearest open core dart, and takes it.
-    fn explore_further(&mut self, world: &mut ExplorerWorld) -> Result<(), Flaw> {
+    fn explore_further<W: World>(&mut self, world: &mut W) -> Result<(), MappingError<W::Error>> {
         let open =
             self.core_darts().into_iter().filter(|&dart| self.trail.opposite(dart).is_none());
         let ways = open.filter_map(|dart| Some((self.way(self.trail.pose(), dart, false)?, dart)));
@@ -193,24 +198,42 @@ impl Folding {
 
 impl Explorer for Folding {
     type Marker = Directional;
+    /// A place and a hypothesis to test; without one, the nearest open dart is taken.
+    type Choice = Option<(Dart, Dart)>;
 
     fn marker(&self) -> Directional {
         Directional
     }
 
-    fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-        self.trail = FoldedTrail::new(world.percept()?).map_err(gave_up)?;
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let percept = world.percept().map_err(MappingError::World)?;
+        self.trail = FoldedTrail::new(percept).map_err(gave_up)?;
         self.core = vec![self.trail.pose()];
-        loop {
-            let pending = self.pending();
-            if self.trail.open_count() == 0 {
-                break;
-            }
-            match pending.first() {
-                Some(&(place, hypothesis)) => self.test(place, hypothesis, world)?,
-                None => self.explore_further(world)?,
-            }
+        Ok(())
+    }
+
+    fn choose(&mut self) -> Result<Option<Self::Choice>, InvalidStep> {
+        let pending = self.pending();
+        Ok((self.trail.open_count() > 0).then(|| pending.first().copied()))
+    }
+
+    fn step<W: World>(
+        &mut self,
+        pending: Self::Choice,
+        world: &mut W,
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        match pending {
+            Some((place, hypothesis)) => self.test(place, hypothesis, world),
+            None => self.explore_further(world),
         }
+    }
+
+    fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
         let closed = self.trail.closed().ok_or_else(|| gave_up("nothing was seen"))?;
         let facing = closed.marker.ok_or_else(|| gave_up("the marker was not seen"))?;
         Ok(ExploredMap { graph: Cow::Owned(closed.graph), facing, pose: closed.pose })
@@ -225,7 +248,7 @@ impl Explorer for Folding {
 fn without_a_flaw_every_start_is_mapped_right() {
     for edges in 1..=5 {
         let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
-        let tally = sweep.run_explorers(Folding::default, &());
+        let tally = sweep.run(Folding::default, RunChoices::Default, &());
         assert_eq!((tally.failure, tally.mapped), (None, tally.starts));
         assert_eq!(tally.below_certificate, 0);
     }
@@ -233,7 +256,8 @@ fn without_a_flaw_every_start_is_mapped_right() {
 
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught = BROKEN.map(|broken| of_explorer(|| Folding::broken(broken), Class::Multigraph, 4));
+    let caught =
+        BROKEN.map(|broken| smallest_failure(|| Folding::broken(broken), Class::Multigraph, 4));
     let out_of_moves =
         |moves: u64| format!("after {moves} moves: no more than {moves} moves are allowed");
     let expected = [

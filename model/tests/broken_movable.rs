@@ -3,21 +3,24 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{Algorithm, CostOrder, MovableMarker},
     embedded_graph::{Dart, Vertex},
     enumerate::Class,
     mapping::{
-        MappingError, MarkerSearch, Nearest, Observer, ReachedPlace, ValidationResult,
-        validate_back_link, validate_place,
+        Explorer, InvalidStep, Journey, MappingError, MarkerSearch, Observer, ReachedPlace,
+        ValidationResult, validate_back_link, validate_place,
     },
     marker::Movable,
-    world::{GraphWorld, RefusedAction},
+    world::World,
 };
 
-use crate::smallest_failure::{more_darts_than, new, of_algorithm};
+use crate::smallest_failure::{more_darts_than, new, smallest_failure};
 
 /// The movable marker algorithm with something broken in one of its validations.
-struct Broken(Flaw);
+#[derive(Clone)]
+struct Broken {
+    flaw: Flaw,
+    run: MarkerSearch,
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Flaw {
@@ -53,22 +56,22 @@ const FLAWS: [Flaw; 9] = [
     Flaw::RejectedIsConfirmed,
 ];
 
-impl Broken {
-    fn validate_place<'g>(
-        &self,
+impl Flaw {
+    fn validate_place<W: World>(
+        self,
         search: &mut MarkerSearch,
-        world: &mut GraphWorld<'g, Movable>,
-        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<ReachedPlace, MappingError<RefusedAction>> {
-        match (self.0, search.candidates()) {
-            (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(ReachedPlace::New),
-            (Flaw::OnlyCandidateIsIt, &[only]) => {
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<ReachedPlace, MappingError<W::Error>> {
+        match (self, search.candidates()) {
+            (_, []) | (Self::EveryPlaceIsNew, _) => return Ok(ReachedPlace::New),
+            (Self::OnlyCandidateIsIt, &[only]) => {
                 search.drop_marker(world, observer)?;
                 search.go_back(world, observer)?;
                 search.look_for_marker(only, world, observer)?;
                 return Ok(ReachedPlace::Known(only));
             }
-            (Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed, _) => {
+            (Self::FirstDartIsIt | Self::NotCarried | Self::RejectedIsConfirmed, _) => {
                 return validate_place(search, world, observer);
             }
             _ => {}
@@ -81,39 +84,39 @@ impl Broken {
                 return Ok(ReachedPlace::Known(vertex));
             }
             last = candidate;
-            if matches!(self.0, Flaw::OneCandidateSearched) {
+            if matches!(self, Self::OneCandidateSearched) {
                 break;
             }
         }
-        match self.0 {
-            Flaw::NotFoundIsFound => return Ok(ReachedPlace::Known(last)),
-            Flaw::LeftBehind => return Ok(ReachedPlace::New),
+        match self {
+            Self::NotFoundIsFound => return Ok(ReachedPlace::Known(last)),
+            Self::LeftBehind => return Ok(ReachedPlace::New),
             _ => {}
         }
         search.return_to_marker(world, observer)?;
-        if !matches!(self.0, Flaw::MarkerLeftBehind) {
+        if !matches!(self, Self::MarkerLeftBehind) {
             search.pick_up(world, observer)?;
         }
         Ok(ReachedPlace::New)
     }
 
-    fn validate_back_link<'g>(
-        &self,
+    fn validate_back_link<W: World>(
+        self,
         edge: Dart,
         vertex: Vertex,
         search: &mut MarkerSearch,
-        world: &mut GraphWorld<'g, Movable>,
-        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<Dart, MappingError<RefusedAction>> {
-        if !matches!(self.0, Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed) {
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<Dart, MappingError<W::Error>> {
+        if !matches!(self, Self::FirstDartIsIt | Self::NotCarried | Self::RejectedIsConfirmed) {
             return validate_back_link(edge, vertex, search, world, observer);
         }
         search.pick_up(world, observer)?;
         if let Some(only) = search.list_back_links(vertex) {
             return Ok(only);
         }
-        if !matches!(self.0, Flaw::FirstDartIsIt) {
-            if matches!(self.0, Flaw::NotCarried) {
+        if !matches!(self, Self::FirstDartIsIt) {
+            if matches!(self, Self::NotCarried) {
                 search.drop_marker(world, observer)?;
             } else {
                 search.travel_to(search.map().vertex(edge), world, observer)?;
@@ -122,12 +125,11 @@ impl Broken {
             }
         }
         while let Some(dart) = search.next_back_link() {
-            if matches!(self.0, Flaw::FirstDartIsIt) {
+            if matches!(self, Self::FirstDartIsIt) {
                 return Ok(dart);
             }
             let verdict = search.try_back_link(dart, world, observer)?;
-            if verdict == ValidationResult::Confirmed || matches!(self.0, Flaw::RejectedIsConfirmed)
-            {
+            if verdict == ValidationResult::Confirmed || matches!(self, Self::RejectedIsConfirmed) {
                 search.pick_up(world, observer)?;
                 return Ok(dart);
             }
@@ -136,47 +138,63 @@ impl Broken {
     }
 }
 
-impl Algorithm for Broken {
+impl Explorer for Broken {
     type Marker = Movable;
-    type State = MarkerSearch;
+    type Choice = Dart;
 
-    fn name(&self) -> &'static str {
-        "The movable marker algorithm, broken"
+    fn marker(&self) -> Movable {
+        Movable
     }
 
-    fn order(&self) -> CostOrder {
-        MovableMarker.order()
+    fn limit_darts(&mut self, max_darts: usize) {
+        self.run.limit_darts(max_darts);
+    }
+
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.run.begin(world, observer)
+    }
+
+    fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
+        self.run.choose()
+    }
+
+    fn step<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let Self { flaw, run } = self;
+        run.carry_over(edge, world, observer)?;
+        match flaw.validate_place(run, world, observer)? {
+            ReachedPlace::Known(vertex) => {
+                let dart = flaw.validate_back_link(edge, vertex, run, world, observer)?;
+                run.close_loop(dart, world, observer)?;
+            }
+            ReachedPlace::New => run.add_place(world, observer)?,
+        }
+        Ok(())
+    }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        self.run.map_walk()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        MovableMarker.move_bound(edges, vertices)
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g, Movable>,
-        search: &mut MarkerSearch,
-        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<(), MappingError<RefusedAction>> {
-        search.begin(world, observer)?;
-        while let Some(edge) = search.choose_edge(&mut Nearest) {
-            search.carry_over(edge, world, observer)?;
-            match self.validate_place(search, world, observer)? {
-                ReachedPlace::Known(vertex) => {
-                    let dart = self.validate_back_link(edge, vertex, search, world, observer)?;
-                    search.close_loop(dart, world, observer)?;
-                }
-                ReachedPlace::New => search.add_place(world, observer)?,
-            }
-        }
-        Ok(())
+        self.run.move_bound(edges, vertices)
     }
 }
 
 // paper: movable.place, movable.new, movable.known, movable.back-link
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught = FLAWS.map(|flaw| of_algorithm(&Broken(flaw), Class::Simple, 7));
+    let caught = FLAWS.map(|flaw| {
+        smallest_failure(|| Broken { flaw, run: MarkerSearch::default() }, Class::Simple, 7)
+    });
     let cycle = |edges: u32| {
         let last = edges as usize;
         let mut words = vec![new(2); last];

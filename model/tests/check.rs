@@ -7,21 +7,27 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, AllChoices, ChoicesLimit, CostOrder, DEFAULT_STATE_BUDGET, Flaw,
-        OpenChoices, Shard, Sweep, Tally, check_worlds, every_way,
+        ChoicesLimit, DEFAULT_STATE_BUDGET, RunChoices, Shard, Sweep, Tally, check_worlds,
+        every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
-    mapping::{Exploration, InvalidStep, MappingChoice, MappingError, Observer, step},
+    mapping::{
+        Exploration, Explorer, Flaw, InvalidStep, Journey, MappingAlgorithm, MappingChoice,
+        MappingError, Observer, StateKey, explore,
+    },
     marker::Directional,
-    world::{GraphWorld, RefusedAction},
+    world::{GraphWorld, World},
 };
 
-const ALL_CHOICES: AllChoices<Algorithm1> =
-    AllChoices { algorithm: Algorithm1, budget: DEFAULT_STATE_BUDGET };
+const ALL_CHOICES: RunChoices = RunChoices::All { budget: DEFAULT_STATE_BUDGET };
 
-fn sweep(class: Class, edges: usize, algorithm: &impl Algorithm) -> Tally {
-    Sweep::new(class, edges, Shard::WHOLE).unwrap().run(algorithm, &())
+fn shards(class: Class, edges: usize) -> Sweep {
+    Sweep::new(class, edges, Shard::WHOLE).unwrap()
+}
+
+fn sweep(class: Class, edges: usize, choices: RunChoices) -> Tally {
+    shards(class, edges).run(Exploration::default, choices, &())
 }
 
 /// Starts: A000698. Moves: by the independent implementation in `tests/oracle` of the workspace.
@@ -30,7 +36,7 @@ fn sweep(class: Class, edges: usize, algorithm: &impl Algorithm) -> Tally {
 fn every_start_with_up_to_six_edges_is_mapped_right() {
     let rows: Vec<_> = (1..=6)
         .map(|edges| {
-            let tally = sweep(Class::Multigraph, edges, &Algorithm1);
+            let tally = sweep(Class::Multigraph, edges, RunChoices::Default);
             assert_eq!(tally.failure, None);
             assert_eq!(tally.mapped, tally.starts);
             (tally.worlds, tally.starts, tally.moves_total, tally.moves_max())
@@ -55,7 +61,7 @@ fn every_start_with_up_to_six_edges_is_mapped_right() {
 fn every_way_of_every_start_is_mapped_right() {
     let states: Vec<_> = (1..=4)
         .map(|edges| {
-            let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
+            let tally = sweep(Class::Multigraph, edges, ALL_CHOICES);
             assert_eq!(tally.failure, None);
             tally.states
         })
@@ -66,20 +72,23 @@ fn every_way_of_every_start_is_mapped_right() {
 #[test]
 fn a_start_with_more_states_than_the_budget_is_given_up() {
     let graph = cycle(5);
-    let all = every_way(&Algorithm1, &graph, Dart(0), 1000, &()).unwrap();
+    let all = every_way(Exploration::default(), &graph, Dart(0), 1000, &()).unwrap();
     assert_eq!(all.limit, None);
-    let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
+    let some = every_way(Exploration::default(), &graph, Dart(0), all.states - 1, &()).unwrap();
     assert_eq!(some.limit, Some(ChoicesLimit::States(all.states - 1)));
     assert!(some.states < all.states);
     let is_complete = |edges, budget| {
-        every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().limit.is_none()
+        every_way(Exploration::default(), &chain(edges), Dart(0), budget, &())
+            .unwrap()
+            .limit
+            .is_none()
     };
     // A long run without a choice.
     assert!(is_complete(1000, 3000));
     // A chain of one edge: line 4, line 8 without a hypothesis, line 4 again.
     assert!(is_complete(1, 3));
     assert!(!is_complete(1, 2));
-    let tally = check_worlds(&[graph], &AllChoices { budget: 3, ..ALL_CHOICES }, &());
+    let tally = check_worlds(&[graph], Exploration::default, RunChoices::All { budget: 3 }, &());
     assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 
@@ -96,7 +105,11 @@ fn an_interrupted_check_says_so() {
         }
     }
     let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
-    let tally = sweep.run(&Algorithm1, &AfterParts(AtomicUsize::new(0)));
+    let tally = MappingAlgorithm::Algorithm1.sweep(
+        &sweep,
+        RunChoices::Default,
+        &AfterParts(AtomicUsize::new(0)),
+    );
     assert!(tally.interrupted);
     assert!(tally.worlds < 870);
     assert_eq!(tally.mapped, tally.starts);
@@ -109,8 +122,10 @@ fn the_default_run_is_among_all_runs() {
     let _ = enumeration.for_each(&mut |found| {
         let mut exploration = Exploration::new(8);
         let mut world = GraphWorld::new(found.graph, Dart(0));
-        Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
-        let ways = every_way(&Algorithm1, found.graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+        explore(&mut exploration, &mut world, &mut ()).unwrap();
+        let ways =
+            every_way(Exploration::default(), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+                .unwrap();
         assert!(ways.costs.contains(exploration.moves()));
         starts += 1;
         std::ops::ControlFlow::Continue(())
@@ -123,7 +138,7 @@ fn the_shards_are_the_whole() {
     for class in Class::ALL {
         let of = |shard: &str| {
             let sweep = Sweep::new(class, 6, shard.parse().unwrap());
-            sweep.unwrap().run(&Algorithm1, &())
+            sweep.unwrap().run(Exploration::default, RunChoices::Default, &())
         };
         let whole = of("1/1");
         let mut shares = Tally::default();
@@ -165,7 +180,7 @@ fn chain(edges: usize) -> EmbeddedGraph {
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, facing);
-    Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
+    explore(&mut exploration, &mut world, &mut ()).unwrap();
     exploration.moves()
 }
 
@@ -184,7 +199,8 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
         let graph = chain(edges);
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
-        let ways = every_way(&Algorithm1, &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+        let ways =
+            every_way(Exploration::default(), &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
     }
 }
@@ -193,71 +209,92 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
 #[test]
 fn no_run_takes_fewer_moves_than_there_are_edges() {
     for edges in 1..=4 {
-        let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
+        let tally = sweep(Class::Multigraph, edges, ALL_CHOICES);
         assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
     }
 }
 
 /// Algorithm 1 with something altered.
-enum Altered {
+#[derive(Clone)]
+struct Altered {
+    altered: Alteration,
+    run: Exploration,
+}
+
+impl Altered {
+    fn new(altered: Alteration) -> Self {
+        Self { altered, run: Exploration::default() }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Alteration {
     /// It claims to need no more moves than these.
     Claimed(u64),
     /// The choices that it is given are off by one.
     OffByOne,
 }
 
-impl Algorithm for Altered {
+impl Explorer for Altered {
     type Marker = Directional;
-    type State = Exploration;
+    type Choice = MappingChoice;
 
-    fn name(&self) -> &'static str {
-        "Algorithm 1, altered"
+    fn marker(&self) -> Directional {
+        Directional
     }
 
-    fn order(&self) -> CostOrder {
-        Algorithm1.order()
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.run.begin(world, observer)
+    }
+
+    fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
+        self.run.choose()
+    }
+
+    /// The numbers of hypotheses are off by one, if that is altered.
+    fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
+        let by = usize::from(matches!(self.altered, Alteration::OffByOne));
+        let choices = self.run.choices()?.into_iter().map(|choice| match choice {
+            MappingChoice::Hypothesis(index) => MappingChoice::Hypothesis(index + by),
+            edge @ MappingChoice::Edge(_) => edge,
+        });
+        Ok(choices.collect())
+    }
+
+    fn step<W: World>(
+        &mut self,
+        choice: MappingChoice,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.run.step(choice, world, observer)
+    }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        self.run.map_walk()
+    }
+
+    fn state_key(&self) -> Option<StateKey> {
+        self.run.state_key()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        match self {
-            Self::Claimed(moves) => *moves,
-            Self::OffByOne => Algorithm1.move_bound(edges, vertices),
+        match self.altered {
+            Alteration::Claimed(moves) => moves,
+            Alteration::OffByOne => self.run.move_bound(edges, vertices),
         }
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g>,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<RefusedAction>> {
-        Algorithm1.run(world, exploration, observer)
-    }
-}
-
-impl OpenChoices for Altered {
-    fn step<'g>(
-        &self,
-        exploration: &mut Exploration,
-        choice: MappingChoice,
-        world: &mut GraphWorld<'g>,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<RefusedAction>> {
-        let choice = match (self, choice) {
-            (Self::OffByOne, MappingChoice::Hypothesis(index)) => {
-                MappingChoice::Hypothesis(index + 1)
-            }
-            (_, choice) => choice,
-        };
-        step(exploration, choice, world, observer)
     }
 }
 
 /// Choices that are not open are an error. They are not replaced by others, with less coverage.
 #[test]
 fn a_broken_enumeration_of_choices_fails() {
-    let choices = AllChoices { algorithm: Altered::OffByOne, budget: DEFAULT_STATE_BUDGET };
-    let tally = sweep(Class::Multigraph, 3, &choices);
+    let new = || Altered::new(Alteration::OffByOne);
+    let tally = shards(Class::Multigraph, 3).run(new, ALL_CHOICES, &());
     let flaw = tally.failure.unwrap().flaw;
     let invalid = InvalidStep::NoHypothesis { index: 1, left: 1 };
     assert_eq!(flaw, Flaw::Error(MappingError::InvalidStep(invalid)));
@@ -271,8 +308,8 @@ fn the_dearest_of_all_runs_is_held_against_the_bound() {
         let enumeration = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
         let _ = enumeration.for_each(&mut |found| {
             let with_bound = |bound| {
-                let claimed = Altered::Claimed(bound);
-                every_way(&claimed, found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+                let claimed = Altered::new(Alteration::Claimed(bound));
+                every_way(claimed, found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
             };
             let moves = with_bound(u64::MAX).unwrap().costs.max().unwrap();
             assert!(with_bound(moves).is_ok());
@@ -286,6 +323,7 @@ fn the_dearest_of_all_runs_is_held_against_the_bound() {
 
 #[test]
 fn the_bound_is_the_stated_one() {
-    assert_eq!(Algorithm1.move_bound(6, 6), 6 * 6 + 2 * 36 * 5);
-    assert_eq!(Algorithm1.move_bound(1, 1), 1);
+    let algorithm = MappingAlgorithm::Algorithm1;
+    assert_eq!(algorithm.move_bound(6, 6), 6 * 6 + 2 * 36 * 5);
+    assert_eq!(algorithm.move_bound(1, 1), 1);
 }

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
     mapping::{
-        Contradiction, Exploration, Journey, MappingError, MappingEvent, Nearest, map_world,
+        Contradiction, Exploration, Explorer, Journey, MappingError, MappingEvent, Nearest,
+        map_world,
     },
     percept::{Door, Percept},
     world::{GraphWorld, RefusedAction, World},

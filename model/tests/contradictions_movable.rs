@@ -6,20 +6,18 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, Vertex},
     mapping::{
-        Contradiction, InvalidStep, MappingError, MarkerSearch, Nearest, explore_edge,
+        Contradiction, Explorer, InvalidStep, MappingError, MarkerSearch, Nearest, explore_edge,
         map_with_movable_marker,
     },
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, RefusedAction, World},
+    world::{MarkerCarrier, RefusedAction, World},
 };
 
 use crate::scripted_world::{ScriptedWorld, plain};
 
 const BOUND: usize = 60;
 
-fn map(
-    world: &mut impl MovableMarkerWorld<Error = RefusedAction>,
-) -> Result<u64, MappingError<RefusedAction>> {
+fn map(world: &mut impl World<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
     let mut search = MarkerSearch::new(BOUND);
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
@@ -175,8 +173,12 @@ fn the_worlds_own_error_is_passed_on() {
         fn traverse(&mut self, _: Door) -> Result<(), RefusedAction> {
             Err(self.0)
         }
+        fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+            Some(self)
+        }
     }
-    impl MovableMarkerWorld for Closed {
+    impl MarkerCarrier for Closed {
+        type Error = RefusedAction;
         fn pick_up(&mut self) -> Result<(), RefusedAction> {
             if self.0 == RefusedAction::NothingToPickUp { Err(self.0) } else { Ok(()) }
         }
@@ -198,7 +200,7 @@ fn a_step_out_of_order_is_an_error() {
     let percepts = [lying(2), plain(1)];
     let mut world = ScriptedWorld::new(&percepts);
     let mut search = MarkerSearch::new(BOUND);
-    assert_eq!(search.choose_edge(&mut Nearest), None);
+    assert_eq!(search.choose().unwrap(), None);
     assert_eq!((search.next_candidate(), search.next_back_link()), (None, None));
     let unexplored = InvalidStep::NotUnexplored(Dart(0));
     assert_eq!(explore_edge(Dart(0), &mut search, &mut world, &mut ()), error(unexplored));

@@ -6,14 +6,12 @@
 use std::{fs, ops::RangeInclusive, path::Path};
 
 use toposlam_model::{
-    check::{
-        Algorithm, Algorithm1, DEFAULT_STATE_BUDGET, MappingAlgorithm, MovableMarker, RunState,
-        Shard, Sweep, Tally, every_way,
-    },
+    check::{DEFAULT_STATE_BUDGET, RunChoices, Shard, Sweep, Tally, every_way},
     embedded_graph::Dart,
     enumerate::Class,
     folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
+    mapping::{Exploration, MappingAlgorithm},
     world::GraphWorld,
 };
 
@@ -36,11 +34,11 @@ fn world(name: &str) -> NamedWorld {
     world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap()
 }
 
-fn moves<A: Algorithm>(algorithm: &A, world: &NamedWorld, facing: Dart) -> u64 {
-    let mut state = A::State::new(world.graph.dart_count());
-    let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
-    algorithm.run(&mut robot, &mut state, &mut ()).unwrap();
-    state.journey().moves()
+fn moves(algorithm: MappingAlgorithm, world: &NamedWorld, facing: Dart) -> u64 {
+    let mut robot = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
+    let (journey, mapped) = algorithm.map_world(&mut robot, world.graph.dart_count(), &mut ());
+    mapped.unwrap();
+    journey.moves()
 }
 
 /// A row for each start: its moves, the runs with free choices and the least and most moves among
@@ -52,10 +50,12 @@ fn rows(name: &str, paper: u64) -> Vec<String> {
         .darts()
         .map(|facing| {
             let ways =
-                every_way(&Algorithm1, &world.graph, facing, DEFAULT_STATE_BUDGET, &()).unwrap();
+                every_way(Exploration::default(), &world.graph, facing, DEFAULT_STATE_BUDGET, &())
+                    .unwrap();
             let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
             let among = if ways.costs.contains(paper) { "yes" } else { "no" };
-            let (start, moves) = (world.start_text(facing), moves(&Algorithm1, &world, facing));
+            let (start, moves) =
+                (world.start_text(facing), moves(MappingAlgorithm::Algorithm1, &world, facing));
             let runs = ways.runs;
             format!(
                 "| {name} | {start} | {moves} | {runs} | {least} to {most} | {paper}: {among} |"
@@ -85,7 +85,7 @@ fn own_starts() -> Vec<String> {
     let rows = worlds.map(|world| {
         let facing = world.start.unwrap();
         let certificate = certificate_length(&world.graph, facing);
-        let one = moves(&Algorithm1, &world, facing);
+        let one = moves(MappingAlgorithm::Algorithm1, &world, facing);
         format!(
             "| {} | {} | {} | {} | {certificate} | {one} | {:.2} | {} |",
             world.name,
@@ -93,7 +93,7 @@ fn own_starts() -> Vec<String> {
             world.graph.vertex_count(),
             world.graph.edge_count(),
             one as f64 / certificate as f64,
-            moves(&MovableMarker, &world, facing),
+            moves(MappingAlgorithm::MovableMarker, &world, facing),
         )
     });
     rows.collect()
@@ -109,7 +109,7 @@ fn the_table_of_both_costs_is_true() {
 
 fn tally(class: Class, edges: usize, algorithm: MappingAlgorithm) -> Tally {
     let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-    let tally = algorithm.sweep(&sweep, &());
+    let tally = algorithm.sweep(&sweep, RunChoices::Default, &());
     assert_eq!(tally.failure, None);
     assert_eq!((tally.mapped, tally.below_certificate), (tally.starts, 0));
     tally

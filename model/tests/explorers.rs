@@ -11,21 +11,21 @@ use depth_first::DepthFirst;
 use own_marker::Beacon;
 use toposlam_model::{
     ambiguity::AmbiguitySearch,
-    check::{
-        Algorithm1, AlgorithmExplorer, ExploredMap, Explorer, ExplorerWorld, Flaw, MovableMarker,
-        Shard, Sweep, Tally, judge_start,
-    },
+    check::{LazySweep, RunChoices, Shard, Sweep, Tally, judge_start},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::Candidate,
-    mapping::MappingError,
+    mapping::{
+        Exploration, ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer, explore,
+    },
     marker::{Directional, Marker, named},
     percept::Door,
     world::{RefusedAction, World},
 };
 
 fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
-    Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap().run_explorers(new, &())
+    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    sweep.run(new, RunChoices::Default, &())
 }
 
 #[test]
@@ -34,10 +34,14 @@ fn a_depth_first_explorer_maps_every_start_right() {
         let tally = sweep(edges, DepthFirst::default);
         assert_eq!(tally.failure, None);
         assert_eq!((tally.starts, tally.mapped), (starts, starts));
-        let algorithm = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
-        let algorithm = algorithm.run(&Algorithm1, &());
+        let algorithm = sweep(edges, Exploration::default);
         assert_eq!(tally.worlds, algorithm.worlds);
         assert!(tally.moves_total >= algorithm.moves_total, "it is wasteful");
+        // It runs in steps, so its runs share their beginnings.
+        let lazy = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+        let lazily = lazy.run(DepthFirst::default, &());
+        assert_eq!(lazily.tally, tally);
+        assert!(edges < 4 || lazily.moves_made < tally.moves_total);
     }
 }
 
@@ -51,19 +55,6 @@ fn a_map_is_made_from_the_far_ends_of_its_darts() {
     assert_eq!(of(&[vec![there], vec![None]], (0, 0)), Err(Flaw::Unfinished { unexplored: 1 }));
     assert!(matches!(of(&[vec![there], vec![Some((7, 0))]], (0, 0)), Err(Flaw::NoGraph(_))));
     assert!(matches!(of(&[vec![there], vec![here]], (1, 1)), Err(Flaw::NoSuchDart { .. })));
-}
-
-/// A sweep of explorers and one of algorithms judge an algorithm alike.
-#[test]
-fn an_algorithm_is_an_explorer() {
-    for edges in 1..=4 {
-        let starts = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
-        let explored = starts.run_explorers(|| AlgorithmExplorer::new(&Algorithm1), &());
-        assert_eq!(explored, starts.run(&Algorithm1, &()));
-        let starts = Sweep::new(Class::Simple, edges, Shard::WHOLE).unwrap();
-        let explored = starts.run_explorers(|| AlgorithmExplorer::new(&MovableMarker), &());
-        assert_eq!(explored, starts.run(&MovableMarker, &()));
-    }
 }
 
 /// What is wrong with an explorer.
@@ -87,18 +78,49 @@ enum Broken {
     GivesUp,
 }
 
+/// It runs straight through: all moves are made when it begins.
+#[derive(Clone)]
 struct BrokenExplorer(Broken, DepthFirst);
 
 impl Explorer for BrokenExplorer {
     type Marker = Directional;
+    type Choice = ();
 
     fn marker(&self) -> Directional {
         Directional
     }
 
-    fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-        let mut map = self.1.explore(world)?;
-        let darts = map.graph.dart_count() as u32;
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        explore(&mut self.1, world, observer)?;
+        match self.0 {
+            Broken::Endless => loop {
+                world.traverse(Door::BACK).map_err(MappingError::World)?;
+            },
+            Broken::NoDoor => world.traverse(Door(u32::MAX)).map_err(MappingError::World),
+            Broken::GivesUp => Err(MappingError::GaveUp("it is dark".to_owned())),
+            _ => Ok(()),
+        }
+    }
+
+    fn choose(&mut self) -> Result<Option<()>, InvalidStep> {
+        Ok(None)
+    }
+
+    fn step<W: World>(
+        &mut self,
+        (): (),
+        _: &mut W,
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        Ok(())
+    }
+
+    fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
+        let mut map = self.1.explored()?;
         match self.0 {
             Broken::Mirrored => {
                 let clockwise: Vec<_> =
@@ -117,12 +139,8 @@ impl Explorer for BrokenExplorer {
             Broken::OneMap => {
                 return ExploredMap::from_permutations(&[1, 0], &[0, 1], 0, 0);
             }
-            Broken::NoDart => map.pose = Dart(darts),
-            Broken::Endless => loop {
-                world.traverse(Door::BACK)?;
-            },
-            Broken::NoDoor => world.traverse(Door(darts))?,
-            Broken::GivesUp => return Err(Flaw::GaveUp("it is dark".to_owned())),
+            Broken::NoDart => map.pose = Dart(map.graph.dart_count() as u32),
+            Broken::Endless | Broken::NoDoor | Broken::GivesUp => {}
         }
         Ok(map)
     }
@@ -150,7 +168,7 @@ fn the_sweep_catches_broken_explorers() {
         (Broken::OneMap, 1, Flaw::WrongMap),
         (Broken::NoDart, 1, Flaw::NoSuchDart { dart: 2 }),
         (Broken::Endless, 1, refused(RefusedAction::OutOfMoves { bound: 10_000 })),
-        (Broken::GivesUp, 1, Flaw::GaveUp("it is dark".to_owned())),
+        (Broken::GivesUp, 1, Flaw::Error(MappingError::GaveUp("it is dark".to_owned()))),
     ] {
         let (edges, found, _) = first_flaw(broken);
         assert_eq!((edges, found), (smallest, flaw), "{broken:?}");
@@ -166,18 +184,38 @@ fn the_sweep_catches_broken_explorers() {
 /// An explorer claims a map and a bound; the moves are the world's count.
 #[test]
 fn the_world_counts_the_moves() {
+    #[derive(Clone)]
     struct Pacing(u64);
     impl Explorer for Pacing {
         type Marker = Directional;
+        type Choice = ();
 
         fn marker(&self) -> Directional {
             Directional
         }
 
-        fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-            for _ in 0..self.0 {
-                world.traverse(Door::BACK)?;
-            }
+        fn begin<W: World>(
+            &mut self,
+            world: &mut W,
+            _: &mut impl Observer<W>,
+        ) -> Result<(), MappingError<W::Error>> {
+            (0..self.0).try_for_each(|_| world.traverse(Door::BACK)).map_err(MappingError::World)
+        }
+
+        fn choose(&mut self) -> Result<Option<()>, InvalidStep> {
+            Ok(None)
+        }
+
+        fn step<W: World>(
+            &mut self,
+            (): (),
+            _: &mut W,
+            _: &mut impl Observer<W>,
+        ) -> Result<(), MappingError<W::Error>> {
+            Ok(())
+        }
+
+        fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
             let graph =
                 EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]);
             let pose = Dart((self.0 % 2) as u32);
@@ -190,10 +228,7 @@ fn the_world_counts_the_moves() {
     }
     let edge =
         EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]).unwrap();
-    let judge = |moves| {
-        let explorer: &mut dyn Explorer<Marker = Directional> = &mut Pacing(moves);
-        judge_start(explorer, &edge, Dart(0), &mut Candidate::default())
-    };
+    let judge = |moves| judge_start(&mut Pacing(moves), &edge, Dart(0), &mut Candidate::default());
     for moves in 0..=3 {
         assert_eq!(judge(moves), (moves, Ok(())));
     }

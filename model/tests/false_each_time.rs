@@ -6,7 +6,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     isomorphism::Bijection,
-    mapping::{DirectionalAlgorithm, FACING, MappingMethod, Relocate},
+    mapping::{FACING, MappingAlgorithm, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, World},
 };
@@ -38,7 +38,7 @@ fn mapped(
     falsify: impl FnMut(Dart, Percept, u64) -> Percept,
 ) -> Option<EmbeddedGraph> {
     let mut world = Falsified { world: GraphWorld::new(graph, FACING), falsify };
-    let method = MappingMethod::By { algorithm: DirectionalAlgorithm::Folding, audits: 2 };
+    let method = MappingMethod::By { algorithm: MappingAlgorithm::Folding, audits: 2 };
     let (run, mapped) = method.map_world(&mut world, 100, &[], &mut ());
     mapped.ok().and_then(|_| run.map().complete().cloned())
 }

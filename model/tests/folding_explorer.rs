@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 
 use proptest::prelude::*;
 use toposlam_model::{
-    check::{Folding, first_false_step},
+    check::first_false_step,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::ContradictionReason,
     mapping::{
-        Contradiction, FoldingEvent, FoldingExploration, Journey, MappingError, MappingEvent,
-        map_by_folding,
+        Contradiction, Explorer, FoldingEvent, FoldingExploration, Journey, MappingError,
+        MappingEvent, explore,
     },
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, World},
@@ -23,7 +23,7 @@ const BOUND: usize = 60;
 
 fn scripted(percepts: &[Percept]) -> Result<(), MappingError<RefusedAction>> {
     let mut exploration = FoldingExploration::new(BOUND);
-    map_by_folding(&mut ScriptedWorld::new(percepts), &mut exploration, &mut ())
+    explore(&mut exploration, &mut ScriptedWorld::new(percepts), &mut ())
 }
 
 fn contradiction(percepts: &[Percept]) -> Contradiction {
@@ -80,11 +80,10 @@ fn a_world_that_contradicts_itself_is_an_error_with_the_visits() {
 
 #[test]
 fn a_map_always_embeds_in_its_world() {
-    let mut exploration = FoldingExploration::default();
     for (class, edges) in [(Class::Multigraph, 4), (Class::Simple, 6), (Class::Corridor, 7)] {
         let starts = Enumeration::new(Each::Start, class, edges).unwrap();
         let mut visit = |found: EnumeratedGraph| {
-            let step = first_false_step(&Folding, found.graph, Dart(0), &mut exploration);
+            let step = first_false_step(FoldingExploration::default(), found.graph, Dart(0));
             assert_eq!(step, None, "{:?}", found.graph);
             ControlFlow::Continue(())
         };
@@ -117,7 +116,7 @@ fn the_story_of_a_loop_with_a_tail() {
     };
     let mut exploration = FoldingExploration::default();
     let mut world = GraphWorld::new(&graph, Dart(0));
-    map_by_folding(&mut world, &mut exploration, &mut listen).unwrap();
+    explore(&mut exploration, &mut world, &mut listen).unwrap();
     assert_eq!((moves, exploration.moves()), (6, 6));
     let added =
         |edge, vertex| MappingEvent::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
@@ -149,8 +148,8 @@ fn the_story_of_a_loop_with_a_tail() {
 /// Follows every way in which ties can be broken, and returns the number of runs.
 fn follow_every_tie(graph: &EmbeddedGraph, world: &GraphWorld, at: &FoldingExploration) -> u64 {
     let mut at = at.clone();
-    let steps = at.open_steps();
-    assert_eq!(at.next_step(), steps.first().copied());
+    let steps = at.choices().unwrap();
+    assert_eq!(at.choose().unwrap(), steps.first().copied());
     if steps.is_empty() {
         let map = at.map().complete().unwrap();
         let bijection =
@@ -161,7 +160,7 @@ fn follow_every_tie(graph: &EmbeddedGraph, world: &GraphWorld, at: &FoldingExplo
     }
     let follow = |step| {
         let (mut world, mut at) = (world.clone(), at.clone());
-        at.make_step(step, &mut world, &mut ()).unwrap();
+        at.step(step, &mut world, &mut ()).unwrap();
         follow_every_tie(graph, &world, &at)
     };
     steps.into_iter().map(follow).sum()
@@ -225,7 +224,7 @@ proptest! {
         let lie = if lie.1 < lie.0 { marked(lie.0, lie.1) } else { plain(lie.0) };
         let mut world = Lying { world: GraphWorld::new(&graph, Dart(0)), at: moves as u64, lie };
         let mut exploration = FoldingExploration::new(BOUND);
-        match map_by_folding(&mut world, &mut exploration, &mut ()) {
+        match explore(&mut exploration, &mut world, &mut ()) {
             Ok(()) => prop_assert!(exploration.is_complete()),
             Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => {}
             Err(error) => panic!("{error}"),

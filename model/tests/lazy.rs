@@ -13,31 +13,33 @@ use std::{
 
 use toposlam_model::{
     check::{
-        Algorithm1, Algorithm1Explorer, EnumeratedStart, ExploredMap, FinishedUnits, Flaw, Folding,
-        FoldingStepExplorer, LazyCheck, LazySweep, LazyTally, MappingAlgorithm, MovableMarker,
-        MovableMarkerExplorer, PieceCounts, Shard, StepExplorer, StepProgress, Stepwise, Sweep,
-        Tally,
+        EnumeratedStart, FinishedUnits, LazyCheck, LazySweep, LazyTally, PieceCounts, RunChoices,
+        Shard, Sweep, Tally,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
+    mapping::{
+        Exploration, ExploredMap, Explorer, Flaw, FoldingExploration, InvalidStep,
+        MappingAlgorithm, MappingError, MarkerSearch, Observer,
+    },
     marker::{DirectedEdge, Directional, Marker, TwoIdentical},
     percept::Door,
-    world::{MovableMarkerWorld, RefusedAction},
+    world::World,
 };
 
-fn lazy<E: StepExplorer + Default>(class: Class, edges: usize) -> LazyCheck {
+fn lazy<E: Explorer + Default>(class: Class, edges: usize) -> LazyCheck {
     LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(E::default, &())
 }
 
-fn stepwise<E: StepExplorer + Default>(class: Class, edges: usize) -> Tally {
+fn one_by_one<E: Explorer>(class: Class, edges: usize, new: impl Fn() -> E + Sync) -> Tally {
     let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-    sweep.run_explorers(|| Stepwise(E::default()), &())
+    sweep.run(new, RunChoices::Default, &())
 }
 
 /// A000698.
 #[test]
 fn the_tree_has_a_leaf_for_each_start() {
-    let leaves = |edges| lazy::<Algorithm1Explorer>(Class::Multigraph, edges).tally.starts;
+    let leaves = |edges| lazy::<Exploration>(Class::Multigraph, edges).tally.starts;
     assert_eq!([1, 2, 3, 4, 5, 6, 7].map(leaves), [2, 10, 74, 706, 8162, 110_410, 1_708_394]);
 }
 
@@ -46,17 +48,24 @@ fn both_checks_have_the_same_result() {
     for class in Class::ALL {
         let most = if class == Class::Multigraph { 6 } else { 8 };
         for edges in 1..=most {
-            let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-            let lazily = lazy::<Algorithm1Explorer>(class, edges).tally;
-            assert_eq!(lazily, sweep.run(&Algorithm1, &()), "{class} {edges}");
+            let lazily = lazy::<Exploration>(class, edges).tally;
+            assert_eq!(lazily, one_by_one(class, edges, Exploration::default), "{class} {edges}");
             if class == Class::Multigraph && edges == 6 {
                 continue;
             }
-            let lazily = lazy::<FoldingStepExplorer>(class, edges).tally;
-            assert_eq!(lazily, sweep.run(&Folding, &()), "{class} {edges}");
+            let lazily = lazy::<FoldingExploration>(class, edges).tally;
+            assert_eq!(
+                lazily,
+                one_by_one(class, edges, FoldingExploration::default),
+                "{class} {edges}"
+            );
             if class.is_simple() {
-                let lazily = lazy::<MovableMarkerExplorer>(class, edges).tally;
-                assert_eq!(lazily, sweep.run(&MovableMarker, &()), "{class} {edges}");
+                let lazily = lazy::<MarkerSearch>(class, edges).tally;
+                assert_eq!(
+                    lazily,
+                    one_by_one(class, edges, MarkerSearch::default),
+                    "{class} {edges}"
+                );
             }
         }
     }
@@ -66,9 +75,9 @@ fn both_checks_have_the_same_result() {
 #[test]
 fn both_checks_find_the_same_failures() {
     for edges in 1..=5 {
-        let lazily = lazy::<MovableMarkerExplorer>(Class::Multigraph, edges).tally;
+        let lazily = lazy::<MarkerSearch>(Class::Multigraph, edges).tally;
         assert!(edges == 1 || lazily.failed() > 0);
-        assert_eq!(lazily, stepwise::<MovableMarkerExplorer>(Class::Multigraph, edges));
+        assert_eq!(lazily, one_by_one(Class::Multigraph, edges, MarkerSearch::default));
     }
 }
 
@@ -81,35 +90,43 @@ struct Walker<M> {
     map: EmbeddedGraph,
 }
 
-impl<M: Marker + Clone> StepExplorer for Walker<M> {
+impl<M: Marker + Clone> Explorer for Walker<M> {
     type Marker = M;
+    type Choice = ();
 
     fn marker(&self) -> M {
         self.marker.clone()
     }
 
-    fn begin<W: MovableMarkerWorld<Error = RefusedAction>>(
+    fn begin<W: World>(
         &mut self,
         _: &mut W,
-        _: usize,
-    ) -> Result<StepProgress, Flaw> {
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
         self.moves = 0;
-        Ok(if self.most == 0 { StepProgress::Done } else { StepProgress::GoesOn })
+        Ok(())
     }
 
-    fn step<W: MovableMarkerWorld<Error = RefusedAction>>(
+    fn choose(&mut self) -> Result<Option<()>, InvalidStep> {
+        Ok((self.moves < self.most).then_some(()))
+    }
+
+    fn step<W: World>(
         &mut self,
+        (): (),
         world: &mut W,
-    ) -> Result<StepProgress, Flaw> {
-        let degree = world.percept()?.degree;
+        _: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let percept = world.percept().map_err(MappingError::World)?;
         // The sighting decides, too.
-        let marked = world.percept()?.sighting != toposlam_model::percept::Sighting::Nothing;
-        world.traverse(Door((1 + u32::from(marked)) % degree))?;
+        let marked = percept.sighting != toposlam_model::percept::Sighting::Nothing;
+        let door = Door((1 + u32::from(marked)) % percept.degree);
+        world.traverse(door).map_err(MappingError::World)?;
         self.moves += 1;
-        if degree == 5 {
-            return Err(Flaw::GaveUp("five doors".to_owned()));
+        if percept.degree == 5 {
+            return Err(MappingError::GaveUp("five doors".to_owned()));
         }
-        Ok(if self.moves >= self.most { StepProgress::Done } else { StepProgress::GoesOn })
+        Ok(())
     }
 
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
@@ -133,8 +150,7 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
         for edges in 1..=4 {
             for most in 0..=8 {
                 let new = || Walker { marker: marker.clone(), moves: 0, most, map: chain(edges) };
-                let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-                let one_by_one = sweep.run_explorers(|| Stepwise(new()), &());
+                let one_by_one = one_by_one(class, edges, new);
                 let lazily = LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
                 assert_eq!(lazily.tally, one_by_one, "{class} {edges} {most}");
                 // At most the one start that it guesses.
@@ -166,7 +182,7 @@ fn with_a_marker_on_an_edge_both_checks_have_the_same_result() {
 #[test]
 fn runs_share_their_beginnings() {
     let moves = |class, edges| {
-        let LazyCheck { tally, moves_made } = lazy::<Algorithm1Explorer>(class, edges);
+        let LazyCheck { tally, moves_made } = lazy::<Exploration>(class, edges);
         (tally.moves_total, moves_made)
     };
     assert_eq!(moves(Class::Multigraph, 7), (25_375_585, 13_166_198));
@@ -178,11 +194,11 @@ fn shard(text: &str) -> LazySweep {
 
 #[test]
 fn the_shards_are_the_whole() {
-    let whole = shard("1/1").run(Algorithm1Explorer::default, &());
+    let whole = shard("1/1").run(Exploration::default, &());
     let mut sum = Tally::default();
     let mut moves_made = 0;
     for part in ["1/3", "2/3", "3/3"] {
-        let found = shard(part).run(Algorithm1Explorer::default, &());
+        let found = shard(part).run(Exploration::default, &());
         assert!(found.tally.starts < 5000 && found.tally.worlds < 500, "{found:?}");
         moves_made += found.moves_made;
         sum.merge(found.tally);
@@ -228,7 +244,7 @@ fn the_pieces_in_any_order_are_the_whole() {
     ];
     for (algorithm, class, edges) in cases {
         let sweep = LazySweep::new(class, edges, Shard::WHOLE).unwrap();
-        let machines = [(); 3].map(|()| algorithm.pieces(&sweep, &()).unwrap());
+        let machines = [(); 3].map(|()| algorithm.pieces(&sweep, &()));
         let mut counts = [(); 3].map(|()| PieceCounts::default());
         let count = machines[0].count();
         assert!(count > machines[0].unit_count() && machines[0].unit_count() > 3);
@@ -247,12 +263,12 @@ fn the_pieces_in_any_order_are_the_whole() {
 #[test]
 fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
     let sweep = shard("1/1");
-    let whole = sweep.run(FoldingStepExplorer::default, &());
+    let whole = sweep.run(FoldingExploration::default, &());
     let mut known = BTreeMap::new();
     let mut rounds = 0;
     loop {
         let some = SomeUnits { known: known.clone(), left: 200.into(), ..SomeUnits::default() };
-        let found = sweep.resume(FoldingStepExplorer::default, &some, &some);
+        let found = sweep.resume(FoldingExploration::default, &some, &some);
         let new = some.new.into_inner().unwrap();
         assert!(new.keys().all(|unit| !known.contains_key(unit)));
         known.extend(new);
@@ -264,7 +280,7 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
         assert!(rounds < 100);
     }
     assert!(rounds > 1);
-    assert_eq!(known.len(), sweep.unit_count(FoldingStepExplorer::default));
+    assert_eq!(known.len(), sweep.unit_count(FoldingExploration::default));
 }
 
 /// Stops when it has been asked a number of times.
@@ -299,13 +315,13 @@ fn all_probes_together_are_the_whole_tree() {
     // The degree of the start vertex is drawn: 1 to 8.
     let mut found = (0, 0);
     for number in 0..8 {
-        let probe = algorithm.probe(&sweep, vec![number], &()).unwrap();
+        let probe = algorithm.probe(&sweep, vec![number], &());
         assert!((probe.weight - 8.0).abs() < 1e-9);
         found.0 += probe.tally.starts;
         found.1 += probe.tally.moves_total;
     }
     assert_eq!(found, (706, 4182));
-    let drawn = algorithm.probe(&sweep, vec![3, 1, 4, 1, 5], &()).unwrap();
+    let drawn = algorithm.probe(&sweep, vec![3, 1, 4, 1, 5], &());
     assert_eq!(drawn.tally.starts, 1);
 }
 

@@ -9,7 +9,7 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration},
     marker::{MARKERS, Marker, MarkerPart, named},
     percept::{Door, Sighting},
-    world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World},
+    world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World},
 };
 
 /// A junction `j` with, clockwise, a way `p` to a dead end `a`, a way `q` to a bend `b`, and a loop.
@@ -111,7 +111,7 @@ fn a_movable_marker_is_picked_up_where_it_lies_and_dropped_where_the_robot_is() 
     let graph = junction();
     let mut world = GraphWorld::with_marker(&graph, named("movable").unwrap(), Dart(2));
     let marked = |world: &mut GraphWorld<'_, _>| world.percept().unwrap().sighting;
-    assert_eq!(MovableMarkerWorld::drop(&mut world), Err(RefusedAction::NothingToDrop));
+    assert_eq!(MarkerCarrier::drop(&mut world), Err(RefusedAction::NothingToDrop));
     assert_eq!(world.actions().last(), Some(Action::PickUp));
     world.pick_up().unwrap();
     assert_eq!((marked(&mut world), world.carries()), (Sighting::Nothing, true));

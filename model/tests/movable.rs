@@ -7,12 +7,13 @@ use std::ops::ControlFlow;
 
 use toposlam_model::{
     ambiguity::Comparison,
-    check::{Algorithm, Flaw, MovableMarker, Shard, Sweep, judge},
+    check::{RunChoices, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, code, isomorphism},
     mapping::{
-        Journey, MappingEvent, MarkerSearch, MovableEvent, Nearest, map_with_movable_marker,
+        Flaw, Journey, MappingAlgorithm, MappingEvent, MarkerSearch, MovableEvent, Nearest,
+        explore, map_with_movable_marker,
     },
     marker::Movable,
     percept::{Percept, Sighting},
@@ -23,7 +24,7 @@ use toposlam_model::{
 fn rows(class: Class, up_to: usize) -> Vec<(u64, u64, u64)> {
     let rows = (1..=up_to).map(|edges| {
         let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-        let tally = sweep.run(&MovableMarker, &());
+        let tally = sweep.run(MarkerSearch::default, RunChoices::Default, &());
         assert_eq!(tally.failure, None);
         assert_eq!(tally.mapped, tally.starts);
         (tally.starts, tally.moves_total, tally.moves_max())
@@ -65,7 +66,7 @@ fn every_start_of_every_planar_world_with_up_to_eight_edges_is_mapped_right() {
 fn run(graph: &EmbeddedGraph, facing: Dart) -> (MarkerSearch, GraphWorld<'_, Movable>) {
     let mut search = MarkerSearch::new(graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
-    MovableMarker.run(&mut world, &mut search, &mut ()).unwrap();
+    explore(&mut search, &mut world, &mut ()).unwrap();
     (search, world)
 }
 
@@ -124,16 +125,17 @@ fn a_cycle_of_m_edges_costs_m_squared_plus_m_minus_6() {
 
 #[test]
 fn the_bound_is_the_stated_one() {
-    assert_eq!(MovableMarker.move_bound(1, 2), 3);
-    assert_eq!(MovableMarker.move_bound(3, 3), 9 + (18 - 7));
-    assert_eq!(MovableMarker.move_bound(6, 4), 18 + 3 * (24 - 7));
+    let bound = |m, n| MappingAlgorithm::MovableMarker.move_bound(m, n);
+    assert_eq!(bound(1, 2), 3);
+    assert_eq!(bound(3, 3), 9 + (18 - 7));
+    assert_eq!(bound(6, 4), 18 + 3 * (24 - 7));
     for n in 2..50 {
         for m in n - 1..=n * (n - 1) / 2 {
-            assert!(MovableMarker.move_bound(m, n) < 6 * (m * n) as u64);
+            assert!(bound(m, n) < 6 * (m * n) as u64);
         }
     }
     // A loop is no simple world, and takes no panic either.
-    assert_eq!(MovableMarker.move_bound(1, 1), 0);
+    assert_eq!(bound(1, 1), 0);
 }
 
 /// The tetrahedron: every vertex has three doors.
@@ -233,10 +235,10 @@ fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
     let mut search = MarkerSearch::new(10 * graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
     let mut candidate = Candidate::default();
-    let run = MovableMarker.run(&mut world, &mut search, &mut ());
+    let run = explore(&mut search, &mut world, &mut ());
     let judged = run
         .map_err(Flaw::from)
-        .and_then(|()| judge(&MovableMarker, &search, facing, &world, &mut candidate).map(|_| ()));
+        .and_then(|()| judge(&search, facing, &world, &mut candidate).map(|_| ()));
     match judged {
         Ok(()) => End::Right,
         Err(Flaw::WrongMap) => End::WrongMap,

@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, RefusedAction, World},
+    world::{MarkerCarrier, RefusedAction, World},
 };
 
 /// A percept without a marker.
@@ -39,9 +39,15 @@ impl World for ScriptedWorld<'_> {
         self.moves += 1;
         Ok(())
     }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+        Some(self)
+    }
 }
 
-impl MovableMarkerWorld for ScriptedWorld<'_> {
+impl MarkerCarrier for ScriptedWorld<'_> {
+    type Error = RefusedAction;
+
     fn pick_up(&mut self) -> Result<(), RefusedAction> {
         Ok(())
     }

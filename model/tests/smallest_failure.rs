@@ -1,31 +1,24 @@
 //! The smallest start on which a broken variant of an algorithm fails.
 
 use toposlam_model::{
-    check::{Algorithm, Explorer, FailedStart, Shard, Sweep, Tally},
+    check::{FailedStart, RunChoices, Shard, Sweep},
     enumerate::Class,
     isomorphism::code,
+    mapping::Explorer,
 };
 
 /// The edges of a start, its code, and what went wrong there.
 pub(super) type Failure = (usize, Vec<u32>, String);
 
-/// The first start of a class with up to so many edges on which an algorithm fails.
-pub(super) fn of_algorithm(algorithm: &impl Algorithm, class: Class, most: usize) -> Failure {
-    first(class, most, |sweep| sweep.run(algorithm, &()))
-}
-
 /// The first start of a class with up to so many edges on which an explorer fails.
-pub(super) fn of_explorer<E: Explorer>(
+pub(super) fn smallest_failure<E: Explorer>(
     new: impl Fn() -> E + Sync,
     class: Class,
     most: usize,
 ) -> Failure {
-    first(class, most, |sweep| sweep.run_explorers(&new, &()))
-}
-
-fn first(class: Class, most: usize, check: impl Fn(Sweep) -> Tally) -> Failure {
     let failure = (1..=most).find_map(|edges| {
-        let tally = check(Sweep::new(class, edges, Shard::WHOLE).unwrap());
+        let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+        let tally = sweep.run(&new, RunChoices::Default, &());
         assert_eq!(tally.failed() > 0, tally.failure.is_some());
         let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
         let words = code(&graph, facing).words().to_vec();

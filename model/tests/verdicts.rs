@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, Flaw, Shard, Sweep, Tally, judge},
+    check::{RunChoices, Shard, Sweep, Tally, judge},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     isomorphism::{Candidate, code},
     mapping::{
-        DEFAULT_DART_BOUND, Exploration, InvalidStep, MappingChoice, MappingError, Nearest,
-        map_world, step,
+        DEFAULT_DART_BOUND, Exploration, Explorer, Flaw, InvalidStep, MappingChoice, MappingError,
+        Nearest, map_world, step,
     },
     percept::Door,
     world::{GraphWorld, World},
@@ -27,7 +27,7 @@ fn mapped(graph: &EmbeddedGraph) -> (Exploration, GraphWorld<'_>) {
 }
 
 fn verdict(exploration: &Exploration, world: &GraphWorld) -> Option<Flaw> {
-    judge(&Algorithm1, exploration, Dart(0), world, &mut Candidate::default()).err()
+    judge(exploration, Dart(0), world, &mut Candidate::default()).err()
 }
 
 // paper: alg1.isomorphic, alg1.located, cost.bound
@@ -43,7 +43,7 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
     moved.traverse(Door::BACK).unwrap();
     assert!(matches!(verdict(&exploration, &moved), Some(Flaw::WrongPose { .. })));
     // Back and forth, until it is one move too many.
-    let bound = Algorithm1.move_bound(3, 2);
+    let bound = exploration.move_bound(3, 2);
     while exploration.moves() <= bound {
         assert_eq!(verdict(&exploration, &world), None);
         for _ in 0..2 {
@@ -79,7 +79,7 @@ fn a_step_out_of_order_is_an_error() {
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
     let mut fresh = Exploration::new(6);
-    assert_eq!(fresh.choose(&mut Nearest), None);
+    assert_eq!(fresh.choose().unwrap(), None);
     let unexplored = InvalidStep::NotUnexplored(Dart(0));
     assert_eq!(step(&mut fresh, edge, &mut world, &mut ()), error(unexplored));
     assert_eq!(step(&mut fresh, hypothesis, &mut world, &mut ()), error(no_hypothesis));
@@ -171,7 +171,7 @@ fn the_tally_keeps_the_extremes_of_small_worlds() {
     let new = |degree: u32| u32::MAX - degree;
     for (edges, dearest) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
         let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
-        let tally = sweep.unwrap().run(&Algorithm1, &());
+        let tally = sweep.unwrap().run(Exploration::default, RunChoices::Default, &());
         assert_eq!(tally.dearest, Some(dearest));
         if edges == 3 {
             let worst = tally.worst.clone().unwrap();

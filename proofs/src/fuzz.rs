@@ -6,7 +6,7 @@
 use std::fmt;
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, judge},
+    check::judge,
     embedded_graph::{Dart, EmbeddedGraph},
     format::{
         named_world::NamedWorld,
@@ -14,7 +14,7 @@ use toposlam_model::{
         world_file,
     },
     isomorphism::Candidate,
-    mapping::{Exploration, Journey, MappingEvent, map_world},
+    mapping::{Exploration, Explorer, Journey, MappingEvent, map_world},
     world::GraphWorld,
 };
 
@@ -100,7 +100,7 @@ pub fn mapping(bytes: &[u8]) {
     let facing = Dart(0);
     let mut world = GraphWorld::new(&graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
-    let bound = Algorithm1.move_bound(graph.edge_count(), graph.vertex_count());
+    let bound = exploration.move_bound(graph.edge_count(), graph.vertex_count());
     // A run that would not end fails too.
     let mut watch = |_: &mut _, journey: &Journey, _: MappingEvent| {
         assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
@@ -108,7 +108,7 @@ pub fn mapping(bytes: &[u8]) {
     let mut open = DrawnChoices(&mut choose);
     let flaw = match map_world(&mut world, &mut open, &mut exploration, &mut watch) {
         Err(error) => Some(error.into()),
-        Ok(()) => judge(&Algorithm1, &exploration, facing, &world, &mut Candidate::default()).err(),
+        Ok(()) => judge(&exploration, facing, &world, &mut Candidate::default()).err(),
     };
     assert!(flaw.is_none(), "{flaw:?} in {graph:?}");
 }

@@ -15,10 +15,11 @@ use std::{
 
 use stateright::{Checker, Model, Property};
 use toposlam_model::{
-    check::{Algorithm1, DEFAULT_STATE_BUDGET, every_way},
+    check::{DEFAULT_STATE_BUDGET, every_way},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     isomorphism::Bijection,
+    mapping::Exploration,
     percept::{Door, Percept, Sighting},
 };
 
@@ -354,7 +355,8 @@ fn stateright_finds_the_states_of_every_way_and_no_wrong_map() {
         let mut total = 0;
         for world in starts {
             let facing = Dart(0);
-            let every_way = every_way(&Algorithm1, &world, facing, DEFAULT_STATE_BUDGET, &());
+            let every_way =
+                every_way(Exploration::default(), &world, facing, DEFAULT_STATE_BUDGET, &());
             let mapping = Mapping { world, facing, validation: Validation::Path };
             let checker = mapping.checker().threads(1).spawn_dfs().join();
             checker.assert_properties();

@@ -1,7 +1,7 @@
 //! A log, checked against the specification.
 
 use pyo3::{prelude::*, types::PyDict};
-use toposlam_model::{embedded_graph::Dart, enumerate::Class, folding::{SmallestWorld, WorldSearch}, format::named_world::NamedWorld, mapping::DirectionalAlgorithm, marker::{Marker, NoMarker}, percept::{Percept as ModelPercept, Sighting}, trace::{AlgorithmCase, anywhere}, world::{GraphWorld, State}};
+use toposlam_model::{embedded_graph::Dart, enumerate::Class, folding::{SmallestWorld, WorldSearch}, format::named_world::NamedWorld, mapping::MappingAlgorithm, marker::{Marker, NoMarker}, percept::{Percept as ModelPercept, Sighting}, trace::{AlgorithmCase, anywhere}, world::{GraphWorld, State}};
 use toposlam_conform::{CheckedKind, ConformConfig, Evidence, ExtractConfig, ExtractError, ExtractedRun, Judgement, KnownWorld, LogHead, Quirks, RESUMED, RunDriver, assume_marker, extract, judge, marker_at_start};
 use toposlam_logs::topic_map::TopicMap;
 use toposlam_robot::run_settings::RecordedSettings;
@@ -66,7 +66,7 @@ pub(crate) fn conform<'py>(
             ))
         })?,
         name => {
-            let algorithm: DirectionalAlgorithm = name.parse().map_err(|cause| unknown(&cause))?;
+            let algorithm: MappingAlgorithm = name.parse().map_err(|cause| unknown(&cause))?;
             head.settings(Some(algorithm)).map_err(|head| unknown(&head))?
         }
     };

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use thiserror::Error;
 use toposlam_draw::story::{Story, StoryDetail, head};
-use toposlam_model::{check::{Algorithm, Algorithm1, Folding, MovableMarker, RunState, judge}, embedded_graph::Dart, enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, Journey, MappingError, MappingEvent, Nearest, Observer, map_by_folding, map_with_movable_marker, map_world}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MovableMarkerWorld, RefusedAction, World}};
+use toposlam_model::{enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, Journey, MappingAlgorithm, MappingError, MappingEvent, Observer}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World}};
 
 use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, world::CoreWorld};
 
@@ -19,8 +19,8 @@ pub(crate) struct Explored {
 }
 
 /// A world whose robot can be stopped.
-struct StoppableWorld<'g, 'w, M> {
-    world: GraphWorld<'g, M>,
+struct StoppableWorld<'g, 'w> {
+    world: GraphWorld<'g, &'static dyn Marker>,
     watcher: &'w Watcher,
 }
 
@@ -33,7 +33,7 @@ enum Halt {
     RefusedAction(#[from] RefusedAction),
 }
 
-impl<M: Marker> World for StoppableWorld<'_, '_, M> {
+impl World for StoppableWorld<'_, '_> {
     type Error = Halt;
 
     fn percept(&mut self) -> Result<Percept, Halt> {
@@ -46,15 +46,21 @@ impl<M: Marker> World for StoppableWorld<'_, '_, M> {
         }
         Ok(self.world.traverse(door)?)
     }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = Halt>> {
+        Some(self)
+    }
 }
 
-impl<M: Marker> MovableMarkerWorld for StoppableWorld<'_, '_, M> {
+impl MarkerCarrier for StoppableWorld<'_, '_> {
+    type Error = Halt;
+
     fn pick_up(&mut self) -> Result<(), Halt> {
         Ok(self.world.pick_up()?)
     }
 
     fn drop(&mut self) -> Result<(), Halt> {
-        Ok(MovableMarkerWorld::drop(&mut self.world)?)
+        Ok(MarkerCarrier::drop(&mut self.world)?)
     }
 }
 
@@ -80,55 +86,31 @@ pub(crate) fn explore(
     algorithm: &str,
     max_darts: usize,
 ) -> PyResult<Explored> {
-    let start = (&world.0, world.dart(py, facing)?);
-    match algorithm {
-        "algorithm1" => run(py, &Algorithm1, start, max_darts, |world, state, observer| {
-            map_world(world, &mut Nearest, state, observer)
-        }),
-        "folding" => run(py, &Folding, start, max_darts, |world, state, observer| {
-            map_by_folding(world, state, observer)
-        }),
-        "movable" if !world.0.graph.is_simple() => {
-            let text =
-                "the movable marker algorithm needs a world without loops and parallel edges";
-            Err(error(py, "NotSimpleError", text))
-        }
-        "movable" => run(py, &MovableMarker, start, max_darts, |world, state, observer| {
-            map_with_movable_marker(world, &mut Nearest, state, observer)
-        }),
-        _ => {
-            let text = format!(
-                "`{algorithm}` is not an algorithm; the algorithms are algorithm1, folding and movable"
-            );
-            Err(error(py, "UnknownAlgorithmError", text))
-        }
+    let (world, facing) = (&world.0, world.dart(py, facing)?);
+    let Some(&algorithm) = MappingAlgorithm::ALL.iter().find(|known| known.name() == algorithm)
+    else {
+        let text = format!(
+            "`{algorithm}` is not an algorithm; the algorithms are algorithm1, folding and movable"
+        );
+        return Err(error(py, "UnknownAlgorithmError", text));
+    };
+    if algorithm == MappingAlgorithm::MovableMarker && !world.graph.is_simple() {
+        let text = "the movable marker algorithm needs a world without loops and parallel edges";
+        return Err(error(py, "NotSimpleError", text));
     }
-}
-
-fn run<A: Algorithm>(
-    py: Python<'_>,
-    algorithm: &A,
-    (world, facing): (&NamedWorld, Dart),
-    max_darts: usize,
-    map: impl Fn(
-        &mut StoppableWorld<A::Marker>,
-        &mut A::State,
-        &mut Recorder,
-    ) -> Result<(), MappingError<Halt>>
-    + Sync,
-) -> PyResult<Explored> {
     let (mapped, journey, recorder) = run_watched(py, None, None, |watcher| {
-        let mut state = A::State::new(max_darts);
-        let marked = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
+        let marked = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
         let mut robot = StoppableWorld { world: marked, watcher };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = Story::with_head(Vec::new(), &head(world, facing), detail);
         let mut recorder = Recorder { story, actions: Vec::new() };
-        let mapped = map(&mut robot, &mut state, &mut recorder).map(|()| {
+        let (journey, mapped) = algorithm.map_world(&mut robot, max_darts, &mut recorder);
+        let judged = mapped.map(|()| {
+            let (run, truly) = ((&journey, journey.robot()), robot.world.pose());
             let mut candidate = Candidate::default();
-            judge(algorithm, &state, facing, &robot.world, &mut candidate).map(|_| ())
+            algorithm.judge(run, (&world.graph, facing), truly, &mut candidate).map(|_| ())
         });
-        (mapped, state.journey().clone(), recorder)
+        (judged, journey, recorder)
     })?;
     match mapped {
         Ok(Ok(())) => {}

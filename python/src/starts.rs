@@ -4,12 +4,13 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use pyo3::prelude::*;
 use toposlam_model::{
-    check::{ExploredMap, Flaw, judge_map},
+    check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
     folding::certificate_length,
     format::named_world::NamedWorld,
     isomorphism::{Bijection, Candidate, isomorphism},
+    mapping::{ExploredMap, Flaw},
 };
 
 use crate::{

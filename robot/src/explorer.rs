@@ -15,7 +15,7 @@ use toposlam_model::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
         scene::Scene,
     },
-    mapping::{ArrivalMeasurement, Journey, MappedWorld, MappingError, MappingEvent, MappingRun},
+    mapping::{ArrivalMeasurement, Journey, MappedWorld, MappingError, MappingEvent},
     percept::{Door, Percept},
     world::World,
 };
@@ -156,7 +156,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     pub fn map(
         &mut self,
         settings: &RunSettings,
-    ) -> (MappingRun, Result<MappedWorld, MappingError<ExplorerError>>) {
+    ) -> (Journey, Result<MappedWorld, MappingError<ExplorerError>>) {
         let RunSettings { method, dart_bound, budget, ref earlier } = *settings;
         self.allowance = Allowance::new(budget);
         if method.recovers() {

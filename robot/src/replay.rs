@@ -13,7 +13,7 @@ use toposlam_logs::{
 };
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
-    mapping::{MappingError, MappingRun},
+    mapping::{Journey, MappingError},
     percept::{Door, Percept},
 };
 use toposlam_vision::sensing::{Sensor, WrongSize};
@@ -56,7 +56,7 @@ impl fmt::Display for Agreement {
 #[derive(Debug)]
 pub struct Replay {
     /// The map, and the robot's pose in it.
-    pub mapping: MappingRun,
+    pub mapping: Journey,
     /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// How it compares with the recorded run.
@@ -169,7 +169,7 @@ pub fn replay(
         return Err(failure);
     }
     let mut comparison = robot.recorded.compare(&results.0);
-    let map = MapRecord::of(mapping.journey());
+    let map = MapRecord::of(&mapping);
     // A map that may not grow any more is not compared with the recorded one.
     let ended = !matches!(error, Some(MappingError::Bound { .. }));
     let recorded = robot.recorded.map.filter(|_| ended);

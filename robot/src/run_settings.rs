@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use toposlam_model::mapping::{DirectionalAlgorithm, EarlierWalk, MappingMethod};
+use toposlam_model::mapping::{EarlierWalk, MappingAlgorithm, MappingMethod};
 
 use crate::{budget::RunBudget, measured_hallway::log_noise};
 
@@ -88,7 +88,7 @@ impl fmt::Display for RecordedSettings {
 impl RecordedSettings {
     /// The same for another algorithm: with its audits, without recovery if it cannot recover.
     #[must_use]
-    pub fn with_algorithm(self, algorithm: DirectionalAlgorithm) -> Self {
+    pub fn with_algorithm(self, algorithm: MappingAlgorithm) -> Self {
         if self.method.algorithm() == algorithm {
             return self;
         }
@@ -163,8 +163,8 @@ mod tests {
     fn another_algorithm_has_the_same_audits_and_limits() {
         let recorded = "folding recovering audits=2 max-moves=25 max-darts=12 resumed";
         let recorded = RecordedSettings::from_head(recorded).unwrap();
-        assert_eq!(recorded.with_algorithm(DirectionalAlgorithm::Folding), recorded);
-        let other = recorded.with_algorithm(DirectionalAlgorithm::Algorithm1);
+        assert_eq!(recorded.with_algorithm(MappingAlgorithm::Folding), recorded);
+        let other = recorded.with_algorithm(MappingAlgorithm::Algorithm1);
         assert_eq!(other.to_string(), "algorithm1 audits=2 max-moves=25 max-darts=12 resumed");
     }
 }

@@ -9,7 +9,7 @@ use toposlam_logs::record::NoSensor;
 use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
-    mapping::DirectionalAlgorithm::{self, Algorithm1, Folding},
+    mapping::MappingAlgorithm::{self, Algorithm1, Folding},
 };
 use toposlam_robot::{recording::Recording, run_settings::RunSettings};
 use toposlam_simulator::{
@@ -47,7 +47,7 @@ fn right(run: &Run) {
 
 /// A whole run without images.
 #[divan::bench(consts = [25, 100], args = [Algorithm1, Folding], sample_count = 10)]
-fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: DirectionalAlgorithm) {
+fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: MappingAlgorithm) {
     let (plan, facing) = random(JUNCTIONS);
     bencher.bench(|| {
         let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();

@@ -5,12 +5,11 @@
 //! cuts all its hallways.
 
 use toposlam_model::{
-    check::Flaw,
     driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     isomorphism::Bijection,
-    mapping::FACING,
+    mapping::{FACING, Flaw},
 };
 use toposlam_robot::superscout::{CLEARANCE, RADIUS};
 

@@ -1,16 +1,13 @@
 //! A whole run: a simulated robot maps its building, and the result is checked against the specification.
 //! Section 6.
 
-use std::borrow::Cow;
-
 use thiserror::Error;
 use toposlam_logs::record::{FrameSensor, RunObserver};
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, ExploredMap, Flaw, Folding, judge_map},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     isomorphism::Candidate,
-    mapping::{DirectionalAlgorithm, FACING, MappedWorld, MappingError, MappingMethod, MappingRun},
+    mapping::{Flaw, Journey, MappedWorld, MappingAlgorithm, MappingError, MappingMethod},
     world::GraphWorld,
 };
 use toposlam_robot::{
@@ -34,7 +31,7 @@ pub struct Run<'p> {
     /// How the robot mapped.
     pub method: MappingMethod,
     /// The state of the algorithm: its map, and the robot's pose in it.
-    pub mapping: MappingRun,
+    pub mapping: Journey,
     /// What the complete map took; `None` if the run ended early.
     pub mapped: Option<MappedWorld>,
     /// Why it ended early, if it did.
@@ -152,7 +149,10 @@ pub fn run<'p>(
             };
             map.map_or(Err(Flaw::WrongMap), judge).err()
         } else {
-            flaw(plan, facing, &mapping, mapped.pose, monitor.reached())
+            // A robot at no junction is not at its pose in the map.
+            let truly = monitor.reached().unwrap_or(Dart(u32::MAX));
+            let (run, mut candidate) = ((&mapping, mapped.pose), Candidate::default());
+            method.algorithm().judge(run, (plan.graph(), facing), truly, &mut candidate).err()
         }
     });
     let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
@@ -172,45 +172,17 @@ pub fn run<'p>(
     }
 }
 
-/// What is wrong with the map, the pose or the number of moves.
-fn flaw(
-    plan: &FloorPlan,
-    facing: Dart,
-    mapping: &MappingRun,
-    pose: Dart,
-    reached: Option<Dart>,
-) -> Option<Flaw> {
-    let Some(map) = mapping.map().complete() else {
-        return Some(Flaw::Unfinished { unexplored: mapping.map().unexplored_count() });
-    };
-    let map = ExploredMap { graph: Cow::Borrowed(map), facing: FACING, pose };
-    // A robot at no junction is not at its pose in the map.
-    let truly = reached.unwrap_or(Dart(u32::MAX));
-    let mut candidate = Candidate::default();
-    if let Err(flaw) = judge_map(&map, (plan.graph(), facing), truly, &mut candidate) {
-        return Some(flaw);
-    }
-    let (edges, vertices) = (plan.graph().edge_count(), plan.graph().vertex_count());
-    let bound = match mapping {
-        MappingRun::Algorithm1(_) => Algorithm1.move_bound(edges, vertices),
-        MappingRun::Folding(_) => Folding.move_bound(edges, vertices),
-    };
-    let moves = mapping.moves();
-    (moves > bound).then_some(Flaw::TooManyMoves { moves, bound })
-}
-
 /// The number of moves that an algorithm makes in the plan's embedded graph.
 #[must_use]
 pub fn explored(
     plan: &FloorPlan,
     facing: Dart,
-    algorithm: DirectionalAlgorithm,
+    algorithm: MappingAlgorithm,
     dart_bound: usize,
 ) -> u64 {
-    let mut mapping = MappingRun::new(algorithm, dart_bound);
+    let mut world = GraphWorld::new(plan.graph(), facing);
     // An error here is also an error of the robot's run.
-    let _ = mapping.map_world(&mut GraphWorld::new(plan.graph(), facing), &mut ());
-    mapping.moves()
+    algorithm.map_world(&mut world, dart_bound, &mut ()).0.moves()
 }
 
 /// The off-line version: the mapping algorithm on a recording, without a robot that moves.
@@ -224,7 +196,7 @@ pub fn offline(
     sensor: impl FrameSensor,
     observer: impl RunObserver,
     settings: &RunSettings,
-) -> Result<MappingRun, MappingError<ExplorerError>> {
+) -> Result<Journey, MappingError<ExplorerError>> {
     let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
     let (mapping, mapped) = explorer.map(settings);
     mapped.map(|_| mapping)
@@ -252,7 +224,7 @@ mod tests {
     fn each_plan_is_mapped_with_the_moves_of_the_specification() {
         for (name, plan) in plans().unwrap() {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
-                for algorithm in DirectionalAlgorithm::ALL {
+                for algorithm in MappingAlgorithm::with_fixed_marker() {
                     let robot =
                         SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
                     let run = run(
@@ -279,7 +251,7 @@ mod tests {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let config = SimulationConfig::at_start(plan.clone(), facing, 5);
-        for algorithm in DirectionalAlgorithm::ALL {
+        for algorithm in MappingAlgorithm::with_fixed_marker() {
             let mut recording = Recording::default();
             let robot = config.by_scene();
             let run = run(
@@ -305,7 +277,7 @@ mod tests {
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         let outcome = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
-            let algorithm = DirectionalAlgorithm::Algorithm1;
+            let algorithm = MappingAlgorithm::Algorithm1;
             run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS))
                 .outcome()
                 .to_string()

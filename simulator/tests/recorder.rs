@@ -13,7 +13,7 @@ use toposlam_logs::{
 };
 use toposlam_model::{
     driving::scene::Scene,
-    mapping::{DirectionalAlgorithm, MappingError, MappingMethod},
+    mapping::{MappingAlgorithm, MappingError, MappingMethod},
 };
 use toposlam_robot::{
     explorer::{ExplorerError, RobotExplorer},
@@ -36,7 +36,7 @@ fn logged(fault: Option<RobotFault>, check: impl Fn(&Run)) -> Vec<u8> {
     let mut log = Vec::new();
     let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
     let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
-    let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
+    let (robot, algorithm) = (setting.by_scene(), MappingAlgorithm::Algorithm1);
     check(&run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200)));
     recorder.finish().unwrap();
     log
@@ -197,7 +197,7 @@ fn a_full_disk_stops_the_run() {
     let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
     setting.keeps_track = true;
     let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
-    let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
+    let (robot, algorithm) = (setting.by_scene(), MappingAlgorithm::Algorithm1);
     let run = run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
     assert!(recorder.stop());
     let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));

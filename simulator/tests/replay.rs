@@ -7,18 +7,18 @@ use toposlam_logs::{
     recorder::Recorder,
     topic_map::{Role, TopicMap},
 };
-use toposlam_model::mapping::{DirectionalAlgorithm, MappingError, MappingRun};
+use toposlam_model::mapping::{MappingAlgorithm, MappingError, Journey};
 use toposlam_robot::{
     replay::{Agreement, ReplayError, replay},
     run_settings::RunSettings,
 };
 use toposlam_simulator::{SimulationConfig, plans, run::run, starts_of};
 
-fn recorded(seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
+fn recorded(seed: u64, algorithm: MappingAlgorithm) -> (Log, Journey) {
     recorded_in("shape-6", seed, algorithm)
 }
 
-fn recorded_in(world: &str, seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
+fn recorded_in(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, Journey) {
     let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == world).unwrap();
     let facing = starts_of(&plan)[0];
     let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
@@ -35,7 +35,7 @@ fn recorded_in(world: &str, seed: u64, algorithm: DirectionalAlgorithm) -> (Log,
 #[test]
 fn a_replay_reproduces_the_map_and_all_results() {
     for seed in 0..4 {
-        let algorithm = DirectionalAlgorithm::ALL[seed as usize % 2];
+        let algorithm = [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding][seed as usize % 2];
         let (log, mapping) = recorded(seed, algorithm);
         let topics = TopicMap::unambiguous(&log);
         let replay = replay(&log, &topics, None, &RunSettings::new(algorithm, 200)).unwrap();
@@ -52,7 +52,7 @@ fn a_replay_reproduces_the_map_and_all_results() {
 
 #[test]
 fn another_algorithm_than_the_recorded_one_takes_another_door() {
-    let [algorithm1, folding] = DirectionalAlgorithm::ALL;
+    let [algorithm1, folding] = [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding];
     let (log, _) = recorded_in("building-12", 0, algorithm1);
     let replay =
         replay(&log, &TopicMap::unambiguous(&log), None, &RunSettings::new(folding, 200)).unwrap();
@@ -61,10 +61,10 @@ fn another_algorithm_than_the_recorded_one_takes_another_door() {
 
 #[test]
 fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
-    let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
+    let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
     let mapping = TopicMap::unambiguous(&log);
     let replay =
-        replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 4))
+        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 4))
             .unwrap();
     assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
     let to = replay.comparison;
@@ -74,9 +74,9 @@ fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
 
 #[test]
 fn a_log_without_commands_is_not_replayed() {
-    let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
+    let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
     let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
     let replay =
-        replay(&log, &mapping, None, &RunSettings::new(DirectionalAlgorithm::Algorithm1, 200));
+        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 200));
     assert!(matches!(replay, Err(ReplayError::Nothing)));
 }

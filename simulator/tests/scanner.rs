@@ -20,7 +20,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     format::world_file,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     percept::Door,
 };
 use toposlam_robot::{recording::Recording, run_settings::RunSettings};
@@ -99,7 +99,7 @@ fn among_furniture_doors_and_people_a_robot_gives_up_when_it_fails() {
 
 #[test]
 fn buildings_are_mapped_by_laser() {
-    for algorithm in DirectionalAlgorithm::ALL {
+    for algorithm in MappingAlgorithm::with_fixed_marker() {
         let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
         for run in runs.judged(0..4, &laser_robots(ScannerParams::PLAIN), &()) {
             assert_eq!(run.ending, RunOutcome::Right, "{}", run.case.plan_name);
@@ -112,7 +112,7 @@ fn buildings_are_mapped_by_laser() {
 fn buildings_are_mapped_by_a_scanner_that_does_not_see_all_round() {
     let mut all = plans().unwrap();
     all.extend((0..3).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
-    let algorithm = DirectionalAlgorithm::Folding;
+    let algorithm = MappingAlgorithm::Folding;
     for field_of_view in [180.0, 240.0, 270.0] {
         let params = ScannerParams { field_of_view, ..ScannerParams::PLAIN };
         let runs = RunSampler::new(all.clone(), 1, Faults::None, 1, 1.0, algorithm);
@@ -129,7 +129,7 @@ fn a_run_with_a_look_around_is_repeated_from_its_recording() {
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let robot = SimulationConfig::at_start(plan.clone(), Dart(0), 3).by_laser(&params);
     let sensor = RobotSensor::Laser(Box::default());
-    let settings = RunSettings::new(DirectionalAlgorithm::Folding, 200);
+    let settings = RunSettings::new(MappingAlgorithm::Folding, 200);
     let mut recording = Recording::default();
     let run = run(&plan, Dart(0), robot, sensor.clone(), &mut recording, &settings);
     assert_eq!(run.outcome(), RunOutcome::Right);
@@ -169,7 +169,7 @@ fn logged(
     let file = File::create(&path).unwrap();
     let head = messages::Run { world: "long-8".to_owned(), ..messages::Run::default() };
     let mut recorder = Recorder::new(file, &head, None).unwrap();
-    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let algorithm = MappingAlgorithm::Algorithm1;
     let run = run(
         &plan,
         facing,

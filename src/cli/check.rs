@@ -15,12 +15,11 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm, Shard, Sweep, Tally, WorstStart,
-    },
+    check::{FinishedUnits, LazyCheck, LazySweep, Shard, Sweep, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
     enumerate::{Class, Watch},
     format::named_world::NamedWorld,
+    mapping::MappingAlgorithm,
     marker::{self, Marker},
 };
 
@@ -205,19 +204,20 @@ impl CheckArguments {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         if self.estimate.estimate {
-            return self.print_estimates(&work, &algorithm, out);
+            return self.print_estimates(&work, algorithm, out);
         }
-        let mut cluster = self.join_cluster(&algorithm)?;
+        let mut cluster = self.join_cluster(algorithm)?;
         let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
         let out = &mut SharedOutput::new(out, cluster.as_ref());
         let start = Instant::now();
-        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
+        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
         let mut is_done = true;
         for (edges, work) in sizes.by_ref() {
-            let (tally, moves_made) = self.check(edges, &work, &algorithm, cluster.as_mut())?;
+            let (tally, moves_made) =
+                self.check(edges, &work, (algorithm, choice), cluster.as_mut())?;
             let line = report.line(&self.result(edges, &tally, moves_made));
             cases.push(line.ci_case());
             report.size(line)?;
@@ -239,7 +239,7 @@ impl CheckArguments {
             return Ok(outcome);
         }
         if outcome == Outcome::Violated {
-            let (tally, subject) = (Tally::default(), AlgorithmInfo::of(&algorithm));
+            let (tally, subject) = (Tally::default(), AlgorithmInfo::of(algorithm));
             let name = |(edges, _)| {
                 let result = self.result(edges, &tally, None);
                 SizeLine::new(&result, subject, RunChoices::Default).name()
@@ -284,7 +284,7 @@ impl CheckArguments {
     /// Connects to the other processes, if there are others.
     fn join_cluster(
         &self,
-        algorithm: &MappingAlgorithm,
+        algorithm: MappingAlgorithm,
     ) -> Result<Option<ClusterSession>, CliError> {
         let sizes = self.edges.iter();
         let settings = [
@@ -292,7 +292,7 @@ impl CheckArguments {
             ("the class", self.class().name().to_owned()),
             ("the number of edges", format!("{sizes:?}")),
             ("the marker", algorithm.marker().name().to_owned()),
-            ("the algorithm", algorithm.name().to_owned()),
+            ("the algorithm", algorithm.info().name.to_owned()),
             ("--keep-going", self.keep_going.to_string()),
         ];
         let end = if self.journal.is_some() { LostEnd::Journal } else { LostEnd::Nothing };
@@ -325,7 +325,7 @@ impl CheckArguments {
         &self,
         edges: usize,
         work: &Work,
-        algorithm: &MappingAlgorithm,
+        (algorithm, choices): (MappingAlgorithm, RunChoices),
         cluster: Option<&mut ClusterSession>,
     ) -> Result<(Tally, Option<u64>), CliError> {
         let progress = Progress::new(&counted(edges, "edge"), "starts")?;
@@ -350,15 +350,15 @@ impl CheckArguments {
         };
         let watch: &dyn Watch = watched.as_ref().map_or(&progress, |watched| watched);
         let checked = match (work, cluster) {
-            (Work::Lazy(sweep), None) => algorithm.lazy_sweep(sweep, units, watch),
-            (Work::Lazy(sweep), Some(cluster)) => cluster.check(algorithm, sweep, units, watch)?,
-            (Work::Sweep(_) | Work::Worlds(_), _) => None,
-        };
-        let checked = match (checked, work) {
-            (Some(LazyCheck { tally, moves_made }), _) => (tally, Some(moves_made)),
-            (None, Work::Worlds(graphs)) => (algorithm.check_worlds(graphs, &progress), None),
-            (None, Work::Sweep(sweep)) => (algorithm.sweep(sweep, &progress), None),
-            (None, Work::Lazy(_)) => return Err(needs_default_choices("--choices")),
+            (Work::Lazy(sweep), cluster) => {
+                let LazyCheck { tally, moves_made } = match cluster {
+                    Some(cluster) => cluster.check(algorithm, sweep, units, watch)?,
+                    None => algorithm.lazy_sweep(sweep, units, watch),
+                };
+                (tally, Some(moves_made))
+            }
+            (Work::Worlds(graphs), _) => (algorithm.check_worlds(graphs, choices, &progress), None),
+            (Work::Sweep(sweep), _) => (algorithm.sweep(sweep, choices, &progress), None),
         };
         progress.finish();
         if let Some(journal) = journal {
@@ -371,7 +371,7 @@ impl CheckArguments {
         &self,
         edges: usize,
         sweep: &LazySweep,
-        algorithm: &MappingAlgorithm,
+        algorithm: MappingAlgorithm,
     ) -> JournalHeader {
         JournalHeader {
             journal: JournalHeader::FORMAT,
@@ -379,9 +379,9 @@ impl CheckArguments {
             class: self.class().name().to_owned(),
             edges,
             marker: algorithm.marker().name().to_owned(),
-            algorithm: algorithm.name().to_owned(),
+            algorithm: algorithm.info().name.to_owned(),
             shard: self.shard.to_string(),
-            units: algorithm.unit_count(sweep).unwrap_or_default(),
+            units: algorithm.unit_count(sweep),
         }
     }
 
@@ -389,7 +389,7 @@ impl CheckArguments {
     fn print_estimates(
         &self,
         work: &BTreeMap<usize, Work>,
-        algorithm: &MappingAlgorithm,
+        algorithm: MappingAlgorithm,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let mut outcome = Outcome::Holds;

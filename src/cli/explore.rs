@@ -14,14 +14,13 @@ use std::{
 };
 
 use toposlam_model::{
-    check::MappingAlgorithm,
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{DEFAULT_DART_BOUND, MappingMethod},
+    mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingMethod},
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome,
+    ChoicesOption, CliError, Outcome, RunChoices,
     exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker},
@@ -173,29 +172,22 @@ impl ExploreArguments {
         }
         let choice = self.choices.with_budget(self.max_states)?;
         let chosen = self.algorithm.with(self.marker, choice)?;
-        self.explore(chosen, &world, facing, out)
+        self.explore((chosen, choice), &world, facing, out)
     }
 
     fn explore(
         &self,
-        chosen: MappingAlgorithm,
+        (chosen, choice): (MappingAlgorithm, RunChoices),
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let mut out = io::BufWriter::new(out);
         let mut printer = self.printer(&mut out, world, facing)?;
-        let explored = match self.marker {
-            MappingMarker::Directional => {
-                let (algorithm, audits) =
-                    (self.algorithm.directional(), self.audit.audits().unwrap_or(0));
-                let method = MappingMethod::By { algorithm, audits };
-                ExploredWorld::by_method(method, self.max_darts, &world.graph, facing, &mut printer)
-            }
-            MappingMarker::Movable => {
-                ExploredWorld::by_movable_marker(self.max_darts, &world.graph, facing, &mut printer)
-            }
-        };
+        let method =
+            MappingMethod::By { algorithm: chosen, audits: self.audit.audits().unwrap_or(0) };
+        let explored =
+            ExploredWorld::new(method, self.max_darts, &world.graph, facing, &mut printer);
         printer.finish()?;
         // All choices can take long.
         out.flush()?;
@@ -208,7 +200,7 @@ impl ExploreArguments {
             algorithm: self.algorithm,
             explored,
             certificate,
-            ways: chosen.other_runs(&world.graph, facing, &StopSignal).transpose(),
+            ways: chosen.other_runs(choice, (&world.graph, facing), &StopSignal).transpose(),
         };
         if self.json {
             result.print_json(&mut out)?;

@@ -5,11 +5,10 @@ use std::{fmt::Display, path::Path, str::FromStr};
 use clap::ValueEnum;
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, PlacedWorld},
-    check::{Algorithm1, AllChoices, Folding, MappingAlgorithm},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::{Directional, Marker, Movable},
 };
 
@@ -46,10 +45,7 @@ impl MappingMarker {
     /// The algorithm that maps with the marker.
     pub(super) fn algorithm(self, choice: RunChoices) -> Result<MappingAlgorithm, CliError> {
         match (self, choice) {
-            (Self::Directional, RunChoices::Default) => Ok(MappingAlgorithm::Algorithm1),
-            (Self::Directional, RunChoices::All { budget }) => {
-                Ok(MappingAlgorithm::AllChoices(AllChoices { algorithm: Algorithm1, budget }))
-            }
+            (Self::Directional, _) => Ok(MappingAlgorithm::Algorithm1),
             (Self::Movable, RunChoices::Default) => Ok(MappingAlgorithm::MovableMarker),
             (Self::Movable, RunChoices::All { .. }) => {
                 let cause = "`all` needs --marker directional";
@@ -91,10 +87,10 @@ pub(super) enum AlgorithmOption {
 
 impl AlgorithmOption {
     /// The algorithm of a run.
-    pub(super) fn directional(self) -> DirectionalAlgorithm {
+    pub(super) fn directional(self) -> MappingAlgorithm {
         match self {
-            Self::Algorithm1 => DirectionalAlgorithm::Algorithm1,
-            Self::Folding => DirectionalAlgorithm::Folding,
+            Self::Algorithm1 => MappingAlgorithm::Algorithm1,
+            Self::Folding => MappingAlgorithm::Folding,
         }
     }
 
@@ -110,12 +106,7 @@ impl AlgorithmOption {
                 let cause = "the folding explorer maps with --marker directional";
                 Err(CliError::at("--algorithm", cause))
             }
-            (Self::Folding, MappingMarker::Directional, RunChoices::All { budget }) => {
-                Ok(MappingAlgorithm::FoldingAllChoices(AllChoices { algorithm: Folding, budget }))
-            }
-            (Self::Folding, MappingMarker::Directional, RunChoices::Default) => {
-                Ok(MappingAlgorithm::Folding)
-            }
+            (Self::Folding, MappingMarker::Directional, _) => Ok(MappingAlgorithm::Folding),
         }
     }
 }

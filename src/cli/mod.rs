@@ -42,7 +42,7 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::{
-    check::DEFAULT_STATE_BUDGET,
+    check::{DEFAULT_STATE_BUDGET, RunChoices},
     marker::{self, MARKERS, Marker},
 };
 use toposlam_simulator::options::{appearance, noise, robot_sensor};
@@ -105,18 +105,6 @@ enum ChoicesOption {
     Default,
     /// In every way
     All,
-}
-
-/// The runs from one start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RunChoices {
-    /// The run with the default choices.
-    Default,
-    /// The runs with all choices.
-    All {
-        /// The most states that may be explored.
-        budget: u64,
-    },
 }
 
 impl ChoicesOption {

@@ -1,6 +1,6 @@
 //! The options of how a robot maps, which several commands share.
 
-use toposlam_model::mapping::{DirectionalAlgorithm, MappingMethod, RecoveryConfig};
+use toposlam_model::mapping::{MappingAlgorithm, MappingMethod, RecoveryConfig};
 
 use toposlam_robot::measured_hallway::log_noise;
 
@@ -32,7 +32,7 @@ impl AuditOption {
 }
 
 /// The algorithm of a robot for which none is chosen: of the two, it makes the same maps in fewer moves.
-const DEFAULT_ALGORITHM: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+const DEFAULT_ALGORITHM: MappingAlgorithm = MappingAlgorithm::Folding;
 
 /// What a robot does for a right map, besides its algorithm.
 #[derive(Clone, Copy, Debug, clap::Args)]
@@ -55,12 +55,12 @@ impl SafeguardOptions {
                 ..RecoveryConfig::default()
             })
         } else {
-            self.by(DirectionalAlgorithm::Folding)
+            self.by(MappingAlgorithm::Folding)
         }
     }
 
     /// The method of an algorithm that does not recover.
-    fn by(&self, algorithm: DirectionalAlgorithm) -> MappingMethod {
+    fn by(&self, algorithm: MappingAlgorithm) -> MappingMethod {
         MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) }
     }
 }
@@ -70,7 +70,7 @@ impl SafeguardOptions {
 pub struct MethodOptions {
     /// The algorithm that makes the map: algorithm1 or folding [default: folding]
     #[arg(long, hide_possible_values = true, value_name = "ALGORITHM", value_parser = algorithms())]
-    algorithm: Option<DirectionalAlgorithm>,
+    algorithm: Option<MappingAlgorithm>,
     #[command(flatten)]
     safeguards: SafeguardOptions,
 }
@@ -82,23 +82,21 @@ impl MethodOptions {
     /// Returns an error if Algorithm 1 is to recover.
     pub fn method(&self) -> Result<MappingMethod, CliError> {
         match (self.safeguards.recover, self.algorithm) {
-            (true, Some(DirectionalAlgorithm::Algorithm1)) => {
+            (true, Some(MappingAlgorithm::Algorithm1 | MappingAlgorithm::MovableMarker)) => {
                 let cause = "only the folding explorer recovers; use --algorithm folding";
                 Err(CliError::at("--recover", cause))
             }
-            (true, Some(DirectionalAlgorithm::Folding) | None) => Ok(self.safeguards.folding()),
+            (true, Some(MappingAlgorithm::Folding) | None) => Ok(self.safeguards.folding()),
             (false, algorithm) => Ok(self.safeguards.by(algorithm.unwrap_or(DEFAULT_ALGORITHM))),
         }
     }
 }
 
 /// Parses the name of an algorithm that maps with the directional marker.
-fn algorithms() -> impl TypedValueParser<Value = DirectionalAlgorithm> {
-    let names = DirectionalAlgorithm::ALL.map(|algorithm| PossibleValue::new(algorithm.name()));
-    PossibleValuesParser::new(names).try_map(|name| {
-        let all = DirectionalAlgorithm::ALL.into_iter();
-        all.clone().find(|algorithm| algorithm.name() == name).ok_or("there is no such algorithm")
-    })
+fn algorithms() -> impl TypedValueParser<Value = MappingAlgorithm> {
+    let names = MappingAlgorithm::with_fixed_marker().map(MappingAlgorithm::name);
+    PossibleValuesParser::new(names.map(PossibleValue::new))
+        .try_map(|name| name.parse::<MappingAlgorithm>())
 }
 
 /// The options that give a method again. They name the algorithm, because earlier versions have another default.

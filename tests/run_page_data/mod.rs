@@ -9,7 +9,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
-    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, Journey, MappingEvent},
+    mapping::{DEFAULT_DART_BOUND, Journey, MappingAlgorithm, MappingEvent},
     percept::Door,
 };
 use toposlam_robot::run_settings::RunSettings;
@@ -107,7 +107,7 @@ pub(crate) fn run_page_data(world: &str, images: Vec<Vec<u8>>) -> RunPageData {
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
     let mut keeper = Keeper { run_data, moves: 0, door: None, images };
-    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let algorithm = MappingAlgorithm::Algorithm1;
     let settings = RunSettings::new(algorithm, DEFAULT_DART_BOUND);
     let run = run(&plan, facing, robot, NoSensor, &mut keeper, &settings);
     let mut run_data = keeper.run_data;

@@ -4,7 +4,7 @@ use toposlam_model::trace::{AllowedStep, StepPurpose};
 
 use super::*;
 
-const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
 
 fn with_folding(question: ConformConfig) -> ConformConfig {
     ConformConfig { driver: RunDriver::from(FOLDING), ..question }
@@ -98,7 +98,7 @@ fn the_recorded_map_must_be_isomorphic_to_the_map_of_the_explorer() {
     let mut events = log_of(FOLDING, &plan, facing, 1).recorded();
     let question = with_folding(question(&plan, Some(facing)));
     let judgement = judged(&events, &question);
-    let mut map = MapRecord::of(judgement.algorithm.unwrap().run.journey());
+    let mut map = MapRecord::of(&judgement.algorithm.unwrap().run);
     events.map = Some(map.clone());
     assert_eq!(judged(&events, &question).divergence, None);
     // The last two vertices change places.

@@ -11,8 +11,8 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     mapping::{
-        Choices, DirectionalAlgorithm, Exploration, Journey, MappingError, MappingEvent,
-        MappingRun, PartialMap, map_world,
+        Choices, Exploration, Journey, MappingAlgorithm, MappingError, MappingEvent, PartialMap,
+        map_world,
     },
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEventKind},
@@ -317,7 +317,7 @@ const RUNS: usize = 1000;
 
 /// Whether some run of an algorithm takes all doors of a trace whose last event is a door: run after run in a world
 /// that explains the percepts. `None` if there are too many runs.
-pub(super) fn takes_doors(algorithm: DirectionalAlgorithm, trace: &Trace) -> Option<bool> {
+pub(super) fn takes_doors(algorithm: MappingAlgorithm, trace: &Trace) -> Option<bool> {
     let before = trace.up_to(2 * trace.percepts().len() - 2);
     let (graph, marker, pose) = witness(&before).ok()??;
     // A run begins with the marker along the entry door.
@@ -329,18 +329,16 @@ pub(super) fn takes_doors(algorithm: DirectionalAlgorithm, trace: &Trace) -> Opt
         let mut world = DoorsOf { world: GraphWorld::new(&graph, pose), doors: trace.doors() };
         let mut nobody = |_: &mut DoorsOf, _: &Journey, _: MappingEvent| {};
         let end = match algorithm {
-            DirectionalAlgorithm::Algorithm1 => {
+            MappingAlgorithm::Algorithm1 => {
                 let mut exploration = Exploration::new(usize::MAX);
                 map_world(&mut world, &mut script, &mut exploration, &mut nobody)
             }
-            DirectionalAlgorithm::Folding => {
-                MappingRun::new(algorithm, usize::MAX).map_world(&mut world, &mut nobody)
-            }
+            _ => algorithm.map_world(&mut world, usize::MAX, &mut nobody).1,
         };
         if matches!(end, Err(MappingError::World(DoorsEnd::All))) {
             return Some(true);
         }
-        if algorithm == DirectionalAlgorithm::Folding || !script.advance() {
+        if algorithm == MappingAlgorithm::Folding || !script.advance() {
             return Some(false);
         }
     }

@@ -42,7 +42,7 @@ fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
     assert!(!of(vec![door(1, 0)]).may_show_marker());
     // Without a marker in its head, such a log is compared with no algorithm.
     let none = of(vec![arrival(0, 2, Some(Sighting::Nothing))]);
-    let algorithm = DirectionalAlgorithm::Folding;
+    let algorithm = MappingAlgorithm::Folding;
     let head = Run { marker: "directional".to_owned(), ..Run::default() };
     assert_eq!(LogHead(None).check_marker(&none, algorithm), Err(MarkerNotShown { algorithm }));
     assert_eq!(LogHead(Some(&Run::default())).check_marker(&none, algorithm).ok(), None);

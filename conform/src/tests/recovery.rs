@@ -7,7 +7,7 @@ use toposlam_model::{
 
 use super::*;
 
-const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
 
 fn recovering() -> MappingMethod {
     let noise = Some(log_noise());

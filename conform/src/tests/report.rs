@@ -29,15 +29,15 @@ fn misfit(event: TraceEvent, poses: u32) -> DivergenceCause {
     DivergenceCause::World(Misfit { event, moves: 2, candidates })
 }
 
-fn departure(event: TraceEvent, algorithm: DirectionalAlgorithm) -> DivergenceCause {
+fn departure(event: TraceEvent, algorithm: MappingAlgorithm) -> DivergenceCause {
     DivergenceCause::Algorithm(Departure { algorithm, event, allowed: Vec::new() })
 }
 
 #[test]
 fn each_cause_has_a_name_a_class_and_words() {
-    use DirectionalAlgorithm::{Algorithm1, Folding};
     use DivergenceCause::*;
     use FaultClass::{Algorithm as Chosen, Log, Motion, Perception};
+    use MappingAlgorithm::{Algorithm1, Folding};
     let [percept, door] = percept_and_door();
     let why = Impossibility::Marker;
     let no_world = "no world of any size explains the log up to here: the robot has no marker, and perceived one";

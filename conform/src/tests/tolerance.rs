@@ -159,7 +159,7 @@ fn all_contradictions_of_algorithm_1_need_two_judgements() {
 #[test]
 fn contradictions_of_the_folding_explorer_are_tolerated_where_the_place_is_known() {
     let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
-    let folding = DirectionalAlgorithm::Folding;
+    let folding = MappingAlgorithm::Folding;
     let good = log_of(folding, &plan, starts_of(&plan)[0], 1).recorded();
     let question = ConformConfig { driver: RunDriver::from(folding), ..without_world() };
     let quirks = everywhere(&["contradiction"]);

@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::{Each, EnumeratedGraph, Enumeration},
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
-    mapping::{Journey, MappingEvent, MappingRun},
+    mapping::{Journey, MappingEvent},
     marker::{Marker, NoMarker, Undirected},
     percept::Sighting,
     trace::{Trace, TraceEventKind},
@@ -70,10 +70,10 @@ fn options() -> impl Strategy<Value = Options> {
         ..RecoveryConfig::default()
     };
     let drivers = prop::sample::select(vec![
-        by(DirectionalAlgorithm::Algorithm1, 0),
-        by(DirectionalAlgorithm::Algorithm1, 1),
-        by(DirectionalAlgorithm::Folding, 0),
-        by(DirectionalAlgorithm::Folding, 2),
+        by(MappingAlgorithm::Algorithm1, 0),
+        by(MappingAlgorithm::Algorithm1, 1),
+        by(MappingAlgorithm::Folding, 0),
+        by(MappingAlgorithm::Folding, 2),
         RunDriver::Method(MappingMethod::Recovering(recovery)),
         RunDriver::Anyone,
     ]);
@@ -500,10 +500,8 @@ fn the_marker_is_honoured_without_a_world() {
     let DivergenceCause::NoWorld { why, .. } = divergence.cause else { panic!() };
     assert_eq!(why, Impossibility::Marker);
     // Algorithm 1 needs one.
-    let algorithm = ConformConfig {
-        driver: RunDriver::from(DirectionalAlgorithm::Algorithm1),
-        ..unmarked.clone()
-    };
+    let algorithm =
+        ConformConfig { driver: RunDriver::from(MappingAlgorithm::Algorithm1), ..unmarked.clone() };
     let judged =
         |question: &ConformConfig| judge(events.clone(), question, &Quirks::default(), &());
     let error = judged(&algorithm).unwrap_err();
@@ -552,8 +550,7 @@ fn the_first_event_that_no_planar_world_explains_is_exact() {
             kinds.push((robot.sensed(), Some(door)));
         }
     };
-    let mut run = MappingRun::new(DirectionalAlgorithm::Algorithm1, DARTS);
-    run.map_world(&mut robot, &mut listen).unwrap();
+    MappingAlgorithm::Algorithm1.map_world(&mut robot, DARTS, &mut listen).1.unwrap();
     let mut recorded = RecordedEvents::default();
     let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
     for (Percept { degree, sighting }, door) in kinds {

@@ -6,11 +6,11 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{ExploredMap, judge_map},
+    check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
     folding::certificate_length,
     isomorphism::Candidate,
-    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, FACING, MappingRun},
+    mapping::{DEFAULT_DART_BOUND, ExploredMap, FACING, MappingAlgorithm},
     world::GraphWorld,
 };
 
@@ -94,11 +94,11 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
 }
 
 /// The moves of an algorithm whose map is right, and how long it computes.
-fn moves(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph) -> (u64, Duration) {
+fn moves(algorithm: MappingAlgorithm, graph: &EmbeddedGraph) -> (u64, Duration) {
     let begun = Instant::now();
     let mut world = GraphWorld::new(graph, Dart(0));
-    let mut run = MappingRun::new(algorithm, DEFAULT_DART_BOUND);
-    run.map_world(&mut world, &mut ()).unwrap();
+    let (run, mapped) = algorithm.map_world(&mut world, DEFAULT_DART_BOUND, &mut ());
+    mapped.unwrap();
     let computed = begun.elapsed();
     let map = Cow::Borrowed(run.map().complete().unwrap());
     let map = ExploredMap { graph: map, facing: FACING, pose: run.robot() };
@@ -127,10 +127,10 @@ impl Totals {
             let graph = building(junctions, more_hallways, &mut random);
             totals.edges += graph.edge_count();
             totals.certificate += certificate_length(&graph, Dart(0));
-            let (moved, computed) = moves(DirectionalAlgorithm::Folding, &graph);
+            let (moved, computed) = moves(MappingAlgorithm::Folding, &graph);
             totals.folding += moved;
             totals.computed += computed;
-            totals.algorithm1 += moves(DirectionalAlgorithm::Algorithm1, &graph).0;
+            totals.algorithm1 += moves(MappingAlgorithm::Algorithm1, &graph).0;
         }
         totals
     }

@@ -1,39 +1,41 @@
-//! Algorithm 1 with all choices: every order at line 5, and at line 9 among the hypotheses that the
-//! percept on arrival has not already contradicted. Section 2.3.
+//! An explorer with all choices. Of Algorithm 1: every order at line 5, and at line 9 among the hypotheses that
+//! the percept on arrival has not already contradicted. Section 2.3.
 
 use std::{collections::HashMap, vec};
 
-use super::{ChoicesLimit, Costs, EveryWay, Flaw, OpenChoices, judge};
+use super::{ChoicesLimit, Costs, EveryWay, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Exploration, MappingChoice, PartialMap},
+    mapping::{Explorer, FACING, Flaw, Journey, PartialMap, StateKey},
     world::GraphWorld,
 };
 
 /// The memory that the states of one start may take, in bytes by a generous estimate.
 const MAX_BYTES: usize = 1 << 30;
 
-/// Runs an algorithm on a start with all choices, and judges the end of every run. States are
-/// explored once, runs are counted. The search stops after `budget` states, including those within a
-/// round (the hypotheses that are left), when the states take 1 GiB of memory, or when the watch stops
-/// it.
+/// The default number of states of one start that may be explored.
+pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
+
+/// Runs an explorer on a start with all choices, and judges the end of every run. States that are
+/// [compared](Explorer::state_key) are explored once; runs are counted. The search stops after `budget` states,
+/// including those within a round, when the states take 1 GiB of memory, or when the watch stops it.
 ///
 /// # Errors
 /// Returns the first [`Flaw`].
-pub fn every_way(
-    algorithm: &impl OpenChoices,
+pub fn every_way<E: Explorer>(
+    mut explorer: E,
     graph: &EmbeddedGraph,
     facing: Dart,
     budget: u64,
     watch: &dyn Watch,
 ) -> Result<EveryWay, Flaw> {
-    let mut world = GraphWorld::new(graph, facing);
-    let mut exploration = Exploration::new(graph.dart_count());
-    exploration.begin(&mut world, &mut ())?;
+    let mut world = GraphWorld::with_marker(graph, explorer.marker(), facing);
+    let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+    explorer.limit_darts(graph.dart_count());
+    explorer.begin(&mut world, &mut ())?;
     let mut search = Search {
-        algorithm,
         facing,
         budget,
         watch,
@@ -45,12 +47,13 @@ pub fn every_way(
         stack: Vec::new(),
         candidate: Candidate::default(),
     };
-    let Futures { runs, costs } = search.run(world, exploration)?;
-    let bound = algorithm.move_bound(graph.edge_count(), graph.vertex_count());
+    let is_compared = explorer.state_key().is_some();
+    let Futures { runs, costs } = search.run(world, explorer)?;
     match costs.max() {
         Some(moves) if moves > bound => Err(Flaw::TooManyMoves { moves, bound }),
         _ => {
-            let (states, within_rounds) = (search.known.len() as u64, search.begun[1]);
+            let [begun, within_rounds] = search.begun;
+            let states = if is_compared { search.known.len() as u64 } else { begun };
             Ok(EveryWay { states, within_rounds, runs, costs, limit: search.limit })
         }
     }
@@ -74,70 +77,74 @@ impl Futures {
     }
 }
 
-/// What can follow each state of a round. A state is the hypotheses that are left.
-#[derive(Default)]
+/// A round: what begins at a state between two rounds, by one choice.
 struct Round {
+    /// The number of vertices of the map at its beginning.
+    vertices: usize,
+    /// What can follow each state within it: the hypotheses that are left.
     known: HashMap<Vec<Dart>, Futures>,
     bytes: usize,
 }
 
+/// Where a state is kept when all that can follow it is known.
+enum Kept {
+    /// It is not compared.
+    Nowhere,
+    Round {
+        state: (PartialMap, Vertex),
+        follows: Follows,
+    },
+    WithinRound(Vec<Dart>),
+}
+
 /// A state whose choices are being followed, one after the other.
-struct SearchFrame<'g> {
-    line: Line,
-    world: GraphWorld<'g>,
-    exploration: Exploration,
+struct SearchFrame<'g, E: Explorer> {
+    kept: Kept,
+    world: GraphWorld<'g, E::Marker>,
+    explorer: E,
     /// Those that were not followed yet.
-    choices: vec::IntoIter<MappingChoice>,
+    choices: vec::IntoIter<E::Choice>,
     /// The moves of the step by the last choice.
     moves: u64,
     futures: Futures,
     bytes: usize,
 }
 
-/// Where a run waits for a choice.
-enum Line {
-    /// At line 4. Each choice begins a round. The state is that of the search.
-    Four { state: (PartialMap, Vertex), follows: Follows },
-    /// At line 8: the hypotheses that are left are the state within the round.
-    Eight,
-}
-
-/// What a state at line 4 follows.
+/// What a state between two rounds follows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Follows {
     /// The beginning, or a confirmed hypothesis.
     Known,
-    /// The state at line 8 in which no hypothesis is left: the place is new.
+    /// The state within a round in which no hypothesis is left: the place is new.
     NoHypothesis,
 }
 
-struct Search<'g, 'w, A> {
-    algorithm: &'w A,
+struct Search<'g, 'w, E: Explorer> {
     facing: Dart,
     budget: u64,
     watch: &'w dyn Watch,
-    /// States begun at line 4, and at line 8.
+    /// States begun between two rounds, and within one.
     begun: [u64; 2],
     /// An estimate of the memory that the states take.
     bytes: usize,
     /// The first limit that was reached.
     limit: Option<ChoicesLimit>,
-    /// For each state at line 4, what can follow it, and the robot's pose in the world.
+    /// For each state between two rounds, what can follow it, and the robot's pose in the world.
     known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
-    /// The rounds that have begun: one for each state at line 4 on the stack.
+    /// The rounds that have begun: one for each state between two rounds on the stack.
     rounds: Vec<Round>,
-    stack: Vec<SearchFrame<'g>>,
+    stack: Vec<SearchFrame<'g, E>>,
     candidate: Candidate,
 }
 
-impl<'g, A: OpenChoices> Search<'g, '_, A> {
-    /// What can follow a state at line 4. The stack is explicit: it is as deep as the run has choices.
-    fn run(&mut self, world: GraphWorld<'g>, exploration: Exploration) -> Result<Futures, Flaw> {
-        let mut found = self.line_4(world, exploration, Follows::Known)?;
+impl<'g, E: Explorer> Search<'g, '_, E> {
+    /// What can follow the first state. The stack is explicit: it is as deep as the run has choices.
+    fn run(&mut self, world: GraphWorld<'g, E::Marker>, explorer: E) -> Result<Futures, Flaw> {
+        let mut found = self.enter(world, explorer)?;
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
                 frame.futures.include(&futures, frame.moves);
-                if matches!(frame.line, Line::Four { .. }) {
+                if matches!(frame.kept, Kept::Round { .. }) {
                     let round = self.rounds.pop();
                     self.bytes -= round.map_or(0, |round| round.bytes);
                 }
@@ -145,15 +152,15 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
             let next =
                 frame.choices.next().filter(|_| self.limit != Some(ChoicesLimit::Interrupted));
             found = match next {
-                Some(choice) => self.after(choice)?,
+                Some(choice) => self.follow(choice)?,
                 None => self.leave(),
             };
         }
         Ok(found.unwrap_or_default())
     }
 
-    /// Whether one more state may be begun, at line 4 or at line 8.
-    fn begin(&mut self, line: usize) -> bool {
+    /// Whether one more state may be begun, between two rounds (0) or within one (1).
+    fn begin(&mut self, level: usize) -> bool {
         if self.limit.is_none() {
             self.limit = if self.watch.stop() {
                 Some(ChoicesLimit::Interrupted)
@@ -164,108 +171,104 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
             };
         }
         let may = self.limit.is_none();
-        self.begun[line] += u64::from(may);
+        self.begun[level] += u64::from(may);
         may
     }
 
-    /// Every choice at line 5. Returns what can follow, or `None` if that must be searched for: then the
-    /// state is on the stack.
-    fn line_4(
+    /// Enters a state. Returns what can follow it, or `None` if that must be searched for: then the state is on
+    /// the stack.
+    fn enter(
         &mut self,
-        world: GraphWorld<'g>,
-        exploration: Exploration,
-        follows: Follows,
+        world: GraphWorld<'g, E::Marker>,
+        explorer: E,
     ) -> Result<Option<Futures>, Flaw> {
-        let map = exploration.map();
-        let state = (map.clone(), map.vertex(exploration.robot()));
-        if let Some((futures, truly)) = self.known.get(&state) {
-            // One state, one place in the world; it may have been entered by another dart.
-            if world.graph().vertex(*truly) != world.graph().vertex(world.pose()) {
-                let believed = exploration.robot();
-                return Err(Flaw::WrongPose { believed, image: *truly, truly: world.pose() });
+        let (level, kept) = match explorer.state_key() {
+            None => (0, Kept::Nowhere),
+            Some(StateKey::WithinRound(hypotheses)) => {
+                if let Some(known) = self.in_round(&hypotheses) {
+                    return Ok(Some(known));
+                }
+                (1, Kept::WithinRound(hypotheses))
             }
-            let futures = futures.clone();
-            self.keep_in_round(follows, &futures);
-            return Ok(Some(futures));
-        }
-        if !self.begin(0) {
+            Some(StateKey::Round(map, vertex)) => {
+                let grown =
+                    self.rounds.last().is_some_and(|last| map.vertex_count() > last.vertices);
+                let follows = if grown { Follows::NoHypothesis } else { Follows::Known };
+                if grown {
+                    if let Some(known) = self.in_round(&[]) {
+                        return Ok(Some(known));
+                    }
+                    if !self.begin(1) {
+                        return Ok(Some(Futures::default()));
+                    }
+                }
+                let state = (map, vertex);
+                if let Some((futures, truly)) = self.known.get(&state) {
+                    // One state, one place in the world; it may have been entered by another dart.
+                    if world.graph().vertex(*truly) != world.graph().vertex(world.pose()) {
+                        let believed = explorer.map_walk().map_or(FACING, Journey::robot);
+                        return Err(Flaw::WrongPose {
+                            believed,
+                            image: *truly,
+                            truly: world.pose(),
+                        });
+                    }
+                    let futures = futures.clone();
+                    self.keep_in_round(follows, &futures);
+                    return Ok(Some(futures));
+                }
+                (0, Kept::Round { state, follows })
+            }
+        };
+        if !self.begin(level) {
             return Ok(Some(Futures::default()));
         }
-        let mut futures = Futures::default();
-        if map.unexplored_is_empty() {
-            judge(self.algorithm, &exploration, self.facing, &world, &mut self.candidate)?;
-            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
-        }
-        self.push(Line::Four { state, follows }, world, exploration, futures);
+        self.push(kept, world, explorer)?;
         Ok(None)
     }
 
-    /// Every choice at line 9. As [`Self::line_4`].
-    fn line_8(&mut self, world: GraphWorld<'g>, exploration: Exploration) -> Option<Futures> {
-        if let Some(known) = self.in_round(exploration.hypotheses()) {
-            return Some(known);
-        }
-        if !self.begin(1) {
-            return Some(Futures::default());
-        }
-        self.push(Line::Eight, world, exploration, Futures::default());
-        None
-    }
-
-    /// What can follow a choice at the state on top of the stack. As [`Self::line_4`].
-    fn after(&mut self, choice: MappingChoice) -> Result<Option<Futures>, Flaw> {
+    /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
+    fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
         let Some(frame) = self.stack.last_mut() else { return Ok(None) };
-        let (mut world, mut next) = (frame.world.clone(), frame.exploration.clone());
-        self.algorithm.step(&mut next, choice, &mut world, &mut ())?;
-        frame.moves = next.moves() - frame.exploration.moves();
-        let grown = next.map().vertex_count() > frame.exploration.map().vertex_count();
-        if matches!(frame.line, Line::Four { .. }) {
-            self.rounds.push(Round::default());
+        let (mut world, mut next) = (frame.world.clone(), frame.explorer.clone());
+        next.step(choice, &mut world, &mut ())?;
+        frame.moves = world.moves() - frame.world.moves();
+        if let Kept::Round { state, .. } = &frame.kept {
+            let (vertices, known) = (state.0.vertex_count(), HashMap::new());
+            self.rounds.push(Round { vertices, known, bytes: 0 });
         }
-        if next.is_at_line_8() {
-            return Ok(self.line_8(world, next));
-        }
-        if !grown {
-            return self.line_4(world, next, Follows::Known);
-        }
-        if let Some(known) = self.in_round(&[]) {
-            return Ok(Some(known));
-        }
-        if !self.begin(1) {
-            return Ok(Some(Futures::default()));
-        }
-        self.line_4(world, next, Follows::NoHypothesis)
+        self.enter(world, next)
     }
 
+    /// Puts a state on the stack. At the end of a run there is no choice: then the run is judged.
     fn push(
         &mut self,
-        line: Line,
-        world: GraphWorld<'g>,
-        exploration: Exploration,
-        futures: Futures,
-    ) {
-        let choices = exploration.open_choices().collect::<Vec<_>>();
-        let bytes = 500 + 100 * exploration.map().dart_count() + 20 * choices.len();
+        kept: Kept,
+        world: GraphWorld<'g, E::Marker>,
+        mut explorer: E,
+    ) -> Result<(), Flaw> {
+        let choices = explorer.choices()?;
+        let mut futures = Futures::default();
+        if choices.is_empty() {
+            judge(&explorer, self.facing, &world, &mut self.candidate)?;
+            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
+        }
+        let darts = explorer.map_walk().map_or(0, |walk| walk.map().dart_count());
+        let bytes = 500 + 100 * darts + 20 * choices.len();
         self.bytes += bytes;
         let choices = choices.into_iter();
-        self.stack.push(SearchFrame {
-            line,
-            world,
-            exploration,
-            choices,
-            moves: 0,
-            futures,
-            bytes,
-        });
+        self.stack.push(SearchFrame { kept, world, explorer, choices, moves: 0, futures, bytes });
+        Ok(())
     }
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
     fn leave(&mut self) -> Option<Futures> {
-        let SearchFrame { line, world, exploration, futures, bytes, .. } = self.stack.pop()?;
+        let SearchFrame { kept, world, futures, bytes, .. } = self.stack.pop()?;
         self.bytes -= bytes;
-        match line {
-            Line::Eight => self.insert_in_round(exploration.hypotheses(), &futures),
-            Line::Four { state, follows } => {
+        match kept {
+            Kept::Nowhere => {}
+            Kept::WithinRound(hypotheses) => self.insert_in_round(hypotheses, &futures),
+            Kept::Round { state, follows } => {
                 self.bytes += 100 + 20 * state.0.dart_count() + futures.bytes();
                 self.known.insert(state, (futures.clone(), world.pose()));
                 self.keep_in_round(follows, &futures);
@@ -281,23 +284,23 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
 
     fn keep_in_round(&mut self, follows: Follows, futures: &Futures) {
         if follows == Follows::NoHypothesis {
-            self.insert_in_round(&[], futures);
+            self.insert_in_round(Vec::new(), futures);
         }
     }
 
-    fn insert_in_round(&mut self, hypotheses: &[Dart], futures: &Futures) {
+    fn insert_in_round(&mut self, hypotheses: Vec<Dart>, futures: &Futures) {
         let Some(round) = self.rounds.last_mut() else { return };
         let bytes = 40 + 4 * hypotheses.len() + futures.bytes();
         round.bytes += bytes;
         self.bytes += bytes;
-        round.known.insert(hypotheses.to_vec(), futures.clone());
+        round.known.insert(hypotheses, futures.clone());
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::Algorithm1;
+    use crate::mapping::Exploration;
 
     fn cycle(edges: usize) -> EmbeddedGraph {
         let name = |vertex: usize| format!("v{}", vertex % edges);
@@ -317,7 +320,8 @@ mod tests {
     #[test]
     fn the_limit_that_was_reached_is_named() {
         let limit = |budget, watch: &dyn Watch| {
-            let ways = every_way(&Algorithm1, &cycle(5), Dart(0), budget, watch).unwrap();
+            let ways =
+                every_way(Exploration::default(), &cycle(5), Dart(0), budget, watch).unwrap();
             (ways.limit, ways.states + ways.within_rounds <= budget)
         };
         assert_eq!(limit(1000, &()), (None, true));

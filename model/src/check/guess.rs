@@ -38,9 +38,8 @@ pub fn determines_world(
 mod tests {
     use super::*;
     use crate::{
-        check::{Algorithm, Algorithm1},
         folding::certificate,
-        mapping::{Journey, MappingEvent},
+        mapping::{Exploration, Journey, MappingEvent, explore},
         marker::Undirected,
     };
 
@@ -98,8 +97,8 @@ mod tests {
                     taken.push(door);
                 }
             };
-            let mut state = <Algorithm1 as Algorithm>::State::new(graph.dart_count());
-            Algorithm1.run(&mut GraphWorld::new(&graph, facing), &mut state, &mut watch).unwrap();
+            let mut run = Exploration::new(graph.dart_count());
+            explore(&mut run, &mut GraphWorld::new(&graph, facing), &mut watch).unwrap();
             assert_eq!(determines_world((&graph, facing), &Directional, &taken), Some(true));
         }
     }

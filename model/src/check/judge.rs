@@ -1,85 +1,14 @@
 //! Judges a finished run. Section 2.1 (the map is isomorphic to the world), Section 2.3.
 
-use std::{borrow::Cow, fmt};
+use std::fmt;
 
-use super::{Algorithm, Flaw, RunState};
 use crate::{
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{FACING, Journey, MappingEvent, PartialMap},
+    mapping::{ExploredMap, Explorer, FACING, Flaw, Journey, MappingEvent, PartialMap, explore},
     world::GraphWorld,
 };
-
-/// What an explorer returns: a map, and the robot's pose in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ExploredMap<'a> {
-    /// The map.
-    pub graph: Cow<'a, EmbeddedGraph>,
-    /// The dart of the map that is the facing dart.
-    pub facing: Dart,
-    /// The dart of the map by which the robot has come in.
-    pub pose: Dart,
-}
-
-impl ExploredMap<'_> {
-    /// A map from its two permutations of the darts `0 .. 2m`: the other end of each dart's edge, and
-    /// the next dart clockwise around its vertex. `facing` and `pose` are darts in that numbering.
-    ///
-    /// # Errors
-    /// Returns an error if they are not the permutations of a connected graph, or a dart is missing.
-    pub fn from_permutations(
-        opposite: &[u32],
-        clockwise: &[u32],
-        facing: u32,
-        pose: u32,
-    ) -> Result<Self, Flaw> {
-        let (graph, number) = EmbeddedGraph::from_permutations(opposite, clockwise)?;
-        let dart = |dart: u32| number.get(dart as usize).copied().ok_or(Flaw::NoSuchDart { dart });
-        let (facing, pose) = (dart(facing)?, dart(pose)?);
-        Ok(Self { graph: Cow::Owned(graph), facing, pose })
-    }
-
-    /// A map from what is at the other end of each dart: for each vertex, and for each of its darts clockwise, a
-    /// vertex and the index of a dart there. The facing dart is the first one of the first vertex. `pose` is the dart
-    /// by which the robot has come in.
-    ///
-    /// # Errors
-    /// Returns an error if an end is not known, if they are not those of a connected graph, or if there is no dart
-    /// `pose`.
-    pub fn from_far_ends(
-        far: &[Vec<Option<(usize, u32)>>],
-        pose: (usize, u32),
-    ) -> Result<Self, Flaw> {
-        let unexplored = far.iter().flatten().filter(|end| end.is_none()).count() as u32;
-        if unexplored > 0 {
-            return Err(Flaw::Unfinished { unexplored });
-        }
-        let mut first = Vec::with_capacity(far.len());
-        let (mut dart_count, mut clockwise) = (0, Vec::new());
-        for ends in far {
-            let degree = ends.len() as u32;
-            first.push(dart_count);
-            clockwise.extend((0..degree).map(|index| dart_count + (index + 1) % degree));
-            dart_count += degree;
-        }
-        // The number of a dart; no dart has the largest number.
-        let number = |(vertex, index): (usize, u32)| match (first.get(vertex), far.get(vertex)) {
-            (Some(first), Some(ends)) if (index as usize) < ends.len() => first + index,
-            _ => u32::MAX,
-        };
-        let opposite: Vec<_> = far.iter().flatten().flatten().map(|&end| number(end)).collect();
-        Self::from_permutations(&opposite, &clockwise, 0, number(pose))
-    }
-}
-
-/// The map of a finished run.
-pub(super) fn explored(state: &impl RunState) -> Result<ExploredMap<'_>, Flaw> {
-    let journey = state.journey();
-    let unexplored = journey.map().unexplored_count();
-    let graph = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
-    Ok(ExploredMap { graph: Cow::Borrowed(graph), facing: FACING, pose: journey.robot() })
-}
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
 /// verified and returned; the robot's pose is what it believes; the moves are within the bound.
@@ -87,21 +16,41 @@ pub(super) fn explored(state: &impl RunState) -> Result<ExploredMap<'_>, Flaw> {
 /// # Errors
 /// Returns the first [`Flaw`].
 // paper: alg1.isomorphic
-pub fn judge<'c, A: Algorithm>(
-    algorithm: &A,
-    state: &A::State,
+pub fn judge<'c, E: Explorer>(
+    explorer: &E,
     facing: Dart,
-    world: &GraphWorld<A::Marker>,
+    world: &GraphWorld<E::Marker>,
     candidate: &'c mut Candidate,
 ) -> Result<&'c Bijection, Flaw> {
-    let graph = world.graph();
-    let bijection = judge_map(&explored(state)?, (graph, facing), world.pose(), candidate)?;
-    let bound = algorithm.move_bound(graph.edge_count(), graph.vertex_count());
-    let moves = state.journey().moves();
-    if moves > bound {
-        return Err(Flaw::TooManyMoves { moves, bound });
-    }
-    Ok(bijection)
+    let (graph, moves) = (world.graph(), world.moves());
+    let bijection = judge_map(&explorer.explored()?, (graph, facing), world.pose(), candidate)?;
+    let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+    if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(bijection) }
+}
+
+/// Runs an explorer on a start with the default choices, and [judges](judge) it. Moves beyond its bound are refused,
+/// and no map may have more darts than the world. Returns the moves made, and the flaw if there is one.
+pub fn judge_start<E: Explorer>(
+    explorer: &mut E,
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    candidate: &mut Candidate,
+) -> (u64, Result<(), Flaw>) {
+    let mut world = bounded_world(explorer, graph, facing);
+    explorer.limit_darts(graph.dart_count());
+    let ended = explore(explorer, &mut world, &mut ()).map_err(Flaw::from);
+    let judged = ended.and_then(|()| judge(explorer, facing, &world, candidate).map(|_| ()));
+    (world.moves(), judged)
+}
+
+/// The world of a start, in which an explorer can make as many moves as its bound allows.
+fn bounded_world<'g, E: Explorer>(
+    explorer: &E,
+    graph: &'g EmbeddedGraph,
+    facing: Dart,
+) -> GraphWorld<'g, E::Marker> {
+    let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+    GraphWorld::with_marker(graph, explorer.marker(), facing).with_bound(bound)
 }
 
 /// Judges a map: it is isomorphic to the world as a start, by a bijection that is verified and
@@ -157,25 +106,26 @@ impl fmt::Display for FalseStep {
     }
 }
 
-/// Runs an algorithm on a start, and returns the first step after which the map does not embed in the
+/// Runs an explorer on a start, and returns the first step after which the map does not embed in the
 /// world; `None` if it always does.
-pub fn first_false_step<A: Algorithm>(
-    algorithm: &A,
+pub fn first_false_step<E: Explorer>(
+    mut explorer: E,
     graph: &EmbeddedGraph,
     facing: Dart,
-    state: &mut A::State,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |_: &mut GraphWorld<A::Marker>, journey: &Journey, added: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<E::Marker>, journey: &Journey, added: MappingEvent| {
         let adds =
             matches!(added, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. });
         if adds && first.is_none() && !embeds(journey.map(), graph, facing) {
             first = Some(FalseStep { moves: journey.moves(), added });
         }
     };
+    let mut world = bounded_world(&explorer, graph, facing);
+    // A wrong map can have more darts than the world.
+    explorer.limit_darts(2 * graph.dart_count());
     // An error at its end does not matter here.
-    let mut world = GraphWorld::with_marker(graph, A::Marker::default(), facing);
-    let _ = algorithm.run(&mut world, state, &mut watch);
+    let _ = explore(&mut explorer, &mut world, &mut watch);
     first
 }
 

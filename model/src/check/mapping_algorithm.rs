@@ -1,209 +1,110 @@
-//! The algorithms of this crate, to choose from at run time. Section 2.3.
+//! Checks of an algorithm that is chosen at run time.
+//!
+//! These methods are compiled in this crate, and so as fast as this crate, however the caller is compiled.
+
+use std::borrow::Cow;
 
 use super::{
-    Algorithm, Algorithm1, Algorithm1Explorer, AllChoices, CheckPieces, CostOrder, EveryWay,
-    FailedStart, FinishedUnits, Flaw, Folding, FoldingStepExplorer, LazyCheck, LazySweep,
-    MovableMarker, MovableMarkerExplorer, PieceCounts, Probe, RunState, Sweep, Tally, check_worlds,
-    first_false_step,
+    CheckPieces, EveryWay, FinishedUnits, LazyCheck, LazySweep, PieceCounts, Probe, RunChoices,
+    Sweep, Tally, check_worlds, judge_map,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
-    marker::{Directional, Marker, Movable},
+    isomorphism::{Bijection, Candidate},
+    mapping::{ExploredMap, FACING, Flaw, Journey, MappingAlgorithm, with_explorer},
 };
 
-/// An algorithm, and whether it runs with all choices.
-///
-/// Its methods are compiled in this crate, and so as fast as this crate, however the caller is
-/// compiled.
-#[derive(Clone, Copy, Debug)]
-pub enum MappingAlgorithm {
-    /// Algorithm 1 with the default choices.
-    Algorithm1,
-    /// Algorithm 1 with all choices.
-    AllChoices(AllChoices<Algorithm1>),
-    /// The movable marker algorithm with the default choices.
-    MovableMarker,
-    /// The folding explorer with the default choices.
-    Folding,
-    /// The folding explorer with every way to break its ties.
-    FoldingAllChoices(AllChoices<Folding>),
-}
-
 impl MappingAlgorithm {
-    /// Its name in reports.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.name(),
-            Self::MovableMarker => MovableMarker.name(),
-            Self::Folding | Self::FoldingAllChoices(_) => Folding.name(),
-        }
-    }
-
-    /// The marker with which it maps.
-    #[must_use]
-    pub fn marker(&self) -> &'static dyn Marker {
-        match self {
-            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding | Self::FoldingAllChoices(_) => {
-                &Directional
-            }
-            Self::MovableMarker => &Movable,
-        }
-    }
-
-    /// The order of its cost.
-    #[must_use]
-    pub fn order(&self) -> CostOrder {
-        match self {
-            Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.order(),
-            Self::MovableMarker => MovableMarker.order(),
-            Self::Folding | Self::FoldingAllChoices(_) => Folding.order(),
-        }
+    /// Judges a run that has ended, as [`judge`](super::judge): its map, the robot's `pose` in it, which is `truly` the
+    /// one in the world, and the moves of its journey.
+    ///
+    /// # Errors
+    /// Returns the first [`Flaw`].
+    pub fn judge<'c>(
+        self,
+        (journey, pose): (&Journey, Dart),
+        (graph, facing): (&EmbeddedGraph, Dart),
+        truly: Dart,
+        candidate: &'c mut Candidate,
+    ) -> Result<&'c Bijection, Flaw> {
+        let unexplored = journey.map().unexplored_count();
+        let map = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
+        let map = ExploredMap { graph: Cow::Borrowed(map), facing: FACING, pose };
+        let bijection = judge_map(&map, (graph, facing), truly, candidate)?;
+        let (moves, bound) =
+            (journey.moves(), self.move_bound(graph.edge_count(), graph.vertex_count()));
+        if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(bijection) }
     }
 
     /// Checks every start of a sweep, as [`Sweep::run`].
     #[must_use]
-    pub fn sweep(&self, sweep: &Sweep, watch: &dyn Watch) -> Tally {
-        match self {
-            Self::Algorithm1 => sweep.run(&Algorithm1, watch),
-            Self::AllChoices(algorithm) => sweep.run(algorithm, watch),
-            Self::MovableMarker => sweep.run(&MovableMarker, watch),
-            Self::Folding => sweep.run(&Folding, watch),
-            Self::FoldingAllChoices(algorithm) => sweep.run(algorithm, watch),
-        }
+    pub fn sweep(self, sweep: &Sweep, choices: RunChoices, watch: &dyn Watch) -> Tally {
+        with_explorer!(self, E => sweep.run(E::default, choices, watch))
     }
 
-    /// Checks every start of a lazy sweep, as [`LazySweep::resume`]. `None` with all choices: then runs are not
-    /// shared.
+    /// Checks every start of a lazy sweep, as [`LazySweep::resume`].
     #[must_use]
     pub fn lazy_sweep(
-        &self,
+        self,
         sweep: &LazySweep,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> Option<LazyCheck> {
-        match self {
-            Self::Algorithm1 => {
-                let check = sweep.resume(Algorithm1Explorer::default, units, watch);
-                Some(with_false_step(&Algorithm1, check))
-            }
-            Self::MovableMarker => {
-                let check = sweep.resume(MovableMarkerExplorer::default, units, watch);
-                Some(with_false_step(&MovableMarker, check))
-            }
-            Self::Folding => {
-                let check = sweep.resume(FoldingStepExplorer::default, units, watch);
-                Some(with_false_step(&Folding, check))
-            }
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
-        }
+    ) -> LazyCheck {
+        with_explorer!(self, E => sweep.resume(E::default, units, watch))
     }
 
-    /// The number of units of a lazy sweep; `None` with all choices.
+    /// The number of units of a lazy sweep.
     #[must_use]
-    pub fn unit_count(&self, sweep: &LazySweep) -> Option<usize> {
-        match self {
-            Self::Algorithm1 => Some(sweep.unit_count(Algorithm1Explorer::default)),
-            Self::MovableMarker => Some(sweep.unit_count(MovableMarkerExplorer::default)),
-            Self::Folding => Some(sweep.unit_count(FoldingStepExplorer::default)),
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
-        }
+    pub fn unit_count(self, sweep: &LazySweep) -> usize {
+        with_explorer!(self, E => sweep.unit_count(E::default))
     }
 
-    /// The pieces of a lazy sweep, as [`CheckPieces::new`]; `None` with all choices.
+    /// The pieces of a lazy sweep, as [`CheckPieces::new`].
     #[must_use]
-    pub fn pieces(&self, sweep: &LazySweep, watch: &dyn Watch) -> Option<CheckPieces> {
-        match self {
-            Self::Algorithm1 => Some(CheckPieces::new(sweep, Algorithm1Explorer::default, watch)),
-            Self::MovableMarker => {
-                Some(CheckPieces::new(sweep, MovableMarkerExplorer::default, watch))
-            }
-            Self::Folding => Some(CheckPieces::new(sweep, FoldingStepExplorer::default, watch)),
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
-        }
+    pub fn pieces(self, sweep: &LazySweep, watch: &dyn Watch) -> CheckPieces {
+        with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
     }
 
-    /// The counts of a piece, as [`CheckPieces::check`]; none with all choices.
+    /// The counts of a piece, as [`CheckPieces::check`].
     #[must_use]
-    pub fn check_piece(&self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PieceCounts {
-        match self {
-            Self::Algorithm1 => of.check(piece, Algorithm1Explorer::default(), watch),
-            Self::MovableMarker => of.check(piece, MovableMarkerExplorer::default(), watch),
-            Self::Folding => of.check(piece, FoldingStepExplorer::default(), watch),
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => PieceCounts::default(),
-        }
+    pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PieceCounts {
+        with_explorer!(self, E => of.check(piece, E::default(), watch))
     }
 
-    /// The result of a lazy sweep, as [`CheckPieces::finished`]; `None` with all choices.
+    /// The result of a lazy sweep, as [`CheckPieces::finished`].
     #[must_use]
-    pub fn finished_pieces(&self, counts: PieceCounts) -> Option<LazyCheck> {
-        match self {
-            Self::Algorithm1 => {
-                let check = CheckPieces::finished(counts, Algorithm1Explorer::default);
-                Some(with_false_step(&Algorithm1, check))
-            }
-            Self::MovableMarker => {
-                let check = CheckPieces::finished(counts, MovableMarkerExplorer::default);
-                Some(with_false_step(&MovableMarker, check))
-            }
-            Self::Folding => {
-                let check = CheckPieces::finished(counts, FoldingStepExplorer::default);
-                Some(with_false_step(&Folding, check))
-            }
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
-        }
+    pub fn finished_pieces(self, counts: PieceCounts) -> LazyCheck {
+        with_explorer!(self, E => CheckPieces::finished(counts, E::default))
     }
 
-    /// A random probe, as [`LazySweep::probe`]; `None` with all choices.
+    /// A random probe, as [`LazySweep::probe`].
     #[must_use]
-    pub fn probe(&self, sweep: &LazySweep, numbers: Vec<u64>, watch: &dyn Watch) -> Option<Probe> {
-        match self {
-            Self::Algorithm1 => Some(sweep.probe(Algorithm1Explorer::default(), numbers, watch)),
-            Self::MovableMarker => {
-                Some(sweep.probe(MovableMarkerExplorer::default(), numbers, watch))
-            }
-            Self::Folding => Some(sweep.probe(FoldingStepExplorer::default(), numbers, watch)),
-            Self::AllChoices(_) | Self::FoldingAllChoices(_) => None,
-        }
+    pub fn probe(self, sweep: &LazySweep, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
+        with_explorer!(self, E => sweep.probe(E::default(), numbers, watch))
     }
 
     /// Checks every start of some worlds, as [`check_worlds`].
     #[must_use]
-    pub fn check_worlds(&self, graphs: &[EmbeddedGraph], watch: &dyn Watch) -> Tally {
-        match self {
-            Self::Algorithm1 => check_worlds(graphs, &Algorithm1, watch),
-            Self::AllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
-            Self::MovableMarker => check_worlds(graphs, &MovableMarker, watch),
-            Self::Folding => check_worlds(graphs, &Folding, watch),
-            Self::FoldingAllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
-        }
+    pub fn check_worlds(
+        self,
+        graphs: &[EmbeddedGraph],
+        choices: RunChoices,
+        watch: &dyn Watch,
+    ) -> Tally {
+        with_explorer!(self, E => check_worlds(graphs, E::default, choices, watch))
     }
 
-    /// Makes and judges the runs with other than the default choices, as [`Algorithm::other_runs`].
+    /// Makes and judges the runs with other than the default choices, as [`RunChoices::others`].
     ///
     /// # Errors
     /// Returns the first [`Flaw`].
     pub fn other_runs(
-        &self,
-        graph: &EmbeddedGraph,
-        facing: Dart,
+        self,
+        choices: RunChoices,
+        (graph, facing): (&EmbeddedGraph, Dart),
         watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
-        match self {
-            Self::AllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
-            Self::FoldingAllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
-            Self::Algorithm1 | Self::MovableMarker | Self::Folding => Ok(None),
-        }
+        with_explorer!(self, E => choices.others(E::default, graph, facing, watch))
     }
-}
-
-/// Adds the first wrong addition to the map to the first failure.
-fn with_false_step<A: Algorithm>(algorithm: &A, mut check: LazyCheck) -> LazyCheck {
-    if let Some(FailedStart { graph, facing, false_step, .. }) = &mut check.tally.failure {
-        // A wrong map can have more darts than the world.
-        let mut state = A::State::new(2 * graph.dart_count());
-        *false_step = first_false_step(algorithm, graph, *facing, &mut state);
-    }
-    check
 }

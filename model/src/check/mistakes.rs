@@ -3,7 +3,7 @@
 
 use std::{borrow::Cow, fmt, ops::ControlFlow};
 
-use super::{ExploredMap, Flaw, judge::judge_map};
+use super::judge_map;
 use crate::{
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -11,7 +11,7 @@ use crate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
     isomorphism::Candidate,
-    mapping::{FACING, MappingError, MappingMethod, Relocate},
+    mapping::{ExploredMap, FACING, Flaw, MappingError, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, State, World},
 };
@@ -400,9 +400,9 @@ impl MistakenRuns {
         graph: &EmbeddedGraph,
     ) -> Result<ExploredMap<'static>, MappingError<RefusedAction>> {
         let bound = 2 * graph.dart_count() + 20;
-        let (run, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
+        let (journey, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
         let pose = mapped?.pose;
-        let map = run.map().complete().ok_or(MappingError::Bound { bound })?;
+        let map = journey.map().complete().ok_or(MappingError::Bound { bound })?;
         Ok(ExploredMap { graph: Cow::Owned(map.clone()), facing: FACING, pose })
     }
 }
@@ -439,7 +439,7 @@ impl Relocate for VisitedWorld<'_> {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mapping::{DirectionalAlgorithm, RecoveryConfig};
+    use crate::mapping::{MappingAlgorithm, RecoveryConfig};
 
     fn tally(edges: usize, method: MappingMethod) -> MistakeTally {
         MistakeCheck::new(Class::Multigraph, edges, method).unwrap().run(&())
@@ -447,7 +447,7 @@ mod tests {
 
     #[test]
     fn with_an_audit_no_mistake_leaves_a_wrong_map() {
-        for algorithm in DirectionalAlgorithm::ALL {
+        for algorithm in MappingAlgorithm::with_fixed_marker() {
             for edges in 1..=4 {
                 let [with, without] =
                     [1, 0].map(|audits| tally(edges, MappingMethod::By { algorithm, audits }));
@@ -482,8 +482,7 @@ mod tests {
 
     #[test]
     fn a_check_that_is_stopped_begins_no_start() {
-        let check =
-            MistakeCheck::new(Class::Multigraph, 5, DirectionalAlgorithm::Algorithm1.into());
+        let check = MistakeCheck::new(Class::Multigraph, 5, MappingAlgorithm::Algorithm1.into());
         let tally = check.unwrap().run(&Stopped);
         assert_eq!(tally, MistakeTally { interrupted: true, ..MistakeTally::default() });
     }

@@ -1,44 +1,30 @@
 //! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
-mod algorithm;
-mod all_choices;
 mod costs;
-mod every_tie;
 mod every_way;
-mod explorer;
-mod flaw;
-mod folding_explorer;
 mod guess;
 mod judge;
 mod lazy;
 mod mapping_algorithm;
 mod mistakes;
+mod run_choices;
 mod sweep;
 mod tally;
 
-pub use algorithm::{
-    Algorithm, Algorithm1, CostOrder, Folding, MovableMarker, OpenChoices, RunState,
-};
-pub use all_choices::{AllChoices, DEFAULT_STATE_BUDGET, EveryRun};
 pub use costs::{ChoicesLimit, Costs, EveryWay};
-pub use every_tie::every_tie;
-pub use every_way::every_way;
-pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
-pub use flaw::Flaw;
-pub use folding_explorer::FoldingExplorer;
+pub use every_way::{DEFAULT_STATE_BUDGET, every_way};
 pub use guess::determines_world;
-pub use judge::{ExploredMap, FalseStep, first_false_step, judge, judge_map};
+pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
 pub use lazy::{
-    Algorithm1Explorer, CheckPieces, EnumeratedStart, FinishedUnits, FoldingStepExplorer,
-    LazyCheck, LazySweep, LazyTally, LazyWorld, MovableMarkerExplorer, PieceCounts, Probe,
-    StepExplorer, StepProgress, Stepwise, WorldCount,
+    CheckPieces, EnumeratedStart, FinishedUnits, LazyCheck, LazySweep, LazyTally, LazyWorld,
+    PieceCounts, Probe, WorldCount,
 };
-pub use mapping_algorithm::MappingAlgorithm;
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
     UndetectedMistake,
 };
-pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
+pub use run_choices::RunChoices;
+pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{FailedStart, Tally, WorstStart};
 
 #[cfg(test)]
@@ -51,8 +37,8 @@ mod tests {
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Candidate,
         mapping::{
-            Choices, Exploration, MarkerSearch, Nearest, PartialMap, map_with_movable_marker,
-            map_world,
+            Choices, Exploration, Flaw, MarkerSearch, Nearest, PartialMap, explore,
+            map_with_movable_marker, map_world,
         },
         marker::Movable,
         world::GraphWorld,
@@ -92,7 +78,7 @@ mod tests {
         let mut candidate = Candidate::default();
         map_with_movable_marker(&mut world, &mut choices, &mut search, &mut ())
             .map_err(Flaw::from)
-            .and_then(|()| judge(&MovableMarker, &search, facing, &world, &mut candidate))
+            .and_then(|()| judge(&search, facing, &world, &mut candidate))
             .err()
     }
 
@@ -110,7 +96,7 @@ mod tests {
             let mut choices = Drawn { numbers: &numbers, next: 0 };
             map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
             let mut candidate = Candidate::default();
-            let verdict = judge(&Algorithm1, &exploration, facing, &world, &mut candidate);
+            let verdict = judge(&exploration, facing, &world, &mut candidate);
             prop_assert!(verdict.is_ok());
         }
 
@@ -138,7 +124,7 @@ mod tests {
             let moves = |graph, facing| {
                 let mut exploration = Exploration::new(60);
                 let mut world = GraphWorld::new(graph, facing);
-                Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
+                explore(&mut exploration, &mut world, &mut ()).unwrap();
                 exploration.moves()
             };
             prop_assert_eq!(moves(&graph, facing), moves(&copy, Dart(0)));

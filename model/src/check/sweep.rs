@@ -4,15 +4,13 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{
-    Algorithm, AlgorithmExplorer, Explorer, FailedStart, FalseStep, RunState, Tally,
-    first_false_step, judge_start, tally::CheckedStart,
-};
+use super::{FailedStart, RunChoices, Tally, first_false_step, judge_start, tally::CheckedStart};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration, SizeError, Watch, in_parts},
     folding::MarkerTree,
     isomorphism::{Candidate, canonical},
+    mapping::Explorer,
     marker::{Directional, Marker},
 };
 
@@ -97,65 +95,37 @@ impl Sweep {
         self.worlds.class()
     }
 
-    /// Checks an algorithm. The result does not depend on the number of threads (that of rayon's
-    /// pool, or 1 without the feature `rayon`).
-    pub fn run(&self, algorithm: &impl Algorithm, watch: &dyn Watch) -> Tally {
-        self.tally(watch, || AlgorithmChecker::new(algorithm, watch))
-    }
-
-    /// Checks explorers, each on one part of the worlds. The result does not depend on the number of
-    /// threads, unless an explorer depends on what it explored before.
-    pub fn run_explorers<E: Explorer>(
+    /// Checks explorers, each on one part of the worlds. The result does not depend on the number of threads (that
+    /// of rayon's pool, or 1 without the feature `rayon`), unless an explorer depends on what it explored before.
+    pub fn run<E: Explorer>(
         &self,
         new: impl Fn() -> E + Sync,
+        choices: RunChoices,
         watch: &dyn Watch,
     ) -> Tally {
-        self.tally(watch, || ExplorerChecker { explorer: new(), candidate: Candidate::default() })
-    }
-
-    fn tally<C: StartChecker>(&self, watch: &dyn Watch, new: impl Fn() -> C + Sync) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
         tally_parts(&parts, watch, |part, tally| {
-            let mut part_checker = PartChecker::new(new(), watch);
+            let mut checker = StartChecker::new(&new, choices, watch);
             part.for_each(&mut |found| {
-                part_checker.check_starts(found.graph, found.automorphisms as usize, tally)
+                checker.check_starts(found.graph, found.automorphisms as usize, tally)
             })
         })
     }
 }
 
-/// Runs the algorithm on every start of some worlds. As with a [`Sweep`], the result does not depend
-/// on the number of threads.
-pub fn check_worlds(
-    graphs: &[EmbeddedGraph],
-    algorithm: &impl Algorithm,
-    watch: &dyn Watch,
-) -> Tally {
-    check_parts(graphs, watch, || AlgorithmChecker::new(algorithm, watch))
-}
-
-/// Runs explorers on every start of some worlds, each on one part of them.
-pub fn check_worlds_with<E: Explorer>(
+/// Checks explorers on every start of some worlds, each on one part of them. As with a [`Sweep`], the result does
+/// not depend on the number of threads.
+pub fn check_worlds<E: Explorer>(
     graphs: &[EmbeddedGraph],
     new: impl Fn() -> E + Sync,
+    choices: RunChoices,
     watch: &dyn Watch,
-) -> Tally {
-    check_parts(graphs, watch, || ExplorerChecker {
-        explorer: new(),
-        candidate: Candidate::default(),
-    })
-}
-
-fn check_parts<C: StartChecker>(
-    graphs: &[EmbeddedGraph],
-    watch: &dyn Watch,
-    new: impl Fn() -> C + Sync,
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
-        let mut part_checker = PartChecker::new(new(), watch);
+        let mut checker = StartChecker::new(&new, choices, watch);
         part.iter().try_for_each(|graph| {
-            part_checker.check_starts(graph, canonical(graph).automorphisms, tally)
+            checker.check_starts(graph, canonical(graph).automorphisms, tally)
         })
     })
 }
@@ -182,26 +152,23 @@ fn tally_parts<P: Sync>(
     in_parts(parts, watch, Tally::default, check, |tally| tally.starts, merge)
 }
 
-/// Checks one start after the other. Memory is kept from start to start.
-trait StartChecker {
-    /// The marker of the starts.
-    fn marker(&self) -> impl Marker;
-
-    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally);
-}
-
-/// Checks the worlds of one part.
-struct PartChecker<'w, C> {
-    checker: C,
-    watch: &'w dyn Watch,
+/// Checks the starts of one part, one after the other. Memory is kept from start to start.
+struct StartChecker<'a, E, N> {
+    new: &'a N,
+    explorer: E,
+    choices: RunChoices,
+    watch: &'a dyn Watch,
+    candidate: Candidate,
     /// Measures certificates, if the marker has them.
     certificates: Option<MarkerTree>,
 }
 
-impl<'w, C: StartChecker> PartChecker<'w, C> {
-    fn new(checker: C, watch: &'w dyn Watch) -> Self {
-        let directional = checker.marker().name() == Directional.name();
-        Self { checker, watch, certificates: directional.then(MarkerTree::default) }
+impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
+    fn new(new: &'a N, choices: RunChoices, watch: &'a dyn Watch) -> Self {
+        let explorer = new();
+        let directional = explorer.marker().name() == Directional.name();
+        let certificates = directional.then(MarkerTree::default);
+        Self { new, explorer, choices, watch, candidate: Candidate::default(), certificates }
     }
 
     /// Checks every start of a world.
@@ -225,7 +192,7 @@ impl<'w, C: StartChecker> PartChecker<'w, C> {
             let certificate = measured.map(|(_, length)| length);
             let start = CheckedStart { graph, facing, certificate };
             tally.count_start(start);
-            self.checker.check_start(start, tally);
+            self.check_start(start, tally);
             go_on(self.watch)
         };
         if automorphisms == 1 {
@@ -236,90 +203,30 @@ impl<'w, C: StartChecker> PartChecker<'w, C> {
             graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
         }
     }
-}
-
-struct ExplorerChecker<E> {
-    explorer: E,
-    candidate: Candidate,
-}
-
-impl<E: Explorer> StartChecker for ExplorerChecker<E> {
-    fn marker(&self) -> impl Marker {
-        self.explorer.marker()
-    }
 
     fn check_start(&mut self, start: CheckedStart, tally: &mut Tally) {
         let CheckedStart { graph, facing, .. } = start;
-        let Self { explorer, candidate } = self;
-        match judge_start(explorer, graph, facing, candidate) {
-            (moves, Ok(())) => {
+        let (moves, judged) = judge_start(&mut self.explorer, graph, facing, &mut self.candidate);
+        let failure = match judged {
+            Ok(()) => {
                 tally.count_run(start, moves);
-                tally.mapped += 1;
-            }
-            (moves, Err(flaw)) => {
-                tally.failure.get_or_insert_with(|| FailedStart {
-                    graph: graph.clone(),
-                    facing,
-                    flaw,
-                    moves: Some(moves),
-                    false_step: None,
-                });
-            }
-        }
-    }
-}
-
-struct AlgorithmChecker<'a, A: Algorithm> {
-    algorithm: &'a A,
-    watch: &'a dyn Watch,
-    explorer: AlgorithmExplorer<'a, A>,
-    candidate: Candidate,
-}
-
-impl<'a, A: Algorithm> AlgorithmChecker<'a, A> {
-    fn new(algorithm: &'a A, watch: &'a dyn Watch) -> Self {
-        let explorer = AlgorithmExplorer::new(algorithm);
-        Self { algorithm, watch, explorer, candidate: Candidate::default() }
-    }
-
-    /// The first addition to the map that was wrong.
-    fn false_step(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Option<FalseStep> {
-        let state = &mut self.explorer.state;
-        // A wrong map can have more darts than the world.
-        state.set_bound(2 * graph.dart_count());
-        first_false_step(self.algorithm, graph, facing, state)
-    }
-}
-
-impl<A: Algorithm> StartChecker for AlgorithmChecker<'_, A> {
-    fn marker(&self) -> impl Marker {
-        self.explorer.marker()
-    }
-
-    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally) {
-        let CheckedStart { graph, facing, .. } = start;
-        match judge_start(&mut self.explorer, graph, facing, &mut self.candidate) {
-            (moves, Ok(())) => tally.count_run(start, moves),
-            (moves, Err(flaw)) => {
-                if tally.failure.is_none() {
-                    let (false_step, graph) = (self.false_step(graph, facing), graph.clone());
-                    let moves = Some(moves);
-                    tally.failure = Some(FailedStart { graph, facing, flaw, moves, false_step });
+                match self.choices.others(self.new, graph, facing, self.watch) {
+                    Ok(ways) => {
+                        ways.iter().for_each(|ways| tally.count_every_way(ways));
+                        tally.mapped += 1;
+                        return;
+                    }
+                    // It is not a run with the default choices, so it has no story.
+                    Err(flaw) => (flaw, None),
                 }
-                return;
             }
+            Err(flaw) => (flaw, Some(moves)),
+        };
+        if tally.failure.is_none() {
+            let (flaw, moves) = failure;
+            let false_step = moves.and_then(|_| first_false_step((self.new)(), graph, facing));
+            let graph = graph.clone();
+            tally.failure = Some(FailedStart { graph, facing, flaw, moves, false_step });
         }
-        match self.algorithm.other_runs(graph, facing, self.watch) {
-            Ok(None) => {}
-            Ok(Some(ways)) => tally.count_every_way(&ways),
-            Err(flaw) => {
-                // It is not a run with the default choices, so it has no story.
-                let (graph, moves) = (graph.clone(), None);
-                let failure = FailedStart { graph, facing, flaw, moves, false_step: None };
-                tally.failure.get_or_insert(failure);
-                return;
-            }
-        }
-        tally.mapped += 1;
     }
 }

@@ -2,8 +2,11 @@
 
 use std::cmp::Reverse;
 
-use super::{ChoicesLimit, CostOrder, EveryWay, FalseStep, Flaw};
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use super::{ChoicesLimit, EveryWay, FalseStep};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    mapping::{CostOrder, Flaw},
+};
 
 /// A start that is checked.
 #[derive(Clone, Copy)]
@@ -102,7 +105,7 @@ impl Tally {
     #[must_use]
     pub fn largest_ratio(&self, edges: usize, order: CostOrder) -> f64 {
         let (moves, vertices) = self.dearest.unwrap_or((0, 1));
-        moves as f64 / order.of(edges as f64, vertices as f64)
+        moves as f64 / order.value(edges as f64, vertices as f64)
     }
 
     /// Counts a start, and its certificate.

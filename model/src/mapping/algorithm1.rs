@@ -3,8 +3,11 @@
 //! The numbers are those of the printed lines. The state and the small steps are those of
 //! [`Exploration`].
 
-use super::{Choices, Exploration, MappingChoice, MappingError, MappingEvent, Observer};
-use crate::{embedded_graph::Dart, world::World};
+use super::{
+    Choices, CostOrder, Exploration, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart,
+    MappingChoice, MappingError, MappingEvent, Nearest, Observer, StateKey, StepPurpose,
+};
+use crate::{embedded_graph::Dart, marker::Directional, world::World};
 
 /// The result of the validation of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +35,7 @@ pub fn map_world<W: World>(
     // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
     exploration.begin(world, observer)?;
     // 4 to 23, from one choice to the next.
-    while let Some(choice) = exploration.choose(choices) {
+    while let Some(choice) = exploration.choose_with(choices) {
         step(exploration, choice, world, observer)?;
     }
     // S is the map.
@@ -129,4 +132,98 @@ pub fn try_path<W: World>(
     exploration.arrive_at_marker(pose);
     observer.event(world, exploration.journey(), MappingEvent::Confirmed { hypothesis, followed });
     Ok(ValidationResult::Confirmed)
+}
+
+/// Algorithm 1. The default choices are those of [`Nearest`].
+impl Explorer for Exploration {
+    type Marker = Directional;
+    type Choice = MappingChoice;
+
+    const INFO: ExplorerInfo = ExplorerInfo {
+        option: "algorithm1",
+        name: "Algorithm 1",
+        in_words: "Algorithm 1",
+        order: CostOrder::EdgesSquaredVertices,
+    };
+
+    fn marker(&self) -> Directional {
+        Directional
+    }
+
+    fn limit_darts(&mut self, max_darts: usize) {
+        self.set_bound(max_darts);
+    }
+
+    /// Lines 1 to 3: the marker lies at v0; S is v0; U is its edges.
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.find_start(world, observer)
+    }
+
+    #[inline]
+    fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
+        Ok(self.choose_with(&mut Nearest))
+    }
+
+    fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
+        Ok(self.open_choices().collect())
+    }
+
+    /// The first part of line 6.
+    #[inline]
+    fn approach<W: World>(
+        &mut self,
+        choice: MappingChoice,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        match choice {
+            MappingChoice::Edge(edge) => self.go_to_known_end(edge, world, observer),
+            MappingChoice::Hypothesis(_) => Ok(()),
+        }
+    }
+
+    #[inline]
+    fn step<W: World>(
+        &mut self,
+        choice: MappingChoice,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        step(self, choice, world, observer)
+    }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        Some(self.journey())
+    }
+
+    fn state_key(&self) -> Option<StateKey> {
+        Some(if self.is_at_line_8() {
+            StateKey::WithinRound(self.hypotheses().to_vec())
+        } else {
+            StateKey::Round(self.map().clone(), self.map().vertex(self.robot()))
+        })
+    }
+
+    fn purpose(&self, choice: Option<MappingChoice>) -> StepPurpose {
+        let named = |dart| MapDart::new(self.map(), dart);
+        match choice {
+            None => StepPurpose::Done,
+            Some(MappingChoice::Edge(edge)) => StepPurpose::Explore(named(edge)),
+            Some(MappingChoice::Hypothesis(index)) => {
+                StepPurpose::Try(named(self.hypotheses()[index]))
+            }
+        }
+    }
+
+    /// `m n + 2 m^2 (n - 1)`.
+    // paper: cost.bound
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let paths = m.saturating_mul(m).saturating_mul(n.saturating_sub(1).saturating_mul(2));
+        m.saturating_mul(n).saturating_add(paths)
+    }
 }

@@ -24,6 +24,9 @@ pub enum MappingError<E> {
     /// A step was not valid in the state of the run, or a choice was not open.
     #[error("invalid step: {0}")]
     InvalidStep(InvalidStep),
+    /// The explorer gave up.
+    #[error("the explorer gave up: {0}")]
+    GaveUp(String),
     /// More darts are known than the bound allows.
     #[error(
         "more than {} darts (edge ends) are known, and the map is not complete",
@@ -74,6 +77,9 @@ pub enum InvalidStep {
     /// No edge is being explored.
     #[error("no edge is being explored")]
     NoEdge,
+    /// The explorer needs a marker that the robot can carry.
+    #[error("the robot cannot carry its marker")]
+    NoMovableMarker,
     /// The vertex is not in the map.
     #[error("the map has no vertex v{}", .0.0)]
     UnknownVertex(Vertex),

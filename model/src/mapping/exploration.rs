@@ -6,8 +6,9 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, InvalidStep, Journey, MappingChoice, MappingError, MappingEvent,
-    Observer, PartialMap, journey::NOWHERE, partial_map::START, tree::BreadthFirstTree,
+    Choices, Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingChoice, MappingError,
+    MappingEvent, Observer, PartialMap, journey::NOWHERE, partial_map::START,
+    tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -15,10 +16,6 @@ use crate::{
     percept::{Door, Percept, Sighting, retrace},
     world::World,
 };
-
-/// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
-/// many, ends with an error.
-pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 
 /// The state of a run of Algorithm 1: the robot's journey, and the hypotheses about its place.
 #[derive(Debug)]
@@ -43,6 +40,18 @@ struct Here {
     /// The door, counted from the reference dart, by which it really came in. It differs from
     /// [`Door::BACK`] after a rejected hypothesis.
     entry: Door,
+}
+
+impl Default for Exploration {
+    fn default() -> Self {
+        Self::new(DEFAULT_DART_BOUND)
+    }
+}
+
+impl From<Exploration> for Journey {
+    fn from(run: Exploration) -> Self {
+        run.journey
+    }
 }
 
 impl Exploration {
@@ -99,26 +108,21 @@ impl Exploration {
         &self.hypotheses
     }
 
-    /// Forgets an earlier run.
-    pub(crate) fn clear(&mut self) {
-        self.journey.clear();
-        self.stand(NOWHERE);
-        self.hypotheses.clear();
-        self.trail.clear();
-        self.to_marker.clear();
-    }
-
     /// Lines 1 to 3: the directional marker lies at v0, S is v0, and U is its edges.
     ///
     /// # Errors
     /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
     // paper: alg1.1, alg1.2, alg1.3
-    pub fn begin<W: World>(
+    pub(super) fn find_start<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        self.clear();
+        self.journey.clear();
+        self.stand(NOWHERE);
+        self.hypotheses.clear();
+        self.trail.clear();
+        self.to_marker.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
@@ -147,7 +151,7 @@ impl Exploration {
     /// Lines 4 and 8: the choice to go on with; `None` when the map is complete.
     // paper: alg1.5
     #[inline]
-    pub fn choose(&mut self, choices: &mut impl Choices) -> Option<MappingChoice> {
+    pub fn choose_with(&mut self, choices: &mut impl Choices) -> Option<MappingChoice> {
         if !self.is_at_line_8() {
             return self.journey.choose_edge(choices).map(MappingChoice::Edge);
         }
@@ -163,7 +167,7 @@ impl Exploration {
     ///
     /// # Errors
     /// Returns an error if the world does, or if a known place is not as it was.
-    pub fn approach<W: World>(
+    pub fn go_to_known_end<W: World>(
         &mut self,
         edge: Dart,
         world: &mut W,

@@ -14,6 +14,10 @@ use crate::{
     world::World,
 };
 
+/// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
+/// many, ends with an error.
+pub const DEFAULT_DART_BOUND: usize = 1 << 14;
+
 /// Observes a run in a world `W`.
 ///
 /// It also gets the world, so that an observer inside the world needs no shared ownership.

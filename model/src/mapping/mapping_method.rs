@@ -3,8 +3,8 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    AuditMove, DirectionalAlgorithm, EarlierWalk, FACING, FoldingExploration, InvalidStep,
-    MappedWorld, MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate,
+    AuditMove, EarlierWalk, FACING, FoldingExploration, InvalidStep, Journey, MappedWorld,
+    MappingAlgorithm, MappingError, MappingEvent, Observer, RecoveryConfig, Relocate,
     SafeguardEvent, audit, map_with_recovery,
 };
 
@@ -14,7 +14,7 @@ pub enum MappingMethod {
     /// By an algorithm. It gives up at a contradiction, or if it gets lost.
     By {
         /// The algorithm.
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
         /// The number of [audits](audit) of the complete map.
         audits: u32,
     },
@@ -24,13 +24,13 @@ pub enum MappingMethod {
 
 impl Default for MappingMethod {
     fn default() -> Self {
-        Self::from(DirectionalAlgorithm::default())
+        Self::from(MappingAlgorithm::default())
     }
 }
 
 /// The algorithm alone.
-impl From<DirectionalAlgorithm> for MappingMethod {
-    fn from(algorithm: DirectionalAlgorithm) -> Self {
+impl From<MappingAlgorithm> for MappingMethod {
+    fn from(algorithm: MappingAlgorithm) -> Self {
         Self::By { algorithm, audits: 0 }
     }
 }
@@ -38,10 +38,10 @@ impl From<DirectionalAlgorithm> for MappingMethod {
 impl MappingMethod {
     /// The algorithm.
     #[must_use]
-    pub fn algorithm(self) -> DirectionalAlgorithm {
+    pub fn algorithm(self) -> MappingAlgorithm {
         match self {
             Self::By { algorithm, .. } => algorithm,
-            Self::Recovering(_) => DirectionalAlgorithm::Folding,
+            Self::Recovering(_) => MappingAlgorithm::Folding,
         }
     }
 
@@ -66,11 +66,11 @@ impl MappingMethod {
     }
 
     /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing door. A robot that
-    /// recovers may also go on from earlier walks, wherever it stands. Returns the state of the algorithm, too.
+    /// recovers may also go on from earlier walks, wherever it stands. Returns the robot's journey, too.
     ///
     /// # Errors
     /// Returns an error if the world does, if it contradicts itself, or if the map has more than `bound` darts.
-    /// The state then holds what is known so far. A robot that recovers only returns errors from which it
+    /// The journey then holds what is known so far. A robot that recovers only returns errors from which it
     /// cannot.
     pub fn map_world<W: Relocate>(
         self,
@@ -78,18 +78,17 @@ impl MappingMethod {
         bound: usize,
         earlier: &[EarlierWalk],
         observer: &mut impl Observer<W>,
-    ) -> (MappingRun, Result<MappedWorld, MappingError<W::Error>>) {
+    ) -> (Journey, Result<MappedWorld, MappingError<W::Error>>) {
         match self {
             Self::By { algorithm, audits } => {
-                let mut run = MappingRun::new(algorithm, bound);
-                let mapped = run.map_world(world, observer);
-                let mapped = mapped.and_then(|()| audited(&run, audits, world, observer));
-                (run, mapped)
+                let (journey, mapped) = algorithm.map_world(world, bound, observer);
+                let mapped = mapped.and_then(|()| audited(&journey, audits, world, observer));
+                (journey, mapped)
             }
             Self::Recovering(config) => {
                 let mut exploration = FoldingExploration::new(bound);
                 let mapped = map_with_recovery(world, &mut exploration, config, earlier, observer);
-                (MappingRun::Folding(Box::new(exploration)), mapped)
+                (exploration.into(), mapped)
             }
         }
     }
@@ -97,14 +96,14 @@ impl MappingMethod {
 
 /// Audits a complete map.
 fn audited<W: Relocate>(
-    run: &MappingRun,
+    journey: &Journey,
     audits: u32,
     world: &mut W,
     observer: &mut impl Observer<W>,
 ) -> Result<MappedWorld, MappingError<W::Error>> {
-    let Some(map) = run.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
-    let mut report = |world: &mut W, event| observer.event(world, run.journey(), event);
-    let (mut pose, mut audit_moves, mut audited_percepts) = (run.robot(), 0, Vec::new());
+    let Some(map) = journey.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
+    let mut report = |world: &mut W, event| observer.event(world, journey, event);
+    let (mut pose, mut audit_moves, mut audited_percepts) = (journey.robot(), 0, Vec::new());
     for _ in 0..audits {
         report(world, MappingEvent::Safeguard(SafeguardEvent::AuditBegun));
         let moved = |world: &mut W, AuditMove { door, percept, .. }| {
@@ -117,7 +116,7 @@ fn audited<W: Relocate>(
         let passed = SafeguardEvent::AuditPassed { moves: audited.moves };
         report(world, MappingEvent::Safeguard(passed));
     }
-    let moves = run.moves() + audit_moves;
+    let moves = journey.moves() + audit_moves;
     Ok(MappedWorld {
         pose,
         moves,
@@ -153,7 +152,7 @@ impl FromStr for MappingMethod {
         for word in words {
             let count = word.strip_prefix("audits=").and_then(|count| count.parse().ok());
             match (word, count) {
-                ("recovering", _) if algorithm == DirectionalAlgorithm::Folding => recovers = true,
+                ("recovering", _) if algorithm == MappingAlgorithm::Folding => recovers = true,
                 ("retrying", _) if recovers => retries_blocked = true,
                 (_, Some(count)) => audits = count,
                 _ => return Err(format!("`{word}` does not follow the name of an algorithm")),
@@ -215,7 +214,7 @@ mod tests {
         ])
     }
 
-    const FOLDING: DirectionalAlgorithm = DirectionalAlgorithm::Folding;
+    const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
 
     #[test]
     fn audits_and_recovery_do_not_change_how_a_map_is_made() {
@@ -234,7 +233,7 @@ mod tests {
             assert_eq!(bijection.image(mapped.pose), Some(world.pose()));
             (run.moves(), mapped.audit_moves)
         };
-        for algorithm in DirectionalAlgorithm::ALL {
+        for algorithm in MappingAlgorithm::with_fixed_marker() {
             let [none, one, two] =
                 [0, 1, 2].map(|audits| mapped(MappingMethod::By { algorithm, audits }));
             assert_eq!([none.0, none.1, one.0, two.0], [none.0, 0, none.0, none.0]);
@@ -256,7 +255,7 @@ mod tests {
             &mut world,
             100,
             &[],
-            &mut |_: &mut GraphWorld, _: &super::super::Journey, event| match event {
+            &mut |_: &mut GraphWorld, _: &Journey, event| match event {
                 MappingEvent::Started { percept } => first = Some(percept),
                 MappingEvent::Moved { door, percept } => moves.push((door, percept)),
                 _ => {}

@@ -1,14 +1,14 @@
 //! The state of the movable marker algorithm, and the small steps that it consists of. Section 2.3.
 
 use super::{
-    Choices, Contradiction, InvalidStep, Journey, MappingError, MappingEvent, MovableEvent,
-    Observer, PartialMap, ValidationResult,
+    Choices, Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingError, MappingEvent,
+    MovableEvent, Observer, PartialMap, ValidationResult,
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, World},
+    world::{MarkerCarrier, World},
 };
 
 /// The state of a run with a movable marker: the robot's journey, and the candidates.
@@ -30,6 +30,25 @@ clone_in_place!(MarkerSearch { journey, candidates, is_candidate, back_links });
 /// The percept of the same place with the marker there.
 fn marked(place: Percept) -> Percept {
     Percept { sighting: Sighting::Lying(1), ..place }
+}
+
+/// What carries the robot's marker.
+fn carrier<W: World>(
+    world: &mut W,
+) -> Result<&mut dyn MarkerCarrier<Error = W::Error>, InvalidStep> {
+    world.carrier().ok_or(InvalidStep::NoMovableMarker)
+}
+
+impl Default for MarkerSearch {
+    fn default() -> Self {
+        Self::new(DEFAULT_DART_BOUND)
+    }
+}
+
+impl From<MarkerSearch> for Journey {
+    fn from(run: MarkerSearch) -> Self {
+        run.journey
+    }
 }
 
 impl MarkerSearch {
@@ -74,23 +93,18 @@ impl MarkerSearch {
         self.journey.moves()
     }
 
-    /// Forgets an earlier run.
-    pub(crate) fn clear(&mut self) {
-        self.journey.clear();
-        self.candidates.clear();
-        self.back_links.clear();
-    }
-
     /// The robot picks the marker up at v0, S is v0, and U is its edges.
     ///
     /// # Errors
     /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
-    pub fn begin<W: MovableMarkerWorld>(
+    pub(super) fn find_start<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        self.clear();
+        self.journey.clear();
+        self.candidates.clear();
+        self.back_links.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Lying(1) {
             return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
@@ -100,7 +114,7 @@ impl MarkerSearch {
     }
 
     /// The edge to explore next, as chosen; `None` if everything is explored.
-    pub fn choose_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+    pub fn choose_with(&mut self, choices: &mut impl Choices) -> Option<Dart> {
         self.journey.choose_edge(choices)
     }
 
@@ -110,7 +124,7 @@ impl MarkerSearch {
     /// # Errors
     /// Returns an error if the world does, if a known place is not as it was, if there is a second
     /// marker, or if the edge is not unexplored.
-    pub fn carry_over<W: MovableMarkerWorld>(
+    pub fn carry_over<W: World>(
         &mut self,
         edge: Dart,
         world: &mut W,
@@ -176,12 +190,12 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// Returns an error if the world does.
-    pub fn drop_marker<W: MovableMarkerWorld>(
+    pub fn drop_marker<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        world.drop().map_err(MappingError::World)?;
+        carrier(world)?.drop().map_err(MappingError::World)?;
         self.report(MovableEvent::Dropped, world, observer);
         Ok(())
     }
@@ -190,12 +204,12 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// Returns an error if the world does.
-    pub fn pick_up<W: MovableMarkerWorld>(
+    pub fn pick_up<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        world.pick_up().map_err(MappingError::World)?;
+        carrier(world)?.pick_up().map_err(MappingError::World)?;
         self.report(MovableEvent::PickedUp, world, observer);
         Ok(())
     }
@@ -205,7 +219,7 @@ impl MarkerSearch {
     /// # Errors
     /// Returns an error if the world does, if the known end is not as it was, or if no edge is being
     /// explored.
-    pub fn go_back<W: MovableMarkerWorld>(
+    pub fn go_back<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -222,7 +236,7 @@ impl MarkerSearch {
     /// # Errors
     /// Returns an error if the world does, if a known place is not as it was, or if the marker lies
     /// where it cannot be.
-    pub fn look_for_marker<W: MovableMarkerWorld>(
+    pub fn look_for_marker<W: World>(
         &mut self,
         candidate: Vertex,
         world: &mut W,
@@ -255,7 +269,7 @@ impl MarkerSearch {
     /// # Errors
     /// Returns an error if the world does, if a place is not as it was, or if no edge is being
     /// explored.
-    pub fn return_to_marker<W: MovableMarkerWorld>(
+    pub fn return_to_marker<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -275,7 +289,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// Returns an error if the world does, or if a known place is not as it was.
-    pub fn travel_to<W: MovableMarkerWorld>(
+    pub fn travel_to<W: World>(
         &mut self,
         vertex: Vertex,
         world: &mut W,
@@ -306,7 +320,7 @@ impl MarkerSearch {
     /// # Errors
     /// Returns an error if the world does, if the place behind the dart cannot be, or if the vertex is
     /// not as it was.
-    pub fn try_back_link<W: MovableMarkerWorld>(
+    pub fn try_back_link<W: World>(
         &mut self,
         dart: Dart,
         world: &mut W,

@@ -6,31 +6,40 @@ mod audit;
 mod choices;
 mod contradiction;
 mod exploration;
+mod explored_map;
+mod explorer;
+mod flaw;
 mod folding_explorer;
 mod journey;
+mod mapping_algorithm;
 mod mapping_event;
 mod mapping_method;
-mod mapping_run;
 mod marker_search;
 mod movable_marker;
 mod partial_map;
+mod step_purpose;
 mod tree;
 
 pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
 pub use audit::{Audit, AuditError, AuditMove, audit};
 pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
-pub use exploration::{DEFAULT_DART_BOUND, Exploration};
+pub use exploration::Exploration;
+pub use explored_map::ExploredMap;
+pub use explorer::{CostOrder, DEFAULT_MOVE_BOUND, Explorer, ExplorerInfo, StateKey, explore};
+pub use flaw::Flaw;
 pub use folding_explorer::{
     ArrivalMeasurement, EarlierWalk, FoldingExploration, FoldingStep, HypothesisTest, MappedWorld,
-    RecoveryConfig, Relocate, map_by_folding, map_with_recovery,
+    RecoveryConfig, Relocate, map_with_recovery,
 };
-pub use journey::{Journey, Observer};
+pub use journey::{DEFAULT_DART_BOUND, Journey, Observer};
+pub use mapping_algorithm::MappingAlgorithm;
+pub(crate) use mapping_algorithm::with_explorer;
 pub use mapping_event::{FoldingEvent, MappingEvent, MovableEvent, SafeguardEvent};
 pub use mapping_method::MappingMethod;
-pub use mapping_run::{DirectionalAlgorithm, MappingRun};
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{
     ReachedPlace, explore_edge, map_with_movable_marker, validate_back_link, validate_place,
 };
 pub use partial_map::{FACING, PartialMap};
+pub use step_purpose::{MapDart, StepPurpose};

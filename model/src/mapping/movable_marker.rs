@@ -6,10 +6,14 @@
 //! validation finds the edge by which it was entered. The state and the small steps are those of
 //! [`MarkerSearch`].
 
-use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, ValidationResult};
+use super::{
+    Choices, Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart,
+    MappingError, MarkerSearch, Nearest, Observer, StepPurpose, ValidationResult,
+};
 use crate::{
     embedded_graph::{Dart, Vertex},
-    world::MovableMarkerWorld,
+    marker::Movable,
+    world::World,
 };
 
 /// The place just reached.
@@ -32,7 +36,7 @@ pub enum ReachedPlace {
 /// # Errors
 /// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
 /// darts become known than the search's bound. The search then holds what is known so far.
-pub fn map_with_movable_marker<W: MovableMarkerWorld>(
+pub fn map_with_movable_marker<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
     search: &mut MarkerSearch,
@@ -41,7 +45,7 @@ pub fn map_with_movable_marker<W: MovableMarkerWorld>(
     // The robot picks the marker up at v0; S is v0; U is its edges.
     search.begin(world, observer)?;
     // While U is not empty, remove an unexplored edge e = (vk, vu) from it.
-    while let Some(edge) = search.choose_edge(choices) {
+    while let Some(edge) = search.choose_with(choices) {
         explore_edge(edge, search, world, observer)?;
     }
     // S is the map.
@@ -53,7 +57,7 @@ pub fn map_with_movable_marker<W: MovableMarkerWorld>(
 ///
 /// # Errors
 /// See [`map_with_movable_marker`].
-pub fn explore_edge<W: MovableMarkerWorld>(
+pub fn explore_edge<W: World>(
     edge: Dart,
     search: &mut MarkerSearch,
     world: &mut W,
@@ -78,7 +82,7 @@ pub fn explore_edge<W: MovableMarkerWorld>(
 /// # Errors
 /// Returns an error if the world does, or if it contradicts itself.
 // paper: movable.place, movable.new, movable.known
-pub fn validate_place<W: MovableMarkerWorld>(
+pub fn validate_place<W: World>(
     search: &mut MarkerSearch,
     world: &mut W,
     observer: &mut impl Observer<W>,
@@ -109,7 +113,7 @@ pub fn validate_place<W: MovableMarkerWorld>(
 /// # Errors
 /// Returns an error if the world does, or if it contradicts itself.
 // paper: movable.back-link
-pub fn validate_back_link<W: MovableMarkerWorld>(
+pub fn validate_back_link<W: World>(
     edge: Dart,
     vertex: Vertex,
     search: &mut MarkerSearch,
@@ -134,4 +138,91 @@ pub fn validate_back_link<W: MovableMarkerWorld>(
         }
     }
     Err(Contradiction::NoBackLink { vertex, marked }.into())
+}
+
+/// The movable marker algorithm, for worlds without loops and parallel edges. The default choices are those of
+/// [`Nearest`].
+impl Explorer for MarkerSearch {
+    type Marker = Movable;
+    type Choice = Dart;
+
+    const INFO: ExplorerInfo = ExplorerInfo {
+        option: "movable",
+        name: "Place and back-link validation",
+        in_words: "place and back-link validation",
+        order: CostOrder::EdgesVertices,
+    };
+
+    fn marker(&self) -> Movable {
+        Movable
+    }
+
+    fn limit_darts(&mut self, max_darts: usize) {
+        self.set_bound(max_darts);
+    }
+
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.find_start(world, observer)
+    }
+
+    fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
+        Ok(self.choose_with(&mut Nearest))
+    }
+
+    fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
+        Ok(self.map().unexplored().collect())
+    }
+
+    fn approach<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.travel_to(self.map().vertex(edge), world, observer)
+    }
+
+    fn step<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        explore_edge(edge, self, world, observer)
+    }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        Some(self.journey())
+    }
+
+    fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
+        edge.map_or(StepPurpose::Done, |edge| StepPurpose::Explore(MapDart::new(self.map(), edge)))
+    }
+
+    /// `3 n (n - 1) / 2 + (m - n + 1) (6 n - 7)`, which is less than `6 m n`.
+    ///
+    /// Each of the m edges is explored once, and the world is simple. Let `k` vertices be known. The
+    /// robot goes to the known end and over the edge: at most `k` moves. A search goes back over the
+    /// edge, along no more than a closed depth-first walk of a tree of the `k` vertices, and so takes
+    /// at most `1 + 2 (k - 1)` moves until the robot is at the known end again, whether the marker
+    /// was found on the way or not.
+    ///
+    /// * The place is new: once more over the edge. That is at most `3 k` moves, and happens once for
+    ///   each `k` from 1 to `n - 1`: `3 n (n - 1) / 2`.
+    /// * It is known, `m - n + 1` times: the robot carries the marker to the known end, which ends
+    ///   the closed walk, and returns to the place in at most `n - 1` moves. The place has at least
+    ///   one explored dart, and is neither the known end nor joined to it by another edge; so the
+    ///   darts to try lead to at most `n - 2` vertices, one of them the known end. The last costs a
+    ///   move, each before it two: at most `2 (n - 2) - 1`. That is
+    ///   `n + 1 + 2 (n - 1) + (n - 1) + 2 (n - 2) - 1 = 6 n - 7` together.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let new = n.saturating_mul(n.saturating_sub(1)).saturating_mul(3) / 2;
+        let loops = (m + 1).saturating_sub(n);
+        new.saturating_add(loops.saturating_mul(n.saturating_mul(6).saturating_sub(7)))
+    }
 }

@@ -5,12 +5,13 @@ use std::borrow::Cow;
 use super::{
     AlgorithmCoverage, Trace, TraceWorld, TraceWorldError,
     choice_search::{Search, TraceClaim},
-    folding_match::follow,
+    default_match::follow,
     match_end::{Departure, MatchEnd},
 };
 use crate::{
     mapping::{
-        DirectionalAlgorithm, Exploration, MappingChoice, MappingError, MappingRun, Nearest, step,
+        Exploration, Explorer, Journey, MappingAlgorithm, MappingChoice, MappingError,
+        with_explorer,
     },
     percept::{Percept, WalkEvent},
 };
@@ -19,13 +20,13 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct AlgorithmMatch {
     /// The algorithm.
-    pub algorithm: DirectionalAlgorithm,
+    pub algorithm: MappingAlgorithm,
     /// The choices that it takes.
     pub choices: MatchedChoices,
     /// How far it follows the trace.
     pub reached: MatchEnd,
-    /// Its state at that point.
-    pub run: MappingRun,
+    /// Its map, the robot's pose in the map and its moves at that point.
+    pub run: Journey,
     /// The cases of Algorithm 1 that it covers.
     pub coverage: AlgorithmCoverage,
 }
@@ -47,14 +48,15 @@ pub enum MatchedChoices {
 /// with any choices. At most `bound` darts may become known.
 #[must_use]
 pub fn match_algorithm(
-    algorithm: DirectionalAlgorithm,
+    algorithm: MappingAlgorithm,
     trace: &Trace,
     claim: TraceClaim,
     bound: usize,
 ) -> AlgorithmMatch {
-    match algorithm {
-        DirectionalAlgorithm::Algorithm1 => match_choices(trace, claim, bound, None),
-        DirectionalAlgorithm::Folding => match_folding(trace, bound, &mut |_| None),
+    if algorithm == MappingAlgorithm::Algorithm1 {
+        match_choices(trace, claim, bound, None)
+    } else {
+        match_default(algorithm, trace, bound, &mut |_| None)
     }
 }
 
@@ -64,41 +66,42 @@ pub type Amendment<'a> = &'a mut dyn FnMut(&Departure) -> Option<Percept>;
 /// Matches a trace with an algorithm. At a contradiction, `amend` may replace the percept; the match then
 /// goes on.
 pub fn match_amended(
-    algorithm: DirectionalAlgorithm,
+    algorithm: MappingAlgorithm,
     trace: &Trace,
     claim: TraceClaim,
     bound: usize,
     amend: Amendment,
 ) -> AlgorithmMatch {
-    match algorithm {
-        DirectionalAlgorithm::Algorithm1 => match_choices(trace, claim, bound, Some(amend)),
-        DirectionalAlgorithm::Folding => match_folding(trace, bound, amend),
+    if algorithm == MappingAlgorithm::Algorithm1 {
+        match_choices(trace, claim, bound, Some(amend))
+    } else {
+        match_default(algorithm, trace, bound, amend)
     }
 }
 
-/// Matches a trace with the folding explorer.
-fn match_folding(trace: &Trace, bound: usize, amend: Amendment) -> AlgorithmMatch {
+/// Matches a trace with the default choices of an algorithm, which are its only ones.
+fn match_default(
+    algorithm: MappingAlgorithm,
+    trace: &Trace,
+    bound: usize,
+    amend: Amendment,
+) -> AlgorithmMatch {
     let mut trace = Cow::Borrowed(trace);
     let mut amended_before = 0;
-    let (reached, exploration) = loop {
-        let (reached, exploration) = follow(&trace, bound);
-        let moves = exploration.trail().moves();
+    let (reached, run) = loop {
+        let (reached, moves, run) =
+            with_explorer!(algorithm, E => follow::<E>(algorithm, &trace, bound));
         let percept = match &reached {
             MatchEnd::Departure(departure) if moves >= amended_before => amend(departure),
             _ => None,
         };
-        let Some(percept) = percept else { break (reached, exploration) };
+        let Some(percept) = percept else { break (reached, run) };
         trace.to_mut().percepts[moves] = percept;
         // No percept is replaced twice.
         amended_before = moves + 1;
     };
-    AlgorithmMatch {
-        algorithm: DirectionalAlgorithm::Folding,
-        choices: MatchedChoices::Default,
-        reached,
-        run: MappingRun::Folding(Box::new(exploration)),
-        coverage: AlgorithmCoverage::default(),
-    }
+    let coverage = AlgorithmCoverage::default();
+    AlgorithmMatch { algorithm, choices: MatchedChoices::Default, reached, run, coverage }
 }
 
 /// The run with the default choices.
@@ -124,10 +127,13 @@ impl DefaultRun {
             }
             let mut world = TraceWorld::after(trace, self.moves);
             let stepped = if self.has_begun {
-                let Some(choice) = self.exploration.choose(&mut Nearest) else {
-                    return (Ok(()), before);
-                };
-                step(&mut self.exploration, choice, &mut world, &mut self.coverage)
+                match self.exploration.choose() {
+                    Ok(None) => return (Ok(()), before),
+                    Ok(Some(choice)) => {
+                        self.exploration.step(choice, &mut world, &mut self.coverage)
+                    }
+                    Err(invalid) => Err(invalid.into()),
+                }
             } else {
                 self.has_begun = true;
                 self.exploration.begin(&mut world, &mut self.coverage)
@@ -146,7 +152,7 @@ fn match_choices(
     bound: usize,
     mut amend: Option<Amendment>,
 ) -> AlgorithmMatch {
-    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let algorithm = MappingAlgorithm::Algorithm1;
     let mut trace = Cow::Borrowed(trace);
     let mut default = DefaultRun {
         exploration: Exploration::new(bound),
@@ -173,8 +179,7 @@ fn match_choices(
         };
         if let (Some(reached), None) = (reached, &found) {
             let DefaultRun { exploration, coverage, .. } = default;
-            let (choices, run) =
-                (MatchedChoices::Default, MappingRun::Algorithm1(Box::new(exploration)));
+            let (choices, run) = (MatchedChoices::Default, exploration.into());
             return AlgorithmMatch { algorithm, choices, reached, run, coverage };
         }
         if let Some(found) = found {
@@ -214,7 +219,7 @@ fn match_choices(
         _ => MatchedChoices::Other { from },
     };
     let (exploration, coverage) = with_choices(&script, trace, bound);
-    let run = MappingRun::Algorithm1(Box::new(exploration));
+    let run = exploration.into();
     AlgorithmMatch { algorithm, choices, reached, run, coverage }
 }
 
@@ -230,7 +235,7 @@ fn with_choices(
     // The result is known.
     let _ = exploration.begin(&mut world, &mut coverage).and_then(|()| {
         let mut choices = script.iter();
-        choices.try_for_each(|&choice| step(&mut exploration, choice, &mut world, &mut coverage))
+        choices.try_for_each(|&choice| exploration.step(choice, &mut world, &mut coverage))
     });
     (exploration, coverage)
 }

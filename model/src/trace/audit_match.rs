@@ -3,10 +3,10 @@
 use super::{
     AlgorithmCoverage, AlgorithmMatch, MatchEnd, MatchedChoices, Trace, TraceClaim, TraceWorld,
     match_algorithm,
-    match_end::{AllowedStep, RunStop, StepPurpose},
+    match_end::{AllowedStep, RunStop},
 };
 use crate::{
-    mapping::{DirectionalAlgorithm, FACING, MappingError, MappingRun, audit},
+    mapping::{FACING, MappingAlgorithm, MappingError, StepPurpose, audit},
     percept::WalkEvent,
 };
 
@@ -15,16 +15,15 @@ use crate::{
 /// become known.
 #[must_use]
 pub fn match_audited(
-    algorithm: DirectionalAlgorithm,
+    algorithm: MappingAlgorithm,
     audits: u32,
     trace: &Trace,
     claim: TraceClaim,
     bound: usize,
 ) -> AlgorithmMatch {
     let mut world = TraceWorld::after(trace, 0);
-    let mut run = MappingRun::new(algorithm, bound);
     let mut coverage = AlgorithmCoverage::default();
-    let mapped = run.map_world(&mut world, &mut coverage);
+    let (run, mapped) = algorithm.map_world(&mut world, bound, &mut coverage);
     let (Ok(()), Some(map)) = (mapped, run.map().complete()) else {
         return match_algorithm(algorithm, trace, claim, bound);
     };
@@ -41,7 +40,7 @@ pub fn match_audited(
     }
     let moves = world.moves();
     let reached = match audited {
-        Err(error) => RunStop::of(&error, moves, StepPurpose::Audit).end(algorithm, trace),
+        Err(error) => RunStop::new(&error, moves, StepPurpose::Audit).end(algorithm, trace),
         Ok(()) if moves == trace.doors().len() => MatchEnd::Mapped,
         Ok(()) => {
             let allowed = AllowedStep { door: None, purpose: StepPurpose::Audited };

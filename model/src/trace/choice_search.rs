@@ -4,11 +4,11 @@ use std::{collections::HashSet, mem};
 
 use super::{
     Trace, TraceWorld,
-    match_end::{AllowedStep, Departure, MapDart, MatchEnd, RunStop, StepPurpose},
+    match_end::{AllowedStep, Departure, MatchEnd, RunStop},
 };
 use crate::{
     embedded_graph::Dart,
-    mapping::{DirectionalAlgorithm, Exploration, MappingChoice, PartialMap, step},
+    mapping::{Exploration, Explorer, MappingAlgorithm, MappingChoice, PartialMap, StepPurpose},
     percept::WalkEvent,
 };
 
@@ -28,19 +28,6 @@ struct Way {
     moves: usize,
     /// The choices made so far.
     script: Vec<MappingChoice>,
-}
-
-impl Way {
-    /// The purpose of a choice.
-    fn purpose(&self, choice: MappingChoice) -> StepPurpose {
-        let named = |dart| MapDart::of(self.exploration.map(), dart);
-        match choice {
-            MappingChoice::Edge(edge) => StepPurpose::Explore(named(edge)),
-            MappingChoice::Hypothesis(place) => {
-                StepPurpose::Try(named(self.exploration.hypotheses()[place]))
-            }
-        }
-    }
 }
 
 /// What distinguishes runs: the moves, the line, the map, the robot in it, and H.
@@ -106,7 +93,7 @@ impl Search {
         let begun = exploration.begin(&mut TraceWorld::after(trace, 0), &mut ());
         let way = Way { exploration, moves: 0, script: Vec::new() };
         if let Err(error) = begun {
-            self.ended(RunStop::of(&error, 0, StepPurpose::Done), way.script);
+            self.ended(RunStop::new(&error, 0, StepPurpose::Done), way.script);
             return None;
         }
         self.search(trace, vec![way])
@@ -157,14 +144,14 @@ impl Search {
         let mut next = Vec::new();
         let mut rejected = false;
         for choice in choices {
-            let purpose = before.purpose(choice);
+            let purpose = before.exploration.purpose(Some(choice));
             let mut way = before.clone();
             way.script.push(choice);
             let mut world = TraceWorld::after(trace, way.moves);
-            let stepped = step(&mut way.exploration, choice, &mut world, &mut ());
+            let stepped = way.exploration.step(choice, &mut world, &mut ());
             way.moves = world.moves();
             if let Err(error) = stepped {
-                let stop = RunStop::of(&error, way.moves, purpose);
+                let stop = RunStop::new(&error, way.moves, purpose);
                 self.ended(stop, way.script);
                 if let RunStop::Departure { event, allowed } = stop
                     && let (StepPurpose::Contradicted(_), true) =
@@ -218,7 +205,7 @@ impl Search {
             return (MatchEnd::Bound { event, bound }, script.clone());
         }
         let departure = Departure {
-            algorithm: DirectionalAlgorithm::Algorithm1,
+            algorithm: MappingAlgorithm::Algorithm1,
             event: trace.event(self.farthest.index()),
             allowed: self.allowed.clone(),
         };

@@ -5,7 +5,7 @@ mod algorithm_match;
 mod audit_match;
 mod choice_search;
 mod coverage;
-mod folding_match;
+mod default_match;
 mod known_world;
 mod match_end;
 mod recovery_match;
@@ -14,6 +14,7 @@ mod trace_world;
 
 use thiserror::Error;
 
+pub use crate::mapping::{MapDart, StepPurpose};
 pub use algorithm_match::{
     AlgorithmMatch, Amendment, MatchedChoices, match_algorithm, match_amended,
 };
@@ -21,7 +22,7 @@ pub use audit_match::match_audited;
 pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
-pub use match_end::{AllowedStep, Departure, MapDart, MatchEnd, StepPurpose};
+pub use match_end::{AllowedStep, Departure, MatchEnd};
 pub use recovery_match::{RecordedVisit, match_recovering};
 pub use shorten::shortened;
 pub use trace_world::{TraceWorld, TraceWorldError};
@@ -248,7 +249,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
-        mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun},
+        mapping::{Journey, MappingAlgorithm, MappingEvent},
         percept::Sighting,
         world::{GraphWorld, World},
     };
@@ -274,12 +275,12 @@ pub(crate) mod tests {
 
     /// A run of Algorithm 1.
     pub(crate) fn explored(graph: &EmbeddedGraph, facing: Dart) -> Trace {
-        explored_by(DirectionalAlgorithm::Algorithm1, graph, facing)
+        explored_by(MappingAlgorithm::Algorithm1, graph, facing)
     }
 
     /// A run of an algorithm.
     pub(crate) fn explored_by(
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
         graph: &EmbeddedGraph,
         facing: Dart,
     ) -> Trace {
@@ -289,8 +290,8 @@ pub(crate) mod tests {
                 doors.push(door);
             }
         };
-        let mut run = MappingRun::new(algorithm, graph.dart_count());
-        run.map_world(&mut GraphWorld::new(graph, facing), &mut listen).unwrap();
+        let mut world = GraphWorld::new(graph, facing);
+        algorithm.map_world(&mut world, graph.dart_count(), &mut listen).1.unwrap();
         walked(graph, facing, &doors)
     }
 

@@ -3,13 +3,13 @@
 use super::{
     AlgorithmCoverage, AlgorithmMatch, MatchEnd, MatchedChoices, Trace, TraceWorld,
     TraceWorldError,
-    match_end::{AllowedStep, MapDart, RunStop, StepPurpose},
+    match_end::{AllowedStep, RunStop},
 };
 use crate::{
     mapping::{
-        ArrivalMeasurement, DirectionalAlgorithm, FoldingEvent, FoldingExploration, Journey,
-        MappingError, MappingEvent, MappingRun, Observer, RecoveryConfig, Relocate, SafeguardEvent,
-        map_with_recovery,
+        ArrivalMeasurement, FoldingEvent, FoldingExploration, Journey, MapDart, MappingAlgorithm,
+        MappingError, MappingEvent, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+        StepPurpose, map_with_recovery,
     },
     percept::{Door, Percept, WalkEvent},
     world::World,
@@ -34,7 +34,7 @@ pub fn match_recovering(
     visits: &[RecordedVisit],
     bound: usize,
 ) -> AlgorithmMatch {
-    let algorithm = DirectionalAlgorithm::Folding;
+    let algorithm = MappingAlgorithm::Folding;
     let mut exploration = FoldingExploration::new(bound);
     let mut world = RecordedWorld { world: TraceWorld::after(trace, 0), visits };
     let mut observer = StepObserver::default();
@@ -53,7 +53,7 @@ pub fn match_recovering(
         Err(MappingError::Contradiction(contradiction)) => {
             Some(gone_on(StepPurpose::Contradicted(contradiction)))
         }
-        Err(error) => Some(RunStop::of(&error, moves, observer.purpose)),
+        Err(error) => Some(RunStop::new(&error, moves, observer.purpose)),
     };
     let stop = match (stop, observer.too_large) {
         (Some(RunStop::Departure { .. }), Some(event)) => Some(RunStop::Bound { event, bound }),
@@ -63,7 +63,7 @@ pub fn match_recovering(
         algorithm,
         choices: MatchedChoices::Default,
         reached: stop.map_or(MatchEnd::Mapped, |stop| stop.end(algorithm, trace)),
-        run: MappingRun::Folding(Box::new(exploration)),
+        run: exploration.into(),
         coverage: AlgorithmCoverage::default(),
     }
 }
@@ -124,7 +124,7 @@ impl Observer<RecordedWorld<'_>> for StepObserver {
         use SafeguardEvent::{
             AuditBegun, AuditPassed, BlockedRetried, Contradicted, MarkerFound, Relocated, TooLarge,
         };
-        let named = |dart| MapDart::of(journey.map(), dart);
+        let named = |dart| MapDart::new(journey.map(), dart);
         self.purpose = match event {
             MappingEvent::Folding(FoldingEvent::Testing { edge, hypothesis, .. }) => {
                 StepPurpose::Test { edge: named(edge), hypothesis: named(hypothesis) }

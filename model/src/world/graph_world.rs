@@ -4,7 +4,7 @@ use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
-use super::{MovableMarkerWorld, World};
+use super::{MarkerCarrier, World};
 use crate::{
     counts::{counted, grouped},
     embedded_graph::{Dart, EmbeddedGraph},
@@ -100,6 +100,8 @@ pub struct GraphWorld<'g, M = Directional> {
     marker: M,
     state: State,
     moves: u64,
+    /// The most moves.
+    bound: u64,
 }
 
 impl<'g> GraphWorld<'g> {
@@ -117,13 +119,19 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
     #[must_use]
     pub fn with_marker(graph: &'g EmbeddedGraph, marker: M, facing: Dart) -> Self {
         let placed = Some(marker.first_alike(graph, facing));
-        Self { graph, marker, state: State { pose: facing, placed }, moves: 0 }
+        Self { graph, marker, state: State { pose: facing, placed }, moves: 0, bound: u64::MAX }
     }
 
     /// The same world in another state.
     #[must_use]
     pub fn at(self, state: State) -> Self {
         Self { state, ..self }
+    }
+
+    /// The same world, in which at most `bound` moves are possible.
+    #[must_use]
+    pub fn with_bound(self, bound: u64) -> Self {
+        Self { bound, ..self }
     }
 
     /// The robot's percept: a graph can always be sensed.
@@ -153,7 +161,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         match action {
             Action::Take(door) => self.traverse(door),
             Action::PickUp => self.pick_up(),
-            Action::Drop => MovableMarkerWorld::drop(self),
+            Action::Drop => MarkerCarrier::drop(self),
         }
     }
 
@@ -222,13 +230,22 @@ impl<M: Marker> World for GraphWorld<'_, M> {
         if door.0 >= degree {
             return Err(RefusedAction::NoSuchDoor { door, degree });
         }
+        if self.moves >= self.bound {
+            return Err(RefusedAction::OutOfMoves { bound: self.bound });
+        }
         self.state.pose = self.graph.after(self.state.pose, door);
         self.moves += 1;
         Ok(())
     }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+        Some(self)
+    }
 }
 
-impl<M: Marker> MovableMarkerWorld for GraphWorld<'_, M> {
+impl<M: Marker> MarkerCarrier for GraphWorld<'_, M> {
+    type Error = RefusedAction;
+
     fn pick_up(&mut self) -> Result<(), RefusedAction> {
         if !self.can_pick_up() {
             return Err(RefusedAction::NothingToPickUp);

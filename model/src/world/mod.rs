@@ -25,11 +25,19 @@ pub trait World {
     /// Returns an error if the robot cannot go there.
     // paper: motion.door, motion.arrival
     fn traverse(&mut self, door: Door) -> Result<(), Self::Error>;
+
+    /// What carries the robot's marker; `None` if the robot cannot carry it.
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = Self::Error>> {
+        None
+    }
 }
 
 /// All that a robot can do with a movable marker, besides.
 // paper: world.interface
-pub trait MovableMarkerWorld: World {
+pub trait MarkerCarrier {
+    /// The error of picking up and dropping.
+    type Error;
+
     /// Picks the marker up where the robot is, to carry it.
     ///
     /// # Errors

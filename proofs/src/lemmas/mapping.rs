@@ -7,10 +7,12 @@
 use std::cell::Cell;
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
-    mapping::{Choices, Exploration, FACING, Journey, MappingEvent, PartialMap, map_world},
+    mapping::{
+        Choices, Exploration, Explorer, FACING, Journey, MappingAlgorithm, MappingEvent,
+        PartialMap, map_world,
+    },
     percept::Door,
     world::GraphWorld,
 };
@@ -340,7 +342,10 @@ fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> CaseResult {
         round += 1;
     }
     claim("the sum is the bound", sum == m * n + 2 * m * m * (n - 1))?;
-    claim("the check has this bound", sum == Algorithm1.move_bound(m as usize, n as usize))
+    claim(
+        "the check has this bound",
+        sum == MappingAlgorithm::Algorithm1.move_bound(m as usize, n as usize),
+    )
 }
 
 // paper: alg1.isomorphic, alg1.terminates, cost.bound
@@ -354,5 +359,5 @@ fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
     let believed = truth.image[exploration.robot().at()];
     claim("the robot is where it believes it is", believed == truth.pose)?;
     let (m, n) = (graph.edge_count(), graph.vertex_count());
-    claim("the moves are within the bound", exploration.moves() <= Algorithm1.move_bound(m, n))
+    claim("the moves are within the bound", exploration.moves() <= exploration.move_bound(m, n))
 }

@@ -7,7 +7,7 @@ use std::{fs, iter, mem};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
-    mapping::{FoldingEvent, FoldingExploration, Journey, MappingEvent, Observer, map_by_folding},
+    mapping::{FoldingEvent, FoldingExploration, Journey, MappingEvent, Observer, explore},
     world::GraphWorld,
 };
 
@@ -100,7 +100,7 @@ impl Run {
         let mut world = GraphWorld::new(&start, Dart(0));
         let mut exploration = FoldingExploration::new(start.dart_count());
         let mut recorded = Recorded::default();
-        let known = map_by_folding(&mut world, &mut exploration, &mut recorded).map_or_else(
+        let known = explore(&mut exploration, &mut world, &mut recorded).map_or_else(
             |error| error.to_string(),
             |()| known(exploration.map(), exploration.robot()),
         );

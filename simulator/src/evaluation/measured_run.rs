@@ -7,7 +7,7 @@ use toposlam_conform::{EventSource, RecordedEvents, RunEvents};
 use toposlam_logs::record::{Event, EventKind, RunObserver, StoppedBy};
 use toposlam_model::{
     enumerate::Watch,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     measurement::{MeasuredVisit, MeasurementCheck, MeasurementContradiction, MeasurementNoise},
 };
 use toposlam_robot::{
@@ -50,7 +50,7 @@ pub struct MeasuredTest {
 }
 
 /// The algorithm of the runs.
-const ALGORITHM: DirectionalAlgorithm = DirectionalAlgorithm::Algorithm1;
+const ALGORITHM: MappingAlgorithm = MappingAlgorithm::Algorithm1;
 
 impl RunSampler {
     /// The least number of runs with as many traversals as this.

@@ -209,7 +209,7 @@ fn about(pose: Pose, chance: &mut impl Rng) -> Pose {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::mapping::DirectionalAlgorithm;
+    use toposlam_model::mapping::MappingAlgorithm;
 
     use super::*;
     use crate::{
@@ -225,7 +225,7 @@ mod tests {
     fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged() {
         let plans = plans().unwrap();
         let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
-        let algorithm = DirectionalAlgorithm::Algorithm1;
+        let algorithm = MappingAlgorithm::Algorithm1;
         let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0, algorithm);
         let counts: [Count<'_>; 2] =
             [&|watch| traversals.judged(0..1, &RobotEquipment::Scenes, watch).len(), &|watch| {

@@ -6,7 +6,7 @@
 use std::{collections::BTreeMap, io::Write, path::Path};
 
 use serde::Deserialize;
-use toposlam_model::check::{MappingAlgorithm, Shard};
+use toposlam_model::{check::Shard, mapping::MappingAlgorithm};
 
 use super::{
     AlgorithmInfo, CheckArguments, CheckReport, CiCase, CliError, Outcome, RunChoices, SizeLine,
@@ -60,7 +60,7 @@ impl CheckArguments {
             Some(budget) => RunChoices::All { budget },
         };
         let sizes = by_size(shards)?;
-        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
+        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
         let (mut cases, mut last) = (Vec::new(), String::new());
         for line in sizes.complete {
             last = line.name();
@@ -164,12 +164,10 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
 
 /// The algorithm of a shard.
 fn algorithm_of(found: &FoundShard) -> Result<MappingAlgorithm, CliError> {
-    let known =
-        [MappingAlgorithm::Algorithm1, MappingAlgorithm::MovableMarker, MappingAlgorithm::Folding];
     let FoundShard { place, line, .. } = found;
+    let mut known = MappingAlgorithm::ALL.iter().copied();
     known
-        .into_iter()
-        .find(|known| known.name() == line.algorithm && known.marker().name() == line.marker)
+        .find(|known| known.info().name == line.algorithm && known.marker().name() == line.marker)
         .ok_or_else(|| {
             let SizeLine { algorithm, marker, .. } = line;
             CliError::at(place, format!("no algorithm is `{algorithm}` with marker `{marker}`"))

@@ -15,8 +15,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::Serialize;
 use toposlam_model::{
-    check::{LazySweep, MappingAlgorithm, Shard},
+    check::{LazySweep, Shard},
     enumerate::{Class, Watch},
+    mapping::MappingAlgorithm,
 };
 
 use crate::cli::{
@@ -116,14 +117,14 @@ impl Watch for OnlyStop<'_> {
 fn seconds_a_move(
     class: Class,
     edges: usize,
-    algorithm: &MappingAlgorithm,
+    algorithm: MappingAlgorithm,
     watch: &dyn Watch,
 ) -> Option<Interval> {
     let mut times = Vec::new();
     for size in 1..=edges {
         let sweep = LazySweep::new(class, size, Shard::WHOLE).ok()?;
         let begun = Instant::now();
-        let check = algorithm.lazy_sweep(&sweep, &(), &OnlyStop(watch))?;
+        let check = algorithm.lazy_sweep(&sweep, &(), &OnlyStop(watch));
         let elapsed = begun.elapsed().as_secs_f64();
         if check.moves_made > 0 {
             times.push(elapsed / check.moves_made as f64);
@@ -166,7 +167,7 @@ impl EstimateOptions {
     pub(super) fn print(
         &self,
         (edges, sweep): (usize, &LazySweep),
-        algorithm: &MappingAlgorithm,
+        algorithm: MappingAlgorithm,
         json: bool,
         watch: &dyn Watch,
         out: &mut dyn Write,
@@ -179,9 +180,7 @@ impl EstimateOptions {
             // One for the start vertex, and one for each edge.
             let draws = 1 + edges.saturating_sub(COMPLETE);
             let numbers = (0..draws).map(|_| random.random()).collect();
-            let Some(probe) = algorithm.probe(sweep, numbers, watch) else {
-                return Err(super::needs_default_choices("--estimate"));
-            };
+            let probe = algorithm.probe(sweep, numbers, watch);
             if watch.stop() {
                 return Err(CliError::Interrupted);
             }
@@ -205,7 +204,7 @@ impl EstimateOptions {
             edges,
             class: sweep.class().name(),
             marker: algorithm.marker().name(),
-            algorithm: algorithm.name(),
+            algorithm: algorithm.info().name,
             probes,
             seed,
             starts: is_known.then(|| starts.interval()),

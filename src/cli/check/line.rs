@@ -4,9 +4,10 @@ use std::{collections::BTreeMap, path::Path};
 
 use serde::{Deserialize, Serialize};
 use toposlam_model::{
-    check::{CostOrder, EnumeratedStart, FailedStart, MappingAlgorithm, Shard, Tally},
+    check::{EnumeratedStart, FailedStart, Shard, Tally},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
+    mapping::{CostOrder, MappingAlgorithm},
     marker::{Directional, Marker},
 };
 
@@ -24,12 +25,12 @@ pub(in crate::cli) struct AlgorithmInfo {
 }
 
 impl AlgorithmInfo {
-    pub(in crate::cli) fn of(algorithm: &MappingAlgorithm) -> Self {
+    pub(in crate::cli) fn of(algorithm: MappingAlgorithm) -> Self {
         Self {
-            algorithm: algorithm.name(),
+            algorithm: algorithm.info().name,
             marker: algorithm.marker().name(),
             certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
-            order: algorithm.order(),
+            order: algorithm.info().order,
         }
     }
 }

@@ -6,10 +6,7 @@ use std::{
     time::Duration,
 };
 
-use toposlam_model::{
-    check::{Algorithm, Folding},
-    format::world_file,
-};
+use toposlam_model::{format::world_file, mapping::MappingAlgorithm};
 
 use serde::Serialize;
 
@@ -179,7 +176,7 @@ impl<'o> CheckReport<'o> {
             let step = failure.step.as_ref().map_or(String::new(), |step| format!(" {step}"));
             writeln!(self.out)?;
             print_paragraph(self.out, &format!("Wrong{step}: {}", failure.cause))?;
-            let is_folding = self.subject.algorithm == Folding.name();
+            let is_folding = self.subject.algorithm == MappingAlgorithm::Folding.info().name;
             let algorithm = if is_folding { " --algorithm folding" } else { "" };
             let explore = format!("toposlam explore --marker {}{algorithm}", self.subject.marker);
             print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
@@ -228,7 +225,7 @@ impl<'o> CheckReport<'o> {
 #[cfg(test)]
 mod tests {
     use toposlam_model::{
-        check::{MappingAlgorithm, Shard, Tally},
+        check::{Shard, Tally},
         enumerate::Class,
     };
 
@@ -240,7 +237,7 @@ mod tests {
         let (class, shard) = (Class::Simple, Shard::WHOLE);
         let size =
             SizeResult { edges: 1, class, from: None, shard, tally: &tally, moves_made: None };
-        let subject = AlgorithmInfo::of(&MappingAlgorithm::Algorithm1);
+        let subject = AlgorithmInfo::of(MappingAlgorithm::Algorithm1);
         let mut line = Vec::new();
         print_line(
             &mut line,

@@ -4,8 +4,9 @@ use std::{io::Write, path::Path};
 
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm},
+    check::{FinishedUnits, LazyCheck, LazySweep},
     enumerate::Watch,
+    mapping::MappingAlgorithm,
 };
 
 use super::{LostEnd, SharedSetting};
@@ -33,11 +34,11 @@ impl NoCluster {
 
     pub(in crate::cli) fn check(
         &mut self,
-        _: &MappingAlgorithm,
+        _: MappingAlgorithm,
         _: &LazySweep,
         _: &dyn FinishedUnits,
         _: &dyn Watch,
-    ) -> Result<Option<LazyCheck>, CliError> {
+    ) -> Result<LazyCheck, CliError> {
         match *self {}
     }
 

@@ -6,8 +6,9 @@ use serde::Serialize;
 use toposlam_cluster::{ClusterError, ClusterProcess, ConnectError, Hosts, ThreadUse};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazyCheck, LazySweep, MappingAlgorithm},
+    check::{FinishedUnits, LazyCheck, LazySweep},
     enumerate::Watch,
+    mapping::MappingAlgorithm,
 };
 
 use super::{LostEnd, SharedSetting};
@@ -90,19 +91,17 @@ impl ClusterSession {
         self.cluster.is_first()
     }
 
-    /// Checks an algorithm; `None` with all choices.
+    /// Checks an algorithm.
     pub(in crate::cli) fn check(
         &mut self,
-        algorithm: &MappingAlgorithm,
+        algorithm: MappingAlgorithm,
         sweep: &LazySweep,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> Result<Option<LazyCheck>, CliError> {
-        let found = self.cluster.check(*algorithm, sweep, units, watch)?;
-        Ok(found.map(|found| {
-            self.threads = found.threads;
-            found.check
-        }))
+    ) -> Result<LazyCheck, CliError> {
+        let found = self.cluster.check(algorithm, sweep, units, watch)?;
+        self.threads = found.threads;
+        Ok(found.check)
     }
 
     /// Searches with a marker. The other processes get the smallest pair only.

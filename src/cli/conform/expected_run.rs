@@ -3,7 +3,7 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun, Observer},
+    mapping::{Journey, MappingAlgorithm, MappingEvent, Observer},
     trace::AlgorithmCoverage,
     world::GraphWorld,
 };
@@ -16,12 +16,11 @@ pub(super) struct ExpectedRun {
 }
 
 impl ExpectedRun {
-    pub(super) fn of(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph, start: Dart) -> Self {
+    pub(super) fn of(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, start: Dart) -> Self {
         let mut expected = Self::default();
         let mut world = GraphWorld::new(graph, start);
-        let mut run = MappingRun::new(algorithm, 2 * graph.dart_count());
         // In a world of this size the run ends.
-        let _ = run.map_world(&mut world, &mut expected);
+        let _ = algorithm.map_world(&mut world, 2 * graph.dart_count(), &mut expected);
         expected
     }
 }

@@ -9,7 +9,7 @@ use toposlam_conform::{
 use toposlam_model::{
     folding::WorldSearch,
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::{Marker, NoMarker},
 };
 use toposlam_robot::{budget::RunBudget, run_settings::RecordedSettings};
@@ -35,7 +35,7 @@ pub(super) struct JudgedLog<'w> {
     pub(super) driver: RunDriver,
     /// What the robot might spend.
     pub(super) budget: RunBudget,
-    pub(super) algorithm: DirectionalAlgorithm,
+    pub(super) algorithm: MappingAlgorithm,
     /// The limits of the check.
     pub(super) search: WorldSearch,
     pub(super) dart_bound: usize,
@@ -50,7 +50,7 @@ impl JudgedLog<'_> {
     /// Whether the doors were compared with the folding explorer.
     pub(super) fn is_folding(&self) -> bool {
         let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
-        compared == Some(DirectionalAlgorithm::Folding)
+        compared == Some(MappingAlgorithm::Folding)
     }
 }
 

@@ -7,7 +7,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
-    mapping::DirectionalAlgorithm,
+    mapping::MappingAlgorithm,
     marker::Marker,
     trace::{self, anywhere},
     world::{GraphWorld, State},
@@ -49,7 +49,7 @@ impl<'w> Known<'w> {
         start: Option<&str>,
         (marker, lies): (&'static dyn Marker, MarkerStart),
         run: Option<&Run>,
-        algorithm: DirectionalAlgorithm,
+        algorithm: MappingAlgorithm,
     ) -> Result<Self, CliError> {
         let start = match start {
             Some(ANY) => None,

@@ -14,7 +14,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     folding::{SearchLimit, SmallestWorld},
     format::named_world::NamedWorld,
-    mapping::{DirectionalAlgorithm, PartialMap},
+    mapping::{MappingAlgorithm, PartialMap},
     percept::{Percept, Sighting},
     trace::{AlgorithmCase, Departure, MatchEnd, MatchedChoices, MisfitReason, TraceEventKind},
 };
@@ -231,19 +231,19 @@ impl JudgedLog<'_> {
         facts.extend(self.twin.as_ref().map(|twin| ("twin", twin.in_words())));
         if let Some(followed) = &judgement.algorithm {
             let choices = match (followed.choices, followed.algorithm) {
-                (_, DirectionalAlgorithm::Folding) => {
+                (_, MappingAlgorithm::Folding) => {
                     let recovers =
                         matches!(self.driver, RunDriver::Method(method) if method.recovers());
                     let recovery = if recovers { " with recovery" } else { "" };
                     format!("those of the folding explorer{recovery}")
                 }
-                (MatchedChoices::Default, DirectionalAlgorithm::Algorithm1) => {
+                (MatchedChoices::Default, _) => {
                     "those of Algorithm 1 with its default choices".to_owned()
                 }
-                (MatchedChoices::Other { from: None }, DirectionalAlgorithm::Algorithm1) => {
+                (MatchedChoices::Other { from: None }, _) => {
                     "allowed by Algorithm 1; with its default choices it would continue".to_owned()
                 }
-                (MatchedChoices::Other { from: Some(event) }, DirectionalAlgorithm::Algorithm1) => {
+                (MatchedChoices::Other { from: Some(event) }, _) => {
                     format!(
                         "allowed by Algorithm 1; not its default choices from event {} on",
                         event + 1

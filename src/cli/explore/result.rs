@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{ChoicesLimit, EveryWay, Flaw},
+    check::{ChoicesLimit, EveryWay},
     embedded_graph::{Dart, EmbeddedGraph},
     folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
-    mapping::{FACING, MappedWorld, MappingError},
+    mapping::{FACING, Flaw, MappedWorld, MappingError},
 };
 
 use super::{
@@ -84,7 +84,7 @@ impl ExploreResult<'_> {
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let (name, moves) = (&self.world.name, self.explored.moves_without_audits());
         let about = format!("The map of {name}, made in {moves} moves");
-        let graph = self.explored.journey().map().complete()?;
+        let graph = self.explored.journey.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
@@ -100,7 +100,7 @@ impl ExploreResult<'_> {
 
     /// Prints the rest of the object that the run began with its doors.
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let map = self.explored.journey().map();
+        let map = self.explored.journey.map();
         let rest = Rest {
             moves: self.explored.moves(),
             audit_moves: self.explored.audited().map(|mapped| mapped.audit_moves),
@@ -161,7 +161,7 @@ impl ExploreResult<'_> {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let Self { world, explored, .. } = self;
-        let journey = explored.journey();
+        let journey = &explored.journey;
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
         let moves = counted(journey.moves() as usize, "move");

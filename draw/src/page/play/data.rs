@@ -2,12 +2,10 @@
 
 use serde_json::{Value, json};
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, Folding, RunState},
     embedded_graph::{Dart, EmbeddedGraph},
     folding,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingEvent},
-    marker::Directional,
+    mapping::{Journey, MappingAlgorithm, MappingEvent},
     percept::Door,
     world::GraphWorld,
 };
@@ -25,32 +23,31 @@ pub(super) fn json(world: &NamedWorld, facing: Dart) -> String {
         let doors: Vec<u32> = doors.into_iter().map(|door| door.0).collect();
         json!({ "name": name, "doors": doors })
     };
+    let walk_of = |algorithm: MappingAlgorithm| {
+        walk(algorithm.info().name, doors_of(algorithm, graph, facing))
+    };
     let data = json!({
         "world": graph.vertices().map(vertex).collect::<Value>(),
         "start": end(facing),
         "walks": [
             walk("Certificate", folding::certificate(graph, facing)),
-            walk(Folding.name(), doors_of(&Folding, graph, facing)),
-            walk(Algorithm1.name(), doors_of(&Algorithm1, graph, facing)),
+            walk_of(MappingAlgorithm::Folding),
+            walk_of(MappingAlgorithm::Algorithm1),
         ],
     });
     in_script(&data)
 }
 
 /// The doors that an algorithm takes until its map is complete.
-fn doors_of<A: Algorithm<Marker = Directional>>(
-    algorithm: &A,
-    graph: &EmbeddedGraph,
-    facing: Dart,
-) -> Vec<Door> {
+fn doors_of(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
     let mut doors = Vec::new();
     let mut watch = |_: &mut GraphWorld<'_>, _: &Journey, event: MappingEvent| {
         if let MappingEvent::Moved { door, .. } = event {
             doors.push(door);
         }
     };
-    let mut state = A::State::new(graph.dart_count());
+    let mut world = GraphWorld::new(graph, facing);
     // No world that is a graph contradicts itself or has more darts.
-    let _ = algorithm.run(&mut GraphWorld::new(graph, facing), &mut state, &mut watch);
+    let _ = algorithm.map_world(&mut world, graph.dart_count(), &mut watch);
     doors
 }

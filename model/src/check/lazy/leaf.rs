@@ -2,15 +2,14 @@
 
 use std::{ops::ControlFlow, sync::atomic::AtomicU64};
 
-use super::{
-    LazyTally, LazyWorld, StepExplorer, search::LazyRunEnd, tally::EnumeratedStart, world::FACING,
-};
+use super::{LazyTally, LazyWorld, search::LazyRunEnd, tally::EnumeratedStart, world::FACING};
 use crate::{
-    check::{Flaw, judge_map, sweep::go_on},
+    check::{judge_map, sweep::go_on},
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     folding::MarkerTree,
     isomorphism::Candidate,
+    mapping::{Explorer, Flaw},
     marker::{Directional, Marker},
 };
 
@@ -33,7 +32,7 @@ impl<'m> LeafJudge<'m> {
     }
 
     /// Judges each start that agrees with the record. Breaks if the watch stops.
-    pub(super) fn judge<E: StepExplorer>(
+    pub(super) fn judge<E: Explorer>(
         &mut self,
         world: &LazyWorld<E::Marker>,
         explorer: &E,
@@ -53,7 +52,7 @@ impl<'m> LeafJudge<'m> {
     }
 
     /// Judges a run in one of these starts, as [`judge_start`](crate::check::judge_start).
-    fn judge_run<E: StepExplorer>(
+    fn judge_run<E: Explorer>(
         &mut self,
         world: &LazyWorld<E::Marker>,
         explorer: &E,

@@ -12,8 +12,8 @@
 //!   start. Decisions are made and undone like a stack.
 //! * [`LazyWorld`] is the record with a robot and a marker in it, as a [`World`](crate::world::World). It
 //!   pushes a *decision* for each answer that it chooses: the answer, and those that are left.
-//! * [`StepExplorer`] is an explorer whose run is a sequence of steps, and whose state can be cloned between
-//!   two of them.
+//! * [`Explorer`](crate::mapping::Explorer) is the state of a run, which is a sequence of steps, and which can be
+//!   cloned between two of them.
 //! * `RunSearch` runs steps until the explorer returns its map, and then goes back to the latest decision with an
 //!   answer left. It restores the explorer and the robot as they were before the step of that decision, and
 //!   repeats this step. The record has the new answer already, so the step passes there without asking. Only
@@ -41,7 +41,6 @@
 //! provably no way to end with the right number of edges. That test is not exact: if the robot takes a door
 //! and no answer is left, the search goes back, and nothing is counted.
 
-mod explorers;
 mod leaf;
 mod search;
 mod sweep;
@@ -49,10 +48,6 @@ mod tally;
 mod units;
 mod world;
 
-pub use explorers::{
-    Algorithm1Explorer, FoldingStepExplorer, MovableMarkerExplorer, StepExplorer, StepProgress,
-    Stepwise,
-};
 pub use sweep::{FinishedUnits, LazyCheck, LazySweep, Probe, WorldCount};
 pub use tally::{EnumeratedStart, LazyTally};
 pub use units::{CheckPieces, PieceCounts};

@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use super::{
-    LazyWorld, StepExplorer, StepProgress,
+    LazyWorld,
     world::{Prefix, RobotState},
 };
 use crate::{
-    check::Flaw,
     enumerate::{Answer, Draft, Watch},
+    mapping::{Explorer, Flaw},
 };
 
 /// The number of runs after which the watch is asked whether to stop.
@@ -24,29 +24,38 @@ pub(super) enum LazyRunEnd {
     Cut,
 }
 
-/// The explorer and its robot before a step.
-#[derive(Clone)]
-struct Saved<E> {
+/// Whether a run goes on.
+enum StepProgress {
+    /// There is another step.
+    GoesOn,
+    /// The run has ended, and the map is there.
+    Done,
+}
+
+/// The explorer and its robot after the approach of a step.
+struct Saved<E: Explorer> {
     explorer: E,
+    choice: Option<E::Choice>,
     robot: RobotState,
 }
 
 /// A depth-first search through the runs of an explorer.
-pub(super) struct RunSearch<'w, E: StepExplorer> {
+pub(super) struct RunSearch<'w, E: Explorer> {
     pub(super) world: LazyWorld<E::Marker>,
     pub(super) explorer: E,
+    /// The choice of the next step.
+    choice: Option<E::Choice>,
     /// The state before each step in which something was decided. Memory is kept.
     saved: Vec<Saved<E>>,
     /// The number of undecided edges at which a run is cut, after a step.
     cut_at: Option<usize>,
-    max_darts: usize,
     watch: &'w dyn Watch,
 }
 
-impl<'w, E: StepExplorer> RunSearch<'w, E> {
+impl<'w, E: Explorer> RunSearch<'w, E> {
     /// A search through the runs that begin with these answers.
     pub(super) fn new(
-        explorer: E,
+        mut explorer: E,
         draft: Draft,
         prefix: Prefix,
         cut_at: Option<usize>,
@@ -56,7 +65,8 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
         let bounds = (1..=edges + 1).map(|vertices| explorer.move_bound(edges, vertices));
         let bound = bounds.max().unwrap_or(0);
         let world = LazyWorld::new(draft, explorer.marker(), bound, prefix);
-        Self { world, explorer, saved: Vec::new(), cut_at, max_darts: 2 * edges, watch }
+        explorer.limit_darts(2 * edges);
+        Self { world, explorer, choice: None, saved: Vec::new(), cut_at, watch }
     }
 
     /// Visits the end of each run, in a fixed order.
@@ -80,12 +90,13 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
 
     fn save(&mut self, step: usize) {
         let Self { world, explorer, saved, .. } = self;
+        let (choice, robot) = (self.choice, world.robot());
         match saved.get_mut(step) {
             Some(saved) => {
                 saved.explorer.clone_from(explorer);
-                saved.robot = world.robot();
+                (saved.choice, saved.robot) = (choice, robot);
             }
-            None => saved.push(Saved { explorer: explorer.clone(), robot: world.robot() }),
+            None => saved.push(Saved { explorer: explorer.clone(), choice, robot }),
         }
         world.step = step;
     }
@@ -93,6 +104,7 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
     fn restore(&mut self, step: usize) {
         let Self { world, explorer, saved, .. } = self;
         explorer.clone_from(&saved[step].explorer);
+        self.choice = saved[step].choice;
         world.set_robot(saved[step].robot);
         world.step = step;
     }
@@ -100,11 +112,7 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
     /// Runs from the present state to an end, which is `None` where no answer was left.
     fn run(&mut self) -> Option<LazyRunEnd> {
         loop {
-            let progress = if self.world.robot().has_begun {
-                self.explorer.step(&mut self.world)
-            } else {
-                self.begin()
-            };
+            let progress = self.make_step();
             if self.world.dead_end {
                 return None;
             }
@@ -124,14 +132,24 @@ impl<'w, E: StepExplorer> RunSearch<'w, E> {
         }
     }
 
-    fn begin(&mut self) -> Result<StepProgress, Flaw> {
-        self.world.open_start()?;
-        self.explorer.begin(&mut self.world, self.max_darts)
+    /// Begins the run, or makes its next step; and then the approach of the step after it.
+    fn make_step(&mut self) -> Result<StepProgress, Flaw> {
+        let Self { world, explorer, choice, .. } = self;
+        if !world.robot().has_begun {
+            world.open_start()?;
+            explorer.begin(world, &mut ())?;
+        } else if let Some(choice) = *choice {
+            explorer.step(choice, world, &mut ())?;
+        }
+        *choice = explorer.choose()?;
+        let Some(choice) = *choice else { return Ok(StepProgress::Done) };
+        explorer.approach(choice, world, &mut ())?;
+        Ok(StepProgress::GoesOn)
     }
 }
 
 /// The beginnings of all runs, up to the step after which at most `cut_at` edges are undecided.
-pub(super) fn beginnings<E: StepExplorer>(
+pub(super) fn beginnings<E: Explorer>(
     explorer: E,
     draft: Draft,
     cut_at: usize,

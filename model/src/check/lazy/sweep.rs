@@ -5,17 +5,18 @@ use std::{collections::BTreeMap, sync::atomic::AtomicU64};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LazyTally, StepExplorer, Stepwise,
+    LazyTally,
     leaf::LeafJudge,
     search::{RunSearch, beginnings},
     world::Prefix,
 };
 use crate::{
-    check::{FailedStart, Shard, Tally, WorstStart, judge_start, sweep::go_on},
+    check::{FailedStart, Shard, Tally, WorstStart, first_false_step, judge_start, sweep::go_on},
     enumerate::{
         Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
     isomorphism::Candidate,
+    mapping::Explorer,
 };
 
 /// The number of edges that are decided in the beginning that a unit's runs have in common. A unit of 7 edges
@@ -122,12 +123,12 @@ impl LazySweep {
     }
 
     /// Checks explorers, each on one unit. The result does not depend on the number of threads.
-    pub fn run<E: StepExplorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
+    pub fn run<E: Explorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
         self.resume(new, &(), watch)
     }
 
     /// Checks explorers on the units that were not finished before. The result is that of [`run`](Self::run).
-    pub fn resume<E: StepExplorer>(
+    pub fn resume<E: Explorer>(
         &self,
         new: impl Fn() -> E + Sync,
         units: &dyn FinishedUnits,
@@ -158,7 +159,7 @@ impl LazySweep {
     }
 
     /// The number of units of the shard.
-    pub fn unit_count<E: StepExplorer>(&self, new: impl Fn() -> E) -> usize {
+    pub fn unit_count<E: Explorer>(&self, new: impl Fn() -> E) -> usize {
         // A count that stops early would be wrong.
         self.units(new, &()).len()
     }
@@ -167,12 +168,7 @@ impl LazySweep {
     /// answer is given, until all is decided. The expected value of a count times the weight is that of the
     /// whole tree. There is one decision for the degree of the start vertex, and one for each edge.
     #[must_use]
-    pub fn probe<E: StepExplorer>(
-        &self,
-        explorer: E,
-        numbers: Vec<u64>,
-        watch: &dyn Watch,
-    ) -> Probe {
+    pub fn probe<E: Explorer>(&self, explorer: E, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         let most_moves = AtomicU64::new(u64::MAX);
         let (tally, weight) =
             self.check_subtree(Prefix::Drawn(numbers), explorer, &most_moves, watch);
@@ -180,11 +176,7 @@ impl LazySweep {
     }
 
     /// The units of the shard. They do not depend on the number of threads.
-    pub(super) fn units<E: StepExplorer>(
-        &self,
-        new: impl Fn() -> E,
-        watch: &dyn Watch,
-    ) -> Vec<Unit> {
+    pub(super) fn units<E: Explorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
         let edges = self.draft.edges_left();
         let cut_at = edges.saturating_sub(beginning(edges));
         let all = beginnings(new(), self.draft.clone(), cut_at, watch);
@@ -192,7 +184,7 @@ impl LazySweep {
     }
 
     /// Checks the starts of a unit.
-    pub(super) fn check_unit<E: StepExplorer>(
+    pub(super) fn check_unit<E: Explorer>(
         &self,
         unit: &Unit,
         explorer: E,
@@ -206,7 +198,7 @@ impl LazySweep {
     }
 
     /// Checks the starts of a subtree, and returns the weight of what was drawn.
-    fn check_subtree<E: StepExplorer>(
+    fn check_subtree<E: Explorer>(
         &self,
         prefix: Prefix,
         explorer: E,
@@ -222,16 +214,16 @@ impl LazySweep {
     }
 
     /// The result, from the counts of all units and all worlds.
-    pub(super) fn finished<E: StepExplorer>(
+    pub(super) fn finished<E: Explorer>(
         found: LazyTally,
         WorldCount { worlds, interrupted }: WorldCount,
         new: impl Fn() -> E,
     ) -> LazyCheck {
         let failure = found.failure.and_then(|start| start.start()).and_then(|(graph, facing)| {
-            let mut explorer = Stepwise(new());
-            let judged = judge_start(&mut explorer, &graph, facing, &mut Candidate::default());
+            let judged = judge_start(&mut new(), &graph, facing, &mut Candidate::default());
             let (moves, flaw) = (Some(judged.0), judged.1.err()?);
-            Some(FailedStart { graph, facing, flaw, moves, false_step: None })
+            let false_step = first_false_step(new(), &graph, facing);
+            Some(FailedStart { graph, facing, flaw, moves, false_step })
         });
         let worst = found.worst.and_then(|(moves, start)| {
             let (graph, facing) = start.start()?;

@@ -5,10 +5,13 @@ use std::sync::atomic::AtomicU64;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    LazyCheck, LazySweep, LazyTally, StepExplorer,
+    LazyCheck, LazySweep, LazyTally,
     sweep::{Unit, WorldCount},
 };
-use crate::enumerate::{EnumerationPart, Watch};
+use crate::{
+    enumerate::{EnumerationPart, Watch},
+    mapping::Explorer,
+};
 
 /// The pieces of a [`LazySweep`]: its units, and the parts of the worlds that are counted. Equal sweeps have
 /// equal pieces on every machine.
@@ -40,7 +43,7 @@ impl PieceCounts {
 
 impl CheckPieces {
     /// The pieces of a sweep with an explorer.
-    pub fn new<E: StepExplorer>(sweep: &LazySweep, new: impl Fn() -> E, watch: &dyn Watch) -> Self {
+    pub fn new<E: Explorer>(sweep: &LazySweep, new: impl Fn() -> E, watch: &dyn Watch) -> Self {
         Self {
             units: sweep.units(new, watch),
             world_parts: sweep.world_parts(),
@@ -62,12 +65,7 @@ impl CheckPieces {
     }
 
     /// The counts of a piece; none if there is no such piece.
-    pub fn check<E: StepExplorer>(
-        &self,
-        piece: usize,
-        explorer: E,
-        watch: &dyn Watch,
-    ) -> PieceCounts {
+    pub fn check<E: Explorer>(&self, piece: usize, explorer: E, watch: &dyn Watch) -> PieceCounts {
         let mut counts = PieceCounts::default();
         if let Some(unit) = self.units.get(piece) {
             counts.tally = self.sweep.check_unit(unit, explorer, &self.most_moves, watch);
@@ -78,7 +76,7 @@ impl CheckPieces {
     }
 
     /// The result, from the counts of all pieces. It is that of [`LazySweep::run`].
-    pub fn finished<E: StepExplorer>(
+    pub fn finished<E: Explorer>(
         PieceCounts { tally, worlds }: PieceCounts,
         new: impl Fn() -> E,
     ) -> LazyCheck {

@@ -5,7 +5,7 @@ use crate::{
     enumerate::{Answer, Answers, Draft},
     marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::{MovableMarkerWorld, RefusedAction, State, World},
+    world::{MarkerCarrier, RefusedAction, State, World},
 };
 
 /// The facing dart of every start.
@@ -224,9 +224,15 @@ impl<M: Marker> World for LazyWorld<M> {
         self.moves_made += 1;
         Ok(())
     }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+        Some(self)
+    }
 }
 
-impl<M: Marker> MovableMarkerWorld for LazyWorld<M> {
+impl<M: Marker> MarkerCarrier for LazyWorld<M> {
+    type Error = RefusedAction;
+
     fn pick_up(&mut self) -> Result<(), RefusedAction> {
         if !self.marker.is_movable() || self.sighting() == Sighting::Nothing {
             return Err(RefusedAction::NothingToPickUp);

@@ -26,14 +26,15 @@ mod ways;
 use std::cmp::Reverse;
 
 use super::{
-    Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingError, Observer, PartialMap,
-    tree::BreadthFirstTree,
+    Contradiction, CostOrder, DEFAULT_DART_BOUND, Explorer, ExplorerInfo, InvalidStep, Journey,
+    MapDart, MappingError, Observer, PartialMap, StepPurpose, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::Dart,
     folding::{FoldedTrail, MAX_DARTS, TrailError},
     injected_flaw::InjectedFlaw,
+    marker::Directional,
     percept::{Door, Sighting},
     world::World,
 };
@@ -130,23 +131,10 @@ impl Default for FoldingExploration {
     }
 }
 
-/// Maps a world with the folding explorer. At its start the robot stands at the marked vertex, with its
-/// back to the facing door. Afterwards `exploration` holds the map, the robot's pose in it and the
-/// number of moves, and its trail is [complete](FoldedTrail::is_complete).
-///
-/// # Errors
-/// Returns an error if the world does, if it contradicts itself, or if the map has more darts than the
-/// exploration's bound, or the trail more than [`MAX_DARTS`].
-pub fn map_by_folding<W: World>(
-    world: &mut W,
-    exploration: &mut FoldingExploration,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    exploration.begin(world, observer)?;
-    while let Some(step) = exploration.next_step() {
-        exploration.make_step(step, world, observer)?;
+impl From<FoldingExploration> for Journey {
+    fn from(run: FoldingExploration) -> Self {
+        run.journey
     }
-    if exploration.is_complete() { Ok(()) } else { Err(InvalidStep::NoPlan.into()) }
 }
 
 impl FoldingExploration {
@@ -175,11 +163,6 @@ impl FoldingExploration {
     #[must_use]
     pub fn strict() -> Self {
         Self { strict: true, ..Self::default() }
-    }
-
-    /// Sets the bound on the darts of the map for later runs.
-    pub fn set_bound(&mut self, bound: usize) {
-        self.journey.set_bound(bound);
     }
 
     /// The robot's journey: its map, its pose in the map and its moves.
@@ -230,12 +213,31 @@ impl FoldingExploration {
         self.from_robot.clear();
         self.to_marker_is_current = false;
     }
+}
+
+/// The folding explorer. Its default choices break every tie. The map is complete when its trail is
+/// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`] darts.
+impl Explorer for FoldingExploration {
+    type Marker = Directional;
+    type Choice = FoldingStep;
+
+    const INFO: ExplorerInfo = ExplorerInfo {
+        option: "folding",
+        name: "Folding explorer",
+        in_words: "the folding explorer",
+        order: CostOrder::EdgesSquaredVertices,
+    };
+
+    fn marker(&self) -> Directional {
+        Directional
+    }
+
+    fn limit_darts(&mut self, max_darts: usize) {
+        self.journey.set_bound(max_darts);
+    }
 
     /// The marker lies at the first place of the map.
-    ///
-    /// # Errors
-    /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
-    pub fn begin<W: World>(
+    fn begin<W: World>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -251,12 +253,20 @@ impl FoldingExploration {
         self.settle(world, observer)
     }
 
-    /// The first part of a step: goes through the trail to the open dart that it takes. The step itself
-    /// then begins with that dart.
-    ///
-    /// # Errors
-    /// See [`map_by_folding`].
-    pub fn approach<W: World>(
+    fn choose(&mut self) -> Result<Option<FoldingStep>, InvalidStep> {
+        match self.next_step() {
+            None if !self.is_complete() => Err(InvalidStep::NoPlan),
+            next => Ok(next),
+        }
+    }
+
+    /// Every way to break its ties.
+    fn choices(&mut self) -> Result<Vec<FoldingStep>, InvalidStep> {
+        Ok(self.open_steps())
+    }
+
+    /// Goes through the trail to the open dart that the step takes.
+    fn approach<W: World>(
         &mut self,
         step: FoldingStep,
         world: &mut W,
@@ -270,10 +280,7 @@ impl FoldingExploration {
     }
 
     /// Makes a step, and draws all conclusions.
-    ///
-    /// # Errors
-    /// See [`map_by_folding`].
-    pub fn make_step<W: World>(
+    fn step<W: World>(
         &mut self,
         step: FoldingStep,
         world: &mut W,
@@ -288,6 +295,28 @@ impl FoldingExploration {
         }
         self.settle(world, observer)
     }
+
+    fn map_walk(&self) -> Option<&Journey> {
+        Some(&self.journey)
+    }
+
+    fn purpose(&self, step: Option<FoldingStep>) -> StepPurpose {
+        let named = |dart| MapDart::new(self.map(), dart);
+        match step {
+            None => StepPurpose::NoOpenDart,
+            Some(FoldingStep::Explore(edge)) => StepPurpose::ExploreOpen(named(edge)),
+            Some(FoldingStep::Test(test)) => {
+                StepPurpose::Test { edge: named(test.edge), hypothesis: named(test.hypothesis) }
+            }
+        }
+    }
+
+    /// `4 n m^2 + 4 n m + 400`.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let nm = n.saturating_mul(m);
+        nm.saturating_mul(m).saturating_add(nm).saturating_mul(4).saturating_add(400)
+    }
 }
 
 impl<E> From<TrailError> for MappingError<E> {
@@ -300,3 +329,6 @@ impl<E> From<TrailError> for MappingError<E> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,9 +27,10 @@ use crate::{
     embedded_graph::Dart,
     folding::FoldedTrail,
     mapping::{
-        Contradiction, FACING, InvalidStep, Journey, MappingError, MappingEvent, Observer,
-        SafeguardEvent,
+        Contradiction, Explorer, FACING, InvalidStep, Journey, MappingError, MappingEvent,
+        Observer, SafeguardEvent,
         audit::{AuditError, AuditMove, audit, try_doors},
+        explore,
     },
     marker::Marker,
     measurement::{MeasurementCheck, MeasurementNoise},
@@ -176,10 +177,10 @@ impl FoldingExploration {
         self.find_robot();
         observer.event(world, &self.journey, MappingEvent::Safeguard(event));
         self.settle(world, observer)?;
-        while let Some(step) = self.next_step() {
-            self.make_step(step, world, observer)?;
+        while let Some(choice) = self.choose()? {
+            self.step(choice, world, observer)?;
         }
-        if self.is_complete() { Ok(()) } else { Err(InvalidStep::NoPlan.into()) }
+        Ok(())
     }
 
     /// Walks until the marker is seen, and returns the percept there.
@@ -259,7 +260,7 @@ struct Recovery<'w, 'e, W, O> {
 
 impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
     fn begin(&mut self) -> Result<(), MappingError<W::Error>> {
-        super::map_by_folding(&mut self.world, self.exploration, &mut self.observer)
+        explore(self.exploration, &mut self.world, &mut self.observer)
     }
 
     /// Audits the map, and recovers as often as it must.
@@ -312,7 +313,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
                 self.relocate(error)?;
                 self.report(SafeguardEvent::Relocated);
             }
-            error @ MappingError::InvalidStep(_) => return Err(error),
+            error @ (MappingError::InvalidStep(_) | MappingError::GaveUp(_)) => return Err(error),
         }
         self.go_on()
     }

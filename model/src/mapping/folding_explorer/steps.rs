@@ -13,7 +13,7 @@ fn worthwhile(moves_to_open: usize) -> usize {
 
 impl FoldingExploration {
     /// What to do next; `None` if no dart is open.
-    pub fn next_step(&mut self) -> Option<FoldingStep> {
+    pub(super) fn next_step(&mut self) -> Option<FoldingStep> {
         if self.trail.open_count() == 0 {
             return None;
         }
@@ -30,7 +30,7 @@ impl FoldingExploration {
     }
 
     /// All steps that [`next_step`](Self::next_step) may return if ties are broken in another way.
-    pub fn open_steps(&mut self) -> Vec<FoldingStep> {
+    pub(super) fn open_steps(&mut self) -> Vec<FoldingStep> {
         let Some(first) = self.next_step() else { return Vec::new() };
         self.from_robot.find(&self.trail);
         let mut steps = vec![first];

@@ -9,9 +9,9 @@ use crate::{
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     isomorphism::code,
     mapping::{
-        Choices, Contradiction,
-        DirectionalAlgorithm::{Algorithm1, Folding},
-        FACING, Journey, MappingEvent, PartialMap, map_world,
+        Choices, Contradiction, FACING, Journey,
+        MappingAlgorithm::{Algorithm1, Folding},
+        MappingEvent, PartialMap, map_world,
     },
     percept::{Door, Sighting},
     trace::{

@@ -5,7 +5,7 @@ use std::{io::Write, time::Instant};
 
 use serde_json::json;
 use toposlam_model::{
-    enumerate::Watch, mapping::DirectionalAlgorithm, measurement::MeasurementContradiction,
+    enumerate::Watch, mapping::MappingAlgorithm, measurement::MeasurementContradiction,
 };
 use toposlam_robot::bound::upper_bound;
 use toposlam_terminal::{
@@ -66,7 +66,7 @@ impl EvaluateLengthsArguments {
         use_threads(self.robots.threads)?;
         let plans = self.robots.plans(RandomPlans::Large(self.plans), usize::MAX)?;
         let RobotArguments { seed, noise, .. } = self.robots;
-        let algorithm = DirectionalAlgorithm::Algorithm1;
+        let algorithm = MappingAlgorithm::Algorithm1;
         let sampler = RunSampler::new(plans, usize::MAX, Faults::None, seed, noise, algorithm);
         let equipment = self.robots.equipment()?;
         let begun = Instant::now();

@@ -5,11 +5,11 @@ use std::{borrow::Cow, sync::Arc};
 use rand::seq::IndexedRandom;
 use toposlam_conform::LaserEvents;
 use toposlam_model::{
-    check::{ExploredMap, judge_map},
+    check::judge_map,
     embedded_graph::Dart,
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{FACING, MappingError, MappingMethod},
+    mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
 use toposlam_vision::laser::plane::Motion;
 
@@ -151,7 +151,7 @@ impl WalkSampler {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::mapping::{DirectionalAlgorithm, RecoveryConfig};
+    use toposlam_model::mapping::{MappingAlgorithm, RecoveryConfig};
     use toposlam_vision::laser::params::LaserParams;
 
     use super::{super::corridor_world::BuildingKind, *};
@@ -164,7 +164,7 @@ mod tests {
     }
 
     fn folding() -> MappingMethod {
-        MappingMethod::from(DirectionalAlgorithm::Folding)
+        MappingMethod::from(MappingAlgorithm::Folding)
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 use toposlam_model::{
-    check::{ExploredMap, Flaw},
     embedded_graph::Dart,
+    mapping::{ExploredMap, Flaw},
     percept::{Door, Percept, Sighting},
     world::Action,
 };

@@ -4,9 +4,10 @@ use std::{collections::VecDeque, time::Duration};
 
 use toposlam_model::{
     ambiguity::Comparison,
-    check::{Flaw, determines_world, judge_map},
+    check::{determines_world, judge_map},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Candidate,
+    mapping::Flaw,
     marker::Marker,
     percept::Door,
     world::{Action, GraphWorld},

@@ -2,10 +2,10 @@
 
 use thiserror::Error;
 
+use super::{InvalidStep, MappingError};
 use crate::{
     counts::grouped,
     embedded_graph::{Dart, GraphError},
-    mapping::MappingError,
     world::RefusedAction,
 };
 
@@ -38,9 +38,6 @@ pub enum Flaw {
         /// The pose in the world.
         truly: Dart,
     },
-    /// The explorer gave up.
-    #[error("the explorer gave up: {0}")]
-    GaveUp(String),
     /// The explorer's map is not an embedded graph.
     #[error("the map is not an embedded graph: {0}")]
     NoGraph(#[from] GraphError),
@@ -63,5 +60,11 @@ pub enum Flaw {
 impl From<RefusedAction> for Flaw {
     fn from(refused: RefusedAction) -> Self {
         Self::Error(MappingError::World(refused))
+    }
+}
+
+impl From<InvalidStep> for Flaw {
+    fn from(step: InvalidStep) -> Self {
+        Self::Error(step.into())
     }
 }

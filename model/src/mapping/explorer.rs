@@ -1,0 +1,208 @@
+//! Explorers: everything that maps a world, as one trait.
+//!
+//! * An [`Explorer`] is the state of a run. It waits for one of its open [choices](Explorer::choices), and
+//!   [makes the step](Explorer::step) of that choice in a [`World`]. Its events go to an [`Observer`].
+//! * The *drivers* run it: [`explore`] straight through, the checks of [`check`](crate::check) on every start (one
+//!   by one, with shared prefixes, with all choices), the matches of [`trace`](crate::trace) along a recorded run,
+//!   and robots with a [`MappingMethod`](super::MappingMethod).
+//! * [`MappingAlgorithm`](super::MappingAlgorithm) lists the explorers of this crate, to choose from at run time.
+//!
+//! A driver clones an explorer to try more than one choice, or to repeat a step in another world.
+
+use std::{borrow::Cow, fmt};
+
+use super::{
+    ExploredMap, FACING, Flaw, InvalidStep, Journey, MappingError, Observer, PartialMap,
+    StepPurpose,
+};
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    marker::Marker,
+    world::World,
+};
+
+/// An explorer: the state of a run that maps a world.
+///
+/// What it does must depend on its state, the percepts and the refusals alone. An explorer that makes its whole
+/// run in [`begin`](Self::begin) has no steps. Short steps share more in a check of
+/// [shared prefixes](crate::check::LazySweep): at best, a step takes one door whose other end is not known, as its
+/// first move after [`approach`](Self::approach). `clone_from` is called for each run there; an implementation that
+/// reuses memory is faster.
+pub trait Explorer: Clone {
+    /// The kind of marker with which it explores.
+    type Marker: Marker + Clone;
+
+    /// What it can do next.
+    type Choice: Copy + fmt::Debug + PartialEq;
+
+    /// Its names, and the order of its cost.
+    const INFO: ExplorerInfo = ExplorerInfo::UNNAMED;
+
+    /// The marker with which it explores.
+    fn marker(&self) -> Self::Marker;
+
+    /// Limits the darts that later runs may come to know. Beyond that they end with [`MappingError::Bound`].
+    fn limit_darts(&mut self, _max_darts: usize) {}
+
+    /// Begins a run in another world. At its start the robot stands where the marker is placed, with its
+    /// back to the facing door.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, if it contradicts itself, or at the limit of darts.
+    fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>>;
+
+    /// The default choice; `None` if the run has ended, and the map is complete.
+    ///
+    /// # Errors
+    /// Returns an error if the map is not complete, and no choice is open.
+    fn choose(&mut self) -> Result<Option<Self::Choice>, InvalidStep>;
+
+    /// Every open choice.
+    ///
+    /// # Errors
+    /// See [`choose`](Self::choose).
+    fn choices(&mut self) -> Result<Vec<Self::Choice>, InvalidStep> {
+        Ok(self.choose()?.into_iter().collect())
+    }
+
+    /// Makes the first moves of a step, in the known part of the world. [`step`](Self::step) then makes the others.
+    ///
+    /// # Errors
+    /// See [`step`](Self::step).
+    fn approach<W: World>(
+        &mut self,
+        _choice: Self::Choice,
+        _world: &mut W,
+        _observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        Ok(())
+    }
+
+    /// Makes the step of an open choice.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, if it contradicts itself, if the choice is not open, or at the limit of
+    /// darts. The state then holds what is known so far.
+    fn step<W: World>(
+        &mut self,
+        choice: Self::Choice,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>>;
+
+    /// The robot's map, its pose in the map and its moves, if it keeps them in this form.
+    fn map_walk(&self) -> Option<&Journey> {
+        None
+    }
+
+    /// The map at the end of a run.
+    ///
+    /// # Errors
+    /// Returns a flaw if it is not complete.
+    fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
+        let walk = self.map_walk().ok_or(Flaw::Unfinished { unexplored: 0 })?;
+        let unexplored = walk.map().unexplored_count();
+        let graph = walk.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
+        Ok(ExploredMap { graph: Cow::Borrowed(graph), facing: FACING, pose: walk.robot() })
+    }
+
+    /// What distinguishes its state from others of the same start; `None` if states are not compared.
+    fn state_key(&self) -> Option<StateKey> {
+        None
+    }
+
+    /// The purpose of the step of a choice; without one, of the end of the run.
+    fn purpose(&self, choice: Option<Self::Choice>) -> StepPurpose {
+        if choice.is_some() { StepPurpose::GoOn } else { StepPurpose::Done }
+    }
+
+    /// The most moves that it may make in a world of this size. In a check, further moves are refused.
+    fn move_bound(&self, _edges: usize, _vertices: usize) -> u64 {
+        DEFAULT_MOVE_BOUND
+    }
+}
+
+/// How many moves an explorer may make if it states no bound.
+pub const DEFAULT_MOVE_BOUND: u64 = 1_000_000;
+
+/// What distinguishes a state from others of the same start, so that equal states are followed once.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum StateKey {
+    /// Between two rounds: the map, numbered by discovery, and the robot's vertex in it.
+    Round(PartialMap, Vertex),
+    /// Within a round: the hypotheses that are left.
+    WithinRound(Vec<Dart>),
+}
+
+/// The names of an explorer, and the order of its cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExplorerInfo {
+    /// Its name in options and logs.
+    pub option: &'static str,
+    /// Its name in reports.
+    pub name: &'static str,
+    /// Its name in a sentence.
+    pub in_words: &'static str,
+    /// The order of its cost.
+    pub order: CostOrder,
+}
+
+impl ExplorerInfo {
+    /// Of an explorer that states nothing.
+    pub const UNNAMED: Self = Self {
+        option: "explorer",
+        name: "Explorer",
+        in_words: "the explorer",
+        order: CostOrder::EdgesSquaredVertices,
+    };
+}
+
+/// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CostOrder {
+    /// `m n`.
+    EdgesVertices,
+    /// `m^2 n`.
+    EdgesSquaredVertices,
+}
+
+impl CostOrder {
+    /// Its value for a world of this size.
+    #[must_use]
+    pub fn value(self, edges: f64, vertices: f64) -> f64 {
+        match self {
+            Self::EdgesVertices => edges * vertices,
+            Self::EdgesSquaredVertices => edges * edges * vertices,
+        }
+    }
+}
+
+impl fmt::Display for CostOrder {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(match self {
+            Self::EdgesVertices => "m n",
+            Self::EdgesSquaredVertices => "m^2 n",
+        })
+    }
+}
+
+/// Maps a world with the default choices. At its start the robot stands where the marker is placed, with its back
+/// to the facing door. Afterwards the explorer holds the map, the robot's pose in it and the number of moves.
+///
+/// # Errors
+/// See [`Explorer::step`].
+pub fn explore<E: Explorer, W: World>(
+    explorer: &mut E,
+    world: &mut W,
+    observer: &mut impl Observer<W>,
+) -> Result<(), MappingError<W::Error>> {
+    explorer.begin(world, observer)?;
+    while let Some(choice) = explorer.choose()? {
+        explorer.step(choice, world, observer)?;
+    }
+    Ok(())
+}

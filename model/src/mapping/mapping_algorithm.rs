@@ -1,0 +1,123 @@
+//! The explorers of this crate, to choose from at run time.
+
+use std::{fmt, str::FromStr};
+
+use super::{Explorer, ExplorerInfo, Journey, MappingError, Observer, explore};
+use crate::{
+    marker::{self, Directional, Marker},
+    world::World,
+};
+
+/// Declares the algorithms: for each its name here and its explorer.
+macro_rules! algorithms {
+    ($dollar:tt $($(#[$doc:meta])* $name:ident: $explorer:ident,)*) => {
+        /// A mapping algorithm of this crate. For any other algorithm implement [`Explorer`].
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum MappingAlgorithm {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl MappingAlgorithm {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+        }
+
+        /// An expression in which a name is the type of the explorer of an algorithm.
+        macro_rules! with_explorer {
+            ($dollar algorithm:expr, $dollar alias:ident => $dollar body:expr) => {
+                match $dollar algorithm {
+                    $($crate::mapping::MappingAlgorithm::$name => {
+                        type $dollar alias = $crate::mapping::$explorer;
+                        $dollar body
+                    })*
+                }
+            };
+        }
+    };
+}
+
+algorithms! { $
+    /// The paper's Algorithm 1. It is that of a log that names none.
+    #[default]
+    Algorithm1: Exploration,
+    /// The movable marker algorithm, for worlds without loops and parallel edges.
+    MovableMarker: MarkerSearch,
+    /// The folding explorer.
+    Folding: FoldingExploration,
+}
+
+pub(crate) use with_explorer;
+
+impl MappingAlgorithm {
+    /// Its names, and the order of its cost.
+    #[must_use]
+    pub fn info(self) -> ExplorerInfo {
+        with_explorer!(self, E => E::INFO)
+    }
+
+    /// Its name in options and logs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.info().option
+    }
+
+    /// Its name in a sentence.
+    #[must_use]
+    pub fn in_words(self) -> &'static str {
+        self.info().in_words
+    }
+
+    /// The marker with which it maps.
+    #[must_use]
+    pub fn marker(self) -> &'static dyn Marker {
+        let name = with_explorer!(self, E => E::default().marker().name());
+        marker::named(name).unwrap_or(&Directional)
+    }
+
+    /// The algorithms of a robot that cannot carry its marker.
+    pub fn with_fixed_marker() -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(|algorithm| !algorithm.marker().is_movable())
+    }
+
+    /// The most moves that it may make in a world of this size.
+    #[must_use]
+    pub fn move_bound(self, edges: usize, vertices: usize) -> u64 {
+        with_explorer!(self, E => E::default().move_bound(edges, vertices))
+    }
+
+    /// Maps a world, as [`explore`], with a map of at most `max_darts` darts. Returns the robot's journey, too.
+    ///
+    /// # Errors
+    /// See [`Explorer::step`]. The journey then holds what is known so far.
+    pub fn map_world<W: World>(
+        self,
+        world: &mut W,
+        max_darts: usize,
+        observer: &mut impl Observer<W>,
+    ) -> (Journey, Result<(), MappingError<W::Error>>) {
+        with_explorer!(self, E => {
+            let mut explorer = E::default();
+            explorer.limit_darts(max_darts);
+            let mapped = explore(&mut explorer, world, observer);
+            (explorer.into(), mapped)
+        })
+    }
+}
+
+impl fmt::Display for MappingAlgorithm {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+/// From the name of an algorithm of a robot that cannot carry its marker.
+impl FromStr for MappingAlgorithm {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::with_fixed_marker().find(|algorithm| algorithm.name() == name).ok_or_else(|| {
+            let names: Vec<_> = Self::with_fixed_marker().map(Self::name).collect();
+            format!("`{name}` is not {}", names.join(" or "))
+        })
+    }
+}
