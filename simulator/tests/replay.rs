@@ -7,7 +7,7 @@ use toposlam_logs::{
     recorder::Recorder,
     topic_map::{Role, TopicMap},
 };
-use toposlam_model::mapping::{MappingAlgorithm, MappingError, Journey};
+use toposlam_model::mapping::{Journey, MappingAlgorithm, MappingError};
 use toposlam_robot::{
     replay::{Agreement, ReplayError, replay},
     run_settings::RunSettings,
@@ -35,7 +35,8 @@ fn recorded_in(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, Jou
 #[test]
 fn a_replay_reproduces_the_map_and_all_results() {
     for seed in 0..4 {
-        let algorithm = [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding][seed as usize % 2];
+        let algorithm =
+            [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding][seed as usize % 2];
         let (log, mapping) = recorded(seed, algorithm);
         let topics = TopicMap::unambiguous(&log);
         let replay = replay(&log, &topics, None, &RunSettings::new(algorithm, 200)).unwrap();
@@ -64,8 +65,7 @@ fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
     let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
     let mapping = TopicMap::unambiguous(&log);
     let replay =
-        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 4))
-            .unwrap();
+        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 4)).unwrap();
     assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
     let to = replay.comparison;
     assert!(!to.doors.is_whole());
@@ -76,7 +76,6 @@ fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
 fn a_log_without_commands_is_not_replayed() {
     let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
     let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-    let replay =
-        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 200));
+    let replay = replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 200));
     assert!(matches!(replay, Err(ReplayError::Nothing)));
 }
