@@ -4,20 +4,18 @@
 
 use std::{fs, io::Cursor, path::Path};
 
-use toposlam_conform::{ConformVerdict, FaultClass};
-use toposlam_draw::{
-    page::conform_page,
-    picture::{OpenGraph, WorldPicture, open_svg, svg},
-    report::{
-        ConformReports, CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport,
-        MessagePlace, ReportOrigin, SourceFile,
-    },
+use toposlam_conform::{
+    Allowed, CheckedKind, ConformReports, ConformVerdict, CoveredCase, DivergenceCause,
+    DivergenceReport, EventPose, EventSource, Facts, FaultClass, FoldedReport, LogReport,
+    MessagePlace, PoseName, ReportedEvent, SourceFile, ToleratedQuirk, WorldFact,
 };
-use toposlam_logs::error::OffsetUnit;
+use toposlam_draw::page::{ReportOrigin, conform_page};
+use toposlam_logs::{error::OffsetUnit, record::Arrival};
 use toposlam_model::{
     folding::fold,
-    format::world_file,
-    percept::Door,
+    format::{named_world::NamedWorld, world_file},
+    percept::{Door, Percept, Sighting},
+    trace::MisfitReason,
     world::{GraphWorld, World},
 };
 
@@ -42,15 +40,26 @@ fn picture() -> Vec<u8> {
     file.into_inner()
 }
 
+fn world(name: &str) -> NamedWorld {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(name);
+    world_file::read(&fs::read(file).unwrap()).unwrap()
+}
+
+fn arrival(degree: u32) -> CheckedKind {
+    let sighting = Some(Sighting::Nothing);
+    let arrival = Arrival { number: None, degree, sighting, form: None, entry: None };
+    CheckedKind::Arrival { arrival, entry_off: None, hallway: None }
+}
+
 fn conforming(log: &str, events: usize) -> LogReport {
-    let line = |number: usize| {
-        let (what, then) = if number % 2 == 1 {
-            ("perceives 3 doors, no marker", "2 poses are left: corner:0, tee:1")
-        } else {
-            ("leaves by door 1", "it is in a hallway; the same 2 poses are left")
-        };
-        let time = number as f64 * 4.7;
-        EventLine { number, time, what: what.to_owned(), then: then.to_owned() }
+    let door = CheckedKind::Door { number: None, door: Door(1), off: None };
+    let event = |number: usize| ReportedEvent {
+        number,
+        source: EventSource::default(),
+        time: number as f64 * 4.7,
+        kind: if number % 2 == 1 { arrival(3) } else { door.clone() },
+        pose: None,
+        then: Some(EventPose::Candidates(2)),
     };
     let cases = [
         ("new-vertex", 12, true),
@@ -60,63 +69,49 @@ fn conforming(log: &str, events: usize) -> LogReport {
         ("rejected-at-the-end", 0, false),
         ("marker-seen", 4, true),
         ("marker-missed", 0, true),
-        ("junction: dead end", 6, true),
-        ("junction: T entered by the stem", 5, true),
-        ("junction: L to the left", 0, false),
+        ("dead-end", 6, true),
+        ("t-by-stem", 5, true),
+        ("l-left", 0, false),
     ];
+    let known = WorldFact {
+        name: "shape-6".to_owned(),
+        start: None,
+        candidates_at_start: 12,
+        candidates_left: Some(2),
+        pose: None,
+        world: world("shape-6.toml"),
+    };
     LogReport {
         log: log.to_owned(),
         verdict: ConformVerdict::Conforms,
-        remarks: Vec::new(),
-        facts: [
-            ("format", "MCAP, zstd, 4811 messages on 6 topics, 12.4 MB"),
-            ("world", "worlds/shape-6.toml: 6 junctions, 6 hallways"),
-            ("marker", "directional, at the start"),
-            ("driver", "Algorithm 1, every choice it leaves open"),
-            ("events from", "the messages of the algorithm's own topics /percept and /door"),
-        ]
-        .map(|(name, fact)| (name, fact.to_owned()))
-        .into(),
-        begun: Some("2023-11-14 22:13:20.000 UTC".to_owned()),
+        facts: Facts { world: Some(known), ..Facts::default() },
+        begun: Some(1_700_000_000_000_000_000),
         sources: vec![SourceFile {
             role: "log",
             path: "logs/shape-6.mcap".to_owned(),
             sha256: "9f86d081884c7d65".repeat(4),
         }],
-        events: (1..=events).map(line).collect(),
-        divergence: None,
+        events: (1..=events).map(event).collect(),
         coverage: cases
             .map(|(case, count, reachable)| CoveredCase {
-                case: case.to_owned(),
+                case,
                 count,
                 reachable: Some(reachable),
                 expected: case == "marker-missed",
             })
             .into(),
-        tolerated: vec![(
-            "glare".to_owned(),
-            "the sun stands low in the window at the east end until ten".to_owned(),
-            vec![3, 5],
-        )],
-        shorter: Vec::new(),
-        command: None,
-        image: None,
-        twin: None,
-        folded: None,
-        world: Some(world()),
+        tolerated: vec![ToleratedQuirk {
+            name: "glare".to_owned(),
+            reason: "the sun stands low in the window at the east end until ten".to_owned(),
+            events: vec![3, 5],
+        }],
+        ..LogReport::default()
     }
-}
-
-fn world() -> String {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-6.toml");
-    let world = world_file::read(&fs::read(file).unwrap()).unwrap();
-    svg(&WorldPicture::from(&world))
 }
 
 /// The folded trail of half of a run.
 fn folded() -> FoldedReport {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/building-12.toml");
-    let world = world_file::read(&fs::read(file).unwrap()).unwrap();
+    let world = world("building-12.toml");
     let (mut percepts, mut doors) = (Vec::new(), Vec::new());
     let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
     for door in [1, 1, 1, 2, 1, 1, 1, 0, 1] {
@@ -128,14 +123,15 @@ fn folded() -> FoldedReport {
     percepts.push(robot.sensed());
     let trail = fold(&percepts, &doors).unwrap();
     let entries = trail.first_entries(&doors);
-    FoldedReport {
-        vertices: trail.vertex_count(),
-        open_doors: trail.open_count(),
-        drawing: open_svg(&OpenGraph::of_trail(&trail, &entries)),
-    }
+    FoldedReport { trail, entries }
 }
 
 fn diverged(log: &str, events: usize, at: usize) -> LogReport {
+    let allowed = |vertex: &str, degree| {
+        let pose = PoseName { vertex: vertex.to_owned(), from: "north".to_owned() };
+        let expected = Percept { degree, sighting: Sighting::Nothing };
+        Allowed::InWorld(pose, MisfitReason::Percept { expected })
+    };
     LogReport {
         verdict: ConformVerdict::Diverged,
         divergence: Some(DivergenceReport {
@@ -143,23 +139,12 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
             time: Some(at as f64 * 4.7),
             message: Some(MessagePlace { number: 4711, offset: 1_234_567, unit: OffsetUnit::Byte }),
             fault: FaultClass::Perception,
-            cause: "percept",
-            what: "perceives 4 doors, no marker".to_owned(),
-            why: "at none of the 2 poses left in the known world this is so".to_owned(),
-            allowed: [
-                "3 doors, no marker: for tee:1",
-                "2 doors, the marker at door 1: for corner:0",
-            ]
-            .map(str::to_owned)
-            .into(),
+            cause: DivergenceCause::WrongMap,
+            found: Some(arrival(4)),
+            allowed: vec![allowed("tee", 3), allowed("corner", 2)],
+            allowed_total: 2,
         }),
-        shorter: [
-            "perceives 2 doors, the marker at door 1",
-            "leaves by door 1",
-            "perceives 4 doors",
-        ]
-        .map(str::to_owned)
-        .into(),
+        shorter: vec![arrival(2), arrival(4)],
         command: Some("toposlam conform shorter.mcap --world worlds/shape-6.toml".to_owned()),
         image: Some(picture()),
         ..conforming(log, events)
@@ -169,7 +154,6 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
 fn incomplete(log: &str) -> LogReport {
     LogReport {
         verdict: ConformVerdict::Incomplete,
-        remarks: vec!["the log ends before the map is complete: its recorder stopped".to_owned()],
         tolerated: Vec::new(),
         folded: Some(folded()),
         ..conforming(log, 31)

@@ -28,11 +28,12 @@ pub struct ConformConfig<'w> {
 }
 
 /// What chooses the doors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RunDriver {
     /// A robot that maps; Algorithm 1 with any choices if no audit follows, and otherwise with the default ones.
     Method(MappingMethod),
     /// Anything, in any way.
+    #[default]
     Anyone,
 }
 

@@ -2,6 +2,7 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
+use serde::Serialize;
 use toposlam_model::{
     counts::counted,
     mapping::MappingAlgorithm,
@@ -23,7 +24,8 @@ pub struct Divergence {
 }
 
 /// The class of a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum FaultClass {
     /// A wrong percept.
     Perception,

@@ -2,6 +2,7 @@
 //! laser scans and its odometry. Sections 3 to 6.
 
 use rayon::prelude::*;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_logs::{
     entries::{Content, Entry},
@@ -11,11 +12,7 @@ use toposlam_logs::{
     record::{EventKind, Frame, FrameSensor, SensingError},
     topic_map::{BoundTopicMap, Role, TopicMap, TopicMapError},
 };
-use toposlam_model::{
-    counts::{counted, grouped},
-    enumerate::Watch,
-    measurement::MeasurementNoise,
-};
+use toposlam_model::{enumerate::Watch, measurement::MeasurementNoise};
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
     laser::{
@@ -35,14 +32,15 @@ use super::{
 };
 
 /// The source of events.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Evidence {
     /// Recorded percepts and doors.
+    #[default]
     Recorded,
     /// Recorded scenes and odometry.
     Scenes,
     /// Images and odometry.
-    Pictures,
+    Images,
     /// Laser scans and odometry.
     Laser,
 }
@@ -72,7 +70,7 @@ pub struct ExtractedRun {
     /// The scenes from which events are inferred.
     pub seen: Vec<SensedScene>,
     /// The number of images that were sensed.
-    pub pictures: u64,
+    pub images: u64,
     /// The number of them that could not be decoded.
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
@@ -90,31 +88,12 @@ pub struct ExtractedRun {
 }
 
 /// The number of messages that were skipped when events were inferred, by the reason.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SkippedMessages {
     /// Images, scenes, scans, odometry and sightings whose time is far from that of all other messages.
     pub off_clock: u64,
     /// Scans before which no odometry was recorded, nor soon after.
     pub scans_without_odometry: u64,
-}
-
-impl SkippedMessages {
-    /// A remark on them; `None` if there are none.
-    #[must_use]
-    pub fn in_words(self) -> Option<String> {
-        let Self { off_clock, scans_without_odometry } = self;
-        let scans = counted(scans_without_odometry as usize, "scan");
-        let reasons = [
-            (
-                off_clock,
-                format!("{} whose time is far from that of all others", grouped(off_clock.into())),
-            ),
-            (scans_without_odometry, format!("{scans} without odometry")),
-        ];
-        let reasons = reasons.into_iter().filter(|(count, _)| *count > 0);
-        let parts: Vec<_> = reasons.map(|(_, what)| what).collect();
-        (!parts.is_empty()).then(|| format!("skipped messages: {}", parts.join(", ")))
-    }
 }
 
 /// Why events cannot be extracted.
@@ -165,11 +144,28 @@ pub enum ExtractError {
 /// The number of images that are sensed in parallel.
 const TOGETHER: usize = 32;
 
+impl Serialize for Evidence {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
+    }
+}
+
 impl Evidence {
+    /// Its name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Recorded => "recorded",
+            Self::Scenes => "scenes",
+            Self::Images => "pictures",
+            Self::Laser => "laser",
+        }
+    }
+
     /// The first source of events that a topic map has.
     #[must_use]
     pub fn of(mapping: &TopicMap) -> Option<Self> {
-        [Self::Recorded, Self::Scenes, Self::Pictures, Self::Laser]
+        [Self::Recorded, Self::Scenes, Self::Images, Self::Laser]
             .into_iter()
             .find(|one| one.is_in(mapping))
     }
@@ -180,7 +176,7 @@ impl Evidence {
         let needed = match self {
             Self::Recorded => [Role::Percept, Role::Door],
             Self::Scenes => [Role::Scene, Role::Odometry],
-            Self::Pictures => [Role::Image, Role::Odometry],
+            Self::Images => [Role::Image, Role::Odometry],
             Self::Laser => [Role::Scan, Role::Odometry],
         };
         needed.iter().all(|role| mapping.carrier(*role).is_some())
@@ -190,7 +186,7 @@ impl Evidence {
         match self {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
             Self::Scenes => &[Role::Scene, Role::Odometry],
-            Self::Pictures => &[Role::Image, Role::Odometry],
+            Self::Images => &[Role::Image, Role::Odometry],
             Self::Laser => &[Role::Scan, Role::Odometry, Role::Marker],
         }
     }
@@ -225,7 +221,7 @@ pub fn extract(
     if drift.is_some() {
         laser.matching.rounds = ROUNDS;
     }
-    let mut gathering = Extraction {
+    let mut extraction = Extraction {
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
         waiting: Vec::new(),
@@ -234,7 +230,7 @@ pub fn extract(
         events: RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() },
         sensors,
         watch,
-        pictures: 0,
+        images: 0,
         unreadable: 0,
         evidence,
         laser: LaserEvents::new(laser),
@@ -243,20 +239,20 @@ pub fn extract(
         field_of_view: 0.0,
         sightings: Vec::new(),
     };
-    let mut skipped = gathering.gather(log, &bound)?;
+    let mut skipped = extraction.read_entries(log, &bound)?;
     let Extraction {
         recorded,
         scenes,
         run,
         mut events,
-        pictures,
+        images,
         unreadable,
         laser,
         scans,
         field_of_view,
         sightings,
         ..
-    } = gathering;
+    } = extraction;
     let scans = scans - skipped.scans_without_odometry;
     let (seen, scenes_off_clock) = scenes.finish()?;
     skipped.off_clock += scenes_off_clock;
@@ -264,7 +260,7 @@ pub fn extract(
         let noise = log_noise();
         events.measurement_noise = match evidence {
             Evidence::Recorded => noise,
-            Evidence::Scenes | Evidence::Pictures => MeasurementNoise { standing: NEAR, ..noise },
+            Evidence::Scenes | Evidence::Images => MeasurementNoise { standing: NEAR, ..noise },
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
     }
@@ -275,7 +271,7 @@ pub fn extract(
     }
     events.events = match evidence {
         Evidence::Recorded => recorded.finish(),
-        Evidence::Scenes | Evidence::Pictures => infer_events(&seen, marked),
+        Evidence::Scenes | Evidence::Images => infer_events(&seen, marked),
         Evidence::Laser => {
             let (events, visited) = laser.finish_with_junctions();
             junctions = visited;
@@ -287,7 +283,7 @@ pub fn extract(
         evidence,
         run,
         seen,
-        pictures,
+        images,
         unreadable,
         scans,
         skipped,
@@ -363,7 +359,7 @@ struct Extraction<'w, W> {
     /// One for each thread.
     sensors: Vec<Sensor>,
     watch: &'w W,
-    pictures: u64,
+    images: u64,
     unreadable: u64,
     evidence: Evidence,
     laser: LaserEvents,
@@ -376,7 +372,7 @@ struct Extraction<'w, W> {
 
 impl<W: Watch> Extraction<'_, W> {
     /// Takes the entries of a log. Returns the number of those that are skipped.
-    fn gather(
+    fn read_entries(
         &mut self,
         log: &Log,
         bound: &BoundTopicMap,
@@ -440,7 +436,7 @@ impl<W: Watch> Extraction<'_, W> {
                 for placed in self.placing.odometry(stamp, odometry) {
                     self.see(&placed);
                 }
-                if matches!(self.evidence, Evidence::Scenes | Evidence::Pictures) {
+                if matches!(self.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
             }
@@ -493,7 +489,7 @@ impl<W: Watch> Extraction<'_, W> {
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
         self.watch.part_done(seen.len() as u64);
-        self.pictures += seen.len() as u64;
+        self.images += seen.len() as u64;
         for ((source, time, _), scene) in self.waiting.drain(..).zip(seen) {
             match scene {
                 Err(SensingError::Image(_)) => self.unreadable += 1,

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::Serialize;
 use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
@@ -80,13 +81,15 @@ impl RunCoverage {
 }
 
 /// The verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ConformVerdict {
     /// Everything fits.
     Conforms,
     /// An event does not fit.
     Diverged,
     /// Everything fits, but the run or the search is not complete.
+    #[default]
     Incomplete,
 }
 

@@ -1,16 +1,132 @@
-//! A known world, and the fault class of a percept that does not fit it.
+//! The known world of a log: where the robot and its marker may be, which cases can be covered in it, and the fault
+//! class of a percept that does not fit it.
 
 use toposlam_model::{
-    embedded_graph::EmbeddedGraph,
+    driving::visit::JunctionShape,
+    embedded_graph::{Dart, EmbeddedGraph},
+    format::named_world::NamedWorld,
     isomorphism::code,
-    mapping::FACING,
+    mapping::{FACING, Journey, MappingAlgorithm, MappingEvent, Observer},
     marker::Marker,
     percept::{Percept, WalkEvent},
-    trace::{Misfit, MisfitReason, Trace, TraceEventKind, poses},
-    world::State,
+    trace::{
+        self, AlgorithmCase, AlgorithmCoverage, Misfit, MisfitReason, Trace, TraceEventKind,
+        anywhere, poses,
+    },
+    world::{GraphWorld, State},
 };
 
 use super::divergence::FaultClass;
+
+/// The known world of a log.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The world, without the corners that the events do not have.
+    pub world: NamedWorld,
+    /// The robot's start, if it is known.
+    pub start: Option<Dart>,
+    states: Vec<State>,
+    /// How often each case is reachable, over all starts.
+    reachable: AlgorithmCoverage,
+    /// A complete run, if the start is known.
+    expected: Option<ExpectedRun>,
+}
+
+/// Where a marker lay when the run began, as far as it is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MarkerStart {
+    /// At the robot's start, along its entry door.
+    Robot,
+    /// Anywhere.
+    Anywhere,
+}
+
+/// The most states that are followed.
+const MOST_STATES: usize = 1 << 20;
+
+impl Known {
+    /// A world, the robot's start in it, and its marker. `None` if there are too many possible states.
+    pub(super) fn new(
+        world: NamedWorld,
+        start: Option<Dart>,
+        (marker, lies): (&'static dyn Marker, MarkerStart),
+        algorithm: MappingAlgorithm,
+    ) -> Option<Self> {
+        let graph = &world.graph;
+        let states = match (lies, start) {
+            (MarkerStart::Robot, None) => anywhere(graph, &marker),
+            (MarkerStart::Robot, Some(facing)) => {
+                vec![GraphWorld::with_marker(graph, marker, facing).state()]
+            }
+            (MarkerStart::Anywhere, start) => {
+                let places = graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart);
+                let places: Vec<Dart> = places.collect();
+                let poses: Vec<Dart> =
+                    start.map_or_else(|| graph.darts().collect(), |start| vec![start]);
+                if poses.len().saturating_mul(places.len()) > MOST_STATES {
+                    return None;
+                }
+                let with =
+                    |placed| poses.iter().map(move |&pose| State { pose, placed: Some(placed) });
+                places.into_iter().flat_map(with).collect()
+            }
+        };
+        let reachable = trace::reachable(graph);
+        let expected = start.map(|start| ExpectedRun::new(algorithm, graph, start));
+        Some(Self { world, start, states, reachable, expected })
+    }
+
+    /// The world as a run is compared with it.
+    pub(super) fn config(&self) -> KnownWorld<'_> {
+        KnownWorld { graph: &self.world.graph, states: self.states.clone() }
+    }
+
+    /// Whether some run of Algorithm 1 has a case.
+    pub(super) fn reaches(&self, case: AlgorithmCase) -> bool {
+        self.reachable.count(case) > 0
+    }
+
+    /// Whether a complete run of the algorithm from the start has a case of Algorithm 1.
+    pub(super) fn expects(&self, case: AlgorithmCase) -> bool {
+        self.expected.as_ref().is_some_and(|expected| expected.coverage.count(case) > 0)
+    }
+
+    /// Whether a junction has a shape from some entry; `None` if the world has no floor plan.
+    pub(super) fn has_shape(&self, shape: JunctionShape) -> Option<bool> {
+        let plan = self.world.plan.as_ref()?;
+        Some(plan.graph().darts().any(|entry| plan.shape(entry) == shape))
+    }
+
+    /// Whether the robot enters a junction of a shape in a complete run of the algorithm.
+    pub(super) fn expects_shape(&self, shape: JunctionShape) -> bool {
+        let (Some(expected), Some(plan)) = (&self.expected, &self.world.plan) else { return false };
+        expected.poses.iter().any(|&pose| plan.shape(pose) == shape)
+    }
+}
+
+/// The cases and the poses of a complete run: an algorithm with its default choices.
+#[derive(Clone, Debug, Default)]
+struct ExpectedRun {
+    coverage: AlgorithmCoverage,
+    poses: Vec<Dart>,
+}
+
+impl ExpectedRun {
+    fn new(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, start: Dart) -> Self {
+        let mut expected = Self::default();
+        let mut world = GraphWorld::new(graph, start);
+        // In a world of this size the run ends.
+        let _ = algorithm.map_world(&mut world, 2 * graph.dart_count(), &mut expected);
+        expected
+    }
+}
+
+impl Observer<GraphWorld<'_>> for ExpectedRun {
+    fn event(&mut self, world: &mut GraphWorld, journey: &Journey, event: MappingEvent) {
+        self.coverage.event(world, journey, event);
+        self.poses.push(world.state().pose);
+    }
+}
 
 /// A known world, and the possible states at the start.
 #[derive(Clone, Debug)]

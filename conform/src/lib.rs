@@ -6,6 +6,7 @@
 
 mod bends;
 mod budget_check;
+mod check;
 mod config;
 mod consistency;
 mod divergence;
@@ -16,7 +17,6 @@ pub mod fuzz;
 mod impossible;
 mod inferred_events;
 mod judgement;
-mod junction_forms;
 mod known_world;
 mod laser_events;
 mod laser_visit;
@@ -27,16 +27,22 @@ mod message_clock;
 mod placed_scenes;
 mod quirks;
 mod recorded_events;
+mod report;
 mod scan_odometry;
 mod seen_junctions;
 mod shorten;
 mod shorten_measured;
 mod tolerance;
+mod twin;
 mod unseen_way;
+pub mod words;
 
 #[cfg(test)]
 mod tests;
 
+pub use check::{
+    CheckError, CheckedLog, DoorChooser, LogCheck, LogSource, MarkerPlaceError, RobotStart,
+};
 pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{
@@ -48,10 +54,9 @@ pub use extract::{
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
-pub use junction_forms::FORMS;
-pub use known_world::KnownWorld;
+pub use known_world::{Known, KnownWorld};
 pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};
-pub use log_head::{LogHead, MarkerNotShown, RESUMED};
+pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
 pub use marked_visits::{
     MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
 };
@@ -59,4 +64,11 @@ pub use measured_hallways::MeasuredHallways;
 pub use placed_scenes::{SceneClockError, SensedScene};
 pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
 pub use recorded_events::RecordedEvents;
+pub use report::{
+    AddedMarker, Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, Ending,
+    EventPose, Facts, FoldedReport, Limit, LogReport, LogsLine, MapSize, MessagePlace, OpenDoor,
+    PoseName, RecordedWorld, ReportedEvent, RequiredCoverage, SmallestFound, SourceFile,
+    ToleratedQuirk, UnreadLog, UnseenPlace, Visit, WorldFact, case_names,
+};
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
+pub use twin::Twin;

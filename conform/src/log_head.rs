@@ -92,17 +92,8 @@ impl LogHead<'_> {
         }
         Err(MarkerNotShown { algorithm })
     }
-
-    /// A remark if the log was recorded in another world.
-    #[must_use]
-    pub fn other_world(&self, graph: &EmbeddedGraph) -> Option<String> {
-        let name = self.0.map_or("", |run| &run.world);
-        let comma = if name.is_empty() { "" } else { ", " };
-        self.is_of_other_world(graph)
-            .then(|| format!("the log was recorded in another world{comma}{name}"))
-    }
 }
 
 /// The remark on a log whose robot went on from an earlier run.
-pub const RESUMED: &str = "its robot went on from an earlier run, which is not in this log; its doors are \
+pub const RESUMED_REMARK: &str = "its robot went on from an earlier run, which is not in this log; its doors are \
                            compared with no algorithm";

@@ -1,6 +1,7 @@
 //! Measurements of hallways by odometry, compared where the visits of a log are identified: by the folded trail,
 //! and in a known world by the robot's pose.
 
+use serde::Serialize;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     folding::{FoldedTrail, fold},
@@ -18,7 +19,7 @@ use super::{
 };
 
 /// How many hallways of a run were measured by odometry, and compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MeasuredHallways {
     /// The number of moves.
     pub moves: usize,

@@ -1,5 +1,5 @@
-//! What people look at: pictures of worlds and runs ([`picture`]), pages for a browser ([`page`]), the story of a mapping
-//! run ([`story`]) and the conformance report of a log ([`report`]).
+//! What people look at: pictures of worlds and runs ([`picture`]), pages for a browser ([`page`]) and the story of a mapping
+//! run ([`story`]).
 
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
@@ -7,7 +7,6 @@
 pub mod moment;
 pub mod page;
 pub mod picture;
-pub mod report;
 pub mod run_page_data;
 pub mod story;
 pub mod text;

@@ -2,6 +2,7 @@
 
 use std::{fmt, io};
 
+use serde::{Serialize, Serializer, ser::SerializeStruct};
 use thiserror::Error;
 use toposlam_model::counts::grouped;
 
@@ -240,6 +241,16 @@ pub struct Truncation {
     /// What is missing.
     #[source]
     pub cause: TruncationKind,
+}
+
+/// The offset and the cause.
+impl Serialize for Truncation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("Truncation", 2)?;
+        fields.serialize_field("offset", &self.offset)?;
+        fields.serialize_field("cause", &self.cause.to_string())?;
+        fields.end()
+    }
 }
 
 impl Truncation {

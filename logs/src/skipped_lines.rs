@@ -2,12 +2,14 @@
 
 use std::{collections::BTreeMap, fmt};
 
+use serde::Serialize;
 use toposlam_model::counts::grouped;
 
 /// The number of lines of a log that are skipped, by the reason. Comments do not count.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SkippedLines {
     unknown: BTreeMap<String, u64>,
+    #[serde(rename = "other_kinds")]
     others: u64,
     off_clock: u64,
 }

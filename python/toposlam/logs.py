@@ -249,7 +249,7 @@ def conform(
         verdict=found["verdict"],
         evidence=found["evidence"],
         events=events,
-        divergence=first and Divergence(**{**first, "event": first["event"] + 1}),
+        divergence=first and Divergence(**first),
         coverage=found["coverage"],
         world=known,
         smallest=None if smallest is None else World._of(smallest),

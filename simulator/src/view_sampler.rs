@@ -4,9 +4,11 @@ use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_conform::FORMS;
 use toposlam_model::{
-    driving::{pose::Pose, visit::JunctionShape},
+    driving::{
+        pose::Pose,
+        visit::{JUNCTION_SHAPES, JunctionShape},
+    },
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     format::world_file::WorldFileError,
@@ -267,7 +269,7 @@ fn stream(seed: u64, purpose: ViewPurpose, number: u64) -> Xoshiro256PlusPlus {
 /// An entry door of a junction. Its shape is drawn first, among the shapes in the plan, so that
 /// rare shapes are not rare.
 fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
-    let entries = FORMS.map(|(form, _)| {
+    let entries = JUNCTION_SHAPES.map(|(form, _)| {
         let entries = plan.graph().darts().filter(|&dart| form_from(plan, dart) == Some(form));
         entries.collect::<Vec<_>>()
     });
@@ -404,7 +406,7 @@ mod tests {
         assert!(hallways > 100 && between > 200, "{hallways} {between}");
         assert!((400..600).contains(&random), "{random}");
         assert!((300..700).contains(&marked), "{marked}");
-        for (form, name) in FORMS {
+        for (form, name) in JUNCTION_SHAPES {
             assert!(forms[&Some(form)] > 20, "{name}: {}", forms[&Some(form)]);
         }
     }

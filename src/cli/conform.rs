@@ -1,47 +1,44 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
-mod ci_cases;
-mod divergence_fields;
-mod expected_run;
-mod fact_fields;
-mod folded_trail;
 mod judged_log;
-mod known_world;
 mod laser_picture;
 mod minimise;
 mod origin;
-mod other_world;
-mod report;
-mod report_lines;
-mod required_coverage;
 mod robot_marker;
+mod text;
 
 use std::{
     io::Write,
     path::{Path, PathBuf},
 };
 
-use ci_cases::{ci_case, required_case, unread_case};
-use clap::ValueEnum;
-use judged_log::JudgedLog;
-use robot_marker::RobotMarker;
-use toposlam_conform::{ConformVerdict, Evidence, Judgement, Quirks, RunCoverage};
-use toposlam_model::{
-    embedded_graph::Dart,
-    enumerate::Class,
-    folding::{SmallestWorld, WorldSearch},
-    format::named_world::NamedWorld,
+use clap::{
+    ValueEnum,
+    builder::{PossibleValuesParser, TypedValueParser},
 };
+use toposlam_conform::{
+    ConformReports, ConformVerdict, DoorChooser, Evidence, LogReport, Quirks, RequiredCoverage,
+    RobotStart, UnreadLog, case_names, words,
+};
+use toposlam_model::{enumerate::Class, folding::WorldSearch, format::named_world::NamedWorld};
 
 use super::{
-    CliError, Outcome, ci_report::CiOptions, exit_codes::help_end, input, json::print_unread,
-    laser_options::LaserOptions, mapping_marker::AlgorithmOption, open_log::LogOptions,
-    outcome::SeveralInputs, output, rerun::Rerun,
+    CliError, Outcome,
+    ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
+    input,
+    json::{print_line, print_unread},
+    laser_options::LaserOptions,
+    mapping_marker::AlgorithmOption,
+    open_log::LogOptions,
+    outcome::SeveralInputs,
+    output,
+    rerun::Rerun,
+    text::print_hanging,
 };
-use crate::{
-    page,
-    report::{ConformReports, LogReport, UnreadLog},
-};
+use crate::page;
+use judged_log::JudgedLog;
+use robot_marker::RobotMarker;
 
 /// Check logs of runs against the specification
 ///
@@ -103,7 +100,7 @@ pub(super) struct ConformArguments {
     assume_marker: bool,
     /// What chose the doors
     #[arg(long, value_enum, default_value = "algorithm", value_name = "WHO")]
-    driver: Who,
+    driver: DriverOption,
     /// The algorithm that chose the doors: algorithm1 or folding [default: from the log, or else algorithm1]
     #[arg(long, hide_possible_values = true)]
     algorithm: Option<AlgorithmOption>,
@@ -123,7 +120,7 @@ pub(super) struct ConformArguments {
     laser: LaserOptions,
     /// The source of the events [default: the first of these that the log has]
     #[arg(long, value_enum, value_name = "WHAT")]
-    events: Option<Made>,
+    events: Option<EventSourceOption>,
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
@@ -131,7 +128,7 @@ pub(super) struct ConformArguments {
     #[arg(long, value_name = "N")]
     max_darts: Option<usize>,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = required_coverage::cases(),
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = cases(),
         hide_possible_values = true)]
     require_coverage: Vec<String>,
     /// Without --world: write the smallest world that was found: .toml, .json, .dot, or plantri's .ec or .pc
@@ -155,12 +152,9 @@ pub(super) struct ConformArguments {
     ci: CiOptions,
 }
 
-/// The largest number of candidates or doors that are listed.
-const LISTED: usize = 8;
-
 /// What chose the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Who {
+enum DriverOption {
     /// The algorithm; Algorithm 1 with any of its choices
     #[value(alias = "algorithm1")]
     Algorithm,
@@ -170,16 +164,22 @@ enum Who {
 
 /// The source of the events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Made {
+enum EventSourceOption {
     /// Recorded percepts and doors
     #[value(alias = "told")]
     Recorded,
     /// Scenes and odometry
     Scenes,
     /// Images and odometry
-    Pictures,
+    #[value(alias = "pictures")]
+    Images,
     /// Laser scans and odometry
     Laser,
+}
+
+/// Parses the name of a case.
+fn cases() -> impl TypedValueParser<Value = String> {
+    PossibleValuesParser::new(case_names())
 }
 
 /// A largest number of edges.
@@ -208,20 +208,15 @@ impl ConformArguments {
             }
         };
         let world = self.world.as_deref().map(input::read_world).transpose()?;
-        if let Some(world) = &world {
-            known_world::check_start(world, self.start.as_deref())?;
+        if let (Some(world), RobotStart::At(start)) = (&world, self.robot_start()) {
+            input::start_of(world, Some(start))?;
         }
-        // For events that have no corners.
-        let smooth = world.as_ref().map(NamedWorld::smoothed);
-        let worlds = world.as_ref().zip(smooth.as_ref());
         let mut reports = ConformReports::default();
-        let mut all = RunCoverage::default();
-        let mut any_algorithm1 = false;
         let mut logs = SeveralInputs::new();
         let mut cases = Vec::new();
         for path in &self.logs {
-            let judged = self.judge(path, worlds, &quirks).map(|judged| {
-                let outcome = outcome(judged.judgement.verdict());
+            let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
+                let outcome = outcome(judged.checked.judgement.verdict());
                 (judged, outcome)
             });
             let cause = judged.as_ref().err().map(|error| error.cause_in(path));
@@ -231,25 +226,38 @@ impl ConformArguments {
                 if self.json {
                     print_unread(out, &unread.log, &unread.cause)?;
                 }
-                cases.push(unread_case(path, &unread));
+                let message = format!("the log cannot be checked: {}", unread.cause);
+                cases.push(ci_case(path, Outcome::Incomplete, message));
                 reports.unread.push(unread);
                 continue;
             };
-            all.include(&judged.judgement.coverage);
-            any_algorithm1 |= !judged.is_folding();
-            let report = self.report(out, path, &judged, &quirks)?;
-            cases.push(ci_case(path, &report));
+            let report = self.report(out, path, &judged)?;
+            cases.push(ci_case(path, outcome(report.verdict), words::result(&report)));
             reports.logs.push(report);
         }
-        if self.logs.len() > 1 {
-            report_lines::together(out, &reports, self.json)?;
+        if self.logs.len() > 1 && self.json {
+            let coverage = LogReport::coverage_of(&reports.logs);
+            print_line(out, "logs", &reports.together(&coverage))?;
+        } else if self.logs.len() > 1 {
+            text::print_together(out, &reports)?;
         }
         if !self.require_coverage.is_empty() && !reports.logs.is_empty() {
-            let required =
-                required_coverage::required_coverage(&self.require_coverage, &all, any_algorithm1);
-            required_coverage::print(out, &required, self.json)?;
-            logs.add(Ok(((), required_coverage::outcome(&required))));
-            cases.push(required_case(&required));
+            let required = RequiredCoverage::of(&self.require_coverage, &reports.logs);
+            let message = words::required(&required);
+            if self.json {
+                print_line(out, "required-coverage", &required)?;
+            } else {
+                print_hanging(out, "", &message)?;
+            }
+            let all_covered = required.not_covered.is_empty();
+            let outcome = if all_covered { Outcome::Holds } else { Outcome::Incomplete };
+            logs.add(Ok(((), outcome)));
+            cases.push(CiCase {
+                name: "required coverage".to_owned(),
+                outcome,
+                message,
+                file: None,
+            });
             reports.required = Some(required);
         }
         self.ci.write("conform", &cases)?;
@@ -280,23 +288,31 @@ impl ConformArguments {
         out: &mut dyn Write,
         path: &Path,
         judged: &JudgedLog,
-        quirks: &Quirks,
     ) -> Result<LogReport, CliError> {
-        let shorter = self.shorter(judged)?;
-        let short = shorter.as_ref().map(|shorter| shorter.events.events.clone());
-        let mut report = judged.report(path, quirks, shorter, self.html.is_some());
+        let JudgedLog { opened, checked } = judged;
+        let mut report = checked.report(&opened.source(None), path.display().to_string());
+        if let Some(shorter) = self.shorter(judged)? {
+            let events = shorter.events.events.into_iter();
+            report.shorter = events.map(|event| event.kind).collect();
+            report.command = shorter.command;
+        }
         if self.html.is_some() {
             report.sources = origin::sources(path, self.world.as_deref())?;
+            let events = &checked.judgement.events.events;
+            let divergence = checked.judgement.divergence.as_ref();
+            let event = divergence.and_then(|found| events.get(found.event).or(events.last()));
+            report.image = event.and_then(|event| opened.image(event.source.id));
         }
         if self.json {
-            if self.events.is_some() {
-                report_lines::events(out, &judged.gathered.events)?;
+            let visits = self.events.map_or(&[][..], |_| &report.visits);
+            for visit in visits {
+                print_line(out, "event", visit)?;
             }
-            report_lines::json(out, &report, &short.unwrap_or_default(), judged)?;
+            print_line(out, "log", &report)?;
         } else {
-            report_lines::text(out, &report)?;
+            text::print(out, &report)?;
         }
-        self.write_map(path, &judged.judgement)?;
+        self.write_map(path, &report)?;
         if let Some(picture) = &self.picture {
             laser_picture::write(picture, path, judged)?;
         }
@@ -327,15 +343,15 @@ impl ConformArguments {
     }
 
     /// Writes the smallest world that explains a log to the file of `--map`.
-    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), CliError> {
+    fn write_map(&self, log: &Path, report: &LogReport) -> Result<(), CliError> {
         let Some(path) = &self.map else { return Ok(()) };
-        let Some(SmallestWorld::World { graph, marker, .. }) = &judgement.smallest else {
+        let Some(smallest) = &report.facts.smallest else {
             remark!("{}: not written: no world was found", path.display());
             return Ok(());
         };
         let about = format!("The smallest world that explains {}", log.display());
-        let start = marker.or(Some(Dart(0)));
-        output::write_world(path, &NamedWorld::numbered("smallest", &about, graph.clone(), start))
+        let world = NamedWorld { about, marker: None, ..smallest.world.clone() };
+        output::write_world(path, &world)
     }
 }
 
@@ -347,13 +363,28 @@ fn outcome(verdict: ConformVerdict) -> Outcome {
     }
 }
 
-impl From<Made> for Evidence {
-    fn from(made: Made) -> Self {
-        match made {
-            Made::Recorded => Self::Recorded,
-            Made::Scenes => Self::Scenes,
-            Made::Pictures => Self::Pictures,
-            Made::Laser => Self::Laser,
+/// The result of a log, for CI systems.
+fn ci_case(path: &Path, outcome: Outcome, message: String) -> CiCase {
+    CiCase { name: path.display().to_string(), outcome, message, file: Some(path.to_owned()) }
+}
+
+impl DriverOption {
+    /// What chose the doors: this algorithm, or else that of the log, or anyone.
+    fn chooser(self, algorithm: Option<AlgorithmOption>) -> DoorChooser {
+        match self {
+            Self::Algorithm => DoorChooser::Algorithm(algorithm.map(AlgorithmOption::directional)),
+            Self::Anyone => DoorChooser::Anyone,
+        }
+    }
+}
+
+impl From<EventSourceOption> for Evidence {
+    fn from(source: EventSourceOption) -> Self {
+        match source {
+            EventSourceOption::Recorded => Self::Recorded,
+            EventSourceOption::Scenes => Self::Scenes,
+            EventSourceOption::Images => Self::Images,
+            EventSourceOption::Laser => Self::Laser,
         }
     }
 }

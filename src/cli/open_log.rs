@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_conform::{Evidence, ExtractError, LogHead};
+use toposlam_conform::{Evidence, ExtractError, LogHead, LogSource};
 use toposlam_logs::{
     entries::Content,
     messages::Run,
@@ -10,7 +10,6 @@ use toposlam_logs::{
     record::{EventId, EventKind},
     topic_map::{Role, TopicMap, TopicMapError},
 };
-use toposlam_model::marker::Marker;
 use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{
     annotate,
@@ -143,14 +142,14 @@ impl OpenLog {
         Ok(camera.zip(colours))
     }
 
+    /// The log and how its messages are read, with the sensor for its images if they are sensed.
+    pub(super) fn source<'l>(&'l self, sensor: Option<&'l Sensor>) -> LogSource<'l> {
+        LogSource { log: &self.log, topics: &self.mapping, head: self.run.as_ref(), sensor }
+    }
+
     /// The sensor that makes scenes of its images.
     pub(super) fn sensor(&self) -> Option<Sensor> {
         self.sensing.as_ref().map(|(camera, colours)| Sensor::new(camera, colours))
-    }
-
-    /// The kind of marker in the log. The default is directional.
-    pub(super) fn marker(&self) -> Result<&'static dyn Marker, CliError> {
-        LogHead(self.run.as_ref()).marker().map_err(|error| CliError::at("the log", error))
     }
 
     /// How the robot of the log mapped, and within which limits, by the algorithm that is asked for if one is; without

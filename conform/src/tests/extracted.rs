@@ -131,10 +131,7 @@ fn the_first_source_of_events_that_is_complete_is_chosen() {
     let all: [fn(&mut Written); 4] =
         [Written::scan, Written::image, Written::scene, Written::odometry];
     assert_eq!(source(&all), Some(Evidence::Scenes));
-    assert_eq!(
-        source(&[Written::scan, Written::image, Written::odometry]),
-        Some(Evidence::Pictures)
-    );
+    assert_eq!(source(&[Written::scan, Written::image, Written::odometry]), Some(Evidence::Images));
     assert_eq!(source(&[Written::scan, Written::odometry]), Some(Evidence::Laser));
     assert_eq!(source(&[Written::scan]), None);
 }
@@ -179,12 +176,12 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
     let skipped = SkippedMessages { off_clock: 1, scans_without_odometry: 3 };
     assert_eq!((run.scans, run.skipped), (70, skipped));
     assert_eq!(
-        run.skipped.in_words().unwrap(),
+        words::skipped_messages(run.skipped).unwrap(),
         "skipped messages: 1 whose time is far from that of all others, 3 scans without odometry"
     );
-    assert_eq!(SkippedMessages::default().in_words(), None);
+    assert_eq!(words::skipped_messages(SkippedMessages::default()), None);
     let one = SkippedMessages { off_clock: 0, scans_without_odometry: 1 };
-    assert_eq!(one.in_words().unwrap(), "skipped messages: 1 scan without odometry");
+    assert_eq!(words::skipped_messages(one).unwrap(), "skipped messages: 1 scan without odometry");
     let nowhere = |write: fn(&mut Written)| {
         let mut log = Written::new();
         write(&mut log);
@@ -213,7 +210,7 @@ fn images_need_a_sensor() {
     let mut log = Written::new();
     log.odometry();
     log.image();
-    assert!(matches!(log.extract(Evidence::Pictures), Err(ExtractError::NoSensor)));
+    assert!(matches!(log.extract(Evidence::Images), Err(ExtractError::NoSensor)));
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod run;
 mod template;
 mod walk;
 
-pub use conform::conform_page;
+pub use conform::{ReportOrigin, conform_page};
 pub use play::play_page;
 pub use run::run_page;
 pub use walk::{MOST_PAIRS, WalkPage, page};

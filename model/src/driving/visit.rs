@@ -14,6 +14,16 @@ use crate::percept::{Door, Percept, Sighting};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JunctionShape(pub [bool; 4]);
 
+/// The shapes of junctions in a building with dead ends, L and T, and their names.
+pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
+    (JunctionShape([true, false, false, false]), "dead-end"),
+    (JunctionShape([true, true, false, false]), "l-left"),
+    (JunctionShape([true, false, false, true]), "l-right"),
+    (JunctionShape([true, true, false, true]), "t-by-stem"),
+    (JunctionShape([true, true, true, false]), "t-stem-left"),
+    (JunctionShape([true, false, true, true]), "t-stem-right"),
+];
+
 /// The estimate of a junction, from the images of one approach so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JunctionEstimate {
@@ -42,6 +52,12 @@ const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
 const BEST: f64 = 0.5;
 
 impl JunctionShape {
+    /// Its name, if it is one of [`JUNCTION_SHAPES`].
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        JUNCTION_SHAPES.iter().find(|(shape, _)| *shape == self).map(|(_, name)| *name)
+    }
+
     /// The form of a junction as one image shows it; `None` where its doors are not at right angles
     /// to each other.
     #[must_use]

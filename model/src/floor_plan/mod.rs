@@ -14,6 +14,7 @@ pub use floor::Rectangle;
 pub use walls::{BuildingWall, walls};
 
 use crate::{
+    driving::visit::JunctionShape,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     similar::SimilarName,
 };
@@ -198,6 +199,17 @@ impl FloorPlan {
     #[must_use]
     pub fn direction(&self, dart: Dart) -> Direction {
         self.directions[dart.at()]
+    }
+
+    /// The shape of a junction, seen from the entry by a dart.
+    #[must_use]
+    pub fn shape(&self, entry: Dart) -> JunctionShape {
+        let first = self.direction(entry) as usize;
+        let mut doors = [false; 4];
+        for door in self.graph.darts_of(self.graph.vertex(entry)) {
+            doors[(self.direction(door) as usize + 4 - first) % 4] = true;
+        }
+        JunctionShape(doors)
     }
 }
 

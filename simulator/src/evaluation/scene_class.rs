@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use toposlam_conform::FORMS;
 use toposlam_model::driving::{
     scene::{Place, Scene},
-    visit::JunctionShape,
+    visit::{JUNCTION_SHAPES, JunctionShape},
 };
 
 /// The class of a view or of a scene.
@@ -15,7 +14,7 @@ pub enum SceneClass {
     Hallway,
     /// A junction, seen from its entry.
     Junction(JunctionShape),
-    /// A junction with none of the [`FORMS`].
+    /// A junction with none of the [`JUNCTION_SHAPES`].
     Other,
     /// An unknown place.
     Unknown,
@@ -24,7 +23,7 @@ pub enum SceneClass {
 impl SceneClass {
     /// All classes. The last two occur only in scenes.
     pub fn all() -> impl Iterator<Item = Self> {
-        let junctions = FORMS.into_iter().map(|(form, _)| Self::Junction(form));
+        let junctions = JUNCTION_SHAPES.into_iter().map(|(form, _)| Self::Junction(form));
         [Self::Hallway].into_iter().chain(junctions).chain([Self::Other, Self::Unknown])
     }
 
@@ -35,7 +34,7 @@ impl SceneClass {
             Place::Hallway(_) => Self::Hallway,
             Place::Unknown(_) => Self::Unknown,
             Place::Junction(junction) => JunctionShape::of(junction)
-                .filter(|form| FORMS.iter().any(|(known, _)| known == form))
+                .filter(|shape| shape.name().is_some())
                 .map_or(Self::Other, Self::Junction),
         }
     }
@@ -43,10 +42,9 @@ impl SceneClass {
 
 impl fmt::Display for SceneClass {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let form = |form| FORMS.iter().find(|(known, _)| *known == form).map(|(_, name)| *name);
         out.pad(match *self {
             Self::Hallway => "hallway",
-            Self::Junction(junction) => form(junction).unwrap_or("other"),
+            Self::Junction(junction) => junction.name().unwrap_or("other"),
             Self::Other => "other",
             Self::Unknown => "unknown",
         })

@@ -2,14 +2,16 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use toposlam_conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction};
+use toposlam_conform::{
+    AddedMarker, CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction,
+};
 use toposlam_logs::{
     entries::Content,
     record::{EventKind, Frame},
-    topic_map::{MarkerPlace, Role},
+    topic_map::Role,
 };
 
-use super::{CliError, JudgedLog, robot_marker::AddedMarker};
+use super::{CliError, JudgedLog};
 use crate::{
     cli::{output, text::counted},
     picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png},
@@ -17,25 +19,23 @@ use crate::{
 
 /// Writes the picture of a run as SVG or PNG.
 pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), CliError> {
-    if judged.gathered.evidence != Evidence::Laser {
+    if judged.checked.extracted.evidence != Evidence::Laser {
         let cause = "this is for events that are inferred from laser scans";
         return Err(CliError::at("--picture", cause));
     }
     let mut picture = scanned(log, judged)?;
-    picture.visits = visits(&judged.gathered.events, &judged.gathered.junctions);
+    picture.visits = visits(&judged.checked.extracted.events, &judged.checked.extracted.junctions);
     let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
     name.trim_end_matches(".gz").trim_end_matches(".log").clone_into(&mut picture.title);
-    let verdict = match judged.judgement.verdict() {
+    let verdict = match judged.checked.judgement.verdict() {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",
         ConformVerdict::Incomplete => "is incomplete",
     };
     let count = counted(picture.visits.len(), "visit");
     picture.caption = format!("{count} of junctions; the log {verdict}");
-    picture.marker = match judged.added {
-        Some(AddedMarker::Assumed { place: MarkerPlace { position, heading }, .. }) => {
-            Some((position, heading))
-        }
+    picture.marker = match judged.checked.added {
+        Some(AddedMarker::Assumed { position, heading, .. }) => Some((position, heading)),
         _ => None,
     };
     let svg = laser_run_svg(&picture);

@@ -3,9 +3,9 @@
 use std::{f64::consts::PI, path::Path};
 
 use toposlam_conform::{
-    CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
-    RunDriver, RunEvents, SensedScene, ShortenedRun, extract, infer_events, judge, shorten_frames,
-    shorten_run,
+    CheckedEvent, CheckedKind, CheckedLog, ConformConfig, Divergence, Evidence, ExtractConfig,
+    Quirks, RunDriver, RunEvents, SensedScene, ShortenedRun, extract, infer_events, judge,
+    shorten_frames, shorten_run,
 };
 use toposlam_logs::{
     arrival_message, door_message,
@@ -40,15 +40,15 @@ const DISTANCE: f64 = 2.0;
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &JudgedLog) -> Result<Option<Minimised>, CliError> {
-        let question =
-            self.question(judged.known.as_ref(), judged.marker, judged.driver, judged.limits());
-        let shorter = shorten_run(&judged.judgement, &question, &());
+        let checked = &judged.checked;
+        let config = checked.config();
+        let shorter = shorten_run(&checked.judgement, &config, &());
         let Some(path) = &self.minimise else {
             return Ok(
                 shorter.map(|ShortenedRun { events, .. }| Minimised { events, command: None })
             );
         };
-        let Some(divergence) = &judged.judgement.divergence else {
+        let Some(divergence) = &checked.judgement.divergence else {
             not_written(path, "there is no divergence to show");
             return Ok(None);
         };
@@ -57,30 +57,30 @@ impl ConformArguments {
             return Ok(None);
         };
         let head = head(judged);
-        let recorded = judged.judgement.events.events.get(divergence.event);
-        let seen = recorded.and_then(|event| shorten_frames(&judged.gathered.seen, event));
+        let recorded = checked.judgement.events.events.get(divergence.event);
+        let seen = recorded.and_then(|event| shorten_frames(&checked.extracted.seen, event));
         let (bytes, evidence, at) = match seen {
             Some(seen) => {
                 // Its last event diverges.
-                let last = infer_events(seen, is_marked(judged)).len().saturating_sub(1);
+                let last = infer_events(seen, is_marked(checked)).len().saturating_sub(1);
                 (write_seen(seen, &head), Evidence::Scenes, last)
             }
             None => (write(&events, &head), Evidence::Recorded, event),
         };
         let bytes = bytes.map_err(|error| CliError::in_file(path, error))?;
-        let question = if by_itself { question.by_itself() } else { question };
-        let again = divergence_of(&bytes, evidence, &question);
+        let config = if by_itself { config.by_itself() } else { config };
+        let again = divergence_of(&bytes, evidence, &config);
         if again.as_ref().is_none_or(|again| again.event != at || !again.is_like(divergence)) {
             not_written(path, "a log of less than all of it does not diverge in the same way");
             return Ok(None);
         }
         output::write_whole(path, &bytes)?;
-        let command = Some(self.command(path, judged, by_itself));
+        let command = Some(self.command(path, checked, by_itself));
         Ok(Some(Minimised { events, command }))
     }
 
     /// The command that checks a shorter log as this one was checked.
-    fn command(&self, path: &Path, judged: &JudgedLog, by_itself: bool) -> String {
+    fn command(&self, path: &Path, checked: &CheckedLog, by_itself: bool) -> String {
         let mut words =
             vec!["toposlam".to_owned(), "conform".to_owned(), quoted(&path.display().to_string())];
         if self.class != Class::Multigraph {
@@ -90,16 +90,17 @@ impl ConformArguments {
             words.extend(["--driver", "anyone"].map(str::to_owned));
             return words.join(" ");
         }
-        if let (Some(known), Some(world)) = (&judged.known, &self.world) {
+        if let (Some(known), Some(world)) = (&checked.known, &self.world) {
             let start = known.start.map_or("any".to_owned(), |start| known.world.start_text(start));
             words.extend(["--world".to_owned(), quoted(&world.display().to_string())]);
             words.extend(["--start".to_owned(), quoted(&start)]);
         }
-        if judged.driver == RunDriver::Anyone {
+        if checked.driver == RunDriver::Anyone {
             words.extend(["--driver", "anyone"].map(str::to_owned));
         }
         if self.algorithm.is_some() {
-            words.extend(["--algorithm", judged.algorithm.name()].map(str::to_owned));
+            let algorithm = checked.settings.method.algorithm();
+            words.extend(["--algorithm", algorithm.name()].map(str::to_owned));
         }
         words.join(" ")
     }
@@ -109,18 +110,18 @@ fn not_written(path: &Path, why: &str) {
     remark!("{}: not written: {why}", path.display());
 }
 
-fn is_marked(judged: &JudgedLog) -> bool {
-    judged.marker.name() != NoMarker.name()
+fn is_marked(checked: &CheckedLog) -> bool {
+    checked.marker.name() != NoMarker.name()
 }
 
 /// The first divergence of a written log.
-fn divergence_of(bytes: &[u8], evidence: Evidence, question: &ConformConfig) -> Option<Divergence> {
+fn divergence_of(bytes: &[u8], evidence: Evidence, config: &ConformConfig) -> Option<Divergence> {
     let log = Log::of_bytes(bytes.to_vec()).ok()?;
     let mapping = TopicMap::unambiguous(&log);
-    let marked = question.marker.name() != NoMarker.name();
-    let config = ExtractConfig { marked, ..ExtractConfig::new(evidence) };
-    let run = extract(&log, &mapping, &config, &()).ok()?;
-    judge(run.events, question, &Quirks::default(), &()).ok()?.divergence
+    let marked = config.marker.name() != NoMarker.name();
+    let extraction = ExtractConfig { marked, ..ExtractConfig::new(evidence) };
+    let run = extract(&log, &mapping, &extraction, &()).ok()?;
+    judge(run.events, config, &Quirks::default(), &()).ok()?.divergence
 }
 
 /// A log of the events: percepts and doors. It has odometry only where a hallway is measured, or an event has an angle
@@ -193,7 +194,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
 /// The head of a shorter log, without the calibration and colours: it has no images.
 fn head(judged: &JudgedLog) -> Run {
     let run = judged.opened.run.clone().unwrap_or_default();
-    let marker = judged.marker.name().to_owned();
+    let marker = judged.checked.marker.name().to_owned();
     Run { marker, calibration: String::new(), colours: String::new(), ..run }
 }
 

@@ -4,10 +4,12 @@ use std::{env, fmt::Write as _, io, path::Path};
 
 use sha2::{Digest, Sha256};
 
+use toposlam_conform::SourceFile;
+
 use super::CliError;
 use crate::{
     cli::{input, text::quoted, version},
-    report::{ReportOrigin, SourceFile},
+    page::ReportOrigin,
 };
 
 /// This version, and the command line of this process.

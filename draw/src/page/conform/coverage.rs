@@ -1,7 +1,9 @@
 //! The coverage of the cases.
 
+use toposlam_conform::CoveredCase;
+
 use super::each;
-use crate::{picture::escaped, report::CoveredCase};
+use crate::picture::escaped;
 
 /// A table of the cases.
 pub(super) fn table(cases: &[CoveredCase]) -> String {
@@ -15,7 +17,7 @@ pub(super) fn table(cases: &[CoveredCase]) -> String {
 }
 
 fn row(case: &CoveredCase, most: u64) -> String {
-    let name = escaped(&case.case);
+    let name = escaped(case.case);
     let (class, cells) = match (case.count, case.reachable) {
         (0, Some(false)) => ("beyond", "<td colspan=\"2\">not reachable</td>".to_owned()),
         (0, _) if case.expected => {
@@ -56,8 +58,8 @@ pub(super) fn summary(cases: &[CoveredCase]) -> String {
 mod tests {
     use super::*;
 
-    fn case(case: &str, count: u64, reachable: Option<bool>) -> CoveredCase {
-        CoveredCase { case: case.to_owned(), count, reachable, expected: false }
+    fn case(case: &'static str, count: u64, reachable: Option<bool>) -> CoveredCase {
+        CoveredCase { case, count, reachable, expected: false }
     }
 
     #[test]

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use toposlam_conform::ConformVerdict;
+use toposlam_conform::{ConformVerdict, LogReport, ReportedEvent, words};
 
 use super::{each, wording};
 use crate::{
     moment::{clock, grouped},
     picture::escaped,
-    report::{EventLine, LogReport},
 };
 
 /// The number of events shown before a divergence.
@@ -24,33 +23,35 @@ pub(super) fn before(report: &LogReport) -> Option<String> {
     let here = report.events.get(earlier).filter(|line| line.number == divergence.event);
     let rows = each(last, |line| row(line, "", ""));
     let time = here.map_or(divergence.time.unwrap_or(0.0), |line| line.time);
-    Some(table(&(rows + &diverging(divergence.event, time, &divergence.what, ""))))
+    let what = words::found(divergence);
+    Some(table(&(rows + &diverging(divergence.event, time, &what, ""))))
 }
 
 /// All events, folded.
 pub(super) fn all(report: &LogReport, log: usize) -> String {
     let off = report.divergence.as_ref().map(|divergence| divergence.event);
     let let_pass: BTreeSet<_> =
-        report.tolerated.iter().flat_map(|(_, _, events)| events).copied().collect();
-    let row = |line: &EventLine| {
+        report.tolerated.iter().flat_map(|quirk| &quirk.events).copied().collect();
+    let row = |line: &ReportedEvent| {
         if off == Some(line.number) {
             let id = id(log, line.number);
-            return diverging(line.number, line.time, &line.what, &id);
+            return diverging(line.number, line.time, &words::event(&line.kind), &id);
         }
         if let_pass.contains(&line.number) {
             return row(line, " class=let", &id(log, line.number));
         }
         row(line, "", "")
     };
-    let leaf =
-        |lines: &[EventLine]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
+    let leaf = |lines: &[ReportedEvent]| {
+        format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)))
+    };
     // An event that is missing at the end has no line.
     let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
     let missing = missing.map_or_else(String::new, |divergence| {
         table(&diverging(
             divergence.event,
             divergence.time.unwrap_or(0.0),
-            &divergence.what,
+            &words::found(divergence),
             &id(log, divergence.event),
         ))
     });
@@ -88,13 +89,13 @@ fn table(rows: &str) -> String {
 }
 
 /// A line. Optional end tags are left out, since there are many.
-fn row(line: &EventLine, class: &str, id: &str) -> String {
+fn row(line: &ReportedEvent, class: &str, id: &str) -> String {
     format!(
         "<tr{class}{id}><td>{}<td>{}<td>{}<td>{}\n",
         line.number,
         clock(line.time),
-        escaped(&line.what),
-        escaped(&line.then),
+        escaped(&words::event(&line.kind)),
+        escaped(&line.then.as_ref().map(words::event_pose).unwrap_or_default()),
     )
 }
 

@@ -1,14 +1,20 @@
 //! The section of one log.
 
+use toposlam_conform::{
+    DivergenceReport, FoldedReport, LogReport, SourceFile, ToleratedQuirk, words,
+};
+
 use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
-    moment::{clock, grouped},
-    picture::escaped,
-    report::{DivergenceReport, FoldedReport, LogReport, SourceFile},
+    moment::{clock, grouped, moment},
+    picture::{OpenGraph, WorldPicture, escaped, open_svg, svg},
+    text::counted,
 };
 
 /// The number of items of a list that are not folded.
 const FEW: usize = 12;
+/// The largest folded trail that is drawn, in vertices.
+const DRAWN: usize = 400;
 
 /// The section of a log.
 pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String {
@@ -52,12 +58,14 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
     ));
     let because = match &report.divergence {
         Some(divergence) => because(divergence, report, log),
-        None => format!("<p>{}</p>\n", wording::fits(report)),
+        None => format!("<p>{}</p>\n", words::fits(report)),
     };
-    let unique = report.fact("unique").map(|unique| format!("<p>{}</p>\n", escaped(unique)));
+    let unique =
+        words::unique(&report.facts).map(|unique| format!("<p>{}</p>\n", escaped(&unique)));
     let unique = unique.unwrap_or_default();
-    let remarks =
-        each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&wording::sentence(remark))));
+    let remarks = each(words::remarks(report), |remark| {
+        format!("<p>{}</p>\n", escaped(&wording::sentence(&remark)))
+    });
     format!(
         "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{unique}\
          {remarks}</div>\n</div>\n"
@@ -66,7 +74,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
 
 /// The divergence: where, why, and the class of the fault.
 fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> String {
-    let DivergenceReport { event, time, message, fault, cause, what, why, .. } = divergence;
+    let DivergenceReport { event, time, message, fault, cause, .. } = divergence;
     let of = report.events.len();
     let [number, all] = [*event, of].map(|number| grouped(number as u128));
     let place = if *event > of {
@@ -75,25 +83,26 @@ fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> Str
         format!("Event {number} of {all}")
     };
     let time = time.map_or_else(String::new, |time| format!(" \u{b7} {} min", clock(time)));
-    let message = message.map_or_else(String::new, |message| format!(" \u{b7} {message}"));
+    let message = message.as_ref().map(|place| format!(" \u{b7} {}", words::message_place(place)));
+    let message = message.unwrap_or_default();
     format!(
         "<p class=\"what\"><b>{}</b> {}</p>\n\
          <p><span class=\"chip\">{fault}</span> {}</p>\n\
          <p class=\"faint\">{}{time}{message} \u{b7} cause <code>{}</code></p>\n",
-        escaped(&wording::sentence(what)),
-        escaped(&wording::sentence(why)),
-        wording::sentence(wording::did(*fault)),
+        escaped(&wording::sentence(&words::found(divergence))),
+        escaped(&wording::sentence(&cause.to_string())),
+        wording::sentence(words::fault(*fault)),
         events::link(log, *event, &place),
-        escaped(cause),
+        cause.name(),
     )
 }
 
 fn allowed(report: &LogReport, level: Level) -> String {
-    let allowed = report.divergence.as_ref().map(|divergence| &divergence.allowed);
-    let Some(allowed) = allowed.filter(|allowed| !allowed.is_empty()) else {
+    let allowed = report.divergence.as_ref().map(words::allowed).unwrap_or_default();
+    if allowed.is_empty() {
         return String::new();
-    };
-    let list = short_list(allowed, FEW, |it| format!("<li>{}</li>\n", escaped(it)));
+    }
+    let list = short_list(&allowed, FEW, |it| format!("<li>{}</li>\n", escaped(it)));
     panel(level, "allowed", "What is allowed here", &list)
 }
 
@@ -110,13 +119,14 @@ fn before(report: &LogReport, log: usize, level: Level) -> String {
 }
 
 fn shorter(report: &LogReport, level: Level) -> String {
-    let events = each(&report.shorter, |event| format!("<li>{}</li>\n", escaped(event)));
+    let events =
+        each(&report.shorter, |event| format!("<li>{}</li>\n", escaped(&words::event(event))));
     let events = match report.shorter.len() {
         0 => String::new(),
         1..=FEW => format!("<ol class=\"shorter\">\n{events}</ol>\n"),
         count => format!(
             "<details><summary>{}</summary>\n<ol class=\"shorter\">\n{events}</ol>\n</details>\n",
-            wording::counted(count, "event")
+            counted(count, "event")
         ),
     };
     let command = report.command.as_deref().map_or_else(String::new, super::command);
@@ -131,7 +141,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
         return String::new();
     }
     let last = report.events.last().map_or(0, |line| line.number);
-    let quirk = |(name, reason, at): &(String, String, Vec<usize>)| {
+    let quirk = |ToleratedQuirk { name, reason, events: at }: &ToleratedQuirk| {
         let (first, rest) = at.split_at(at.len().min(FEW));
         let place = |&event: &usize| {
             let words = event.to_string();
@@ -149,10 +159,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
         format!(
             "<li><b>{}</b>, {}: {} <span class=\"faint\">{places}</span></li>\n",
             escaped(name),
-            match at.len() {
-                1 => "once".to_owned(),
-                times => format!("{} times", grouped(times as u128)),
-            },
+            words::times(at.len()),
             escaped(&wording::sentence(reason)),
         )
     };
@@ -161,11 +168,10 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
 }
 
 fn facts(report: &LogReport, level: Level) -> String {
-    let row = |(name, fact): (&str, &str)| {
-        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(fact))
+    let row = |(name, fact): (&str, String)| {
+        format!("<tr><th scope=\"row\">{name}</th><td>{}</td></tr>\n", escaped(&fact))
     };
-    let facts = report.facts.iter().map(|(name, fact)| (*name, &**fact));
-    let begun = report.begun.iter().map(|begun| ("first message", &**begun));
+    let begun = report.begun.map(|begun| ("first message", date_text(begun)));
     let source = |SourceFile { role, path, sha256 }: &SourceFile| {
         format!(
             "<tr><th scope=\"row\">{role} file</th><td>{}<br><span class=\"faint\">SHA-256</span> \
@@ -174,10 +180,8 @@ fn facts(report: &LogReport, level: Level) -> String {
             escaped(sha256)
         )
     };
-    let rows = each(facts.chain(begun), row) + &each(&report.sources, source);
-    if rows.is_empty() {
-        return String::new();
-    }
+    let rows =
+        each(words::facts(report).into_iter().chain(begun), row) + &each(&report.sources, source);
     let table = format!("<table class=\"facts\">\n<tbody>\n{rows}</tbody>\n</table>\n");
     panel(level, "late", "What was checked", &table)
 }
@@ -192,18 +196,21 @@ fn image(report: &LogReport, level: Level) -> String {
 
 /// What the log proves about its world, with the doors that were never followed.
 fn folded(report: &LogReport, level: Level) -> String {
-    let Some(FoldedReport { vertices, open_doors, drawing }) = &report.folded else {
+    let Some(FoldedReport { trail, entries }) = &report.folded else {
         return String::new();
     };
+    let (vertices, open_doors) = (trail.vertex_count(), trail.open_count());
+    let is_small = vertices <= DRAWN;
+    let drawing = is_small.then(|| open_svg(&OpenGraph::of_trail(trail, entries))).flatten();
     let image = match drawing {
-        Some(svg) => drawn(svg, "A drawing of the folded trail"),
+        Some(svg) => drawn(&svg, "A drawing of the folded trail"),
         None => "<p class=\"faint\">It is too large to be drawn.</p>\n".to_owned(),
     };
-    let doors = wording::counted(*open_doors, "door");
-    let were = if *open_doors == 1 { "was" } else { "were" };
+    let doors = counted(open_doors, "door");
+    let were = if open_doors == 1 { "was" } else { "were" };
     let places = match vertices {
         1 => String::new(),
-        count => format!(" Of the {} places, some may be one.", grouped(*count as u128)),
+        count => format!(" Of the {} places, some may be one.", grouped(count as u128)),
     };
     let legend = format!(
         "<p class=\"legend\"><span class=\"open-door\"></span> {doors} that {were} never followed.{places}\
@@ -213,28 +220,45 @@ fn folded(report: &LogReport, level: Level) -> String {
         Some(_) => "What the log proves before it diverges",
         None => "What the log proves about its world",
     };
-    panel(level, "folded", name, &(image + if *open_doors > 0 { &legend } else { "" }))
+    panel(level, "folded", name, &(image + if open_doors > 0 { &legend } else { "" }))
 }
 
+/// The known world, or the smallest one that explains the log.
 fn world(report: &LogReport, level: Level) -> String {
-    let Some(svg) = &report.world else {
+    let facts = &report.facts;
+    let known = facts.world.as_ref().map(|known| &known.world);
+    let Some(world) = known.or(facts.smallest.as_ref().map(|smallest| &smallest.world)) else {
         return String::new();
     };
-    // What can be reached is known only for a known world.
-    let known = report.coverage.iter().any(|case| case.reachable.is_some());
-    let name = match (known, &report.folded) {
-        (true, _) => "The known world",
-        (false, Some(_)) => "The smallest world that explains the log",
-        (false, None) => "The only world that explains the log",
+    let picture = WorldPicture::from(world);
+    let picture = match facts.twin.as_ref().filter(|_| known.is_some()) {
+        Some(twin) => {
+            WorldPicture { marker: twin.marker, start: Some(twin.first_marker), ..picture }
+        }
+        None => picture,
     };
-    panel(level, "", name, &drawn(svg, "A drawing of the world"))
+    let name = match (known, &report.folded) {
+        (Some(_), _) => "The known world",
+        (None, Some(_)) => "The smallest world that explains the log",
+        (None, None) => "The only world that explains the log",
+    };
+    panel(level, "", name, &drawn(&svg(&picture), "A drawing of the world"))
 }
 
 /// Another world that the marker does not distinguish from the first.
 fn twin(report: &LogReport, level: Level) -> String {
-    let drawing = report.twin.as_ref().map(|svg| drawn(svg, "A drawing of another world"));
+    let Some(twin) = &report.facts.twin else { return String::new() };
+    let caption = twin.figure.map_or(String::new(), |figure| format!("{figure} of the paper"));
+    let picture = WorldPicture { marker: twin.marker, ..WorldPicture::from(&twin.world) };
+    let drawing = svg(&WorldPicture { title: "another world", caption: &caption, ..picture });
     let name = "Another world that explains the log as well";
-    drawing.map_or_else(String::new, |drawing| panel(level, "", name, &drawing))
+    panel(level, "", name, &drawn(&drawing, "A drawing of another world"))
+}
+
+/// The date of a message, or the time on a clock that starts with the robot or the simulation.
+fn date_text(nanoseconds: u64) -> String {
+    let text = moment(nanoseconds);
+    if text.ends_with("UTC") { text } else { format!("no date: {text} on the clock of the log") }
 }
 
 /// A drawing in an SVG document.

@@ -12,12 +12,19 @@ mod wording;
 #[cfg(test)]
 mod tests;
 
+use toposlam_conform::ConformReports;
+
 use super::{PAGE_STYLE, template::filled};
-use crate::{
-    moment::grouped,
-    picture::escaped,
-    report::{ConformReports, ReportOrigin},
-};
+use crate::{moment::grouped, picture::escaped};
+
+/// How reports were made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReportOrigin {
+    /// The version of the program.
+    pub version: String,
+    /// The command, as a shell reads it.
+    pub command: String,
+}
 
 const PAGE: &str = include_str!("../browser/conform.html");
 const SCRIPT: &str = include_str!("../browser/conform.js");

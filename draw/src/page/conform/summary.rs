@@ -1,13 +1,11 @@
 //! The summary of several logs.
 
-use toposlam_conform::ConformVerdict;
+use toposlam_conform::{
+    ConformReports, ConformVerdict, DivergenceReport, LogReport, UnreadLog, words,
+};
 
 use super::{Level, coverage, each, panel, wording};
-use crate::{
-    moment::grouped,
-    picture::escaped,
-    report::{ConformReports, DivergenceReport, LogReport, UnreadLog},
-};
+use crate::{moment::grouped, picture::escaped};
 
 /// The verdicts with links to the logs, and the coverage of all logs.
 pub(super) fn section(reports: &ConformReports) -> String {
@@ -18,10 +16,9 @@ pub(super) fn section(reports: &ConformReports) -> String {
         wording::sentence(&wording::tally(reports)).trim_end_matches('.'),
     ));
     let verdict = worst.name();
-    let required = reports
-        .required
-        .as_ref()
-        .map(|required| format!("<p>{}</p>\n", escaped(&wording::sentence(&required.in_words()))));
+    let required = reports.required.as_ref().map(|required| {
+        format!("<p>{}</p>\n", escaped(&wording::sentence(&words::required(required))))
+    });
     let required = required.unwrap_or_default();
     let ConformReports { logs: reports, unread, .. } = reports;
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
@@ -65,13 +62,13 @@ fn unread_row(UnreadLog { log, cause }: &UnreadLog) -> String {
 
 fn row(report: &LogReport, number: usize) -> String {
     let verdict = report.verdict.name();
-    let why = match &report.divergence {
-        Some(DivergenceReport { event, fault, what, .. }) => {
-            format!("<span class=\"chip\">{fault}</span> event {event}: {}", escaped(what))
-        }
-        None => {
-            report.remarks.first().map_or_else(|| wording::fits(report), |remark| escaped(remark))
-        }
+    let why = if let Some(divergence) = &report.divergence {
+        let DivergenceReport { event, fault, .. } = divergence;
+        let what = escaped(&words::found(divergence));
+        format!("<span class=\"chip\">{fault}</span> event {event}: {what}")
+    } else {
+        let remark = words::remarks(report).into_iter().next();
+        remark.map_or_else(|| words::fits(report), |remark| escaped(&remark))
     };
     format!(
         "<tr><th scope=\"row\"><a href=\"#log-{number}\">{}</a></th>\

@@ -1,19 +1,13 @@
 //! The words and signs of the page.
 
-use std::collections::BTreeSet;
-
 use base64::{Engine, engine::general_purpose::STANDARD};
-use toposlam_conform::{ConformVerdict, FaultClass};
+use toposlam_conform::{ConformReports, ConformVerdict};
 
-pub(super) use crate::text::counted;
-use crate::{
-    moment::grouped,
-    report::{ConformReports, LogReport},
-};
+use crate::{moment::grouped, text::counted};
 
 /// The worst verdict; incomplete without any log, with an unreadable one, or without a required case.
 pub(super) fn worst(reports: &ConformReports) -> ConformVerdict {
-    let any = |verdict| reports.logs.iter().any(|report| report.verdict == verdict);
+    let any = |verdict| reports.count(verdict) > 0;
     let is_missing = reports.logs.is_empty() || !reports.unread.is_empty();
     let is_uncovered =
         reports.required.as_ref().is_some_and(|required| !required.not_covered.is_empty());
@@ -38,13 +32,12 @@ pub(super) fn title(reports: &ConformReports) -> String {
 
 /// The number of logs with each verdict, the worst first.
 pub(super) fn tally(reports: &ConformReports) -> String {
-    let ConformReports { logs: reports, unread, required } = reports;
-    if reports.is_empty() && unread.is_empty() {
+    let ConformReports { logs, unread, required } = reports;
+    if logs.is_empty() && unread.is_empty() {
         return "no log was checked".to_owned();
     }
-    let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let counts = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
-        .map(|verdict| (count(verdict), verdict));
+        .map(|verdict| (reports.count(verdict), verdict));
     let unreadable =
         Some(unread.len()).filter(|&count| count > 0).map(|count| format!("{count} not checked"));
     let verdicts = counts.iter().filter(|(count, _)| *count > 0);
@@ -61,7 +54,7 @@ pub(super) fn tally(reports: &ConformReports) -> String {
             [case] => format!("; {case} is not covered"),
             cases => format!("; {} required cases are not covered", cases.len()),
         });
-    let count = counted(reports.len() + unread.len(), "log");
+    let count = counted(logs.len() + unread.len(), "log");
     format!("{count}: {}{required}", parts.join(", "))
 }
 
@@ -72,31 +65,6 @@ pub(super) fn sentence(words: &str) -> String {
     let sentence = first.unwrap_or_default() + letters.as_str();
     let ended = sentence.is_empty() || sentence.ends_with(['.', '!', '?', ':']);
     if ended { sentence } else { sentence + "." }
-}
-
-/// The text about the events of a log without a divergence.
-pub(super) fn fits(report: &LogReport) -> String {
-    let all = match report.events.len() {
-        0 => return "There are no events.".to_owned(),
-        1 => "The only event fits".to_owned(),
-        count => format!("All {} events fit", grouped(count as u128)),
-    };
-    let tolerated = report.tolerated.iter().flat_map(|(_, _, events)| events);
-    match tolerated.collect::<BTreeSet<_>>().len() {
-        0 => all + ".",
-        1 => all + ", except one that is tolerated.",
-        count => format!("{all}, except {} that are tolerated.", grouped(count as u128)),
-    }
-}
-
-/// The description of a fault class.
-pub(super) fn did(fault: FaultClass) -> &'static str {
-    match fault {
-        FaultClass::Perception => "a wrong percept",
-        FaultClass::Motion => "the robot did not drive as commanded",
-        FaultClass::Algorithm => "a door that the algorithm does not take, or a wrong map",
-        FaultClass::Log => "the log contradicts itself",
-    }
 }
 
 /// The lines of a verdict's sign: a tick, a cross, three dots.

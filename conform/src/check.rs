@@ -1,0 +1,313 @@
+//! Checks a log: infers its events, completes them with the marker, and judges them in the known world or in the
+//! smallest one. Sections 2 to 6.
+
+#![allow(missing_docs, reason = "the names of most fields and variants say what they are")]
+
+use thiserror::Error;
+use toposlam_logs::{
+    messages::Run,
+    reader::Log,
+    topic_map::{MarkerPlace, Role, TopicMap},
+};
+use toposlam_model::{
+    enumerate::Watch,
+    folding::WorldSearch,
+    format::named_world::{NamedWorld, StartError},
+    mapping::MappingAlgorithm,
+    marker::{Directional, Marker, NoMarker, UnknownMarker},
+};
+use toposlam_robot::run_settings::RecordedSettings;
+use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
+
+use super::{
+    config::{ConformConfig, RunDriver},
+    extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
+    judgement::{JudgeError, Judgement, judge},
+    known_world::{Known, MarkerStart},
+    log_head::{LogHead, MarkerNotShown},
+    marked_visits::{MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
+    quirks::Quirks,
+    report::AddedMarker,
+    twin::Twin,
+};
+
+/// A log, and how its messages are read.
+#[derive(Clone, Copy)]
+pub struct LogSource<'l> {
+    pub log: &'l Log,
+    pub topics: &'l TopicMap,
+    /// Its head, if it has one.
+    pub head: Option<&'l Run>,
+    /// Senses its images.
+    pub sensor: Option<&'l Sensor>,
+}
+
+/// What a log is checked against.
+#[derive(Clone, Debug)]
+pub struct LogCheck<'w> {
+    pub evidence: Evidence,
+    pub laser: LaserParams,
+    pub world: Option<&'w NamedWorld>,
+    pub start: RobotStart<'w>,
+    /// The robot's marker; without one, that of the log, or else a directional one.
+    pub marker: Option<&'static dyn Marker>,
+    /// Whether a marker is assumed that is not in the log: at the place of the topic map, or else at the first
+    /// junction.
+    pub assumes_marker: bool,
+    pub doors: DoorChooser,
+    /// The worlds to search if none is known.
+    pub search: WorldSearch,
+    /// The largest number of darts that the algorithm may know; without one, that of the log.
+    pub max_darts: Option<usize>,
+    /// The known divergences to tolerate.
+    pub quirks: &'w Quirks,
+}
+
+/// Where the robot began in a known world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotStart<'s> {
+    /// Where the log records it, or else at the start of the world, or else anywhere.
+    Recorded,
+    Anywhere,
+    /// As `VERTEX:FACING`.
+    At(&'s str),
+}
+
+/// What chose the doors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DoorChooser {
+    /// This algorithm, or else that of the log.
+    Algorithm(Option<MappingAlgorithm>),
+    /// Anything, in any way.
+    Anyone,
+}
+
+/// A log that was checked.
+#[derive(Clone, Debug)]
+pub struct CheckedLog {
+    pub extracted: ExtractedRun,
+    pub judgement: Judgement,
+    pub known: Option<Known>,
+    pub marker: &'static dyn Marker,
+    /// Sightings that the log does not record as percepts.
+    pub added: Option<AddedMarker>,
+    /// Another world that the marker does not distinguish from the known one or the smallest.
+    pub twin: Option<Twin>,
+    pub driver: RunDriver,
+    pub settings: RecordedSettings,
+    pub search: WorldSearch,
+    pub dart_bound: usize,
+    pub quirks: Quirks,
+}
+
+/// Why a log cannot be checked.
+#[derive(Debug, Error)]
+pub enum CheckError {
+    #[error(transparent)]
+    Marker(#[from] UnknownMarker),
+    #[error("its algorithm `{0}` is unknown")]
+    Algorithm(String),
+    #[error(transparent)]
+    Start(#[from] StartError),
+    #[error("the world is too large for a marker that may lie anywhere")]
+    TooManyStates,
+    #[error(transparent)]
+    MarkerPlace(#[from] MarkerPlaceError),
+    #[error(transparent)]
+    MarkedVisits(MarkedVisitsError),
+    #[error(transparent)]
+    Extract(#[from] ExtractError),
+    #[error(transparent)]
+    MarkerNotShown(#[from] MarkerNotShown),
+    #[error("no junction is visited in its {count} {frames}")]
+    NoVisit { count: u64, frames: &'static str },
+    #[error(transparent)]
+    Judge(JudgeError),
+}
+
+/// Why a marker of the topic map, or an assumed one, does not fit a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum MarkerPlaceError {
+    #[error("this is for events that are inferred from laser scans")]
+    AssumedWithoutLaser,
+    #[error("this is for events that are inferred from laser scans")]
+    MappedWithoutLaser,
+    #[error("the log has sightings of a marker: [marker] of the topic map")]
+    AssumedBesideSightings,
+    #[error("the log has no marker there")]
+    PlaceNotAssumed,
+    #[error("the robot has no marker")]
+    SightingsWithoutMarker,
+    #[error(transparent)]
+    Assumed(MarkedVisitsError),
+}
+
+impl LogCheck<'_> {
+    /// Reads and judges a log. `on_events` is called between the two.
+    ///
+    /// # Errors
+    /// Returns an error if the log cannot be read, or does not record what is needed.
+    pub fn run(
+        &self,
+        source: &LogSource,
+        watch: &impl Watch,
+        on_events: impl FnOnce(),
+    ) -> Result<CheckedLog, CheckError> {
+        let LogSource { log, topics, head, sensor } = *source;
+        let head = LogHead(head);
+        let marker = self.marker.map_or_else(|| head.marker(), Ok)?;
+        let settings = match self.doors {
+            DoorChooser::Algorithm(algorithm) => {
+                head.settings(algorithm).map_err(CheckError::Algorithm)?
+            }
+            DoorChooser::Anyone => RecordedSettings::default(),
+        };
+        let algorithm = settings.method.algorithm();
+        let driver = match self.doors {
+            DoorChooser::Algorithm(_) => RunDriver::from(settings),
+            DoorChooser::Anyone => RunDriver::Anyone,
+        };
+        let marker_start = self.marker_start(topics)?;
+        let known = self.known((marker, marker_start), head, algorithm)?;
+        let marked = marker.name() != NoMarker.name();
+        let config = ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser };
+        let mut extracted = extract(log, topics, &config, watch)?;
+        let added = self.add_marker(topics, &mut extracted, marker)?;
+        if self.marker.is_none() && driver != RunDriver::Anyone {
+            head.check_marker(&extracted.events, algorithm)?;
+        }
+        let dart_bound = self.max_darts.unwrap_or(settings.dart_bound);
+        let config = ConformConfig {
+            world: known.as_ref().map(Known::config),
+            marker,
+            driver,
+            budget: settings.budget,
+            search: self.search,
+            dart_bound,
+        };
+        let mut events = extracted.events.clone();
+        events.complete_sightings(marker).map_err(|error| CheckError::Judge(error.into()))?;
+        // A robot that no algorithm drives may turn back between junctions.
+        if driver == RunDriver::Anyone {
+            events = events.without_excursions();
+        }
+        on_events();
+        let judgement = judge(events, &config, self.quirks, watch).map_err(|error| {
+            let ExtractedRun { images, scans, .. } = extracted;
+            match error {
+                JudgeError::Empty if images > 0 => {
+                    CheckError::NoVisit { count: images, frames: "images" }
+                }
+                JudgeError::Empty if scans > 0 => {
+                    CheckError::NoVisit { count: scans, frames: "laser scans" }
+                }
+                error => CheckError::Judge(error),
+            }
+        })?;
+        let twin = Twin::find(&judgement, known.as_ref(), marker);
+        let (search, quirks) = (self.search, self.quirks.clone());
+        Ok(CheckedLog {
+            extracted,
+            judgement,
+            known,
+            marker,
+            added,
+            twin,
+            driver,
+            settings,
+            search,
+            dart_bound,
+            quirks,
+        })
+    }
+
+    /// The known world with the robot's start.
+    fn known(
+        &self,
+        marker: (&'static dyn Marker, MarkerStart),
+        head: LogHead,
+        algorithm: MappingAlgorithm,
+    ) -> Result<Option<Known>, CheckError> {
+        let Some(world) = self.world else { return Ok(None) };
+        // In a laser log bends of corridors are vertices only if that is asked for.
+        let smooths = self.evidence == Evidence::Laser && !self.laser.corner.corners;
+        let world = if smooths { world.smoothed() } else { world.clone() };
+        let start = match self.start {
+            RobotStart::Recorded => head.start(&world).or(world.start),
+            RobotStart::Anywhere => None,
+            RobotStart::At(start) => Some(world.start_from_text(start)?),
+        };
+        let known = Known::new(world, start, marker, algorithm);
+        known.ok_or(CheckError::TooManyStates).map(Some)
+    }
+
+    /// Where the marker may lie at the start, and whether the topic map fits the check.
+    fn marker_start(&self, topics: &TopicMap) -> Result<MarkerStart, MarkerPlaceError> {
+        let has_place = topics.assumed_marker().is_some();
+        let has_sightings = topics.carrier(Role::Marker).is_some();
+        match (self.evidence, self.assumes_marker) {
+            (Evidence::Laser, true) if has_sightings => {
+                Err(MarkerPlaceError::AssumedBesideSightings)
+            }
+            (Evidence::Laser, false) if has_place => Err(MarkerPlaceError::PlaceNotAssumed),
+            (Evidence::Laser, _) if has_place || has_sightings => Ok(MarkerStart::Anywhere),
+            (Evidence::Laser, _) => Ok(MarkerStart::Robot),
+            (_, true) => Err(MarkerPlaceError::AssumedWithoutLaser),
+            (_, false) if has_place || has_sightings => Err(MarkerPlaceError::MappedWithoutLaser),
+            (_, false) => Ok(MarkerStart::Robot),
+        }
+    }
+
+    /// Completes the visits of a laser log with its marker.
+    fn add_marker(
+        &self,
+        topics: &TopicMap,
+        extracted: &mut ExtractedRun,
+        marker: &dyn Marker,
+    ) -> Result<Option<AddedMarker>, CheckError> {
+        let ExtractedRun { events, junctions, sightings, .. } = extracted;
+        let events = &mut events.events;
+        if self.assumes_marker {
+            let place = topics.assumed_marker().or_else(|| marker_at_start(junctions));
+            // Without a visit there is nothing to judge.
+            let Some(place) = place else { return Ok(None) };
+            let seen = assume_marker(events, junctions, marker, place)
+                .map_err(MarkerPlaceError::Assumed)?;
+            // The direction of an undirected marker does not matter.
+            let heading = place.heading.filter(|_| marker.name() == Directional.name());
+            let MarkerPlace { position, .. } = place;
+            return Ok(Some(AddedMarker::Assumed { position, heading, seen }));
+        }
+        if topics.carrier(Role::Marker).is_none() || self.evidence != Evidence::Laser {
+            return Ok(None);
+        }
+        if marker.name() == NoMarker.name() {
+            return Err(MarkerPlaceError::SightingsWithoutMarker.into());
+        }
+        let elsewhere =
+            mark_visits(events, junctions, marker, sightings).map_err(CheckError::MarkedVisits)?;
+        Ok(Some(AddedMarker::Fiducial { sightings: sightings.len(), elsewhere }))
+    }
+}
+
+impl CheckedLog {
+    /// What the run was checked against.
+    #[must_use]
+    pub fn config(&self) -> ConformConfig<'_> {
+        ConformConfig {
+            world: self.known.as_ref().map(Known::config),
+            marker: self.marker,
+            driver: self.driver,
+            budget: self.settings.budget,
+            search: self.search,
+            dart_bound: self.dart_bound,
+        }
+    }
+
+    /// Whether the doors were compared with the folding explorer.
+    #[must_use]
+    pub fn is_folding(&self) -> bool {
+        let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
+        compared == Some(MappingAlgorithm::Folding)
+    }
+}

@@ -1,0 +1,399 @@
+//! What was checked, and against what.
+
+use serde::{Serialize, Serializer};
+use toposlam_logs::{SkippedLines, error::Truncation, record::RunEnding};
+use toposlam_model::{
+    embedded_graph::Dart,
+    enumerate::Class,
+    folding::{FoldedTrail, SmallestWorld},
+    format::named_world::NamedWorld,
+    mapping::{MappingAlgorithm, MappingMethod, PartialMap},
+    percept::Door,
+    trace::{AlgorithmMatch, MatchEnd, MatchedChoices},
+};
+
+use super::super::{
+    config::RunDriver,
+    events::{CheckedKind, UndecidedCause},
+    extract::{Evidence, SkippedMessages},
+    judgement::Judgement,
+    known_world::Known,
+    log_head::LogHead,
+    measured_hallways::MeasuredHallways,
+    twin::Twin,
+};
+use super::{CheckedLog, LogSource, PoseName};
+
+/// What was checked, and against what. Each serialized field is one of the JSON line of a log.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Facts {
+    pub evidence: Evidence,
+    /// A marker that is not recorded in percepts.
+    #[serde(rename = "assumed_marker", serialize_with = "assumed_marker")]
+    pub added_marker: Option<AddedMarker>,
+    /// The number of images that were sensed.
+    pub images: u64,
+    pub unreadable_images: u64,
+    /// The number of laser scans that were sensed.
+    pub scans: u64,
+    pub skipped_messages: SkippedMessages,
+    pub truncated: Option<Truncation>,
+    /// The lines of a log of lines that are not read.
+    #[serde(rename = "skipped")]
+    pub skipped_lines: Option<SkippedLines>,
+    pub recorded: Option<RecordedWorld>,
+    pub ending: Option<Ending>,
+    pub world: Option<WorldFact>,
+    pub smallest: Option<SmallestFound>,
+    pub lengths: MeasuredHallways,
+    /// Whether no other world explains the log.
+    pub unique: Option<bool>,
+    /// The number of doors that were never followed.
+    pub open_doors: Option<usize>,
+    pub never_followed: Option<Vec<OpenDoor>>,
+    /// Another world that explains the log, and that no walk distinguishes from the known one or the smallest.
+    pub twin: Option<Twin>,
+    pub doors: Option<ComparedDoors>,
+    pub map: Option<MapSize>,
+
+    /// Whether the log has a head.
+    #[serde(skip)]
+    pub has_head: bool,
+    /// Whether the log has a head, but does not record how the run ended.
+    #[serde(skip)]
+    pub lacks_end: bool,
+    /// The number of the first visit to a junction that was not recognised, and whether the scanner did not look
+    /// there.
+    #[serde(skip)]
+    pub unrecognised: Option<(usize, UnseenPlace)>,
+    /// The number of the first event that is compared with no world, because the robot got lost before it.
+    #[serde(skip)]
+    pub lost: Option<usize>,
+    /// The number of ways in which the visits of an undirected marker can be visits of one junction.
+    #[serde(skip)]
+    pub ways: usize,
+    /// The class of the worlds that were searched.
+    #[serde(skip)]
+    pub class: Option<Class>,
+    /// The widest field of view of a scan, in radians.
+    #[serde(skip)]
+    pub field_of_view: f64,
+    /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
+    #[serde(skip)]
+    pub drift: Option<f64>,
+}
+
+/// Why a junction was not recognised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnseenPlace {
+    Junction,
+    /// The robot drove where its scanner did not look.
+    Way,
+}
+
+/// Sightings that the log itself does not record as percepts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AddedMarker {
+    /// A marker that was not there.
+    Assumed {
+        /// In the frame of odometry, in metres.
+        position: [f64; 2],
+        /// In radians; `None` for an undirected marker.
+        heading: Option<f64>,
+        /// The number of visits at which it would have been seen.
+        seen: usize,
+    },
+    /// A fiducial.
+    Fiducial {
+        sightings: usize,
+        /// The number of them at no junction that the robot visited.
+        elsewhere: usize,
+    },
+}
+
+/// What the log records about its world.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RecordedWorld {
+    pub world: String,
+    /// `VERTEX:FACING`.
+    pub start: String,
+    /// Whether it is the known world.
+    pub same_world: Option<bool>,
+}
+
+/// The recorded end of the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ending(pub RunEnding);
+
+/// The known world.
+#[derive(Clone, Debug, Serialize)]
+pub struct WorldFact {
+    pub name: String,
+    /// `None` if any start is possible.
+    pub start: Option<String>,
+    /// The number of candidate poses at the first event.
+    pub candidates_at_start: usize,
+    /// The number of candidate poses at the end; `None` if no event was compared with the world.
+    #[serde(skip)]
+    pub candidates_left: Option<usize>,
+    /// The pose at the end, if only one is left.
+    #[serde(skip)]
+    pub pose: Option<PoseName>,
+    #[serde(skip)]
+    pub world: NamedWorld,
+}
+
+/// The smallest world that explains the log.
+#[derive(Clone, Debug, Serialize)]
+pub struct SmallestFound {
+    pub vertices: usize,
+    pub edges: usize,
+    /// Whether all smaller worlds were excluded.
+    pub least: bool,
+    /// The world, with the marker at its start.
+    #[serde(skip)]
+    pub world: NamedWorld,
+}
+
+/// A door that was never followed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct OpenDoor {
+    /// Its vertex in the known world, or else in the folded trail.
+    pub vertex: String,
+    /// Its number, clockwise from the door by which the robot first came to the vertex.
+    pub door: u32,
+    /// Where it leads in the known world.
+    pub toward: Option<String>,
+}
+
+/// The algorithm with which the doors were compared, and its choices that explain them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ComparedDoors {
+    pub algorithm: MappingAlgorithm,
+    pub choices: MatchedChoices,
+    /// Whether the robot recovers.
+    pub recovers: bool,
+    /// The number of events before the first that the algorithm does not have.
+    pub departs_after: Option<usize>,
+    /// Whether the log ends while the algorithm goes on.
+    pub is_cut: bool,
+}
+
+/// The map at the last event that the algorithm explains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MapSize {
+    pub complete: bool,
+    pub vertices: usize,
+    pub edges: usize,
+    /// The number of unexplored edge ends.
+    pub unexplored: usize,
+}
+
+impl CheckedLog {
+    pub(super) fn facts(&self, source: &LogSource) -> Facts {
+        let Self { extracted, judgement, known, .. } = self;
+        let head = LogHead(source.head);
+        let open = self.open_doors();
+        let way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
+        let unrecognised = judgement.unrecognised.map(|event| {
+            let is_way = judgement.events.events.get(event).is_some_and(|found| found.kind == way);
+            (event + 1, if is_way { UnseenPlace::Way } else { UnseenPlace::Junction })
+        });
+        let ending = judgement.events.end.as_ref().map(|end| Ending(end.ending.clone()));
+        Facts {
+            evidence: extracted.evidence,
+            added_marker: self.added,
+            images: extracted.images,
+            unreadable_images: extracted.unreadable,
+            scans: extracted.scans,
+            skipped_messages: extracted.skipped,
+            truncated: source.log.truncation().cloned(),
+            skipped_lines: source.log.skipped().cloned(),
+            recorded: source.head.filter(|run| !run.world_hash.is_empty()).map(|run| {
+                let known = known.as_ref();
+                RecordedWorld {
+                    world: run.world.clone(),
+                    start: run.start.clone(),
+                    same_world: known.map(|known| !head.is_of_other_world(&known.world.graph)),
+                }
+            }),
+            lacks_end: judgement.events.has_head && ending.is_none(),
+            ending,
+            world: known.as_ref().map(|known| self.world_fact(known)),
+            smallest: self.smallest(),
+            lengths: judgement.measured,
+            unique: judgement.determines_world(),
+            open_doors: open.as_ref().map(Vec::len),
+            never_followed: open,
+            twin: self.twin.clone(),
+            doors: judgement.algorithm.as_ref().map(|followed| {
+                let recovers =
+                    matches!(self.driver, RunDriver::Method(MappingMethod::Recovering(_)));
+                ComparedDoors::of(followed, recovers)
+            }),
+            map: judgement.algorithm.as_ref().map(|followed| MapSize::of(followed.run.map())),
+            has_head: source.head.is_some(),
+            unrecognised,
+            lost: judgement.lost.map(|event| event + 1),
+            ways: judgement.ways,
+            class: Some(self.search.class),
+            field_of_view: extracted.field_of_view,
+            drift: extracted.drift,
+        }
+    }
+
+    fn world_fact(&self, known: &Known) -> WorldFact {
+        let poses = self.judgement.poses.as_ref();
+        let last = poses.map(|poses| poses.left.last().copied());
+        let pose = poses.filter(|_| last == Some(Some(1))).and_then(|poses| poses.states.first());
+        WorldFact {
+            name: known.world.name.clone(),
+            start: known.start.map(|start| known.world.start_text(start)),
+            candidates_at_start: poses.and_then(|poses| poses.left.first()).copied().unwrap_or(0),
+            candidates_left: last.map(Option::unwrap_or_default),
+            pose: pose.map(|state| known.pose_name(state.pose)),
+            world: known.world.clone(),
+        }
+    }
+
+    fn smallest(&self) -> Option<SmallestFound> {
+        let Some(SmallestWorld::World { graph, marker, limit }) = &self.judgement.smallest else {
+            return None;
+        };
+        let start = marker.or(Some(Dart(0)));
+        let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
+        Some(SmallestFound {
+            vertices: graph.vertex_count(),
+            edges: graph.edge_count(),
+            least: limit.is_none(),
+            world: NamedWorld { marker: Some(self.marker), ..world },
+        })
+    }
+
+    /// The doors that were never followed; `None` if the log diverges, or if this is not known.
+    fn open_doors(&self) -> Option<Vec<OpenDoor>> {
+        let judgement = &self.judgement;
+        judgement.determines_world().filter(|_| judgement.ways <= 1)?;
+        let trail = judgement.trail.as_ref()?;
+        let known = self.known.as_ref().map(|known| (known, known_poses(judgement, trail)));
+        let mut doors = Vec::new();
+        for (number, entry) in trail.first_entries(judgement.trace.doors()).into_iter().enumerate()
+        {
+            for door in 0..trail.degree(entry) {
+                let dart = trail.behind(entry, Door(door));
+                if trail.opposite(dart).is_some() {
+                    continue;
+                }
+                let there = known.as_ref().and_then(|(known, poses)| {
+                    let (pose, there) = poses[trail.vertex(entry)]?;
+                    Some((known, known.world.graph.behind(there, trail.door(pose, dart))))
+                });
+                let vertex = there.map_or(format!("v{number}"), |(known, dart)| {
+                    known.world.at_text(dart).to_owned()
+                });
+                let toward = there.map(|(known, dart)| known.world.leads_to(dart).to_owned());
+                doors.push(OpenDoor { vertex, door, toward });
+            }
+        }
+        Some(doors)
+    }
+}
+
+/// For each vertex, a pose of the robot there and what it is in the known world, if that is certain.
+fn known_poses(judgement: &Judgement, trail: &FoldedTrail) -> Vec<Option<(Dart, Dart)>> {
+    let mut poses = vec![None; trail.trail_vertex_count()];
+    let Some(known) = &judgement.poses else { return poses };
+    let mut next = Some(trail.start());
+    let mut doors = judgement.trace.doors().iter();
+    let mut event = 0;
+    while let Some(pose) = next {
+        if let Some(Some(state)) = known.alone.get(event) {
+            poses[trail.vertex(pose)].get_or_insert((pose, state.pose));
+        }
+        event += 2;
+        next = doors.next().and_then(|&door| trail.opposite(trail.behind(pose, door)));
+    }
+    poses
+}
+
+impl ComparedDoors {
+    fn of(followed: &AlgorithmMatch, recovers: bool) -> Self {
+        Self {
+            algorithm: followed.algorithm,
+            choices: followed.choices,
+            recovers,
+            departs_after: match &followed.reached {
+                MatchEnd::Departure(departure) => Some(departure.event.id),
+                _ => None,
+            },
+            is_cut: followed.reached == MatchEnd::EndOfTrace,
+        }
+    }
+}
+
+impl MapSize {
+    fn of(map: &PartialMap) -> Self {
+        let unexplored = map.unexplored_count() as usize;
+        Self {
+            complete: map.complete().is_some(),
+            vertices: map.vertex_count(),
+            edges: (map.dart_count() - unexplored) / 2,
+            unexplored,
+        }
+    }
+}
+
+/// A fiducial is no field.
+#[expect(clippy::ref_option, reason = "serde calls it with the field")]
+fn assumed_marker<S: Serializer>(
+    added: &Option<AddedMarker>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Assumed {
+        position: [f64; 2],
+        heading: Option<f64>,
+        seen: usize,
+    }
+    let assumed = match *added {
+        Some(AddedMarker::Assumed { position, heading, seen }) => {
+            Some(Assumed { position, heading, seen })
+        }
+        _ => None,
+    };
+    assumed.serialize(serializer)
+}
+
+impl Serialize for Ending {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Fields<'e> {
+            how: &'static str,
+            cause: Option<&'e str>,
+        }
+        let (how, cause) = match &self.0 {
+            RunEnding::Mapped => ("mapped", None),
+            RunEnding::Stopped => ("stopped", None),
+            RunEnding::GaveUp(cause) => ("gave-up", Some(&**cause)),
+            RunEnding::OutOfBudget(cause) => ("out-of-budget", Some(&**cause)),
+        };
+        Fields { how, cause }.serialize(serializer)
+    }
+}
+
+impl Serialize for ComparedDoors {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Fields {
+            algorithm: &'static str,
+            choices: &'static str,
+            from_event: Option<usize>,
+        }
+        let (choices, from) = match self.choices {
+            MatchedChoices::Default => ("default", None),
+            MatchedChoices::Other { from } => ("other", from),
+        };
+        let from_event = from.map(|event| event + 1);
+        Fields { algorithm: self.algorithm.name(), choices, from_event }.serialize(serializer)
+    }
+}

@@ -1,0 +1,543 @@
+//! The sentences of a report, for every renderer.
+
+use std::collections::BTreeSet;
+
+use toposlam_logs::record::{Arrival, RunEnding};
+use toposlam_model::{
+    counts::{counted, grouped, vertices},
+    driving::visit::JunctionShape,
+    folding::SearchLimit,
+    mapping::MappingAlgorithm,
+    percept::{Percept, Sighting},
+    trace::{Departure, MatchedChoices, MisfitReason, TraceEventKind},
+};
+
+use super::{
+    config::RunDriver,
+    divergence::{DivergenceCause, FaultClass},
+    events::{CheckedKind, UndecidedCause},
+    extract::{Evidence, SkippedMessages},
+    judgement::{ConformVerdict, ReachedLimit},
+    measured_hallways::MeasuredHallways,
+    report::{
+        AddedMarker, Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport,
+        EventPose, Facts, LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
+        RequiredCoverage, UnseenPlace, WorldFact,
+    },
+    twin::Twin,
+};
+
+/// A scanner with a field of view of fewer degrees does not see what is behind the robot.
+const ALL_AROUND: f64 = 270.0;
+
+/// The verdict on a log.
+#[must_use]
+pub fn verdict(verdict: ConformVerdict) -> &'static str {
+    match verdict {
+        ConformVerdict::Conforms => "conforms",
+        ConformVerdict::Diverged => "diverges",
+        ConformVerdict::Incomplete => "incomplete: no divergence so far",
+    }
+}
+
+/// The result of a log in one sentence.
+#[must_use]
+pub fn result(report: &LogReport) -> String {
+    match (&report.divergence, remarks(report).into_iter().next()) {
+        (Some(divergence), _) => {
+            let DivergenceReport { event, fault, cause, .. } = divergence;
+            format!("diverges at event {event} ({fault}): {}; {cause}", found(divergence))
+        }
+        (None, Some(remark)) => remark,
+        (None, None) => verdict(report.verdict).to_owned(),
+    }
+}
+
+/// The number of logs with each verdict.
+#[must_use]
+pub fn together(reports: &ConformReports) -> String {
+    let [conform, diverged, incomplete] =
+        [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete]
+            .map(|verdict| reports.count(verdict));
+    let unread = match reports.unread.len() {
+        0 => String::new(),
+        count => format!(", {count} unreadable"),
+    };
+    let logs = counted(reports.logs.len() + reports.unread.len(), "log");
+    format!("{logs}: {conform} conform, {diverged} diverge, {incomplete} incomplete{unread}")
+}
+
+/// The class of a fault.
+#[must_use]
+pub fn fault(fault: FaultClass) -> &'static str {
+    match fault {
+        FaultClass::Perception => "a wrong percept",
+        FaultClass::Motion => "the robot did not drive as commanded",
+        FaultClass::Algorithm => "a door that the algorithm does not take, or a wrong map",
+        FaultClass::Log => "the log contradicts itself",
+    }
+}
+
+/// The events of a log without a divergence.
+#[must_use]
+pub fn fits(report: &LogReport) -> String {
+    let all = match report.events.len() {
+        0 => return "There are no events.".to_owned(),
+        1 => "The only event fits".to_owned(),
+        count => format!("All {} events fit", grouped(count as u128)),
+    };
+    let tolerated = report.tolerated.iter().flat_map(|quirk| &quirk.events);
+    match tolerated.collect::<BTreeSet<_>>().len() {
+        0 => all + ".",
+        1 => all + ", except one that is tolerated.",
+        count => format!("{all}, except {} that are tolerated.", grouped(count as u128)),
+    }
+}
+
+/// How often something was tolerated.
+#[must_use]
+pub fn times(count: usize) -> String {
+    match count {
+        1 => "once".to_owned(),
+        count => format!("{} times", grouped(count as u128)),
+    }
+}
+
+/// An event.
+#[must_use]
+pub fn event(kind: &CheckedKind) -> String {
+    match kind {
+        CheckedKind::Arrival { arrival, .. } => {
+            let Arrival { degree, sighting, form, .. } = *arrival;
+            let name = form.and_then(JunctionShape::name);
+            let shape = name.map_or(String::new(), |name| format!(" ({name})"));
+            // A judged percept has its sighting.
+            let sighting = sighting.unwrap_or(Sighting::Nothing);
+            format!("percept: {}{shape}", Percept { degree, sighting })
+        }
+        CheckedKind::Door { door, .. } => format!("door {}", door.0),
+        CheckedKind::Aside { off } => {
+            format!("left {:.0} degrees off the nearest door", off.to_degrees())
+        }
+        CheckedKind::TurnedBack => "turned back".to_owned(),
+        CheckedKind::Undecided(UndecidedCause::Unclear) => "junction not recognised".to_owned(),
+        CheckedKind::Undecided(UndecidedCause::UnseenArm) => {
+            "junction not recognised: the scanner did not look into an arm".to_owned()
+        }
+        CheckedKind::Undecided(UndecidedCause::UnseenWay) => {
+            "drove where the scanner did not look".to_owned()
+        }
+    }
+}
+
+/// What is known of the robot's pose after an event.
+#[must_use]
+pub fn event_pose(pose: &EventPose) -> String {
+    match pose {
+        EventPose::At(pose) => pose_name(pose),
+        EventPose::Candidates(count) => format!("{count} candidate poses"),
+    }
+}
+
+fn pose_name(PoseName { vertex, from }: &PoseName) -> String {
+    format!("at {vertex}, having come from {from}")
+}
+
+/// The event that diverges.
+#[must_use]
+pub fn found(divergence: &DivergenceReport) -> String {
+    divergence.found.as_ref().map_or("end of the log".to_owned(), event)
+}
+
+/// Where a message stands in its log.
+#[must_use]
+pub fn message_place(place: &MessagePlace) -> String {
+    let [number, offset] = [place.number, place.offset].map(|number| grouped(number.into()));
+    format!("message {number} of the log, at {} {offset}", place.unit.name())
+}
+
+/// What is allowed instead.
+#[must_use]
+pub fn allowed(divergence: &DivergenceReport) -> Vec<String> {
+    match divergence.cause {
+        DivergenceCause::Number { expected, .. } => return vec![format!("number {expected}")],
+        DivergenceCause::Moves { made, .. } => return vec![counted(made, "move")],
+        _ => {}
+    }
+    let mut listed: Vec<_> = divergence
+        .allowed
+        .iter()
+        .map(|allowed| match allowed {
+            Allowed::Step(step) => step.to_string(),
+            Allowed::InWorld(pose, MisfitReason::Percept { expected }) => {
+                format!("{}: {expected}", pose_name(pose))
+            }
+            Allowed::InWorld(pose, MisfitReason::NoSuchDoor { degree }) => {
+                format!("{}: doors 0 to {}", pose_name(pose), degree.saturating_sub(1))
+            }
+        })
+        .collect();
+    listed.extend(more(listed.len(), divergence.allowed_total));
+    listed
+}
+
+/// How many of all are not listed.
+fn more(listed: usize, all: usize) -> Option<String> {
+    (all > listed).then(|| format!("and {} more", all - listed))
+}
+
+/// The reasons for the verdict, and further remarks.
+#[must_use]
+pub fn remarks(report: &LogReport) -> Vec<String> {
+    let LogReport { facts, verdict, events, .. } = report;
+    let mut remarks: Vec<String> = other_world(facts).into_iter().collect();
+    remarks.extend(facts.truncated.as_ref().map(|truncation| format!("the log is {truncation}")));
+    remarks.extend(skipped_lines(facts));
+    remarks.extend(skipped_messages(facts.skipped_messages));
+    match facts.ending.as_ref().map(|ending| &ending.0) {
+        Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
+        Some(RunEnding::GaveUp(cause)) => {
+            let colon = if cause.is_empty() { "" } else { ": " };
+            remarks.push(format!("the run was given up{colon}{cause}"));
+        }
+        Some(RunEnding::OutOfBudget(cause)) => remarks.push(cause.clone()),
+        None if facts.lacks_end => {
+            remarks.push("the log does not record how the run ended".to_owned());
+        }
+        Some(RunEnding::Mapped) | None => {}
+    }
+    if let Some(DivergenceReport { event: 1, cause, .. }) = &report.divergence {
+        if !facts.has_head && facts.world.as_ref().is_some_and(|world| world.start.is_some()) {
+            remarks.push("the log may begin elsewhere: --start any tries every start".to_owned());
+        }
+        // The first percept is not that of the start of a run.
+        if let DivergenceCause::Algorithm(Departure { event, .. }) = cause
+            && let TraceEventKind::Percept(_) = event.kind
+        {
+            let cause = "the log may begin in the middle of a run: --driver anyone compares the doors with no \
+                         algorithm";
+            remarks.push(cause.to_owned());
+        }
+    }
+    if let Some((event, place)) = facts.unrecognised {
+        let what = match place {
+            UnseenPlace::Way => {
+                format!("at event {event} the robot drove where its scanner did not look")
+            }
+            UnseenPlace::Junction => format!("the junction of event {event} was not recognised"),
+        };
+        remarks.push(format!("{what}: the events from there on are not checked"));
+    }
+    if let (Some(event), None) = (facts.lost, &facts.world) {
+        remarks.push(format!(
+            "the robot got lost before event {event}: the events from there on are compared with no world; \
+             add --world"
+        ));
+    }
+    let last = events.last().map(|event| &event.kind);
+    if let (RunDriver::Anyone, Some(CheckedKind::Door { .. })) = (report.driver, last) {
+        remarks.push("the log ends with a door: where it led is not recorded".to_owned());
+    }
+    // What was not searched matters only if nothing diverged.
+    if *verdict != ConformVerdict::Diverged {
+        remarks.extend(report.limits.iter().map(|reached| limit(reached, facts)));
+    }
+    if *verdict == ConformVerdict::Conforms && facts.doors.is_some_and(|doors| doors.is_cut) {
+        remarks.push("the log ends before the map is complete".to_owned());
+    }
+    if facts.unreadable_images > 0 {
+        let images = counted(facts.unreadable_images as usize, "image");
+        remarks.push(format!("{images} could not be decoded and were skipped"));
+    }
+    remarks
+}
+
+/// A remark on a log that was recorded in another world.
+#[must_use]
+pub fn other_world(facts: &Facts) -> Option<String> {
+    let recorded = facts.recorded.as_ref().filter(|it| it.same_world == Some(false))?;
+    let comma = if recorded.world.is_empty() { "" } else { ", " };
+    Some(format!("the log was recorded in another world{comma}{}", recorded.world))
+}
+
+/// A remark on the lines that were skipped; `None` if there are none.
+#[must_use]
+pub fn skipped_lines(facts: &Facts) -> Option<String> {
+    facts.skipped_lines.as_ref().map(|skipped| format!("skipped {skipped}"))
+}
+
+/// A remark on the messages that were skipped; `None` if there are none.
+#[must_use]
+pub fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
+    let SkippedMessages { off_clock, scans_without_odometry } = skipped;
+    let far = format!("{} whose time is far from that of all others", grouped(off_clock.into()));
+    let scans = format!("{} without odometry", counted(scans_without_odometry as usize, "scan"));
+    let reasons = [(off_clock, far), (scans_without_odometry, scans)];
+    let reasons = reasons.into_iter().filter(|(count, _)| *count > 0);
+    let parts: Vec<_> = reasons.map(|(_, what)| what).collect();
+    (!parts.is_empty()).then(|| format!("skipped messages: {}", parts.join(", ")))
+}
+
+/// A limit that was reached, and the option that raises it.
+fn limit(reached: &Limit, facts: &Facts) -> String {
+    let Limit { option, value, .. } = *reached;
+    let option = option.map_or(String::new(), |option| format!(" ({option})"));
+    let value = value.unwrap_or_default() as usize;
+    let search = |limit| match limit {
+        SearchLimit::Edges => {
+            let edges = counted(value, "edge");
+            format!("the search was limited to worlds with at most {edges}{option}")
+        }
+        SearchLimit::Steps => {
+            format!("the search reached its limit of {}{option}", counted(value, "step"))
+        }
+        SearchLimit::Decisions => "the search has too many places to decide".to_owned(),
+        SearchLimit::Stopped => "the search was stopped".to_owned(),
+    };
+    match reached.reached {
+        ReachedLimit::SmallerWorld(limit) => {
+            format!("a smaller world may explain it: {}", search(limit))
+        }
+        ReachedLimit::World(limit) => {
+            let class = facts.class.map_or(String::new(), |class| format!(" of class {class}"));
+            format!("no world{class} was found: {}", search(limit))
+        }
+        ReachedLimit::Darts { algorithm, event, .. } => {
+            let darts = counted(value, "edge end");
+            format!(
+                "{} was followed up to event {}: its map has more than {darts} there{option}",
+                algorithm.in_words(),
+                event + 1
+            )
+        }
+    }
+}
+
+/// What was checked, and against what: names and texts.
+#[must_use]
+pub fn facts(report: &LogReport) -> Vec<(&'static str, String)> {
+    let facts = &report.facts;
+    let field = facts.field_of_view.to_degrees();
+    let is_narrow = facts.evidence == Evidence::Laser && field < ALL_AROUND;
+    let texts = [
+        ("events", Some(events(report))),
+        (
+            "scanner",
+            is_narrow.then(|| {
+                let unseen = "arms that point back beside the robot's way are hardly seen";
+                format!("{field:.0} degrees: {unseen}")
+            }),
+        ),
+        (
+            "odometry",
+            facts.drift.map(|drift| {
+                let drift = drift.to_degrees();
+                let what = "scans are matched with the walls of earlier ones";
+                format!("its heading drifts by {drift:.1} degrees in 10 m: {what}")
+            }),
+        ),
+        ("marker", facts.added_marker.map(added_marker)),
+        ("world", Some(world(report))),
+        ("lengths", lengths(facts.lengths)),
+        ("unique", unique(facts)),
+        ("twin", facts.twin.as_ref().map(twin)),
+        ("doors", facts.doors.map(doors)),
+        ("map", facts.map.map(map)),
+    ];
+    texts.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
+}
+
+fn events(report: &LogReport) -> String {
+    let Facts { evidence, images, scans, .. } = report.facts;
+    let count = counted(report.events.len(), "event");
+    let source = match evidence {
+        Evidence::Recorded => "recorded in the log".to_owned(),
+        Evidence::Scenes => "inferred from scenes and odometry".to_owned(),
+        Evidence::Images => {
+            format!("inferred from {} images and odometry", grouped(images.into()))
+        }
+        Evidence::Laser => {
+            format!("inferred from {} laser scans and odometry", grouped(scans.into()))
+        }
+    };
+    format!("{count}, {source}")
+}
+
+fn added_marker(added: AddedMarker) -> String {
+    match added {
+        AddedMarker::Assumed { position: [x, y], heading, seen } => {
+            let towards = heading.map_or(String::new(), |heading| {
+                format!(", heading {:.0} degrees", heading.to_degrees())
+            });
+            format!(
+                "assumed, not in the log: at x {x:.1} m, y {y:.1} m of odometry{towards}; seen at {}",
+                counted(seen, "visit")
+            )
+        }
+        AddedMarker::Fiducial { sightings, elsewhere } => {
+            let elsewhere = match elsewhere {
+                0 => String::new(),
+                count => format!(", {count} of them at no junction that was visited"),
+            };
+            format!("a fiducial with {}{elsewhere}", counted(sightings, "sighting"))
+        }
+    }
+}
+
+fn world(report: &LogReport) -> String {
+    let facts = &report.facts;
+    if let Some(world) = &facts.world
+        && let Some(left) = world.candidates_left
+    {
+        let WorldFact { name, start, candidates_at_start, pose, .. } = world;
+        let from = match start {
+            None => "from any start".to_owned(),
+            Some(start) => format!("from {start}"),
+        };
+        let fit = match (&report.divergence, left, pose) {
+            (Some(_), ..) => {
+                format!("{} at the start", counted(*candidates_at_start, "candidate pose"))
+            }
+            (None, _, Some(pose)) => format!("the robot is {}", pose_name(pose)),
+            (None, left, None) => format!("{} left", counted(left, "candidate pose")),
+        };
+        return format!("{name}, {from}; {fit}");
+    }
+    let Some(smallest) = &facts.smallest else { return "unknown".to_owned() };
+    let size = format!("{}, {}", counted(smallest.edges, "edge"), vertices(smallest.vertices));
+    match (facts.unique, smallest.least) {
+        (Some(true), _) => format!("unknown; the only one that explains the log has {size}"),
+        (_, true) => format!("unknown; the smallest that explains the log has {size}"),
+        (_, false) => format!("unknown; one that explains the log has {size}"),
+    }
+}
+
+/// How many hallways were measured and compared; `None` if the robot did not move.
+fn lengths(hallways: MeasuredHallways) -> Option<String> {
+    let MeasuredHallways { moves, measured, compared } = hallways;
+    match (moves, measured, compared) {
+        (0, ..) => None,
+        (_, 0, _) => Some("not compared: no odometry between the junctions".to_owned()),
+        (_, _, 0) => Some("not compared: no hallway is known to be measured twice".to_owned()),
+        _ => {
+            let [compared, moves] = [compared, moves].map(|count| grouped(count as u128));
+            Some(format!("{compared} of {moves} moves compared with earlier ones"))
+        }
+    }
+}
+
+/// Whether the log determines its world; `None` if that is not known.
+#[must_use]
+pub fn unique(facts: &Facts) -> Option<String> {
+    let Some(doors) = &facts.never_followed else {
+        return (facts.unique == Some(false)).then(|| {
+            let ways =
+                format!("the junction of the marker may have been entered in {} ways", facts.ways);
+            format!("This log does not determine its world: {ways}.")
+        });
+    };
+    let never = match doors.len() {
+        0 => return Some("This log determines its world.".to_owned()),
+        1 => "1 door was".to_owned(),
+        count => format!("{count} doors were"),
+    };
+    let door = |OpenDoor { vertex, door, toward }: &OpenDoor| match toward {
+        Some(toward) => format!("{vertex} toward {toward}"),
+        None => format!("{vertex} door {door}"),
+    };
+    let mut listed: Vec<String> = doors.iter().take(LISTED).map(door).collect();
+    listed.extend(more(listed.len(), doors.len()));
+    let listed = listed.join(", ");
+    Some(format!("This log does not determine its world: {never} never followed: {listed}."))
+}
+
+fn twin(twin: &Twin) -> String {
+    let Twin { vertices: count, edges, genus, figure, worlds, marker, first_figure, .. } = twin;
+    let first = first_figure.map_or(String::new(), |figure| format!(", {figure} of the paper"));
+    let other = figure.map_or(String::new(), |figure| format!(": {figure} of the paper"));
+    let size = format!("{}, {} and genus {genus}", vertices(*count), counted(*edges, "edge"));
+    let more = match (worlds, twin.may_be_more) {
+        (1, false) => String::new(),
+        (count, false) => format!(" There are {count} such worlds with as many edges."),
+        (count, true) => format!(" There are at least {count} such worlds with as many edges."),
+    };
+    format!(
+        "Another world explains this log as well, with {size}{other}. With an {} marker no walk \
+         distinguishes it from the world above{first}.{more}",
+        marker.name()
+    )
+}
+
+fn doors(doors: ComparedDoors) -> String {
+    let ComparedDoors { algorithm, choices, recovers, departs_after, .. } = doors;
+    let choices = match (choices, algorithm) {
+        (_, MappingAlgorithm::Folding) => {
+            let recovery = if recovers { " with recovery" } else { "" };
+            format!("those of the folding explorer{recovery}")
+        }
+        (MatchedChoices::Default, _) => "those of Algorithm 1 with its default choices".to_owned(),
+        (MatchedChoices::Other { from: None }, _) => {
+            "allowed by Algorithm 1; with its default choices it would continue".to_owned()
+        }
+        (MatchedChoices::Other { from: Some(event) }, _) => {
+            let event = event + 1;
+            format!("allowed by Algorithm 1; not its default choices from event {event} on")
+        }
+    };
+    match departs_after {
+        Some(event) => format!("{choices}; up to event {event}"),
+        None => choices,
+    }
+}
+
+fn map(MapSize { complete, vertices: count, edges, unexplored }: MapSize) -> String {
+    let size = format!("{}, {}", vertices(count), counted(edges, "edge"));
+    if complete {
+        format!("complete: {size}")
+    } else {
+        format!("{size} known, {} unexplored", counted(unexplored, "edge end"))
+    }
+}
+
+/// The cases that are covered, and those that are not but can be.
+#[must_use]
+pub fn covered(coverage: &[CoveredCase]) -> String {
+    // A run that diverged may cover cases that its world does not have.
+    let is_possible = |case: &&CoveredCase| case.count > 0 || case.reachable != Some(false);
+    let (covered, missed): (Vec<_>, Vec<_>) =
+        coverage.iter().filter(is_possible).partition(|case| case.count > 0);
+    let counts: Vec<_> = covered
+        .iter()
+        .map(|CoveredCase { case, count, .. }| format!("{case} {}", grouped((*count).into())))
+        .collect();
+    let missed: Vec<_> = missed.iter().map(|case| case.case).collect();
+    let part = |head: &str, list: String| {
+        if list.is_empty() { String::new() } else { format!("{head}: {list}") }
+    };
+    format!(
+        "{} of {} cases{}{}",
+        covered.len(),
+        covered.len() + missed.len(),
+        part("", counts.join(", ")),
+        part("; not covered", missed.join(", "))
+    )
+}
+
+/// Which required cases are not covered.
+#[must_use]
+pub fn required(coverage: &RequiredCoverage) -> String {
+    let RequiredCoverage { required, not_covered, not_applicable } = coverage;
+    let not_covered = match &not_covered[..] {
+        [] => "all are covered".to_owned(),
+        not => format!("not covered: {}", not.join(", ")),
+    };
+    let foreign = match &not_applicable[..] {
+        [] => String::new(),
+        cases => format!(
+            "; the folding explorer does not have these cases of Algorithm 1: {}",
+            cases.join(", ")
+        ),
+    };
+    let cases = if required.len() == 1 { "required case" } else { "required cases" };
+    format!("{} {cases}: {not_covered}{foreign}", required.len())
+}
