@@ -172,12 +172,16 @@ impl VisionReport {
         Self { calibration, rates, errors, confusion }
     }
 
+    /// Whether each target is met.
+    pub fn statuses(&self) -> impl Iterator<Item = TargetStatus> + '_ {
+        let rates = self.rates.iter().map(Rate::standing);
+        rates.chain(self.errors.iter().map(Errors::standing))
+    }
+
     /// Whether all targets are met.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
-        let rates = self.rates.iter().map(Rate::standing);
-        let errors = self.errors.iter().map(Errors::standing);
-        rates.chain(errors).max().unwrap_or(TargetStatus::NotShown)
+        self.statuses().max().unwrap_or(TargetStatus::NotShown)
     }
 }
 

@@ -1,16 +1,16 @@
 //! `evaluate vision --clutter`: sensing with things in the image that a plain building lacks.
 
-use std::{io::Write, time::Instant};
+use std::io::Write;
 
 use serde::Serialize;
 use toposlam_robot::bound::upper_bound;
 use toposlam_terminal::{
     CliError, Outcome,
-    json::print_line,
     progress::Progress,
-    remark,
-    text::{counted, grouped, print_rows},
+    text::{grouped, print_rows},
 };
+
+use super::evaluation_report::{Ending, EvaluationReport, outcome, unmeasured};
 
 use toposlam_simulator::{
     EffectSettings,
@@ -36,58 +36,44 @@ struct ClutterLine {
     wrong_markers: usize,
 }
 
-/// Measures the same views with each kind of clutter, and prints the counts. `judge` returns the judge of
-/// views.
+/// Measures the same views with each kind of clutter. `judge` returns the judge of views.
 pub(super) fn measure(
     judge: impl Fn(&ViewSampler, &[Calibration]) -> Result<Judge, CliError>,
     views: &ViewSampler,
     count: u64,
-    json: bool,
+    mut sheet: EvaluationReport,
     out: &mut dyn Write,
 ) -> Result<Outcome, CliError> {
-    let begun = Instant::now();
-    let unmeasured = |error: String| CliError::at("evaluate", error);
-    let kinds = cluttered_settings().map_err(|error| unmeasured(error.to_string()))?;
-    let (mut rows, mut all, mut interrupted) = (Vec::new(), ClutterCounts::default(), false);
+    let kinds = cluttered_settings().map_err(unmeasured)?;
+    let (mut rows, mut all, mut ending) = (Vec::new(), ClutterCounts::default(), Ending::Whole);
     for (name, settings) in kinds {
         let views = ViewSampler { settings, ..views.clone() };
         let judge = judge(&views, &[Calibration::Right])?;
         let progress = Progress::new(&format!("views, clutter: {name}"), "views")?;
-        let judged = judge
-            .views(&views, 0..count, Calibration::Right, &progress)
-            .map_err(|error| unmeasured(error.to_string()))?;
+        let judged = judge.views(&views, 0..count, Calibration::Right, &progress);
         progress.finish();
-        let counts = ClutterCounts::of(&judged);
-        interrupted |= (counts.all as u64) < count;
+        let counts = ClutterCounts::of(&judged.map_err(unmeasured)?);
         all.all += counts.all;
         all.wrong += counts.wrong;
         all.wrong_markers += counts.wrong_markers;
-        if json {
-            print_line(out, "clutter", &line(name, &views.settings, counts))?;
-        }
+        sheet.line("clutter", &line(name, &views.settings, counts))?;
         rows.push(row(name, counts));
-        if interrupted {
+        if (counts.all as u64) < count {
+            ending = Ending::Interrupted;
             break;
         }
     }
     let wrong = all.wrong + all.wrong_markers;
     let status = TargetStatus::of(wrong, all.all, 0.0);
-    if !json {
-        writeln!(out, "Sensing on {} views with each kind of clutter\n", grouped(count.into()))?;
-        let heads = ["clutter", "right", "unknown", "wrong scenes", "wrong markers", ""];
-        print_rows(out, heads, &rows)?;
-        let views = grouped((all.all as u64).into());
-        let most = 100.0 * upper_bound(wrong, all.all.max(1));
-        let wrong = grouped(wrong as u128);
-        writeln!(out, "\nwrong: {wrong} of {views}, at most {most:.3} % ({})", status.name())?;
-    }
-    let threads = counted(rayon::current_num_threads(), "thread");
-    remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
-    Ok(match status {
-        TargetStatus::Missed => Outcome::Violated,
-        TargetStatus::Met if !interrupted => Outcome::Holds,
-        TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
-    })
+    let text = sheet.text();
+    writeln!(text, "Sensing on {} views with each kind of clutter\n", grouped(count.into()))?;
+    let heads = ["clutter", "right", "unknown", "wrong scenes", "wrong markers", ""];
+    print_rows(text, heads, &rows)?;
+    let views = grouped((all.all as u64).into());
+    let most = 100.0 * upper_bound(wrong, all.all.max(1));
+    let wrong = grouped(wrong as u128);
+    writeln!(text, "\nwrong: {wrong} of {views}, at most {most:.3} % ({})", status.name())?;
+    sheet.print(out, outcome(status, ending))
 }
 
 fn line(clutter: &'static str, settings: &EffectSettings, counts: ClutterCounts) -> ClutterLine {

@@ -1,20 +1,21 @@
 //! `evaluate control`: compares Algorithm 2, through every door of every junction, with the
 //! specification. Section 4.
 
-use std::{io::Write, time::Instant};
+use std::io::Write;
 
 use serde_json::json;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
-    json::print_line,
     progress::Progress,
-    remark,
     text::{counted, grouped},
-    use_threads,
 };
 
-use super::robots::{PLANS, RandomPlans, RobotArguments, print_failure, share, share_json};
+use super::{
+    evaluation_report::{Ending, outcome},
+    robots::{PLANS, RandomPlans, RobotArguments},
+};
+use toposlam_simulator::evaluation::report::TargetStatus;
 use toposlam_simulator::evaluation::traversals::{
     JudgedTraversal, Traversal, TraversalOutcome as Made, TraversalSampler,
 };
@@ -52,74 +53,25 @@ pub(super) struct EvaluateControlArguments {
 
 impl EvaluateControlArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.robots.threads)?;
+        let mut sheet = self.robots.report.begin()?;
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
         let equipment = self.robots.equipment()?;
-        let begun = Instant::now();
         let progress = Progress::new("traversals", "traversals")?;
         let judged = traversals.judged(0..self.traversals, &equipment, &progress);
         progress.finish();
-        let outcome = if judged.iter().any(|traversal| traversal.outcome != Made::Right) {
-            Outcome::Violated
-        } else if judged.is_empty() || (judged.len() as u64) < self.traversals {
-            Outcome::Incomplete
-        } else {
-            Outcome::Holds
-        };
-        if self.robots.json {
-            self.print_json(&judged, &traversals, outcome, out)?;
-        } else {
-            self.print(&judged, &traversals, outcome, out)?;
-        }
-        remark!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(outcome)
-    }
+        let ending = Ending::of(judged.len(), self.traversals);
+        let (wrong, gave_up) = tally(&judged);
+        let status = if wrong + gave_up > 0 { TargetStatus::Missed } else { TargetStatus::Met };
+        let outcome = outcome(status, ending);
 
-    fn print(
-        &self,
-        judged: &[JudgedTraversal],
-        traversals: &TraversalSampler,
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
         let doors = grouped(traversals.cases() as u128);
         let plans = counted(traversals.plans(), "floor plan");
-        writeln!(out, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
-        writeln!(out, "  {doors} pairs of entry door and exit door in {plans}")?;
+        let text = sheet.text();
+        writeln!(text, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
+        writeln!(text, "  {doors} pairs of entry door and exit door in {plans}")?;
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
-            print_failure(out, named(traversal), &traversal.outcome)?;
-        }
-        let (wrong, gave_up) = tally(judged);
-        writeln!(out, "  wrong    {}", share(wrong, judged.len()))?;
-        writeln!(out, "  gave up  {}", share(gave_up, judged.len()))?;
-        if !judged.is_empty() {
-            let mean = |sum: f64| sum / judged.len() as f64;
-            let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
-            let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
-            let frames = self.robots.frames();
-            writeln!(
-                out,
-                "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal"
-            )?;
-        }
-        let verdict = match outcome {
-            Outcome::Incomplete if judged.is_empty() => "incomplete: nothing was measured",
-            Outcome::Incomplete => "incomplete, interrupted",
-            Outcome::Holds => "holds in these traversals: every door leads where it should",
-            Outcome::Violated => "violated",
-        };
-        Ok(writeln!(out, "{verdict}")?)
-    }
-
-    fn print_json(
-        &self,
-        judged: &[JudgedTraversal],
-        traversals: &TraversalSampler,
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
+            sheet.failure(named(traversal), &traversal.outcome)?;
             let [junction, from] = junctions(traversal);
             let line = json!({
                 "traversal": traversal.traversal.number,
@@ -128,17 +80,31 @@ impl EvaluateControlArguments {
                 "gave_up": matches!(traversal.outcome, Made::GaveUp(_)),
                 "what": traversal.outcome.to_string(),
             });
-            print_line(out, "failure", &line)?;
+            sheet.line("failure", &line)?;
         }
-        let (wrong, gave_up) = tally(judged);
-        print_line(out, "rate", &share_json("wrong", wrong, judged.len()))?;
-        print_line(out, "rate", &share_json("gave up", gave_up, judged.len()))?;
+        sheet.share("wrong", wrong, judged.len())?;
+        sheet.share("gave up", gave_up, judged.len())?;
+        if !judged.is_empty() {
+            let mean = |sum: f64| sum / judged.len() as f64;
+            let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
+            let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
+            let frames = self.robots.frames();
+            writeln!(
+                sheet.text(),
+                "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal"
+            )?;
+        }
+        let verdict = match (outcome, ending) {
+            (Outcome::Holds, _) => "holds in these traversals: every door leads where it should",
+            (Outcome::Violated, _) => "violated",
+            (_, Ending::Empty) => "incomplete: nothing was measured",
+            _ => "incomplete, interrupted",
+        };
         let line = json!({
             "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
-            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
         });
-        print_line(out, "control", &line)
+        sheet.finish(out, ("control", &line), outcome, verdict)
     }
 }
 

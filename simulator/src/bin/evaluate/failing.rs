@@ -15,6 +15,8 @@ use toposlam_terminal::{
     scene::SceneLine,
     text::{counted, print_hanging},
 };
+
+use super::evaluation_report::EvaluationReport;
 use toposlam_vision::annotate;
 
 use toposlam_simulator::{
@@ -126,17 +128,15 @@ fn mark(calibration: Calibration) -> &'static str {
     }
 }
 
-/// Prints one view: its settings, its scene and the verdict.
-pub(super) fn print(
-    out: &mut dyn Write,
+/// Adds one view: its settings, its scene and the verdict.
+pub(super) fn add(
+    sheet: &mut EvaluationReport,
     judged: &JudgedView,
     calibration: Calibration,
-    json: bool,
 ) -> Result<(), CliError> {
-    if json {
-        return print_view(out, judged, calibration, None);
-    }
     let line = Line::new(judged, calibration, None);
+    sheet.line("view", &line)?;
+    let out = sheet.text();
     writeln!(out, "view {}, calibration {}: {}", line.view, line.calibration, line.verdict)?;
     let ([width, height], [x, y]) = (line.size, line.position);
     let heading = line.heading.to_degrees();

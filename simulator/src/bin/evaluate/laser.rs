@@ -1,25 +1,24 @@
 //! `evaluate laser`: compares junctions that are sensed with a laser scanner with the truth.
 
-use std::{io::Write, path::PathBuf, time::Instant};
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
-use serde_json::json;
+use serde_json::{Map, json};
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
-    json::print_line,
     method_options::{SafeguardOptions, safeguards_in_words},
     progress::Progress,
-    remark,
     text::{counted, grouped, print_indented, print_rows},
-    use_threads,
 };
 use toposlam_vision::laser::params::LaserParams;
 
 use super::{
     control,
-    report::{percent, rate_row},
-    robots::{PLANS, RandomPlans, print_failure, usual_plans},
+    evaluation_report::{
+        Ending, EvaluationReport, ReportArguments, outcome, percent, verdict_on_targets,
+    },
+    robots::{PLANS, RandomPlans, usual_plans},
 };
 use toposlam_simulator::{
     RobotEquipment, ScannerParams,
@@ -30,7 +29,7 @@ use toposlam_simulator::{
             laser_report::{LaserGroup, LaserReport},
             scanned_run::{ScannedOutcome, ScannedRun},
         },
-        report::{Rate, TargetStatus},
+        report::Rate,
         traversals::{JudgedTraversal, TraversalOutcome, TraversalSampler},
     },
     options::robot_sensor::read_scanner,
@@ -108,12 +107,8 @@ pub(super) struct EvaluateLaserArguments {
     /// Measure only the walk with this number, and print each of its visits
     #[arg(long, value_name = "N", conflicts_with_all = ["walks", "runs", "traversals"])]
     walk: Option<u64>,
-    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Print one JSON object per figure
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 /// A kind of random buildings.
@@ -150,8 +145,7 @@ impl From<Buildings> for BuildingKind {
 
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.threads)?;
-        let begun = Instant::now();
+        let mut sheet = self.report.begin()?;
         let scanner = self.scanner.as_deref().map(read_scanner).transpose()?;
         let sampler = WalkSampler {
             seed: self.seed,
@@ -169,32 +163,54 @@ impl EvaluateLaserArguments {
             Some(_) => [0, 0],
             None => [self.runs, self.traversals],
         };
-        let wanted = numbers.end - numbers.start;
+        let wanted = numbers.end - numbers.start + runs + traversals;
+        let method = self.safeguards.folding();
         let progress = Progress::new("walks", "walks")?;
         let walks = sampler.judged(numbers, &progress);
         progress.finish();
         let progress = Progress::new("runs", "runs")?;
-        let made = sampler.runs(0..runs, self.safeguards.folding(), &progress);
+        let runs = sampler.runs(0..runs, method, &progress);
         progress.finish();
-        let driven = self.driven(traversals, scanner.unwrap_or_default())?;
-        let interrupted = (walks.len() as u64) < wanted
-            || (made.len() as u64) < runs
-            || (driven.len() as u64) < traversals;
-        let report = LaserReport::of(&walks, &made, &driven);
-        let outcome = match report.standing() {
-            TargetStatus::Missed => Outcome::Violated,
-            TargetStatus::Met if !interrupted => Outcome::Holds,
-            TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
-        };
-        if self.json {
-            let count = driven.len();
-            self.print_json((&walks, &made, count), &report, interrupted, outcome, out)?;
-        } else {
-            self.print((&walks, &made, &driven), &report, interrupted, outcome, out)?;
+        let traversals = self.driven(traversals, scanner.unwrap_or_default())?;
+        let measured = walks.len() + runs.len() + traversals.len();
+        let interrupted = (measured as u64) < wanted;
+        let ending = if interrupted { Ending::Interrupted } else { Ending::Whole };
+        let report = LaserReport::of(&walks, &runs, &traversals);
+        let outcome = outcome(report.standing(), ending);
+
+        let line = json!({
+            "walks": walks.len(), "runs": runs.len(), "traversals": traversals.len(),
+            "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
+            "audits": method.audits(), "recover": method.recovers(),
+        });
+        sheet.line("source", &line)?;
+        self.print_source(&walks, !runs.is_empty(), sheet.text())?;
+        sheet.rate_rows(&report.rates)?;
+        if report.groups.iter().any(|group| group.wrong + group.undecided > 0) {
+            let text = sheet.text();
+            writeln!(text, "\n  Visits that are not right, by what they have in common:\n")?;
+            let rows: Vec<_> = report.groups.iter().map(group_row).collect();
+            print_rows(text, ["by", "", " wrong", "undecided", "    of", "    rate"], &rows)?;
         }
-        let threads = counted(rayon::current_num_threads(), "thread");
-        remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
-        Ok(outcome)
+        writeln!(sheet.text())?;
+        for walk in &walks {
+            self.add_walk(walk, &mut sheet)?;
+        }
+        for run in &runs {
+            add_run(run, &mut sheet)?;
+        }
+        for traversal in traversals.iter().filter(|it| it.outcome != TraversalOutcome::Right) {
+            sheet.failure(control::named(traversal), &traversal.outcome)?;
+        }
+        sheet.rate_lines(&Map::new(), &report.rates)?;
+        for LaserGroup { by, what, wrong, undecided, of } in &report.groups {
+            let line =
+                json!({"by": by, "what": what, "wrong": wrong, "undecided": undecided, "of": of});
+            sheet.line("failures", &line)?;
+        }
+        let line = json!({ "target": report.standing().name(), "interrupted": interrupted });
+        let verdict = verdict_on_targets(outcome, ending, report.rates.iter().map(Rate::standing));
+        sheet.finish(out, ("verdict", &line), outcome, &format!("\n{verdict}"))
     }
 
     /// Drives by scans from junction to junction of floor plans.
@@ -210,147 +226,81 @@ impl EvaluateLaserArguments {
         Ok(driven)
     }
 
-    fn print(
+    fn print_source(
         &self,
-        (walks, runs, traversals): (&[JudgedWalk], &[ScannedRun], &[JudgedTraversal]),
-        report: &LaserReport,
-        interrupted: bool,
-        outcome: Outcome,
+        walks: &[JudgedWalk],
+        with_runs: bool,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        let visits: usize = walks.iter().map(|walk| walk.visits.len()).sum();
+        let visits = counted(walks.iter().map(|walk| walk.visits.len()).sum(), "visit");
         let count = counted(walks.len(), "walk");
-        let visits = counted(visits, "visit");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
         writeln!(out, "  buildings: {}", self.buildings.name())?;
-        if !runs.is_empty() {
+        if with_runs {
             let safeguards = safeguards_in_words(self.safeguards.folding());
             let text = format!("whole runs by the folding explorer {safeguards}");
             writeln!(out, "  {}", text.trim_end())?;
         }
         let degrees = if (self.drift - 1.0).abs() < f64::EPSILON { "degree" } else { "degrees" };
-        writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?;
-        let rows: Vec<_> = report.rates.iter().map(rate_row).collect();
-        let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
-        print_rows(out, heads, &rows)?;
-        if report.groups.iter().any(|group| group.wrong + group.undecided > 0) {
-            writeln!(out, "\n  Visits that are not right, by what they have in common:\n")?;
-            let rows: Vec<_> = report.groups.iter().map(group_row).collect();
-            print_rows(out, ["by", "", " wrong", "undecided", "    of", "    rate"], &rows)?;
-        }
-        writeln!(out)?;
-        for walk in walks {
-            for visit in &walk.visits {
-                if self.walk.is_some() || visit.verdict != LaserVerdict::Right {
-                    let text = format!("walk {}, {}", walk.number, in_words(visit));
-                    print_indented(out, "  ", 4, &text)?;
-                }
-            }
-            for (degree, way) in &walk.invented {
-                let doors = counted(*degree as usize, "door");
-                let text = format!("walk {}, {way:.0} m: invented, {doors}", walk.number);
-                print_indented(out, "  ", 4, &text)?;
-            }
-        }
-        for run in runs.iter().filter(|run| run.outcome != ScannedOutcome::Right) {
-            let ScannedRun { number, moves, way, outcome, .. } = run;
-            let moves = counted(*moves as usize, "move");
-            let text = format!("run {number}, {moves}, {way:.0} m: {}", outcome_in_words(outcome));
-            print_indented(out, "  ", 4, &text)?;
-        }
-        let is_right = |traversal: &&JudgedTraversal| traversal.outcome == TraversalOutcome::Right;
-        for traversal in traversals.iter().filter(|traversal| !is_right(traversal)) {
-            print_failure(out, control::named(traversal), &traversal.outcome)?;
-        }
-        let count =
-            |is: TargetStatus| report.rates.iter().filter(|rate| rate.standing() == is).count();
-        let verdict = match outcome {
-            Outcome::Holds => "holds: all targets are met".to_owned(),
-            Outcome::Violated => {
-                format!("violated: missed {}", counted(count(TargetStatus::Missed), "target"))
-            }
-            Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
-            Outcome::Incomplete => format!(
-                "not shown: the sample is too small for {}",
-                counted(count(TargetStatus::NotShown), "target")
-            ),
-        };
-        Ok(writeln!(out, "\n{verdict}")?)
+        Ok(writeln!(out, "  odometry drifts by up to {} {degrees} in 10 m\n", self.drift)?)
     }
 
-    fn print_json(
-        &self,
-        (walks, runs, traversals): (&[JudgedWalk], &[ScannedRun], usize),
-        report: &LaserReport,
-        interrupted: bool,
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        let line = json!({
-            "walks": walks.len(), "runs": runs.len(), "traversals": traversals,
-            "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
-            "audits": self.safeguards.folding().audits(), "recover": self.safeguards.folding().recovers(),
-        });
-        print_line(out, "source", &line)?;
-        for walk in walks {
-            for visit in &walk.visits {
-                if self.walk.is_none() && visit.verdict == LaserVerdict::Right {
-                    continue;
-                }
-                let found = visit.found;
-                let line = json!({
-                    "walk": walk.number, "way": rounded(visit.way),
-                    "verdict": visit.verdict.name(),
-                    "degree": visit.features.degree, "door": visit.door,
-                    "found_degree": found.map(|(degree, _)| degree),
-                    "found_door": found.and_then(|(_, door)| door),
-                });
-                print_line(out, "visit", &line)?;
+    /// Adds the visits of a walk: those that are not right, or all if it is the only walk.
+    fn add_walk(&self, walk: &JudgedWalk, sheet: &mut EvaluationReport) -> Result<(), CliError> {
+        for visit in &walk.visits {
+            if self.walk.is_none() && visit.verdict == LaserVerdict::Right {
+                continue;
             }
-            for (degree, way) in &walk.invented {
-                let line = json!({
-                    "walk": walk.number, "way": rounded(*way), "verdict": "invented",
-                    "degree": null, "door": null, "found_degree": degree, "found_door": null,
-                });
-                print_line(out, "visit", &line)?;
-            }
-        }
-        for ScannedRun { number, moves, way, recoveries, tally, outcome } in runs {
-            let reason = match outcome {
-                ScannedOutcome::Right => None,
-                ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => Some(reason),
-            };
+            print_indented(
+                sheet.text(),
+                "  ",
+                4,
+                &format!("walk {}, {}", walk.number, in_words(visit)),
+            )?;
+            let found = visit.found;
             let line = json!({
-                "run": number, "moves": moves, "way": rounded(*way), "recoveries": recoveries,
-                "percepts": tally.percepts, "wrong_percepts": tally.wrong,
-                "missing_percepts": tally.passed,
-                "verdict": outcome.name(), "reason": reason,
+                "walk": walk.number, "way": rounded(visit.way),
+                "verdict": visit.verdict.name(),
+                "degree": visit.features.degree, "door": visit.door,
+                "found_degree": found.map(|(degree, _)| degree),
+                "found_door": found.and_then(|(_, door)| door),
             });
-            print_line(out, "run", &line)?;
+            sheet.line("visit", &line)?;
         }
-        for rate in &report.rates {
-            print_line(out, "rate", &rate_line(rate))?;
+        for (degree, way) in &walk.invented {
+            let doors = counted(*degree as usize, "door");
+            sheet.failure(
+                format!("walk {}, {way:.0} m", walk.number),
+                format!("invented, {doors}"),
+            )?;
+            let line = json!({
+                "walk": walk.number, "way": rounded(*way), "verdict": "invented",
+                "degree": null, "door": null, "found_degree": degree, "found_door": null,
+            });
+            sheet.line("visit", &line)?;
         }
-        for LaserGroup { by, what, wrong, undecided, of } in &report.groups {
-            let line =
-                json!({"by": by, "what": what, "wrong": wrong, "undecided": undecided, "of": of});
-            print_line(out, "failures", &line)?;
-        }
-        let line = json!({
-            "target": report.standing().name(), "interrupted": interrupted,
-            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
-        });
-        print_line(out, "verdict", &line)
+        Ok(())
     }
 }
 
-fn rate_line(rate: &Rate) -> serde_json::Value {
-    json!({
-        "of": rate.subject.name(), "what": rate.what, "seen": rate.seen, "cases": rate.cases,
-        "rate": rate.rate(), "upper_bound": rate.upper_bound(), "limit": rate.limit,
-        "target": rate.limit.map(|_| rate.standing().name()),
-        "cases_needed": rate.cases_needed(),
-    })
+fn add_run(run: &ScannedRun, sheet: &mut EvaluationReport) -> Result<(), CliError> {
+    let ScannedRun { number, moves, way, recoveries, tally, outcome } = run;
+    let reason = match outcome {
+        ScannedOutcome::Right => None,
+        ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => Some(reason),
+    };
+    if let Some(reason) = reason {
+        let moves = counted(*moves as usize, "move");
+        let how = format!("{}: {reason}", outcome.name());
+        sheet.failure(format!("run {number}, {moves}, {way:.0} m"), how)?;
+    }
+    let line = json!({
+        "run": number, "moves": moves, "way": rounded(*way), "recoveries": recoveries,
+        "percepts": tally.percepts, "wrong_percepts": tally.wrong,
+        "missing_percepts": tally.passed,
+        "verdict": outcome.name(), "reason": reason,
+    });
+    sheet.line("run", &line)
 }
 
 fn group_row(group: &LaserGroup) -> [String; 6] {
@@ -376,16 +326,6 @@ fn in_words(visit: &JudgedLaserVisit) -> String {
         None => String::new(),
     };
     format!("{way:.0} m: {}, {expected}{found}", verdict.name())
-}
-
-/// How a run ended, in words.
-fn outcome_in_words(outcome: &ScannedOutcome) -> String {
-    match outcome {
-        ScannedOutcome::Right => outcome.name().to_owned(),
-        ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => {
-            format!("{}: {reason}", outcome.name())
-        }
-    }
 }
 
 /// To a tenth.

@@ -1,7 +1,7 @@
 //! `evaluate lengths`: the lengths and turns of hallways by odometry, false alarms, and changes that are
 //! detected.
 
-use std::{io::Write, time::Instant};
+use std::io::Write;
 
 use serde_json::json;
 use toposlam_model::{
@@ -11,14 +11,14 @@ use toposlam_robot::bound::upper_bound;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
-    json::print_line,
     progress::Progress,
-    remark,
     text::{counted, grouped, print_rows},
-    use_threads,
 };
 
-use super::robots::{RandomPlans, RobotArguments, print_failure, share_json};
+use super::{
+    evaluation_report::{Ending, outcome},
+    robots::{RandomPlans, RobotArguments},
+};
 use toposlam_simulator::evaluation::{
     measured_run::{LENGTH_CHANGES, MeasuredRun},
     report::TargetStatus,
@@ -63,92 +63,40 @@ const TARGET: f64 = 1e-4;
 
 impl EvaluateLengthsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.robots.threads)?;
+        let mut sheet = self.robots.report.begin()?;
         let plans = self.robots.plans(RandomPlans::Large(self.plans), usize::MAX)?;
         let RobotArguments { seed, noise, .. } = self.robots;
         let algorithm = MappingAlgorithm::Algorithm1;
         let sampler = RunSampler::new(plans, usize::MAX, Faults::None, seed, noise, algorithm);
         let equipment = self.robots.equipment()?;
-        let begun = Instant::now();
         let numbers = 0..sampler.runs_with(self.traversals);
         let progress = Progress::new("runs", "runs")?;
         let runs = sampler.measured(numbers, &equipment, &progress);
-        let interrupted = progress.stop();
+        let ending = if progress.stop() { Ending::Interrupted } else { Ending::Whole };
         progress.finish();
         let tally = Tally::of(&runs);
-        let outcome = match tally.status() {
-            TargetStatus::Missed => Outcome::Violated,
-            _ if interrupted => Outcome::Incomplete,
-            TargetStatus::Met => Outcome::Holds,
-            TargetStatus::NotShown => Outcome::Incomplete,
-        };
-        if self.robots.json {
-            self.print_json(&runs, &tally, outcome, out)?;
-        } else {
-            self.print(&runs, &tally, (outcome, interrupted), out)?;
-        }
-        remark!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(outcome)
-    }
+        let outcome = outcome(tally.status(), ending);
 
-    fn print(
-        &self,
-        runs: &[MeasuredRun],
-        tally: &Tally,
-        (outcome, interrupted): (Outcome, bool),
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        let RobotArguments { seed, .. } = self.robots;
-        writeln!(out, "Lengths of hallways, by {}, seed {seed}", self.robots.sensing())?;
         let [measured, compared] =
             [tally.measured, tally.compared].map(|count| grouped(count as u128));
         let count = counted(runs.len(), "run");
-        writeln!(out, "  {measured} traversals in {count}")?;
-        writeln!(out, "  {compared} of them in hallways that were measured before")?;
-        for (run, alarm) in alarms(runs) {
+        let text = sheet.text();
+        writeln!(text, "Lengths of hallways, by {}, seed {seed}", self.robots.sensing())?;
+        writeln!(text, "  {measured} traversals in {count}")?;
+        writeln!(text, "  {compared} of them in hallways that were measured before")?;
+        for (run, alarm) in alarms(&runs) {
             let what = format!("run {} in {}", run.case.number, run.case.plan_name);
-            print_failure(out, what, alarm.measurement)?;
+            sheet.failure(what, alarm.measurement)?;
         }
-        let [robot, log] = tally.tests.each_ref().map(|test| {
-            let most = 100.0 * upper_bound(test.alarms, test.measured);
-            format!("{}, at most {most:.3} %", grouped(test.alarms as u128))
-        });
-        let mut rows = vec![["false alarms".to_owned(), robot, log]];
-        for (index, metres) in LENGTH_CHANGES.into_iter().enumerate() {
-            let [robot, log] = tally.tests.each_ref().map(|test| {
-                let [found, of] = test.found[index];
-                let [found, of] = [found, of].map(|count| grouped(count as u128));
-                format!("{found} of {of}")
-            });
-            rows.push([format!("{metres:.1} m found"), robot, log]);
-        }
-        print_rows(out, ["", "calibrated base", "log"], &rows)?;
-        let verdict = match outcome {
-            Outcome::Holds => "holds: at most 1 false alarm in 10,000 traversals",
-            Outcome::Violated => "violated: more than 1 false alarm in 10,000 traversals",
-            Outcome::Incomplete if interrupted => "incomplete, interrupted",
-            Outcome::Incomplete => "not shown: there are too few traversals",
-        };
-        Ok(writeln!(out, "{verdict}")?)
-    }
-
-    fn print_json(
-        &self,
-        runs: &[MeasuredRun],
-        tally: &Tally,
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
+        print_rows(sheet.text(), ["", "calibrated base", "log"], &tally.rows())?;
         for (noise, test) in ["calibrated", "log"].into_iter().zip(&tally.tests) {
-            let line = |what: &str, [seen, cases]: [usize; 2]| {
-                share_json(&format!("{what}, {noise}"), seen, cases)
-            };
-            print_line(out, "rate", &line("false alarms", [test.alarms, test.measured]))?;
+            let alarms = [test.alarms, test.measured];
+            sheet.share_line(&format!("false alarms, {noise}"), alarms)?;
             for (metres, found) in LENGTH_CHANGES.into_iter().zip(test.found) {
-                print_line(out, "rate", &line(&format!("{metres:.1} m found"), found))?;
+                sheet.share_line(&format!("{metres:.1} m found, {noise}"), found)?;
             }
         }
-        let first_alarm = alarms(runs).next().map(|(run, alarm)| {
+        let first_alarm = alarms(&runs).next().map(|(run, alarm)| {
             json!({
                 "run": run.case.number, "plan": run.case.plan_name, "visit": alarm.visit,
                 "earlier": alarm.earlier, "what": alarm.measurement.to_string(),
@@ -156,10 +104,15 @@ impl EvaluateLengthsArguments {
         });
         let line = json!({
             "runs": runs.len(), "traversals": tally.measured, "compared": tally.compared,
-            "seed": self.robots.seed, "target": TARGET, "first_alarm": first_alarm,
-            "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
+            "seed": seed, "target": TARGET, "first_alarm": first_alarm,
         });
-        print_line(out, "lengths", &line)
+        let verdict = match (outcome, ending) {
+            (Outcome::Holds, _) => "holds: at most 1 false alarm in 10,000 traversals",
+            (Outcome::Violated, _) => "violated: more than 1 false alarm in 10,000 traversals",
+            (_, Ending::Interrupted) => "incomplete, interrupted",
+            _ => "not shown: there are too few traversals",
+        };
+        sheet.finish(out, ("lengths", &line), outcome, verdict)
     }
 }
 
@@ -199,6 +152,23 @@ impl Tally {
             TestTally { measured, alarms: tests().map(|test| test.alarms.len()).sum(), found }
         });
         Self { measured, compared: sum(|run| run.compared), tests }
+    }
+
+    /// The rows of the table, one column for each of the tests.
+    fn rows(&self) -> Vec<[String; 3]> {
+        let [robot, log] = self.tests.each_ref().map(|test| {
+            let most = 100.0 * upper_bound(test.alarms, test.measured);
+            format!("{}, at most {most:.3} %", grouped(test.alarms as u128))
+        });
+        let mut rows = vec![["false alarms".to_owned(), robot, log]];
+        for (index, metres) in LENGTH_CHANGES.into_iter().enumerate() {
+            let [robot, log] = self.tests.each_ref().map(|test| {
+                let [found, of] = test.found[index].map(|count| grouped(count as u128));
+                format!("{found} of {of}")
+            });
+            rows.push([format!("{metres:.1} m found"), robot, log]);
+        }
+        rows
     }
 
     /// Whether the target is met by both.

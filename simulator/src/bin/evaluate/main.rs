@@ -2,14 +2,15 @@
 
 mod clutter;
 mod control;
+mod evaluation_report;
 mod failing;
 mod laser;
 mod lengths;
 mod mistakes;
-mod report;
 mod robots;
 mod runs;
 mod vision;
+mod vision_report;
 
 use std::{
     env,

@@ -1,8 +1,8 @@
 //! `evaluate mistakes`: what one mistake does to the map of every small start.
 
-use std::{io::Write, path::PathBuf, time::Instant};
+use std::{io::Write, path::PathBuf};
 
-use serde_json::json;
+use serde_json::{Value, json};
 use toposlam_model::{
     check::{
         MISTAKE_KINDS, MistakeCheck, MistakeCounts, MistakeKind, MistakeTally, UndetectedMistake,
@@ -12,18 +12,18 @@ use toposlam_model::{
     mapping::MappingMethod,
 };
 
+use toposlam_simulator::evaluation::report::TargetStatus;
 use toposlam_terminal::{
     CliError, Outcome,
     edge_range::EdgeRange,
     exit_codes::help_end,
-    json::print_line,
     method_options::{MethodOptions, safeguards_in_words},
     output,
     progress::Progress,
-    remark,
-    text::{capital, counted, grouped, print_paragraph, print_rows},
-    use_threads,
+    text::{WIDTH, capital, counted, grouped, print_paragraph, print_rows, wrapped},
 };
+
+use super::evaluation_report::{Ending, ReportArguments, outcome};
 
 /// Measure what one mistake does: is the map right, or is the mistake detected?
 ///
@@ -66,17 +66,13 @@ pub(super) struct EvaluateMistakesArguments {
     /// Write the smallest start with an undetected mistake of each kind into this folder
     #[arg(long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
-    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Print JSON objects, one per line
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 impl EvaluateMistakesArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.threads)?;
+        let mut sheet = self.report.begin()?;
         let method = self.method.method()?;
         let check = |edges| {
             let check = MistakeCheck::new(self.class, edges, method);
@@ -86,7 +82,6 @@ impl EvaluateMistakesArguments {
         if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
         }
-        let begun = Instant::now();
         let mut tally = MistakeTally::default();
         for (edges, check) in self.edges.iter().zip(checks) {
             let progress = Progress::new(&counted(edges, "edge"), "runs")?;
@@ -96,26 +91,48 @@ impl EvaluateMistakesArguments {
                 break;
             }
         }
-        let outcome = match () {
-            () if violations(&tally) > 0 => Outcome::Violated,
-            () if tally.interrupted || tally.all().runs() == 0 => Outcome::Incomplete,
-            () => Outcome::Holds,
-        };
-        if self.json {
-            self.print_json(method, &tally, outcome, out)?;
+        let all = tally.all();
+        let ending = if tally.interrupted {
+            Ending::Interrupted
         } else {
-            self.print(method, &tally, outcome, out)?;
+            Ending::of(all.runs() as usize, 0)
+        };
+        let violations = violations(&tally);
+        let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
+        let outcome = outcome(status, ending);
+        self.print(method, &tally, sheet.text())?;
+        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+            report
+                .line("mistake", &mistake_line(kind, tally.counts[at], tally.first[at].as_ref()))?;
         }
+        let line = json!({
+            "class": self.class.name(), "algorithm": method.algorithm().name(),
+            "audits": method.audits(), "recover": method.recovers(),
+            "starts": tally.starts, "runs": all.runs(), "right": all.right,
+            "unnoticed": all.undetected(), "moves_total": tally.moves,
+            "interrupted": tally.interrupted,
+        });
+        let verdict = match (outcome, ending) {
+            (Outcome::Holds, _) => {
+                "holds: each run ends with the right map, or the mistake is detected".to_owned()
+            }
+            (Outcome::Violated, _) => format!(
+                "violated: {} of {} runs end with a detectable mistake that was not detected",
+                grouped(violations.into()),
+                grouped(all.runs().into()),
+            ),
+            (_, Ending::Interrupted) => "incomplete, interrupted".to_owned(),
+            _ => "incomplete: there is nothing to check".to_owned(),
+        };
         self.write_mistakes(&tally)?;
-        remark!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(outcome)
+        let verdict = wrapped(*WIDTH, "", 0, &verdict).join("\n");
+        sheet.finish(out, ("mistakes", &line), outcome, &format!("\n{verdict}"))
     }
 
     fn print(
         &self,
         method: MappingMethod,
         tally: &MistakeTally,
-        outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
         let algorithm = capital(method.algorithm().in_words());
@@ -128,14 +145,11 @@ impl EvaluateMistakesArguments {
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
         writeln!(out, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
         let heads = ["mistake", "     runs", "    right", " detected", "wrong pose", "wrong map"];
-        let mut rows: Vec<_> = MISTAKE_KINDS
-            .into_iter()
-            .zip(tally.counts)
-            .map(|(kind, counts)| row(kind.name(), counts))
-            .collect();
-        rows.push(row("all", tally.all()));
-        print_rows(out, heads, &rows)?;
         let all = tally.all();
+        let kinds = MISTAKE_KINDS.into_iter().map(MistakeKind::name).zip(tally.counts);
+        let rows: Vec<_> =
+            kinds.chain([("all", all)]).map(|(name, counts)| row(name, counts)).collect();
+        print_rows(out, heads, &rows)?;
         if method.recovers() {
             let extra = all.extra_moves as f64 / all.right.max(1) as f64;
             writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
@@ -144,20 +158,7 @@ impl EvaluateMistakesArguments {
             writeln!(out)?;
             print_paragraph(out, &in_words(kind, mistake))?;
         }
-        let verdict = match outcome {
-            Outcome::Holds => {
-                "holds: each run ends with the right map, or the mistake is detected".to_owned()
-            }
-            Outcome::Violated => format!(
-                "violated: {} of {} runs end with a detectable mistake that was not detected",
-                grouped(violations(tally).into()),
-                grouped(all.runs().into()),
-            ),
-            Outcome::Incomplete if tally.interrupted => "incomplete, interrupted".to_owned(),
-            Outcome::Incomplete => "incomplete: there is nothing to check".to_owned(),
-        };
-        writeln!(out)?;
-        Ok(print_paragraph(out, &verdict)?)
+        Ok(())
     }
 
     fn write_mistakes(&self, tally: &MistakeTally) -> Result<(), CliError> {
@@ -170,42 +171,25 @@ impl EvaluateMistakesArguments {
         }
         Ok(())
     }
+}
 
-    fn print_json(
-        &self,
-        method: MappingMethod,
-        tally: &MistakeTally,
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
-            let counts = tally.counts[at];
-            let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, extra_moves } =
-                counts;
-            let first = tally.first[at].as_ref().map(|first| {
-                json!({
-                    "edges": first.graph.edge_count(), "moves": first.mistake.moves,
-                    "what": first.mistake.to_string(), "flaw": first.flaw.to_string(),
-                })
-            });
-            let line = json!({
-                "mistake": kind.name(), "runs": counts.runs(), "right": right,
-                "reported": reported, "gave_up": too_large, "wrong_pose": wrong_pose,
-                "wrong_map": wrong_map, "extra_moves": extra_moves, "first": first,
-            });
-            print_line(out, "mistake", &line)?;
-        }
-        let all = tally.all();
-        let line = json!({
-            "class": self.class.name(), "algorithm": method.algorithm().name(),
-            "audits": method.audits(), "recover": method.recovers(),
-            "starts": tally.starts, "runs": all.runs(), "right": all.right,
-            "unnoticed": all.undetected(), "moves_total": tally.moves,
-            "interrupted": tally.interrupted, "verdict": outcome.verdict(),
-            "holds": outcome == Outcome::Holds,
-        });
-        print_line(out, "mistakes", &line)
-    }
+fn mistake_line(
+    kind: MistakeKind,
+    counts: MistakeCounts,
+    first: Option<&UndetectedMistake>,
+) -> Value {
+    let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, extra_moves } = counts;
+    let first = first.map(|first| {
+        json!({
+            "edges": first.graph.edge_count(), "moves": first.mistake.moves,
+            "what": first.mistake.to_string(), "flaw": first.flaw.to_string(),
+        })
+    });
+    json!({
+        "mistake": kind.name(), "runs": counts.runs(), "right": right,
+        "reported": reported, "gave_up": too_large, "wrong_pose": wrong_pose,
+        "wrong_map": wrong_map, "extra_moves": extra_moves, "first": first,
+    })
 }
 
 /// The first undetected mistake of each kind.

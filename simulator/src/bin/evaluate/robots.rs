@@ -1,18 +1,15 @@
 //! Options and output that `evaluate control` and `evaluate runs` share.
 
-use std::{fmt::Display, io::Write, path::PathBuf, sync::Arc};
+use std::{path::PathBuf, sync::Arc};
 
-use serde_json::json;
 use toposlam_model::floor_plan::FloorPlan;
-use toposlam_robot::bound::upper_bound;
-use toposlam_terminal::{
-    CliError,
-    progress::Progress,
-    text::{grouped, print_indented},
-};
+use toposlam_terminal::{CliError, progress::Progress};
 use toposlam_vision::camera::Camera;
 
-use super::vision::{read_plan, unlearned, unmeasured};
+use super::{
+    evaluation_report::{ReportArguments, unlearned, unmeasured},
+    vision::read_plan,
+};
 use toposlam_simulator::{
     BuildingLook, LOOKS, LearnedSensors, RobotEquipment,
     options::{
@@ -52,12 +49,8 @@ pub(super) struct RobotArguments {
     /// Multiple of the default noise of wheels and odometry, and of sensing without images
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise, allow_hyphen_values = true)]
     pub(super) noise: f64,
-    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
-    /// Print JSON objects, one per line
-    #[arg(long)]
-    pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) report: ReportArguments,
 }
 
 /// The number of random plans in which driving is measured.
@@ -152,33 +145,4 @@ pub(super) fn usual_plans(
         named.push((format!("random-{number}"), Arc::new(plan.map_err(unmeasured)?)));
     }
     Ok(named)
-}
-
-/// A count, its rate, and the upper bound of the rate with a confidence of 95 %.
-pub(super) fn share(seen: usize, cases: usize) -> String {
-    let percent = |part: f64| 100.0 * part;
-    format!(
-        "{} of {} ({:.2} %, at most {:.2} %)",
-        grouped(seen as u128),
-        grouped(cases as u128),
-        percent(seen as f64 / cases.max(1) as f64),
-        percent(upper_bound(seen, cases)),
-    )
-}
-
-/// The same as JSON.
-pub(super) fn share_json(what: &str, seen: usize, cases: usize) -> serde_json::Value {
-    json!({
-        "what": what, "seen": seen, "cases": cases,
-        "rate": seen as f64 / cases.max(1) as f64, "upper_bound": upper_bound(seen, cases),
-    })
-}
-
-/// Prints a case that failed, and why.
-pub(super) fn print_failure(
-    out: &mut dyn Write,
-    what: impl Display,
-    how: impl Display,
-) -> Result<(), CliError> {
-    print_indented(out, "  ", 4, &format!("{what}: {how}")).map_err(CliError::from)
 }

@@ -1,24 +1,27 @@
 //! `evaluate runs`: compares whole runs of a simulated robot with the specification. Section 6.
 
-use std::{io::Write, time::Instant};
+use std::io::Write;
 
-use serde_json::json;
+use serde_json::{Value, json};
 use toposlam_model::mapping::MappingMethod;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
-    json::print_line,
     method_options::{MethodOptions, safeguards_in_words},
     progress::Progress,
-    remark,
     text::{counted, grouped, print_hanging, print_rows, tenths},
-    use_threads,
 };
 
-use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
+use super::{
+    evaluation_report::{Ending, outcome},
+    robots::{RandomPlans, RobotArguments},
+};
 use toposlam_simulator::{
     FAULTS, FaultKind, RobotEquipment,
-    evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
+    evaluation::{
+        report::TargetStatus,
+        run_sampler::{Faults, JudgedRun, RunSampler},
+    },
     run::{RunOutcome, WayToMarker},
 };
 
@@ -74,46 +77,78 @@ const MOST_WITH_IMAGES: usize = 12;
 
 impl EvaluateRunsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.robots.threads)?;
+        let mut sheet = self.robots.report.begin()?;
         let equipment = self.robots.equipment()?;
         let (random, most) = match equipment {
             RobotEquipment::Images(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
             _ => (RandomPlans::Large(self.plans), usize::MAX),
         };
         let plans = self.robots.plans(random, most)?;
-        let count = plans.len();
+        let count = counted(plans.len(), "floor plan");
         let faults = self.faults.map_or(Faults::None, Faults::Each);
         let method = self.method.method()?;
-        let RobotArguments { seed, noise, json, .. } = self.robots;
+        let RobotArguments { seed, noise, .. } = self.robots;
         let runs = RunSampler::new(plans, self.starts, faults, seed, noise, method);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
-        let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
         let judged = runs.judged(0..wanted, &equipment, &progress);
         progress.finish();
+        let ending = Ending::of(judged.len(), wanted);
         let violations = judged.iter().filter(|run| self.violates(run)).count();
-        let outcome = if violations > 0 {
-            Outcome::Violated
-        } else if judged.is_empty() || (judged.len() as u64) < wanted {
-            Outcome::Incomplete
-        } else {
-            Outcome::Holds
-        };
-        if json {
-            self.print_json(method, &judged, (violations, outcome), out)?;
-        } else {
-            let sensing = self.robots.sensing();
-            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
-            let starts = counted(runs.starts(), "start");
-            let plans = counted(count, "floor plan");
-            let by = method.algorithm().in_words();
-            let by = format!("{by} {}", safeguards_in_words(method));
-            writeln!(out, "  by {}", by.trim_end())?;
-            writeln!(out, "  {starts} in {plans}")?;
-            self.print(method, &judged, outcome, out)?;
+        let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
+        let outcome = outcome(status, ending);
+
+        let text = sheet.text();
+        writeln!(text, "Whole runs by {}, seed {seed}", self.robots.sensing())?;
+        let by = format!("{} {}", method.algorithm().in_words(), safeguards_in_words(method));
+        writeln!(text, "  by {}", by.trim_end())?;
+        writeln!(text, "  {} in {count}", counted(runs.starts(), "start"))?;
+        for run in &judged {
+            sheet.line("run", &run_line(run))?;
+            let is_wrong = matches!(run.ending, RunOutcome::Wrong(_));
+            if is_wrong || self.faults.is_none() && run.ending != RunOutcome::Right {
+                sheet.failure(named(run), &run.ending)?;
+            }
         }
-        remark!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(outcome)
+        if self.faults.is_some() {
+            let heads = ["fault", " runs", "right", "given up", "wrong"];
+            let rows: Vec<_> = FAULTS.iter().map(|&(kind, ..)| row(&judged, kind)).collect();
+            print_rows(sheet.text(), heads, &rows)?;
+        }
+        let [right, gave_up, wrong] = tally(judged.iter());
+        let [seen, all] = [right, judged.len()].map(|count| grouped(count as u128));
+        writeln!(sheet.text(), "  right    {seen} of {all}")?;
+        sheet.share_line("right", [right, judged.len()])?;
+        sheet.share("gave up", gave_up, judged.len())?;
+        sheet.share("wrong", wrong, judged.len())?;
+        if method.audits() > 0 || method.recovers() {
+            print_safeguards(method, &judged, sheet.text())?;
+        }
+        self.print_moves(&judged, sheet.text())?;
+        let certificates = CertificateTotal::of(&judged);
+        let line = json!({
+            "runs": judged.len(), "seed": seed,
+            "moves_total": certificates.moves, "certificate_total": certificates.certificate_moves,
+            "ratio": certificates.ratio(),
+            "algorithm": method.algorithm().name(),
+            "audits": method.audits(), "recover": method.recovers(),
+            "violations": violations,
+        });
+        let verdict = match (outcome, ending, self.faults.is_some()) {
+            (Outcome::Holds, _, false) => {
+                "holds in these runs: every map is right, and every move is as specified"
+            }
+            (Outcome::Holds, _, true) if method.recovers() => {
+                "holds in these runs: every map is right, or the robot gave up"
+            }
+            (Outcome::Holds, ..) => {
+                "holds in these runs: every map is right, or the robot gave up or was carried"
+            }
+            (Outcome::Violated, ..) => "violated",
+            (_, Ending::Empty, _) => "incomplete: nothing was measured",
+            _ => "incomplete, interrupted",
+        };
+        sheet.finish(out, ("runs", &line), outcome, verdict)
     }
 
     /// Whether a run fails: without faults it must be right, with faults it must not be wrong without an error.
@@ -124,111 +159,45 @@ impl EvaluateRunsArguments {
         }
     }
 
-    fn print(
-        &self,
-        method: MappingMethod,
-        judged: &[JudgedRun],
-        outcome: Outcome,
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        for run in judged
-            .iter()
-            .filter(|run| self.faults.is_none() || matches!(run.ending, RunOutcome::Wrong(_)))
-        {
-            if run.ending != RunOutcome::Right {
-                print_failure(out, named(run), &run.ending)?;
-            }
-        }
-        if self.faults.is_some() {
-            let heads = ["fault", " runs", "right", "given up", "wrong"];
-            let rows: Vec<_> = FAULTS.iter().map(|&(kind, ..)| row(judged, kind)).collect();
-            print_rows(out, heads, &rows)?;
-        }
-        let [right, gave_up, wrong] = tally(judged.iter());
-        let all = judged.len();
-        writeln!(out, "  right    {} of {}", grouped(right as u128), grouped(all as u128))?;
-        writeln!(out, "  gave up  {}", share(gave_up, all))?;
-        writeln!(out, "  wrong    {}", share(wrong, all))?;
-        if method.audits() > 0 || method.recovers() {
-            print_safeguards(method, judged, out)?;
+    /// Prints what all runs took.
+    fn print_moves(&self, judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliError> {
+        if judged.is_empty() {
+            return Ok(());
         }
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
-        if !judged.is_empty() {
-            let count: u64 = judged.iter().map(|run| run.frames).sum();
-            let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
-            let (moves, count) = (counted(moves as usize, "move"), grouped(count.into()));
-            let frames = self.robots.frames();
-            let hours = tenths(hours);
-            writeln!(out, "  {moves}, {count} {frames}, {hours} hours of simulated time")?;
+        let count: u64 = judged.iter().map(|run| run.frames).sum();
+        let hours = tenths(judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0);
+        let (moves, count) = (counted(moves as usize, "move"), grouped(count.into()));
+        let frames = self.robots.frames();
+        writeln!(out, "  {moves}, {count} {frames}, {hours} hours of simulated time")?;
+        let ratio = CertificateTotal::of(judged).ratio().filter(|_| self.faults.is_none());
+        if let Some(ratio) = ratio {
+            let times = "times the moves of their certificates";
+            writeln!(out, "  the right runs took {ratio:.2} {times}")?;
         }
-        if let Some(ratio) = CertificateTotal::of(judged).ratio()
-            && self.faults.is_none()
-        {
-            writeln!(
-                out,
-                "  the right runs took {ratio:.2} times the moves of their certificates"
-            )?;
-        }
-        let verdict = match (outcome, self.faults.is_some()) {
-            (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
-            (Outcome::Incomplete, _) => "incomplete, interrupted",
-            (Outcome::Holds, false) => {
-                "holds in these runs: every map is right, and every move is as specified"
-            }
-            (Outcome::Holds, true) if method.recovers() => {
-                "holds in these runs: every map is right, or the robot gave up"
-            }
-            (Outcome::Holds, true) => {
-                "holds in these runs: every map is right, or the robot gave up or was carried"
-            }
-            (Outcome::Violated, _) => "violated",
-        };
-        Ok(writeln!(out, "{verdict}")?)
+        Ok(())
     }
+}
 
-    fn print_json(
-        &self,
-        method: MappingMethod,
-        judged: &[JudgedRun],
-        (violations, outcome): (usize, Outcome),
-        out: &mut dyn Write,
-    ) -> Result<(), CliError> {
-        for run in judged {
-            let faults = run.case.config.faults.iter();
-            let faults: Vec<_> = faults
-                .map(|fault| json!({ "fault": fault.kind.name(), "picture": fault.frame }))
-                .collect();
-            let line = json!({
-                "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
-                "moves": run.moves[0], "explore_moves": run.moves[1],
-                "certificate_moves": run.certificate_moves,
-                "right": run.ending == RunOutcome::Right,
-                "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
-                "cut_off": run.way_to_marker == WayToMarker::None,
-                "narrow": run.way_to_marker == WayToMarker::Narrow,
-                "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
-                "frames": run.frames,
-                "recoveries": run.mapped.as_ref().map(|mapped| mapped.recoveries),
-                "audit_moves": run.mapped.as_ref().map(|mapped| mapped.audit_moves),
-                "blocked": run.mapped.as_ref().map(|mapped| mapped.blocked.len()),
-            });
-            print_line(out, "run", &line)?;
-        }
-        let [right, gave_up, wrong] = tally(judged.iter());
-        for (what, seen) in [("right", right), ("gave up", gave_up), ("wrong", wrong)] {
-            print_line(out, "rate", &share_json(what, seen, judged.len()))?;
-        }
-        let certificates = CertificateTotal::of(judged);
-        let line = json!({
-            "runs": judged.len(), "seed": self.robots.seed,
-            "moves_total": certificates.moves, "certificate_total": certificates.certificate_moves,
-            "ratio": certificates.ratio(),
-            "algorithm": method.algorithm().name(),
-            "audits": method.audits(), "recover": method.recovers(),
-            "violations": violations, "verdict": outcome.verdict(), "holds": outcome == Outcome::Holds,
-        });
-        print_line(out, "runs", &line)
-    }
+fn run_line(run: &JudgedRun) -> Value {
+    let faults = run.case.config.faults.iter();
+    let faults: Vec<_> =
+        faults.map(|fault| json!({ "fault": fault.kind.name(), "picture": fault.frame })).collect();
+    let mapped = run.mapped.as_ref();
+    json!({
+        "run": run.case.number, "plan": run.case.plan_name, "faults": faults,
+        "moves": run.moves[0], "explore_moves": run.moves[1],
+        "certificate_moves": run.certificate_moves,
+        "right": run.ending == RunOutcome::Right,
+        "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
+        "cut_off": run.way_to_marker == WayToMarker::None,
+        "narrow": run.way_to_marker == WayToMarker::Narrow,
+        "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
+        "frames": run.frames,
+        "recoveries": mapped.map(|mapped| mapped.recoveries),
+        "audit_moves": mapped.map(|mapped| mapped.audit_moves),
+        "blocked": mapped.map(|mapped| mapped.blocked.len()),
+    })
 }
 
 /// The moves of the right runs that left no hallway out, audits apart, and those of their certificates.

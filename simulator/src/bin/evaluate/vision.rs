@@ -4,22 +4,26 @@ use std::{
     io::Write,
     path::{Path, PathBuf},
     sync::Arc,
-    time::Instant,
 };
+
+use serde_json::json;
 
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_terminal::{
     CliError, Outcome, exit_codes::help_end, input, output, progress::Progress, remark,
-    text::counted, use_threads,
 };
 use toposlam_vision::camera::Camera;
 
 use super::{
-    clutter, failing,
-    report::{EvaluationHeader, Printer},
+    clutter,
+    evaluation_report::{
+        Ending, EvaluationReport, ReportArguments, outcome, unlearned, unmeasured,
+        verdict_on_targets,
+    },
+    failing, vision_report,
 };
 use toposlam_simulator::{
-    BuildingLook, Effects, LOOKS, LearningError,
+    BuildingLook, Effects, LOOKS,
     evaluation::{
         calibration::Calibration,
         failure_groups::groups,
@@ -104,63 +108,61 @@ pub(super) struct EvaluateVisionArguments {
     /// Folder for a picture of each processing stage of the views that fail, or of the one view
     #[arg(short, long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
-    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Print one JSON object per figure
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 impl EvaluateVisionArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        use_threads(self.threads)?;
+        let sheet = self.report.begin()?;
         if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
         }
         let views = self.source()?;
         match self.view {
-            _ if self.clutter => clutter::measure(judge, &views, self.views, self.json, out),
-            Some(number) => self.one(&views, number, out),
-            None => self.all(&views, out),
+            _ if self.clutter => clutter::measure(judge, &views, self.views, sheet, out),
+            Some(number) => self.one(&views, number, sheet, out),
+            None => self.all(&views, sheet, out),
         }
     }
 
-    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let begun = Instant::now();
+    fn all(
+        &self,
+        views: &ViewSampler,
+        mut sheet: EvaluationReport,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
         let calibrations = self.calibrations();
         let judge = judge(views, calibrations)?;
         let visits = self.visits.unwrap_or(self.views / 20);
-        let mut printer = Printer::new(out, self.json);
-        printer.header(&EvaluationHeader { views: self.views, visits, source: views })?;
-        let mut standings = Vec::new();
-        let mut interrupted = false;
+        vision_report::add_source(&mut sheet, [self.views, visits], views)?;
+        let mut statuses = Vec::new();
+        let mut ending = Ending::Whole;
         for &calibration in calibrations {
             let (judged, judged_visits) = self.measure(&judge, views, visits, calibration)?;
-            let missing =
-                (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits;
-            interrupted |= missing;
-            let report = VisionReport::of(&judged, &judged_visits, calibration);
-            printer.report(&report)?;
-            if calibration == Calibration::Right {
-                printer.groups(&groups(&judged))?;
+            if (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits {
+                ending = Ending::Interrupted;
             }
-            standings.push(report.standing());
+            let report = VisionReport::of(&judged, &judged_visits, calibration);
+            vision_report::add(&mut sheet, &report)?;
+            if calibration == Calibration::Right {
+                vision_report::add_groups(&mut sheet, &groups(&judged))?;
+            }
+            statuses.extend(report.statuses());
             if let Some(folder) = &self.out_dir {
                 let written = failing::write(folder, &judge, &judged, &judged_visits, calibration)?;
                 remark!("{written} in {}", folder.display());
             }
         }
-        let standing = standings.into_iter().max().unwrap_or(TargetStatus::NotShown);
-        let outcome = match standing {
-            TargetStatus::Missed => Outcome::Violated,
-            TargetStatus::Met if !interrupted => Outcome::Holds,
-            TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
-        };
-        printer.verdict(outcome, interrupted)?;
-        let threads = counted(rayon::current_num_threads(), "thread");
-        remark!("{:.1} s on {threads}", begun.elapsed().as_secs_f64());
-        Ok(outcome)
+        let status = statuses.iter().copied().max().unwrap_or(TargetStatus::NotShown);
+        let outcome = outcome(status, ending);
+        let count = |is| statuses.iter().filter(|&&status| status == is).count();
+        let line = json!({
+            "missed": count(TargetStatus::Missed), "not_shown": count(TargetStatus::NotShown),
+            "interrupted": matches!(ending, Ending::Interrupted),
+        });
+        let verdict = verdict_on_targets(outcome, ending, statuses);
+        sheet.finish(out, ("verdict", &line), outcome, &format!("\n{verdict}"))
     }
 
     fn measure(
@@ -189,6 +191,7 @@ impl EvaluateVisionArguments {
         &self,
         views: &ViewSampler,
         number: u64,
+        mut sheet: EvaluationReport,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let view = views.view(number).map_err(unmeasured)?;
@@ -200,7 +203,7 @@ impl EvaluateVisionArguments {
         let mut outcome = Outcome::Holds;
         for &calibration in calibrations {
             let judged = judge.view(view.clone(), calibration).map_err(unmeasured)?;
-            failing::print(out, &judged, calibration, self.json)?;
+            failing::add(&mut sheet, &judged, calibration)?;
             if judged.verdict.is_wrong() {
                 outcome = Outcome::Violated;
             }
@@ -208,7 +211,7 @@ impl EvaluateVisionArguments {
                 failing::write_view(folder, &judge, &judged, calibration)?;
             }
         }
-        Ok(outcome)
+        sheet.print(out, outcome)
     }
 
     fn calibrations(&self) -> &'static [Calibration] {
@@ -253,21 +256,8 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Cli
     })
 }
 
-/// The failure if the colours were not learned.
-pub(super) fn unlearned(error: LearningError) -> CliError {
-    match error {
-        LearningError::Interrupted(stopped) => stopped.into(),
-        error => unmeasured(error),
-    }
-}
-
 pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), CliError> {
     let world = input::read_world(path)?;
     let plan = input::floor_plan(path, &world)?.clone();
     Ok((world.name, Arc::new(plan)))
-}
-
-/// A failure that is not the user's.
-pub(super) fn unmeasured(error: impl std::fmt::Display) -> CliError {
-    CliError::at("evaluate", error)
 }
