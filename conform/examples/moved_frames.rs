@@ -12,6 +12,7 @@
 
 use std::{env, error::Error, fs, path::Path, sync::Arc};
 
+use nalgebra::{Isometry2, Point2, Vector2};
 use serde_json::Value;
 use toposlam_conform::{CheckedKind, EventSource, LaserEvents};
 use toposlam_logs::{
@@ -21,10 +22,10 @@ use toposlam_logs::{
     topic_map::TopicMap,
 };
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
-use toposlam_vision::laser::{
-    params::LaserParams,
-    plane::{Motion, direction, distance},
-    scan::Scan,
+use toposlam_vision::{
+    geometry::{self, direction, distance},
+    laser::{params::LaserParams, scan::Scan},
+    params,
 };
 
 /// Turns of the frame in degrees, each with a shift along both axes in metres.
@@ -53,15 +54,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let params = match params {
         [] => LaserParams::default(),
-        [file, ..] => LaserParams::read(&fs::read_to_string(file)?)?,
+        [file, ..] => params::read(&fs::read_to_string(file)?)?,
     };
     let scans = scans(Path::new(log))?;
     let mut marked = marked(&fs::read_to_string(visits)?)?;
     marked.retain(|visit| params.corner.corners || visit.0 >= 3);
     println!("turn  shift  drift    of  right  other  undecided");
     for [turn, shift] in FRAMES {
-        let motion = Motion { turn: turn.to_radians(), shift: [shift; 2] };
-        let moved = scans.iter().map(|(scan, odometry)| (scan, motion.pose(odometry)));
+        let motion = Isometry2::new(Vector2::new(shift, shift), turn.to_radians());
+        let moved = scans.iter().map(|(scan, odometry)| (scan, geometry::moved(&motion, odometry)));
         print_row([turn, shift, 0.0], &marked, &derived(moved, &params));
     }
     for drift in DRIFTS {
@@ -104,9 +105,9 @@ fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<Odometry> {
             Some((before, moved)) => {
                 let length = distance(before.position, odometry.position);
                 let ahead = direction(before.position, odometry.position);
-                let (sine, cosine) = (ahead + turned + drift * length / 2.0).sin_cos();
+                let step = length * geometry::unit(ahead + turned + drift * length / 2.0);
                 turned += drift * length;
-                [moved.position[0] + length * cosine, moved.position[1] + length * sine]
+                (Point2::from(moved.position) + step).into()
             }
         };
         let moved = Odometry { position, heading: odometry.whither(turned) };

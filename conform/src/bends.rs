@@ -2,19 +2,20 @@
 
 use std::{collections::VecDeque, f64::consts::PI};
 
+use nalgebra::Point2;
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::laser::{
-    params::CornerParams,
-    plane::{direction, distance},
+use toposlam_vision::{
+    geometry::{direction, distance},
+    laser::params::CornerParams,
 };
 
-use super::events::EventSource;
+use super::{events::EventSource, params::LASER};
 
 /// A bend of the robot's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PassedBend {
     /// Where it is sharpest, in metres.
-    pub point: [f64; 2],
+    pub point: Point2<f64>,
     /// The directions to where the robot came from and to where it went, in radians.
     pub arms: [f64; 2],
     /// The length of the robot's way to the bend, in metres.
@@ -37,15 +38,10 @@ pub(super) struct Bends {
 
 #[derive(Clone, Copy, Debug)]
 struct PassedPoint {
-    point: [f64; 2],
+    point: Point2<f64>,
     way: f64,
     source: EventSource,
 }
-
-/// A robot whose way bends by more than this turns back, in radians.
-const BACK: f64 = 2.2;
-/// A way is remembered for this many times the length of an arm.
-const FORGOTTEN: f64 = 8.0;
 
 impl Bends {
     /// A way without a point.
@@ -54,7 +50,12 @@ impl Bends {
     }
 
     /// Adds the next point of the way, which has this length. Returns the bends that are over now.
-    pub(super) fn go(&mut self, point: [f64; 2], way: f64, source: EventSource) -> Vec<PassedBend> {
+    pub(super) fn go(
+        &mut self,
+        point: Point2<f64>,
+        way: f64,
+        source: EventSource,
+    ) -> Vec<PassedBend> {
         self.points.push_back(PassedPoint { point, way, source });
         let arm = self.params.arm;
         let mut bends = Vec::new();
@@ -70,7 +71,9 @@ impl Bends {
                 let PassedPoint { point, way, source } = middle;
                 (PI - wrapped(arms[0] - arms[1]).abs(), PassedBend { point, arms, way, source })
             });
-            match bend.filter(|(turn, _)| (self.params.min_turn..BACK).contains(turn)) {
+            match bend
+                .filter(|(turn, _)| (self.params.min_turn..LASER.sharpest_bend).contains(turn))
+            {
                 None => bends.extend(self.sharpest.take().map(|(_, bend)| bend)),
                 Some((turn, bend)) => {
                     if self.sharpest.is_none_or(|(most, _)| turn > most) {
@@ -80,7 +83,7 @@ impl Bends {
             }
             self.judged += 1;
         }
-        while self.points.front().is_some_and(|first| way - first.way > FORGOTTEN * arm) {
+        while self.points.front().is_some_and(|first| way - first.way > LASER.bend_memory * arm) {
             self.points.pop_front();
             self.judged = self.judged.saturating_sub(1);
         }
@@ -103,7 +106,8 @@ mod tests {
             let steps = (distance(leg[0], leg[1]) / 0.5).ceil() as u32;
             for step in 1..=steps {
                 let part = f64::from(step) / f64::from(steps);
-                let point = [0, 1].map(|axis| leg[0][axis] + part * (leg[1][axis] - leg[0][axis]));
+                let [from, to] = [leg[0], leg[1]].map(Point2::from);
+                let point = from + part * (to - from);
                 way += distance(leg[0], leg[1]) / f64::from(steps);
                 found.extend(bends.go(point, way, EventSource::default()));
             }

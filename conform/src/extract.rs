@@ -23,10 +23,11 @@ use toposlam_vision::{
 };
 
 use super::{
-    InferredEvents, LaserEvents, NEAR, RecordedEvents,
+    InferredEvents, LaserEvents, RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
+    params::SCENES,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
     scan_odometry::{PlacedScan, ScanOdometry},
 };
@@ -260,7 +261,9 @@ pub fn extract(
         let noise = log_noise();
         events.measurement_noise = match evidence {
             Evidence::Recorded => noise,
-            Evidence::Scenes | Evidence::Images => MeasurementNoise { standing: NEAR, ..noise },
+            Evidence::Scenes | Evidence::Images => {
+                MeasurementNoise { standing: SCENES.near, ..noise }
+            }
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
     }

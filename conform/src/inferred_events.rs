@@ -1,6 +1,6 @@
 //! Infers events from scenes and odometry: visits to junctions, and the doors taken. Sections 3 to 5.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
+use std::f64::consts::FRAC_PI_2;
 
 use toposlam_logs::record::Arrival;
 use toposlam_model::{
@@ -14,16 +14,10 @@ use toposlam_model::{
 };
 use toposlam_robot::measured_hallway::{direction, turn};
 
-use super::events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause};
-
-/// A junction is visited if its turning point comes this near, in metres.
-pub const NEAR: f64 = 0.3;
-/// A robot that leaves by more than this off every door takes none, in radians.
-const ASIDE: f64 = FRAC_PI_6;
-/// A turning point this far from the last one is of another junction, in metres.
-const ANOTHER: f64 = 1.5;
-/// A robot this far from the turning point has left the junction, in metres. Nearer, a hallway is ignored.
-const AWAY: f64 = 0.6;
+use super::{
+    events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
+    params::SCENES,
+};
 
 /// Infers events from a sequence of scenes.
 #[derive(Clone, Debug)]
@@ -123,7 +117,7 @@ impl InferredEvents {
             let Some((off, door)) = nearest else { return };
             self.exit = direction(form, entry, door);
             self.push(source, CheckedKind::Door { door, number: None, off: Some(off) });
-            if off > ASIDE {
+            if off > SCENES.aside {
                 self.push(source, CheckedKind::Aside { off });
             }
         } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
@@ -143,7 +137,7 @@ impl InferredEvents {
         let turning_point = in_frame(junction.turning_point, odometry);
         let another = self.approach.as_ref().is_some_and(|approach| {
             let [x, y] = [0, 1].map(|axis| turning_point[axis] - approach.turning_point[axis]);
-            x.hypot(y) > ANOTHER
+            x.hypot(y) > SCENES.another
         });
         if another && let Some(approach) = self.approach.take() {
             self.leave(source, &approach, odometry.heading);
@@ -204,7 +198,7 @@ impl InferredEvents {
 
 impl Approach {
     fn is_visit(&self) -> bool {
-        self.nearest <= NEAR
+        self.nearest <= SCENES.near
     }
 
     /// Whether a robot in a hallway has left this junction: it is away from it after a visit, has passed it
@@ -213,7 +207,7 @@ impl Approach {
         let [x, y] = [0, 1].map(|axis| odometry.position[axis] - self.turning_point[axis]);
         let inwards = -(x * self.entry.cos() + y * self.entry.sin());
         let looks_back = wrapped(odometry.heading - self.entry).abs() < FRAC_PI_2;
-        x.hypot(y) >= AWAY && (self.is_visit() || looks_back || inwards >= AWAY)
+        x.hypot(y) >= SCENES.away && (self.is_visit() || looks_back || inwards >= SCENES.away)
     }
 }
 

@@ -6,6 +6,7 @@ use std::{
     f64::consts::{FRAC_PI_3, PI, TAU},
 };
 
+use nalgebra::{Isometry2, Point2};
 use toposlam_logs::record::Arrival;
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
@@ -13,11 +14,13 @@ use toposlam_model::{
     percept::Door,
 };
 use toposlam_robot::measured_hallway::turn;
-use toposlam_vision::laser::{
-    params::{CornerParams, LaserParams},
-    plane::{Motion, direction, distance},
-    scan::Scan,
-    sensor::{LaserSensor, LaserView},
+use toposlam_vision::{
+    geometry::{direction, distance},
+    laser::{
+        params::{CornerParams, LaserParams},
+        scan::Scan,
+        sensor::{LaserSensor, LaserView},
+    },
 };
 
 use super::{
@@ -25,6 +28,7 @@ use super::{
     events::{CheckedEvent, CheckedKind, EventSource, UndecidedCause},
     laser_visit::{PlaceEstimate, Visit, VisitKind, is_same_arm},
     marked_visits::VisitedJunction,
+    params::LASER,
     seen_junctions::{SeenJunction, SeenJunctions},
     unseen_way::UnseenWay,
 };
@@ -52,11 +56,11 @@ pub struct LaserEvents {
     possible_visit: Option<Visit>,
     /// The last points of the way since the last visit of a possible junction, each with the length of the way
     /// to there. An arm in doubt may be noticed only behind the junction.
-    passed: VecDeque<(f64, [f64; 2], EventSource)>,
+    passed: VecDeque<(f64, Point2<f64>, EventSource)>,
     /// Visits that are over and not decided yet.
     waiting: VecDeque<Visit>,
     /// The way since the last visit, or since the robot turned back after it.
-    since: Vec<[f64; 2]>,
+    since: Vec<Point2<f64>>,
     /// Whether the robot has turned back since the last visit.
     turned_back: bool,
     /// The last visit that was decided, and whether the robot has turned back between it and the visits
@@ -67,17 +71,17 @@ pub struct LaserEvents {
     /// The length of the robot's way, in metres.
     way: f64,
     source: EventSource,
-    to_odometry: Motion,
+    odometry_from_map: Isometry2<f64>,
     /// The centre of the last junction with an event, and the direction in which the robot left, in the frame of
     /// odometry.
-    left: Option<([f64; 2], Option<f64>)>,
+    left: Option<(Point2<f64>, Option<f64>)>,
 }
 
 /// The place in which a robot is, as the views up to now show it. Points and directions are those of the local map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingPlace {
     /// Its centre, in metres.
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     /// The distance from there to the nearest wall, in metres.
     pub clearance: f64,
     /// What it is.
@@ -98,22 +102,12 @@ pub enum StandingPercept {
 /// What is known of a junction that was left.
 #[derive(Clone, Copy, Debug)]
 struct PastVisit {
-    centre: [f64; 2],
+    centre: Point2<f64>,
     extent: f64,
     exit: f64,
     /// The length of the robot's way when it left.
     left: f64,
 }
-
-/// A robot within this distance of where it was before goes back, in metres.
-const RETRACED: f64 = 0.6;
-/// A robot that has not driven farther than this since the log began was always there, in metres.
-const BEGINNING: f64 = 2.0;
-/// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
-const TURN: f64 = 4.0;
-
-/// A place that is a junction if arms in doubt count, in fewer views than this, is no doubt.
-const DOUBTED_VIEWS: usize = 2;
 
 impl LaserEvents {
     /// A robot that has seen nothing yet.
@@ -139,7 +133,7 @@ impl LaserEvents {
             behind: None,
             way: 0.0,
             source: EventSource::default(),
-            to_odometry: Motion::default(),
+            odometry_from_map: Isometry2::identity(),
             left: None,
         }
     }
@@ -154,9 +148,9 @@ impl LaserEvents {
     ) -> Option<LaserView> {
         let view = self.sensor.see(scan, odometry)?;
         self.source = source;
-        self.to_odometry = view.to_odometry;
+        self.odometry_from_map = view.odometry_from_map;
         self.behind.get_or_insert(wrapped(view.robot.heading + PI));
-        let robot = view.robot.position;
+        let robot = Point2::from(view.robot.position);
         if let Some(&last) = self.since.last() {
             self.way += distance(last, robot);
         }
@@ -221,12 +215,12 @@ impl LaserEvents {
     }
 
     /// Ends the visit of a robot that is outside of the junction.
-    fn leave(&mut self, robot: [f64; 2]) {
+    fn leave(&mut self, robot: Point2<f64>) {
         let Some(mut visit) = self.visit.take() else { return };
         if let Some(known) = self.junctions.at(visit.centre) {
             (visit.centre, visit.clearance) = (known.centre, known.clearance);
         }
-        visit.to_odometry = self.to_odometry;
+        visit.odometry_from_map = self.odometry_from_map;
         if distance(visit.centre, robot) <= inside(visit.clearance) + self.params.visit.leave {
             self.visit = Some(visit);
             return;
@@ -239,9 +233,9 @@ impl LaserEvents {
     }
 
     /// Ends the visit of a robot that is outside of a possible junction.
-    fn leave_possible_junction(&mut self, robot: [f64; 2]) {
+    fn leave_possible_junction(&mut self, robot: Point2<f64>) {
         let Some(mut visit) = self.possible_visit.take() else { return };
-        visit.to_odometry = self.to_odometry;
+        visit.odometry_from_map = self.odometry_from_map;
         if distance(visit.centre, robot) <= inside(visit.clearance) + self.params.visit.leave {
             self.possible_visit = Some(visit);
             return;
@@ -253,7 +247,7 @@ impl LaserEvents {
     }
 
     /// Notices that the robot goes back along its way, and whether it was at a dead end.
-    fn turn(&mut self, robot: [f64; 2]) {
+    fn turn(&mut self, robot: Point2<f64>) {
         if self.visit.is_some() {
             return;
         }
@@ -263,7 +257,10 @@ impl LaserEvents {
         for piece in self.since.windows(2).rev() {
             length += distance(piece[0], piece[1]);
             let opposite = wrapped(ahead - direction(piece[1], piece[0])).abs() < FRAC_PI_3;
-            if opposite && length > TURN && distance_to_piece(robot, piece) < RETRACED {
+            if opposite
+                && length > LASER.turned_back
+                && distance_to_piece(robot, piece) < LASER.retraced
+            {
                 if let Some(visit) = self.visit_of_dead_end() {
                     self.waiting.push_back(visit);
                     self.turned_back = false;
@@ -279,7 +276,7 @@ impl LaserEvents {
     /// The visit of a robot that has turned back at a dead end.
     fn visit_of_dead_end(&self) -> Option<Visit> {
         let within = |end: &SeenJunction| inside(end.clearance).max(self.params.visit.dead_end);
-        let off = |end: &SeenJunction, point: &[f64; 2]| distance(end.centre, *point);
+        let off = |end: &SeenJunction, point: &Point2<f64>| distance(end.centre, *point);
         let ends = self
             .since
             .iter()
@@ -296,12 +293,12 @@ impl LaserEvents {
             exit: Some((arm, self.way)),
             left: self.source,
             turned_back: self.turned_back,
-            to_odometry: self.to_odometry,
+            odometry_from_map: self.odometry_from_map,
         })
     }
 
     /// Adds what is no visit: the robot may have passed a junction that the scans do not show.
-    fn drive_unseen(&mut self, robot: [f64; 2]) {
+    fn drive_unseen(&mut self, robot: Point2<f64>) {
         self.waiting.push_back(Visit {
             kind: VisitKind::UnseenWay,
             source: self.source,
@@ -311,7 +308,7 @@ impl LaserEvents {
             exit: None,
             left: self.source,
             turned_back: false,
-            to_odometry: self.to_odometry,
+            odometry_from_map: self.odometry_from_map,
         });
     }
 
@@ -340,13 +337,13 @@ impl LaserEvents {
             exit: Some((exit, self.way)),
             left: self.source,
             turned_back: self.turned_back,
-            to_odometry: self.to_odometry,
+            odometry_from_map: self.odometry_from_map,
         });
         self.turned_back = false;
     }
 
     /// Begins a visit of a robot that is within a junction.
-    fn enter(&mut self, robot: [f64; 2]) {
+    fn enter(&mut self, robot: Point2<f64>) {
         if self.visit.is_some() {
             return;
         }
@@ -354,7 +351,7 @@ impl LaserEvents {
     }
 
     /// Begins a visit of a robot that is within a possible junction, or was there a short way ago.
-    fn enter_possible_junction(&mut self, robot: [f64; 2]) {
+    fn enter_possible_junction(&mut self, robot: Point2<f64>) {
         self.passed.push_back((self.way, robot, self.source));
         let memory = 2.0 * self.params.visit.settle;
         while self.passed.front().is_some_and(|(way, ..)| self.way - way > memory) {
@@ -371,11 +368,17 @@ impl LaserEvents {
     }
 
     /// The visit of a robot that is within one of these places.
-    fn visit_at(&self, kind: VisitKind, places: &SeenJunctions, robot: [f64; 2]) -> Option<Visit> {
+    fn visit_at(
+        &self,
+        kind: VisitKind,
+        places: &SeenJunctions,
+        robot: Point2<f64>,
+    ) -> Option<Visit> {
         let here = places.nearest(robot, |place| inside(place.clearance))?;
-        let outside = |point: &&[f64; 2]| distance(here.centre, **point) > inside(here.clearance);
+        let outside =
+            |point: &&Point2<f64>| distance(here.centre, **point) > inside(here.clearance);
         // Where a log begins shows nothing of where the robot came from.
-        let before = self.since.iter().rev().find(outside).filter(|_| self.way > BEGINNING);
+        let before = self.since.iter().rev().find(outside).filter(|_| self.way > LASER.beginning);
         Some(Visit {
             kind,
             source: self.source,
@@ -385,7 +388,7 @@ impl LaserEvents {
             exit: None,
             left: self.source,
             turned_back: self.turned_back,
-            to_odometry: self.to_odometry,
+            odometry_from_map: self.odometry_from_map,
         })
     }
 
@@ -402,7 +405,7 @@ impl LaserEvents {
             (_, Some((PlaceEstimate::NoVertex, _)) | None) => 0,
         };
         let possible = self.possible_junctions.at(visit.centre);
-        let possible = possible.filter(|known| known.views_of_meet() >= DOUBTED_VIEWS);
+        let possible = possible.filter(|known| known.views_of_meet() >= LASER.doubted_views);
         // Without an arm in doubt a possible junction is no visit of its own.
         let seen = seen.filter(|_| visit.kind != VisitKind::PossibleJunction);
         let visit = Visit { kind: VisitKind::PossibleJunction, ..visit.clone() };
@@ -499,7 +502,7 @@ impl LaserEvents {
     /// Whether a visit of a possible junction is also one of a junction, which is decided on its own.
     fn is_visited_otherwise(&self, visit: &Visit) -> bool {
         let reach = 2.0 * self.params.visit.settle;
-        let is_near = |centre: [f64; 2], extent: f64| {
+        let is_near = |centre: Point2<f64>, extent: f64| {
             distance(centre, visit.centre) < inside(visit.clearance).max(extent)
         };
         let left = visit.exit.map_or(self.way, |(_, left)| left);
@@ -529,10 +532,10 @@ impl LaserEvents {
             degree: doors.len() as u32,
             sighting: None,
             form: None,
-            entry: Some(wrapped(entry + visit.to_odometry.turn)),
+            entry: Some(wrapped(entry + visit.odometry_from_map.rotation.angle())),
         };
         self.push_junction(visit, &doors);
-        let centre = visit.to_odometry.point(visit.centre);
+        let centre = visit.odometry_from_map * visit.centre;
         let hallway = self.left.take().map(|(before, exit)| HallwayMeasurement {
             length: distance(before, centre),
             turn: turn(exit, arrival.entry),
@@ -542,7 +545,8 @@ impl LaserEvents {
         if let Some((exit, _)) = visit.exit
             && let Some(door) = nearest(&doors, exit)
         {
-            self.left = Some((centre, Some(doors[door] + visit.to_odometry.turn)));
+            self.left =
+                Some((centre, Some(doors[door] + visit.odometry_from_map.rotation.angle())));
             let off = Some(wrapped(doors[door] - exit).abs());
             let door = Door(door as u32);
             self.push(visit.left, CheckedKind::Door { door, number: None, off });
@@ -551,12 +555,12 @@ impl LaserEvents {
 
     /// Adds the junction of the next event.
     fn push_junction(&mut self, visit: &Visit, doors: &[f64]) {
-        let to_odometry = visit.to_odometry;
+        let turn = visit.odometry_from_map.rotation.angle();
         self.visited.push(VisitedJunction {
             event: self.events.len(),
-            centre: to_odometry.point(visit.centre),
+            centre: (visit.odometry_from_map * visit.centre).into(),
             clearance: visit.clearance,
-            doors: doors.iter().map(|door| wrapped(door + to_odometry.turn)).collect(),
+            doors: doors.iter().map(|door| wrapped(door + turn)).collect(),
         });
     }
 
@@ -570,16 +574,14 @@ impl LaserEvents {
 
 /// A robot this near to the centre of a junction is inside, in metres.
 fn inside(clearance: f64) -> f64 {
-    clearance.max(1.0)
+    clearance.max(LASER.inside)
 }
 
 /// The distance from a point to a piece of a way.
-fn distance_to_piece(point: [f64; 2], piece: &[[f64; 2]]) -> f64 {
+fn distance_to_piece(point: Point2<f64>, piece: &[Point2<f64>]) -> f64 {
     let [from, to] = piece else { return f64::INFINITY };
-    let along = [0, 1].map(|axis| to[axis] - from[axis]);
-    let off = [0, 1].map(|axis| point[axis] - from[axis]);
-    let square = along[0] * along[0] + along[1] * along[1];
-    let part = if square > 0.0 { (off[0] * along[0] + off[1] * along[1]) / square } else { 0.0 };
-    let part = part.clamp(0.0, 1.0);
-    distance(point, [0, 1].map(|axis| from[axis] + part * along[axis]))
+    let along = to - from;
+    let square = along.norm_squared();
+    let part = if square > 0.0 { (point - from).dot(&along) / square } else { 0.0 };
+    distance(point, from + part.clamp(0.0, 1.0) * along)
 }

@@ -2,14 +2,13 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{Isometry2, Point2};
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::laser::{
-    params::{CornerParams, LaserParams},
-    plane::Motion,
-};
+use toposlam_vision::laser::params::{CornerParams, LaserParams};
 
 use super::{
     events::{EventSource, UndecidedCause},
+    params::LASER,
     seen_junctions::SeenArm,
 };
 
@@ -18,7 +17,7 @@ use super::{
 pub(super) struct Visit {
     pub kind: VisitKind,
     pub source: EventSource,
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     pub clearance: f64,
     /// The direction from the centre to where the robot came in; `None` if the log begins there.
     pub entry: Option<f64>,
@@ -28,8 +27,8 @@ pub(super) struct Visit {
     pub left: EventSource,
     /// Whether the robot turned back on its way to the junction.
     pub turned_back: bool,
-    /// From the frame of the local map to that of odometry, in which events are reported.
-    pub to_odometry: Motion,
+    /// To the frame of odometry, in which events are reported, from that of the local map.
+    pub odometry_from_map: Isometry2<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,11 +57,6 @@ pub(super) enum PlaceEstimate {
     Doors(Vec<f64>),
 }
 
-/// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
-const ARM: f64 = 0.8;
-/// An arm by which the robot came or left counts if it is seen in this part of the views.
-const TRAVERSED: f64 = 0.25;
-
 impl Visit {
     /// What the views of the place show.
     pub(super) fn estimate(&self, arms: &[SeenArm], params: &LaserParams) -> PlaceEstimate {
@@ -78,8 +72,9 @@ impl Visit {
             let mut ways = [self.entry, exit].into_iter().flatten();
             ways.any(|way| is_same_arm(way, arm.direction))
         };
-        let counts =
-            |arm: &&SeenArm| arm.part >= params.agree || is_traversed(arm) && arm.part >= TRAVERSED;
+        let counts = |arm: &&SeenArm| {
+            arm.part >= params.agree || is_traversed(arm) && arm.part >= LASER.traversed
+        };
         let is_doubtful =
             |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
         let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
@@ -102,5 +97,5 @@ impl Visit {
 
 /// Whether two directions are of one arm.
 pub(super) fn is_same_arm(one: f64, other: f64) -> bool {
-    wrapped(one - other).abs() < ARM
+    wrapped(one - other).abs() < LASER.same_arm
 }

@@ -24,6 +24,7 @@ mod log_head;
 mod marked_visits;
 mod measured_hallways;
 mod message_clock;
+pub mod params;
 mod placed_scenes;
 mod quirks;
 mod recorded_events;
@@ -52,7 +53,7 @@ pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
-pub use inferred_events::{InferredEvents, NEAR};
+pub use inferred_events::InferredEvents;
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::{Known, KnownWorld};
 pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};

@@ -9,7 +9,10 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 
-use super::events::{CheckedEvent, CheckedKind};
+use super::{
+    events::{CheckedEvent, CheckedKind},
+    params::LASER,
+};
 
 /// A junction that the robot visited, in the frame of odometry at that time.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,18 +41,12 @@ pub enum MarkedVisitsError {
     Marker(&'static str),
 }
 
-/// A junction contains a place that is at most this much farther from its centre than its walls, in metres:
-/// half of the shortest way between two junctions.
-const BESIDE: f64 = 1.5;
-/// The least clearance of a junction, in metres, as for a robot that is inside.
-const CLEARANCE: f64 = 1.0;
-
 impl VisitedJunction {
     /// Whether a place is in the junction.
     #[must_use]
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let off = (self.centre[0] - x).hypot(self.centre[1] - y);
-        off <= self.clearance.max(CLEARANCE) + BESIDE
+        off <= self.clearance.max(LASER.inside) + LASER.marked_beside
     }
 
     /// The door nearest to a direction.

@@ -92,7 +92,7 @@ pub(super) fn interpolated(
 
 #[cfg(test)]
 mod tests {
-    use toposlam_vision::laser::scan::{ScanGeometry, ScannerPose};
+    use toposlam_vision::laser::scan::ScanGeometry;
 
     use super::*;
 
@@ -105,7 +105,7 @@ mod tests {
     fn scan() -> PlacedScan {
         let geometry =
             ScanGeometry { angle_min: 0.0, angle_increment: 1.0, range_min: 0.1, range_max: 9.0 };
-        let scan = Scan::new(geometry, vec![1.0], ScannerPose::default()).unwrap();
+        let scan = Scan::new(geometry, vec![1.0], nalgebra::Isometry2::identity()).unwrap();
         PlacedScan { source: EventSource::default(), scan: Arc::new(scan), odometry: at(-1.0) }
     }
 

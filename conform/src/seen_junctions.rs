@@ -1,7 +1,13 @@
 //! Junctions, corners and dead ends in several views of a laser scanner, and what most of the views show.
 
+use nalgebra::Point2;
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::laser::{junctions::LaserJunction, params::VisitParams, plane::distance};
+use toposlam_vision::{
+    geometry::distance,
+    laser::{junctions::LaserJunction, params::VisitParams},
+};
+
+use super::params::LASER;
 
 /// The junctions that were seen lately.
 #[derive(Clone, Debug)]
@@ -14,7 +20,7 @@ pub(super) struct SeenJunctions {
 #[derive(Clone, Debug)]
 pub(super) struct SeenJunction {
     /// The mean of its centre, in metres.
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     /// The mean distance from there to the nearest wall, in metres.
     pub clearance: f64,
     /// The directions of its arms in each view, the last one last; empty where it is not seen.
@@ -34,9 +40,6 @@ pub(super) struct SeenArm {
     pub part: f64,
 }
 
-/// A junction that was not seen on this length of the way is forgotten, in metres.
-const FORGOTTEN: f64 = 30.0;
-
 impl SeenJunctions {
     pub(super) fn new(params: VisitParams) -> Self {
         Self { params, junctions: Vec::new() }
@@ -46,11 +49,11 @@ impl SeenJunctions {
     pub(super) fn look<'a>(
         &mut self,
         junctions: impl Iterator<Item = &'a LaserJunction>,
-        robot: [f64; 2],
+        robot: Point2<f64>,
         way: f64,
     ) {
         let VisitParams { range, views: most, .. } = self.params;
-        self.junctions.retain(|junction| way - junction.way < FORGOTTEN);
+        self.junctions.retain(|junction| way - junction.way < LASER.junction_memory);
         for junction in junctions {
             if distance(junction.centre, robot) > range + junction.clearance {
                 continue;
@@ -62,8 +65,8 @@ impl SeenJunctions {
                     let views = if is_meet == known.is_meet { known.views.len() } else { 0 };
                     let views = views.min(most) as f64;
                     let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
-                    let centre = [known.centre, junction.centre];
-                    known.centre = [0, 1].map(|axis| mean(centre[0][axis], centre[1][axis]));
+                    known.centre =
+                        known.centre.coords.zip_map(&junction.centre.coords, mean).into();
                     known.clearance = mean(known.clearance, junction.clearance);
                     known.is_meet = is_meet;
                 }
@@ -90,11 +93,11 @@ impl SeenJunctions {
     }
 
     /// The nearest junction that can be the one at a point.
-    pub(super) fn at(&self, centre: [f64; 2]) -> Option<&SeenJunction> {
+    pub(super) fn at(&self, centre: Point2<f64>) -> Option<&SeenJunction> {
         self.index_at(centre).map(|index| &self.junctions[index])
     }
 
-    fn index_at(&self, centre: [f64; 2]) -> Option<usize> {
+    fn index_at(&self, centre: Point2<f64>) -> Option<usize> {
         let off = |index: &usize| distance(self.junctions[*index].centre, centre);
         (0..self.junctions.len())
             .filter(|index| off(index) < self.junctions[*index].extent(&self.params))
@@ -105,7 +108,7 @@ impl SeenJunctions {
     /// returns for it.
     pub(super) fn nearest(
         &self,
-        point: [f64; 2],
+        point: Point2<f64>,
         within: impl Fn(&SeenJunction) -> f64,
     ) -> Option<&SeenJunction> {
         let off = |junction: &&SeenJunction| distance(junction.centre, point);

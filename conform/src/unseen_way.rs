@@ -1,26 +1,20 @@
 //! Where a robot drives in a direction in which its laser scanner does not look: backwards, with a scanner that
 //! sees half of a circle. It may pass junctions there that no scan shows.
 
-use std::f64::consts::PI;
-
+use nalgebra::Point2;
 use toposlam_model::driving::odometry::Odometry;
-use toposlam_vision::laser::{
-    plane::{direction, distance},
-    scan::Scan,
+use toposlam_vision::{
+    geometry::{direction, distance},
+    laser::scan::Scan,
 };
 
-/// The direction of a robot's way is measured over this length, in metres.
-const STEP: f64 = 0.5;
-/// A shorter way is manoeuvring, in metres.
-const WAY: f64 = 2.0;
-/// If a scanner looks within this angle of the robot's way, it sees the hallway there, in radians.
-const BESIDE: f64 = PI / 24.0;
+use super::params::LASER;
 
 /// Notices where a robot drives unseen.
 #[derive(Clone, Debug, Default)]
 pub(super) struct UnseenWay {
     /// Where the last step ended.
-    last: Option<[f64; 2]>,
+    last: Option<Point2<f64>>,
     /// The length of the way since the scanner last looked ahead, in metres.
     length: f64,
 }
@@ -28,15 +22,16 @@ pub(super) struct UnseenWay {
 impl UnseenWay {
     /// Takes the next scan, and the robot's pose. Returns whether the way has become too long; of one way only once.
     pub(super) fn go(&mut self, scan: &Scan, robot: &Odometry) -> bool {
-        let last = *self.last.get_or_insert(robot.position);
-        let step = distance(last, robot.position);
-        if step < STEP {
+        let position = Point2::from(robot.position);
+        let last = *self.last.get_or_insert(position);
+        let step = distance(last, position);
+        if step < LASER.unseen_step {
             return false;
         }
-        self.last = Some(robot.position);
-        let ahead = direction(last, robot.position) - robot.heading;
+        self.last = Some(position);
+        let ahead = direction(last, position) - robot.heading;
         let before = self.length;
-        self.length = if scan.angle_off(ahead) > BESIDE { before + step } else { 0.0 };
-        before < WAY && self.length >= WAY
+        self.length = if scan.angle_off(ahead) > LASER.unseen_angle { before + step } else { 0.0 };
+        before < LASER.unseen_way && self.length >= LASER.unseen_way
     }
 }

@@ -6,6 +6,7 @@
 
 use std::{borrow::Cow, collections::VecDeque};
 
+use nalgebra::{Isometry3, Vector3};
 use toposlam_model::driving::odometry::Odometry;
 
 use super::{
@@ -13,7 +14,9 @@ use super::{
     messages::Stamp,
     standard::Quaternion,
     topic_map::{APRIL_TAGS, Carried, DETECTIONS},
-    transforms::{self, Mounts, Rigid, frame_name, is_odometry, is_transforms},
+    transforms::{
+        self, Mounts, frame_name, heading, is_odometry, is_transforms, isometry, on_floor,
+    },
     value::Value,
 };
 
@@ -36,7 +39,7 @@ pub(super) struct Fiducials {
 /// A pose in a frame.
 struct Placed {
     frame: String,
-    pose: Rigid,
+    pose: Isometry3<f64>,
 }
 
 /// The detections and transforms that wait, at most.
@@ -61,7 +64,8 @@ impl Fiducials {
             kind if is_transforms(kind) => {
                 let tags = transforms::transforms(message).into_iter();
                 self.tags.extend(tags.filter_map(|transform| {
-                    let placed = Placed { frame: transform.parent, pose: transform.pose };
+                    let placed =
+                        Placed { frame: transform.parent, pose: transform.parent_from_child };
                     Some((transform.stamp?, transform.child, placed))
                 }));
                 Ok(self.matched())
@@ -80,16 +84,17 @@ impl Fiducials {
                 placed.pose
             } else {
                 match mounts.pose_of(&frame)? {
-                    Ok(mount) => Rigid::on_floor(odometry).then(&mount.then(&placed.pose)),
+                    Ok(robot_from_frame) => on_floor(odometry) * robot_from_frame * placed.pose,
                     Err(what) => return Ok(Err(what)),
                 }
             };
-            let [x, y, _] = pose.translation();
-            let [ahead, left, _] = pose.turned([1.0, 0.0, 0.0]);
-            if ahead.hypot(left) < LEVEL {
+            if (pose * Vector3::x()).xy().norm() < LEVEL {
                 return Ok(Err("the x axis of the marker points up or down".to_owned()));
             }
-            sightings.push(FiducialSighting { position: [x, y], heading: left.atan2(ahead) });
+            sightings.push(FiducialSighting {
+                position: pose.translation.vector.xy().into(),
+                heading: heading(&pose),
+            });
         }
         Ok(Ok(sightings))
     }
@@ -170,7 +175,7 @@ fn posed(message: &Value<'_>) -> Result<Placed, String> {
     Ok(Placed { frame, pose })
 }
 
-fn pose_at(value: &Value<'_>, path: &str) -> Result<Rigid, String> {
+fn pose_at(value: &Value<'_>, path: &str) -> Result<Isometry3<f64>, String> {
     let number = |part: &str| {
         let path = format!("{path}.{part}");
         let number = value.at(&path).and_then(|number| number.f64());
@@ -183,5 +188,5 @@ fn pose_at(value: &Value<'_>, path: &str) -> Result<Rigid, String> {
         z: number("orientation.z")?,
         w: number("orientation.w")?,
     };
-    Rigid::new(translation, rotation).ok_or_else(|| format!("its `{path}` is no pose"))
+    isometry(translation, rotation).ok_or_else(|| format!("its `{path}` is no pose"))
 }

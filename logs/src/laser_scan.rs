@@ -29,5 +29,5 @@ pub(super) fn scan_of(message: &Value<'_>, mount: &Mount) -> Result<Scan, String
     };
     let ranges: Vec<f64> = ranges.ok_or("it has no list of numbers `ranges`")?;
     let ranges = ranges.into_iter().map(|range| range as f32).collect();
-    Scan::new(geometry, ranges, mount.pose).map_err(|error| error.to_string())
+    Scan::new(geometry, ranges, mount.robot_from_scanner).map_err(|error| error.to_string())
 }

@@ -6,8 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Isometry2, Isometry3, UnitQuaternion, Vector3};
 use toposlam_model::driving::odometry::Odometry;
-use toposlam_vision::laser::scan::ScannerPose;
+use toposlam_vision::geometry::angle;
 
 use super::{
     container::{PlacedRecord, Record},
@@ -37,62 +38,28 @@ const MOST_FRAMES: usize = 64;
 /// A scanner is level if its axis leans by less than this, as a cosine: about 25 degrees.
 const LEVEL: f64 = 0.9;
 
-/// The pose of one frame in another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rigid {
-    rotation: [[f64; 3]; 3],
+/// The pose of one frame in another; `None` if a number is not finite, or the quaternion is no rotation.
+pub(super) fn isometry(
     translation: [f64; 3],
+    Quaternion { x, y, z, w }: Quaternion,
+) -> Option<Isometry3<f64>> {
+    let quaternion = nalgebra::Quaternion::new(w, x, y, z);
+    let norm = quaternion.norm();
+    let is_finite = norm.is_finite() && translation.iter().all(|part| part.is_finite());
+    (is_finite && norm >= 1e-3).then(|| {
+        let rotation = UnitQuaternion::from_quaternion(quaternion);
+        Isometry3::from_parts(translation.into(), rotation)
+    })
 }
 
-impl Rigid {
-    const IDENTITY: Self = Self {
-        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        translation: [0.0; 3],
-    };
+/// The pose of a robot on the floor.
+pub(super) fn on_floor(Odometry { position: [x, y], heading }: &Odometry) -> Isometry3<f64> {
+    Isometry3::new(Vector3::new(*x, *y, 0.0), *heading * Vector3::z())
+}
 
-    /// A pose; `None` if a number is not finite, or the quaternion is no rotation.
-    pub(super) fn new(
-        translation: [f64; 3],
-        Quaternion { x, y, z, w }: Quaternion,
-    ) -> Option<Self> {
-        let norm = (x * x + y * y + z * z + w * w).sqrt();
-        let finite = translation.iter().all(|part| part.is_finite());
-        if !finite || !norm.is_finite() || norm < 1e-3 {
-            return None;
-        }
-        let [x, y, z, w] = [x, y, z, w].map(|part| part / norm);
-        let rotation = [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-        ];
-        Some(Self { rotation, translation })
-    }
-
-    pub(super) fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        self.rotation.map(|[a, b, c]| a * x + b * y + c * z)
-    }
-
-    /// The pose in the outer frame of something with a pose in this one.
-    pub(super) fn then(&self, inner: &Self) -> Self {
-        let [x, y, z] = self.turned(inner.translation);
-        let [a, b, c] = self.translation;
-        let columns = [0, 1, 2].map(|column| self.turned(inner.rotation.map(|row| row[column])));
-        let rotation = [0, 1, 2].map(|row| columns.map(|column| column[row]));
-        Self { rotation, translation: [a + x, b + y, c + z] }
-    }
-
-    /// The pose of a robot on the floor.
-    pub(super) fn on_floor(Odometry { position: [x, y], heading }: &Odometry) -> Self {
-        let (sine, cosine) = heading.sin_cos();
-        let rotation = [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
-        Self { rotation, translation: [*x, *y, 0.0] }
-    }
-
-    /// Where its origin is.
-    pub(super) fn translation(&self) -> [f64; 3] {
-        self.translation
-    }
+/// The direction of the x axis of a frame, seen from above, in radians.
+pub(super) fn heading(pose: &Isometry3<f64>) -> f64 {
+    angle((pose * Vector3::x()).xy())
 }
 
 /// One transform of a message.
@@ -100,7 +67,7 @@ pub(super) struct FrameTransform {
     pub(super) parent: String,
     pub(super) child: String,
     pub(super) stamp: Option<Stamp>,
-    pub(super) pose: Rigid,
+    pub(super) parent_from_child: Isometry3<f64>,
 }
 
 /// The transforms in a message, without those that are no rigid transforms.
@@ -122,7 +89,7 @@ pub(super) fn transforms(message: &Value<'_>) -> Vec<FrameTransform> {
             parent: frame_name(&transform.at("header.frame_id")?.text()?),
             child: frame_name(&transform.at("child_frame_id")?.text()?),
             stamp: transform.at("header.stamp").and_then(|stamp| stamp.stamp()),
-            pose: Rigid::new(translation, rotation)?,
+            parent_from_child: isometry(translation, rotation)?,
         })
     };
     let list = message.at("transforms").and_then(|list| list.elements()).unwrap_or_default();
@@ -151,17 +118,16 @@ fn is_base(frame: &str) -> bool {
 /// The odometry in a message, and its time; `None` if it does not relate the robot to `odom`.
 pub(super) fn odometry(message: &Value<'_>) -> Option<(Odometry, Option<Stamp>)> {
     let mut all = transforms(message).into_iter();
-    let FrameTransform { pose, stamp, .. } =
+    let FrameTransform { parent_from_child: odom_from_robot, stamp, .. } =
         all.find(|transform| is_called(&transform.parent, ODOM) && is_base(&transform.child))?;
-    let [x, y, _] = pose.translation;
-    let [ahead_x, ahead_y, _] = pose.turned([1.0, 0.0, 0.0]);
-    Some((Odometry { position: [x, y], heading: ahead_y.atan2(ahead_x) }, stamp))
+    let position = odom_from_robot.translation.vector.xy().into();
+    Some((Odometry { position, heading: heading(&odom_from_robot) }, stamp))
 }
 
 /// How a scanner is mounted on its robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mount {
-    pub(super) pose: ScannerPose,
+    pub(super) robot_from_scanner: Isometry2<f64>,
     /// Whether it is mounted upside down, so that its angles count clockwise from above.
     pub(super) is_upside_down: bool,
 }
@@ -171,7 +137,7 @@ pub(super) struct Mounts<'l> {
     log: &'l Log,
     known: BTreeMap<String, Result<Mount, String>>,
     /// The poses of frames in that of the robot.
-    frames: BTreeMap<String, Result<Rigid, String>>,
+    frames: BTreeMap<String, Result<Isometry3<f64>, String>>,
 }
 
 impl<'l> Mounts<'l> {
@@ -193,7 +159,10 @@ impl<'l> Mounts<'l> {
     }
 
     /// The pose of a frame in that of the robot. In a log without transforms it is that of the robot's centre.
-    pub(super) fn pose_of(&mut self, frame: &str) -> Result<Result<Rigid, String>, LogError> {
+    pub(super) fn pose_of(
+        &mut self,
+        frame: &str,
+    ) -> Result<Result<Isometry3<f64>, String>, LogError> {
         if let Some(known) = self.frames.get(frame) {
             return Ok(known.clone());
         }
@@ -204,7 +173,7 @@ impl<'l> Mounts<'l> {
         Ok(found)
     }
 
-    fn find(&self, frame: &str) -> Result<Result<Rigid, String>, LogError> {
+    fn find(&self, frame: &str) -> Result<Result<Isometry3<f64>, String>, LogError> {
         let mut tree = Tree::default();
         let is_static = |name: &str| name.ends_with("tf_static");
         for wanted in [true, false] {
@@ -219,7 +188,7 @@ impl<'l> Mounts<'l> {
         }
         Ok(match tree.in_base(frame) {
             Some(pose) => Ok(pose),
-            None if tree.parents.is_empty() => Ok(Rigid::IDENTITY),
+            None if tree.parents.is_empty() => Ok(Isometry3::identity()),
             None => Err(format!(
                 "its frame {frame:?} is not connected to the robot: no transform leads from it to {}",
                 BASES.join(", ")
@@ -228,21 +197,20 @@ impl<'l> Mounts<'l> {
     }
 }
 
-fn mount(pose: &Rigid, frame: &str) -> Result<Mount, String> {
-    let [_, _, up] = pose.turned([0.0, 0.0, 1.0]);
+fn mount(robot_from_scanner: &Isometry3<f64>, frame: &str) -> Result<Mount, String> {
+    let up = (robot_from_scanner * Vector3::z()).z;
     if up.abs() < LEVEL {
         return Err(format!("its frame {frame:?} is not level"));
     }
-    let [x, y, _] = pose.translation;
-    let [ahead_x, ahead_y, _] = pose.turned([1.0, 0.0, 0.0]);
-    let pose = ScannerPose { position: [x, y], heading: ahead_y.atan2(ahead_x) };
-    Ok(Mount { pose, is_upside_down: up < 0.0 })
+    let position = robot_from_scanner.translation.vector.xy();
+    let robot_from_scanner = Isometry2::new(position, heading(robot_from_scanner));
+    Ok(Mount { robot_from_scanner, is_upside_down: up < 0.0 })
 }
 
 /// The frames of a log: of each its parent, and its first pose there.
 #[derive(Default)]
 struct Tree {
-    parents: BTreeMap<String, (String, Rigid)>,
+    parents: BTreeMap<String, (String, Isometry3<f64>)>,
 }
 
 impl Tree {
@@ -266,8 +234,8 @@ impl Tree {
                 let message = bytes.get(at + within.start..at + within.end).unwrap_or_default();
                 let Ok(message) = file.message(message.to_vec()) else { continue };
                 let Some(Ok(value)) = topic.decode(&message) else { continue };
-                for FrameTransform { parent, child, pose, .. } in transforms(&value) {
-                    self.parents.entry(child).or_insert((parent, pose));
+                for FrameTransform { parent, child, parent_from_child, .. } in transforms(&value) {
+                    self.parents.entry(child).or_insert((parent, parent_from_child));
                 }
                 if self.in_base(frame).is_some() {
                     return Ok(true);
@@ -278,15 +246,15 @@ impl Tree {
     }
 
     /// The pose of a frame in that of the robot.
-    fn in_base(&self, frame: &str) -> Option<Rigid> {
-        let mut pose = Rigid::IDENTITY;
+    fn in_base(&self, frame: &str) -> Option<Isometry3<f64>> {
+        let mut pose = Isometry3::identity();
         let mut here = frame;
         for _ in 0..MOST_FRAMES {
             if is_base(here) {
                 return Some(pose);
             }
             let (parent, step) = self.parents.get(here)?;
-            pose = step.then(&pose);
+            pose = step * pose;
             here = parent;
         }
         None
@@ -302,7 +270,7 @@ mod tests {
     fn tree(transforms: &[(&str, &str, [f64; 3], Quaternion)]) -> Tree {
         let mut tree = Tree::default();
         for (parent, child, translation, rotation) in transforms {
-            let pose = Rigid::new(*translation, *rotation).unwrap();
+            let pose = isometry(*translation, *rotation).unwrap();
             tree.parents.insert((*child).to_owned(), ((*parent).to_owned(), pose));
         }
         tree
@@ -316,7 +284,8 @@ mod tests {
             ("plate", "laser", [0.1, 0.0, 0.1], Quaternion::turn(FRAC_PI_2)),
         ]);
         let found = mount(&tree.in_base("laser").unwrap(), "laser").unwrap();
-        let ScannerPose { position: [x, y], heading } = found.pose;
+        let [x, y] = found.robot_from_scanner.translation.vector.into();
+        let heading = found.robot_from_scanner.rotation.angle();
         assert!((x - 0.5).abs() < 1e-12 && (y - 0.1).abs() < 1e-12, "{found:?}");
         assert!((heading.abs() - PI).abs() < 1e-12 && !found.is_upside_down, "{found:?}");
         assert_eq!(tree.in_base("camera"), None);
@@ -329,7 +298,7 @@ mod tests {
         let side = Quaternion { x: half, y: 0.0, z: 0.0, w: half };
         let tree = tree(&[("base", "over", [0.0; 3], over), ("base", "side", [0.0; 3], side)]);
         let over = mount(&tree.in_base("over").unwrap(), "over").unwrap();
-        assert!(over.is_upside_down && over.pose.heading.abs() < 1e-12);
+        assert!(over.is_upside_down && over.robot_from_scanner.rotation.angle().abs() < 1e-12);
         let side = mount(&tree.in_base("side").unwrap(), "side");
         assert_eq!(side.unwrap_err(), "its frame \"side\" is not level");
     }

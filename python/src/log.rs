@@ -6,6 +6,7 @@ use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_model::{driving::{odometry::Odometry, scene::{Place, Scene}}, enumerate::Watch, percept::{Door, Percept as ModelPercept}};
 use toposlam_logs::{Format, entries::{Content, Entry}, error::LogError, messages::Run, reader::Log, topic_map::{Role, TopicMap}, record::{Arrival, EventKind, Frame, RunEnding}};
+use toposlam_vision::geometry::from_robot;
 
 use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, percept::Percept};
 
@@ -307,12 +308,12 @@ fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {
     else {
         return;
     };
-    let (sine, cosine) = odometry.heading.sin_cos();
     let [east, north] = odometry.position;
-    if [east, north, cosine].iter().all(|number| number.is_finite()) {
+    if [east, north, odometry.heading].iter().all(|number| number.is_finite()) {
         picture.way.push(odometry.position);
-        for [x, y] in scan.hits() {
-            picture.hits.add([east + x * cosine - y * sine, north + x * sine + y * cosine]);
+        let odometry_from_robot = from_robot(&odometry);
+        for hit in scan.hits() {
+            picture.hits.add((odometry_from_robot * hit).into());
         }
     }
 }

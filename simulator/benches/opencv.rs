@@ -105,7 +105,7 @@ fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64
 fn write_maps(camera: &Camera, folder: &Path) {
     let pixels: Vec<[f32; 2]> = (0..GroundView::SIDE * GroundView::SIDE)
         .map(|index| camera.ground_to_pixel(GroundView::ground(index)))
-        .map(|pixel| pixel.map_or([-1.0; 2], |pixel| pixel.map(|part| part as f32)))
+        .map(|pixel| pixel.map_or([-1.0; 2], |pixel| pixel.map(|part| part as f32).into()))
         .collect();
     for (axis, name) in ["u.f32", "v.f32"].into_iter().enumerate() {
         let bytes: Vec<u8> = pixels.iter().flat_map(|pixel| pixel[axis].to_le_bytes()).collect();

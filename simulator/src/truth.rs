@@ -6,6 +6,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::{
     driving::{
         pose::Pose,
@@ -16,6 +17,7 @@ use toposlam_model::{
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     percept::Door,
 };
+use toposlam_vision::geometry::{distance, unit};
 
 /// Up to this distance from a turning point the robot is at the junction, in metres.
 pub const JUNCTION_WITHIN: f64 = 0.5;
@@ -115,19 +117,18 @@ struct Stretch {
 impl Stretch {
     fn new(plan: &FloorPlan, hallway: Hallway, position: [f64; 2]) -> Self {
         let [from, to] = [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position);
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let leads = |dart: &Dart| plan.graph().vertex(plan.graph().opposite(*dart)) == hallway.to;
         // Two junctions have at most one hallway between them.
         let dart = plan.graph().darts_of(hallway.from).find(leads);
         let direction = dart.map_or(Direction::North, |dart| plan.direction(dart));
-        let [x, y] = direction.vector();
-        let [east, north] = [position[0] - from[0], position[1] - from[1]];
+        let onwards = Vector2::from(direction.vector());
+        let from_first = Point2::from(position) - Point2::from(from);
         Self {
             hallway,
             direction,
-            along: east * x + north * y,
-            aside: north * x - east * y,
-            length,
+            along: onwards.dot(&from_first),
+            aside: onwards.perp(&from_first),
+            length: distance(from, to),
         }
     }
 
@@ -177,9 +178,8 @@ impl JunctionTruth {
     /// no door behind the robot.
     #[must_use]
     pub fn distance(&self) -> Option<f64> {
-        let [x, y] = self.turning_point;
-        let inwards = self.doors.first()? + PI;
-        self.form.map(|_| x * inwards.cos() + y * inwards.sin())
+        let inwards = unit(self.doors.first()? + PI);
+        self.form.map(|_| inwards.dot(&Vector2::from(self.turning_point)))
     }
 }
 
@@ -224,9 +224,8 @@ pub fn angle(direction: Direction) -> f64 {
 
 /// A position of the plan in the robot's frame: x ahead, y to the left.
 fn relative(position: [f64; 2], pose: Pose) -> [f64; 2] {
-    let [east, north] = [position[0] - pose.position[0], position[1] - pose.position[1]];
-    let (sine, cosine) = pose.heading.sin_cos();
-    [east * cosine + north * sine, north * cosine - east * sine]
+    let plan_from_robot = Isometry2::new(pose.position.into(), pose.heading);
+    plan_from_robot.inverse_transform_point(&position.into()).into()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use toposlam_model::{
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     format::world_file::WorldFileError,
 };
+use toposlam_robot::superscout::{CLEARANCE, RADIUS};
 
 use super::{
     plans::plans,
@@ -31,7 +32,7 @@ const APPROACH: [f64; 2] = [1.5, -0.3];
 const ASIDE: f64 = 0.3;
 /// The least distance from a wall, in metres: the robot's radius, and the distance at which its
 /// sonars stop it.
-const CLEAR: f64 = 0.205 + 0.2;
+const CLEAR: f64 = RADIUS + CLEARANCE;
 /// The greatest angle between the robot's heading and its hallway, in degrees.
 const TURNED: f64 = 25.0;
 /// The share of views at junctions. The others are anywhere in hallways.

@@ -8,6 +8,7 @@ use std::{
     sync::Arc,
 };
 
+use nalgebra::{Isometry2, Vector2};
 use toposlam_conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause};
 use toposlam_logs::{
     entries::Content,
@@ -16,11 +17,13 @@ use toposlam_logs::{
     topic_map::TopicMap,
 };
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
-use toposlam_vision::laser::{
-    drift::{DriftMeter, ROUNDS},
-    params::LaserParams,
-    plane::Motion,
-    scan::{Scan, ScanGeometry, ScannerPose},
+use toposlam_vision::{
+    geometry::moved,
+    laser::{
+        drift::{DriftMeter, ROUNDS},
+        params::LaserParams,
+        scan::{Scan, ScanGeometry},
+    },
 };
 
 /// A straight corridor: the ends of its middle line, and its width.
@@ -77,7 +80,7 @@ fn scan(corridors: &[Corridor], at: &Odometry, degrees: u32) -> Scan {
         range_min: 0.0,
         range_max: 80.0,
     };
-    Scan::new(geometry, ranges.map(|range| range as f32).collect(), ScannerPose::default()).unwrap()
+    Scan::new(geometry, ranges.map(|range| range as f32).collect(), Isometry2::identity()).unwrap()
 }
 
 /// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
@@ -486,8 +489,8 @@ fn the_frame_of_odometry_does_not_matter() {
         let Some((_, scans)) = recorded(name) else { return };
         for params in [LaserParams::default(), matched] {
             let visits_from = |turn: f64, shift| {
-                let motion = Motion { turn: turn.to_radians(), shift };
-                let placed = scans.iter().map(|(scan, at)| (scan.clone(), motion.pose(at)));
+                let motion = Isometry2::new(Vector2::from(shift), turn.to_radians());
+                let placed = scans.iter().map(|(scan, at)| (scan.clone(), moved(&motion, at)));
                 visits(&events_of(&placed.collect::<Vec<_>>(), &params))
             };
             let expected = visits_from(0.0, [0.0; 2]);

@@ -42,7 +42,11 @@ fn rendered(seed: u64, size: [u32; 2], settings: &[(&str, f64)]) -> Rendered {
     let look = LOOKS.choose(&mut rng).unwrap();
     let building = Building::new(&plan, look, None, &effects, seed);
     let image = render(&Rig::new(&camera), &building, pose, &effects, seed);
-    Rendered { image: imageops::grayscale(&image), centre: mirror.centre, radius: mirror.rim() }
+    Rendered {
+        image: imageops::grayscale(&image),
+        centre: mirror.centre.into(),
+        radius: mirror.rim(),
+    }
 }
 
 impl Rendered {

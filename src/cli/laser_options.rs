@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use toposlam_conform::Evidence;
-use toposlam_vision::laser::params::LaserParams;
+use toposlam_vision::{laser::params::LaserParams, params};
 
 use super::{CliError, input};
 
@@ -53,7 +53,7 @@ impl LaserOptions {
             Some(path) => {
                 let text = String::from_utf8(input::read(path)?)
                     .map_err(|error| CliError::in_file(path, error))?;
-                LaserParams::read(&text).map_err(|error| CliError::in_file(path, error))?
+                params::read(&text).map_err(|error| CliError::in_file(path, error))?
             }
         };
         if let Some(corners) = self.corners {

@@ -105,7 +105,7 @@ fn the_rim_is_found_within_a_pixel_and_the_mask_hides_the_robot() {
         for (u, v, label) in images.labels.enumerate_pixels() {
             let at = [f64::from(u), f64::from(v)];
             let near = |[x, y]: [f64; 2]| x.hypot(y) < 3.0;
-            if camera.pixel_to_ground(at).is_none_or(|ground| !near(ground)) {
+            if camera.pixel_to_ground(at).is_none_or(|ground| !near(ground.into())) {
                 continue;
             }
             let seen = camera.mask.as_ref().unwrap().sees([u, v]);
@@ -151,8 +151,11 @@ fn a_rim_cut_off_by_the_border_is_found_by_its_arcs() {
     let text = stdout_of(calibrate(&files, &["--out", out.to_str().unwrap()]));
     assert!(text.starts_with("centre  ") && text.lines().count() == 3, "{text}");
     let expected = truth();
-    let [u, v] = expected.centre;
-    close(&mirror(&read(&out)), &SphericalMirror { centre: [u - 30.0, v - 60.0], ..expected });
+    let [u, v] = expected.centre.into();
+    close(
+        &mirror(&read(&out)),
+        &SphericalMirror { centre: [u - 30.0, v - 60.0].into(), ..expected },
+    );
 }
 
 #[test]
@@ -192,13 +195,13 @@ fn a_rim_that_is_set_by_hand_needs_no_rim_in_the_image() {
         assert_eq!(report["rim_from"], "option");
         let camera = read(Path::new(out));
         let found = mirror(&camera);
-        let [u, v] = found.centre;
+        let [u, v] = found.centre.into();
         assert_eq!(camera.image, [640, 480]);
         assert_eq!(format!("{u},{v},{:.1}", found.rim()), rim);
         report["rim_seen"].as_f64().unwrap()
     };
     assert!(seen(flat, "305.5,240.25,326.0").abs() < f64::EPSILON);
-    let SphericalMirror { centre: [u, v], .. } = truth();
+    let [u, v] = truth().centre.into();
     let rim = format!("{u},{v},{:.1}", truth().rim());
     assert!(seen(&LABORATORY.files[0], &rim) > 0.6);
     let text = stdout_of(["camera", "calibrate", flat, "--rim", "305.5,240.25,326", "--out", out]);

@@ -28,7 +28,7 @@ fn ground_to_pixel(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| {
         (0..GroundView::SIDE * GroundView::SIDE)
             .filter_map(|index| camera.ground_to_pixel(GroundView::ground(index)))
-            .map(|[u, v]| u + v)
+            .map(|pixel| pixel.coords.sum())
             .sum::<f64>()
     });
 }
@@ -41,7 +41,7 @@ fn pixel_to_ground(bencher: Bencher<'_, '_>, name: &str) {
         (0..960)
             .flat_map(|v| (0..1280).map(move |u| [f64::from(u), f64::from(v)]))
             .filter_map(|pixel| camera.pixel_to_ground(pixel))
-            .map(|[x, y]| x + y)
+            .map(|ground| ground.coords.sum())
             .sum::<f64>()
     });
 }

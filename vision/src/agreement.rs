@@ -4,6 +4,8 @@
 //! floor, the outline is wrong. A door of the floor's colour looks like floor, too, but it is narrower
 //! than any hallway, and there is wall on both sides of it.
 
+use nalgebra::{Point2, Vector2};
+
 use crate::{
     boundary::{BEARINGS, Boundary, Edge, Sight, direction},
     outline::{Outline, OutlineSide, near},
@@ -60,7 +62,7 @@ impl Outline {
         let mut towards = [Seen::default(); 4];
         let mut gap: Option<Gap> = None;
         for bearing in (0..BEARINGS).step_by(every) {
-            let ray = frame.framed(direction(bearing));
+            let ray = frame.walls_from_robot() * direction(bearing);
             let sight = &boundary.sights[bearing];
             let Some((range, number)) = self.first_on(ray).filter(|&(range, _)| {
                 range <= params.max_range
@@ -104,7 +106,7 @@ impl Outline {
         &self,
         side: &OutlineSide,
         at: f64,
-        ray: [f64; 2],
+        ray: Vector2<f64>,
         sight: &Sight,
         params: &OutlineParams,
     ) -> Held {
@@ -115,7 +117,7 @@ impl Outline {
         let fits = |edge: &Edge| {
             let near = near(edge.range, params);
             is_wall && before(edge.range).abs() < near
-                || self.distance(ray.map(|part| edge.range * part)) < near
+                || self.distance(Point2::from(edge.range * ray)) < near
         };
         match sight.edges().find(fits) {
             Some(edge) if edge.width * ray[across].abs() <= 1.0 => Held::Support,
@@ -145,7 +147,7 @@ impl Outline {
         let (along, across) = side.along.split();
         // The place at which another bearing meets the wall, and whether the wall is seen there.
         let on_wall = |bearing: usize| {
-            let ray = frame.framed(direction(bearing));
+            let ray = frame.walls_from_robot() * direction(bearing);
             let range = side.offset / ray[across];
             let off = |edge: Edge| ((edge.range - range) * ray[across]).abs();
             let seen = |edge: Edge| edge.sure && off(edge) < params.door_near * near(range, params);
@@ -272,7 +274,7 @@ mod tests {
     };
 
     const HALF: f64 = 0.8;
-    const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn_place::TAPE };
+    const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: HALF - drawn_place::TAPE };
 
     fn params() -> OutlineParams {
         OutlineParams::default()
@@ -339,7 +341,7 @@ mod tests {
         let dead_end = DrawnPlace::junction([false, false, true, false], HALF);
         let view = dead_end.seen_from([-0.8, 0.0], 0.0);
         let boundary = drawn_place::bearings().look(&view);
-        let square = Square { middle: [0.8, 0.0], half: HALF - drawn_place::TAPE };
+        let square = Square { middle: Point2::new(0.8, 0.0), half: HALF - drawn_place::TAPE };
         let l = Outline::junction([false, true, true, false], square, &params());
         let agreement = l.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert!(agreement.against > 60, "{agreement:?}");
@@ -352,7 +354,7 @@ mod tests {
         for before in [0.4, 0.5, 0.55] {
             let boundary = drawn_place::bearings().look(&t.seen_from([-before, 0.0], 0.0));
             // A little too wide and too near: a camera that is not as calibrated gives such an error.
-            let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
+            let square = Square { middle: Point2::new(before - 0.05, 0.0), half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
             let agreement = bar.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
             assert_eq!(agreement.door, 0, "{before} before: {agreement:?}");
@@ -366,7 +368,7 @@ mod tests {
         let mut view = hallway.seen_from([0.0, 0.0], 0.0);
         // Where the wall would be, on both sides of what would be a door.
         for (index, class) in view.classes.iter_mut().enumerate() {
-            let [x, y] = GroundView::ground(index);
+            let [x, y] = GroundView::ground(index).into();
             let on_line = x.abs() > 0.3 && (HALF - drawn_place::TAPE..HALF).contains(&y);
             if on_line && *class == PixelClass::Floor {
                 *class = PixelClass::Stripe;
@@ -407,7 +409,7 @@ mod tests {
     #[test]
     fn an_open_direction_is_blank_where_the_floor_is_not_seen_to_go_on() {
         let doors = [false, true, true, true];
-        let square = Square { middle: [0.0, 0.0], half: 0.55 };
+        let square = Square { middle: Point2::origin(), half: 0.55 };
         let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn_place::TAPE));
         let blank = |boundary: &Boundary| {
             Outline::junction(doors, square, &params())

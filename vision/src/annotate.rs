@@ -3,6 +3,7 @@
 mod legend;
 
 use image::{Rgb, RgbImage};
+use nalgebra::{Isometry2, Point2, UnitComplex};
 use toposlam_model::driving::scene::{CentreLine, MarkerView, Place, Scene};
 
 use crate::{
@@ -10,8 +11,9 @@ use crate::{
     colour::PixelClass,
     corner::{Bend, CornerSource},
     draw,
+    geometry::unit,
     ground_view::GroundView,
-    params::{MARKER_LENGTH, MARKER_WIDTH},
+    params::{MARKER_LENGTH, MARKER_WIDTH, ROBOT_RADIUS},
     sensing::{SensingTrace, Sensor, WrongSize},
     wall::WallSegment,
 };
@@ -41,8 +43,6 @@ const CLUSTERS: [Rgb<u8>; 6] = [
     Rgb([220, 120, 230]),
     Rgb([90, 220, 210]),
 ];
-/// The radius of the robot's body, in metres.
-const RADIUS: f64 = 0.205;
 /// The length of a centre line in a picture, in metres.
 const CENTRE_LINE: f64 = 1.6;
 /// The pixels around each pixel of a line over an image.
@@ -111,8 +111,7 @@ pub fn boundary(trace: &SensingTrace) -> RgbImage {
     for (bearing, sight) in
         trace.boundary.iter().flat_map(|boundary| boundary.sights.iter().enumerate())
     {
-        let [x, y] = crate::boundary::direction(bearing);
-        let at = |range: f64| [range * x, range * y];
+        let at = |range: f64| Point2::from(range * crate::boundary::direction(bearing));
         if sight.floor > 0.0 {
             line(&mut picture, at(0.30), at(sight.floor), REACH);
         }
@@ -168,14 +167,14 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
             Bend::Inwards => CYAN,
             Bend::Outwards => ORANGE,
         };
-        ring(&mut picture, frame.unframed(corner.position), 9, colour);
+        ring(&mut picture, frame.robot_from_walls() * corner.position, 9, colour);
     }
     body(&mut picture);
     for (from, to, colour) in centre_lines(scene) {
         thick(&mut picture, from, to, colour);
     }
     if let Place::Junction(junction) = &scene.place {
-        dot(&mut picture, junction.turning_point, 6, WHITE);
+        dot(&mut picture, junction.turning_point.into(), 6, WHITE);
     }
     if let Some(marker) = &scene.marker {
         draw::convex_polygon(&mut picture, &rectangle(marker).map(at), BLUE);
@@ -187,17 +186,16 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
 #[must_use]
 pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
     let mut picture = image.clone();
-    let mut path = |from: [f64; 2], to: [f64; 2], colour| {
+    let mut path = |from: Point2<f64>, to: Point2<f64>, colour| {
         // A straight line on the floor is a curve in the mirror.
-        let part = |step: u32| f64::from(step) / 40.0;
-        let point =
-            |step: u32| [0, 1].map(|axis| from[axis] + part(step) * (to[axis] - from[axis]));
+        let point = |step: u32| from + f64::from(step) / 40.0 * (to - from);
         for step in 0..40 {
             let ends =
                 [camera.ground_to_pixel(point(step)), camera.ground_to_pixel(point(step + 1))];
             if let [Some(from), Some(to)] = ends {
                 for [right, down] in PEN {
-                    let end = |[u, v]: [f64; 2]| [(u + right) as f32, (v + down) as f32];
+                    let end =
+                        |pixel: Point2<f64>| [(pixel.x + right) as f32, (pixel.y + down) as f32];
                     draw::line(&mut picture, end(from), end(to), colour);
                 }
             }
@@ -217,21 +215,19 @@ pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
 
 /// The centre lines of a scene. That of the edge on which the robot stands is green, others are red.
 // paper: sense.centre-lines
-fn centre_lines(scene: &Scene) -> Vec<([f64; 2], [f64; 2], Rgb<u8>)> {
-    let onwards = |[x, y]: [f64; 2], direction: f64, far: f64| {
-        [x + far * direction.cos(), y + far * direction.sin()]
-    };
+fn centre_lines(scene: &Scene) -> Vec<(Point2<f64>, Point2<f64>, Rgb<u8>)> {
     match &scene.place {
         Place::Hallway(hallway) => {
             let aside = (hallway.left - hallway.right) / 2.0;
-            let beside = [-aside * hallway.heading.sin(), aside * hallway.heading.cos()];
-            let [from, to] = [-1.5, 2.0].map(|far| onwards(beside, hallway.heading, far));
+            let turn = UnitComplex::new(hallway.heading);
+            let [from, to] = [-1.5, 2.0].map(|far| turn * Point2::new(far, aside));
             vec![(from, to, GREEN)]
         }
         Place::Junction(junction) => {
             let drawn = |(door, line): (usize, &CentreLine)| {
                 let colour = if door == 0 { GREEN } else { RED };
-                (line.through, onwards(line.through, line.direction, CENTRE_LINE), colour)
+                let through = Point2::from(line.through);
+                (through, through + CENTRE_LINE * unit(line.direction), colour)
             };
             junction.doors.iter().enumerate().map(drawn).collect()
         }
@@ -240,21 +236,17 @@ fn centre_lines(scene: &Scene) -> Vec<([f64; 2], [f64; 2], Rgb<u8>)> {
 }
 
 /// The corners of the marker.
-fn rectangle(marker: &MarkerView) -> [[f64; 2]; 4] {
-    let (sine, cosine) = marker.axis.sin_cos();
+fn rectangle(marker: &MarkerView) -> [Point2<f64>; 4] {
+    let robot_from_marker = Isometry2::new(marker.position.into(), marker.axis);
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(ahead, left)| {
-        let [along, across] = [ahead * MARKER_LENGTH / 2.0, left * MARKER_WIDTH / 2.0];
-        [
-            marker.position[0] + along * cosine - across * sine,
-            marker.position[1] + along * sine + across * cosine,
-        ]
+        robot_from_marker * Point2::new(ahead * MARKER_LENGTH / 2.0, left * MARKER_WIDTH / 2.0)
     })
 }
 
 /// The two ends of a wall.
-fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[[f64; 2]; 2]> {
-    let frame = trace.frame?;
-    Some([wall.from, wall.to].map(|end| frame.unframed(wall.along.point(end, wall.offset))))
+fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[Point2<f64>; 2]> {
+    let robot_from_walls = trace.frame?.robot_from_walls();
+    Some([wall.from, wall.to].map(|end| robot_from_walls * wall.along.point(end, wall.offset)))
 }
 
 fn empty() -> RgbImage {
@@ -265,36 +257,36 @@ fn empty() -> RgbImage {
 /// The robot: its outline, and a line ahead.
 // paper: sense.contour
 fn body(picture: &mut RgbImage) {
-    let middle = at([0.0; 2]);
-    let radius = (RADIUS / GroundView::SCALE) as i32;
+    let middle = at(Point2::origin());
+    let radius = (ROBOT_RADIUS / GroundView::SCALE) as i32;
     draw::disc(picture, middle, radius, BODY);
     draw::ring(picture, middle, radius, WHITE);
-    line(picture, [0.0; 2], [RADIUS, 0.0], WHITE);
+    line(picture, Point2::origin(), Point2::new(ROBOT_RADIUS, 0.0), WHITE);
 }
 
 /// The pixel of a ground view that contains a point of the floor.
-fn at([x, y]: [f64; 2]) -> [i32; 2] {
+fn at(point: Point2<f64>) -> [i32; 2] {
     let middle = GroundView::SIDE as f64 / 2.0;
-    [middle - y / GroundView::SCALE, middle - x / GroundView::SCALE].map(|part| part as i32)
+    [point.y, point.x].map(|part| (middle - part / GroundView::SCALE) as i32)
 }
 
-fn line(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+fn line(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
     let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
     draw::line(picture, from, to, colour);
 }
 
-fn thick(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+fn thick(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
     let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
     for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
         draw::line(picture, [from[0] + u, from[1] + v], [to[0] + u, to[1] + v], colour);
     }
 }
 
-fn dot(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+fn dot(picture: &mut RgbImage, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
     draw::disc(picture, at(point), radius, colour);
 }
 
-fn ring(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+fn ring(picture: &mut RgbImage, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
     let middle = at(point);
     for radius in [radius - 1, radius] {
         draw::ring(picture, middle, radius, colour);
@@ -326,15 +318,16 @@ mod tests {
         let camera = Camera::superscout();
         let image = RgbImage::new(camera.image[0], camera.image[1]);
         let over = over(&image, &camera, &l_with_marker());
-        let onwards = |direction: f64| [0.5 + direction.cos(), -0.1 + direction.sin()];
+        let onwards = |direction: f64| Point2::new(0.5, -0.1) + unit(direction);
         for (point, expected) in [(onwards(3.0), GREEN), (onwards(-1.7), RED)] {
             assert_eq!(colour(&scene_picture, at(point)), expected);
-            let pixel = camera.ground_to_pixel(point).unwrap().map(|part| part.round() as i32);
+            let pixel =
+                camera.ground_to_pixel(point).unwrap().map(|part| part.round() as i32).into();
             assert_eq!(colour(&over, pixel), expected);
         }
-        assert_eq!(colour(&scene_picture, at([0.75, -0.13])), BLUE);
+        assert_eq!(colour(&scene_picture, at(Point2::new(0.75, -0.13))), BLUE);
         let corner = rectangle(&l_with_marker().marker.unwrap())[0];
-        let pixel = camera.ground_to_pixel(corner).unwrap().map(|part| part.round() as i32);
+        let pixel = camera.ground_to_pixel(corner).unwrap().map(|part| part.round() as i32).into();
         assert_eq!(colour(&over, pixel), BLUE);
     }
 

@@ -8,8 +8,11 @@
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
+use nalgebra::{Point2, Vector2};
+
 use crate::{
     colour::{PixelClass, Stripe, StripeKind},
+    geometry::unit,
     ground_view::GroundView,
     params::BoundaryParams,
 };
@@ -68,10 +71,9 @@ impl Bearings {
     pub fn new(stripe: Stripe, height: f64, params: &BoundaryParams) -> Self {
         let pixels = (0..BEARINGS)
             .flat_map(|bearing| {
-                let [x, y] = direction(bearing);
                 (0..STEPS).map(move |step| {
-                    let range = range(step as f64);
-                    GroundView::index([range * x, range * y]).unwrap_or_default() as u32
+                    let point = Point2::from(range(step as f64) * direction(bearing));
+                    GroundView::index(point).unwrap_or_default() as u32
                 })
             })
             .collect();
@@ -201,12 +203,9 @@ fn range(step: f64) -> f64 {
 
 /// The unit vector on a bearing.
 #[must_use]
-pub fn direction(bearing: usize) -> [f64; 2] {
-    static DIRECTIONS: LazyLock<[[f64; 2]; BEARINGS]> = LazyLock::new(|| {
-        std::array::from_fn(|bearing| {
-            let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
-            [cosine, sine]
-        })
+pub fn direction(bearing: usize) -> Vector2<f64> {
+    static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> = LazyLock::new(|| {
+        std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64))
     });
     DIRECTIONS[bearing % BEARINGS]
 }
@@ -219,10 +218,10 @@ pub fn bearing(direction: f64) -> usize {
 
 impl Boundary {
     /// The boundary points, counter-clockwise from ahead, each with its bearing.
-    pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
+    pub fn points(&self) -> impl Iterator<Item = (usize, Point2<f64>)> + '_ {
         self.sights.iter().enumerate().flat_map(|(bearing, sight)| {
             let ray = direction(bearing);
-            sight.edges().map(move |edge| (bearing, ray.map(|part| edge.range * part)))
+            sight.edges().map(move |edge| (bearing, Point2::from(edge.range * ray)))
         })
     }
 

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Point2, distance};
+
 use crate::{
     boundary::{BEARINGS, Boundary},
     params::ClusterParams,
@@ -11,7 +13,7 @@ use crate::{
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cluster {
     /// In metres.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<Point2<f64>>,
 }
 
 /// The pieces of wall, without those that are noise.
@@ -24,7 +26,7 @@ pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
     let mut open: Vec<usize> = Vec::new();
     for point in boundary.points() {
         open.retain(|&chain| point.0 <= chains[chain].last.0 + params.hidden_bearings);
-        let away = |chain: usize| distance(chains[chain].last.1, point.1);
+        let away = |chain: usize| distance(&chains[chain].last.1, &point.1);
         let nearest = open
             .iter()
             .copied()
@@ -47,13 +49,13 @@ pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
 
 /// A growing cluster: its first and its last point, with their bearings.
 struct Chain {
-    first: (usize, [f64; 2]),
-    last: (usize, [f64; 2]),
+    first: (usize, Point2<f64>),
+    last: (usize, Point2<f64>),
     cluster: Cluster,
 }
 
 impl Chain {
-    fn new(point: (usize, [f64; 2])) -> Self {
+    fn new(point: (usize, Point2<f64>)) -> Self {
         Self { first: point, last: point, cluster: Cluster { points: vec![point.1] } }
     }
 }
@@ -79,16 +81,16 @@ fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster>
 
 /// Whether the second point continues the cluster of the first.
 fn follows(
-    (bearing, one): (usize, [f64; 2]),
-    (next, other): (usize, [f64; 2]),
+    (bearing, one): (usize, Point2<f64>),
+    (next, other): (usize, Point2<f64>),
     params: &ClusterParams,
 ) -> bool {
     let hidden = (next + BEARINGS - bearing) % BEARINGS;
-    let farther = range(one).max(range(other));
+    let farther = one.coords.norm().max(other.coords.norm());
     // The wall may go on behind a strut.
     let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
     (1..=params.hidden_bearings).contains(&hidden)
-        && distance(one, other) <= params.gap + params.gap_per_metre * farther + bridged
+        && distance(&one, &other) <= params.gap + params.gap_per_metre * farther + bridged
 }
 
 impl Cluster {
@@ -101,18 +103,6 @@ impl Cluster {
         };
         side(0).max(side(1))
     }
-}
-
-/// The distance of a point from the robot.
-#[must_use]
-pub(crate) fn range([x, y]: [f64; 2]) -> f64 {
-    x.hypot(y)
-}
-
-/// The distance between two points.
-#[must_use]
-pub(crate) fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
-    range([one[0] - other[0], one[1] - other[1]])
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Corners: where two walls meet at a right angle, or where one ends. Section 3, Figures 8 and 9.
 
+use nalgebra::{Point2, Vector2};
+
 use crate::{
     params::CornerParams,
     wall::{Axis, WallSegment},
@@ -9,10 +11,10 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// In the frame, in metres.
-    pub position: [f64; 2],
+    pub position: Point2<f64>,
     /// The directions of its two walls, on x and on y: -1 or 1. This is its type: the wall behind it,
     /// followed ahead, turns to the left or to the right.
-    pub arms: [f64; 2],
+    pub arms: Vector2<f64>,
     /// Whether it is a corner of the room or an edge.
     pub bend: Bend,
     /// What it was found from.
@@ -58,14 +60,15 @@ pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
 
 /// The corner of two walls, if their ends touch.
 fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, touch: f64) -> Option<Corner> {
-    let position = [y_wall.offset, x_wall.offset];
+    let position = Point2::new(y_wall.offset, x_wall.offset);
     let touches =
         |wall: &WallSegment, at: f64| (wall.from - at).abs().min((wall.to - at).abs()) <= touch;
-    if !touches(x_wall, position[0]) || !touches(y_wall, position[1]) {
+    if !touches(x_wall, position.x) || !touches(y_wall, position.y) {
         return None;
     }
     let towards = |wall: &WallSegment, at: f64| f64::midpoint(wall.from, wall.to) - at;
-    let arms = [towards(x_wall, position[0]).signum(), towards(y_wall, position[1]).signum()];
+    let arms =
+        Vector2::new(towards(x_wall, position.x).signum(), towards(y_wall, position.y).signum());
     // The robot sees the two walls from between them or from over the edge.
     let between = [0, 1].map(|axis| -position[axis] * arms[axis] > 0.0);
     let bend = match between {
@@ -84,7 +87,7 @@ fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, touch: f64) -> Option<Cor
 /// The edge that a wall's end may be: the wall turns away from the robot there.
 fn edge(wall: &WallSegment, end: f64, back: f64) -> Corner {
     let position = wall.along.point(end, wall.offset);
-    let arms = wall.along.point(back, wall.offset.signum());
+    let arms = wall.along.point(back, wall.offset.signum()).coords;
     Corner { position, arms, bend: Bend::Outwards, formed: CornerSource::End }
 }
 
@@ -118,7 +121,7 @@ mod tests {
         assert_eq!((outer.bend, outer.formed), (Bend::Inwards, CornerSource::Cluster));
         assert_eq!((inner.bend, inner.formed), (Bend::Outwards, CornerSource::Clusters));
         assert_eq!(outer.arms, inner.arms);
-        assert_eq!(outer.position, [1.3, -0.8]);
+        assert_eq!(outer.position, Point2::new(1.3, -0.8));
     }
 
     /// Figure 9: a T entered by its stem.
@@ -134,7 +137,7 @@ mod tests {
             wall(Axis::Y, 1.5, -2.0, 2.0, 2),
         ]);
         let [right, left] = corners[..] else { panic!("{corners:?}") };
-        assert_eq!([right.arms, left.arms], [[-1.0, -1.0], [-1.0, 1.0]]);
+        assert_eq!([right.arms, left.arms], [[-1.0, -1.0], [-1.0, 1.0]].map(Vector2::from));
         assert_eq!([right.bend, left.bend], [Bend::Outwards; 2]);
     }
 
@@ -150,7 +153,13 @@ mod tests {
         else {
             panic!("two ends")
         };
-        assert_eq!((ahead.position, ahead.arms), ([0.4, 0.8], [-1.0, 1.0]));
-        assert_eq!((behind.position, behind.arms), ([-1.0, 0.8], [1.0, 1.0]));
+        assert_eq!(
+            [ahead, behind].map(|end| end.position),
+            [[0.4, 0.8], [-1.0, 0.8]].map(Point2::from)
+        );
+        assert_eq!(
+            [ahead, behind].map(|end| end.arms),
+            [[-1.0, 1.0], [1.0, 1.0]].map(Vector2::from)
+        );
     }
 }

@@ -68,7 +68,7 @@ impl DrawnPlace {
             .collect();
         let mut view = GroundView::unseen();
         for (index, class) in view.classes.iter_mut().enumerate() {
-            let [x, y] = GroundView::ground(index);
+            let [x, y] = GroundView::ground(index).into();
             let range = x.hypot(y);
             if range < 0.32 {
                 continue;

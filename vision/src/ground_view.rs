@@ -4,6 +4,7 @@
 //! once from the calibration, unwraps and classifies an image in one pass, and only where there is floor.
 
 use image::RgbImage;
+use nalgebra::Point2;
 
 use crate::{
     camera::Camera,
@@ -39,15 +40,15 @@ impl GroundView {
 
     /// The point of the floor in the middle of a pixel.
     #[must_use]
-    pub fn ground(index: usize) -> [f64; 2] {
+    pub fn ground(index: usize) -> Point2<f64> {
         let (row, column) = (index / Self::SIDE, index % Self::SIDE);
-        [row, column].map(|at| (Self::MIDDLE - at as f64) * Self::SCALE)
+        Point2::new(row, column).map(|at| (Self::MIDDLE - at as f64) * Self::SCALE)
     }
 
     /// The pixel that contains a point of the floor; `None` outside of the view.
     #[must_use]
-    pub fn index([x, y]: [f64; 2]) -> Option<usize> {
-        let [row, column] = [x, y].map(|at| (Self::MIDDLE - at / Self::SCALE).round());
+    pub fn index(point: Point2<f64>) -> Option<usize> {
+        let [row, column] = point.map(|at| (Self::MIDDLE - at / Self::SCALE).round()).into();
         let inside = 0.0..Self::SIDE as f64;
         (inside.contains(&row) && inside.contains(&column))
             .then(|| row as usize * Self::SIDE + column as usize)
@@ -69,7 +70,7 @@ impl Unwrapping {
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let pixels: Vec<u32> = (0..GroundView::SIDE * GroundView::SIDE)
-            .map(|index| pixel_of(camera, GroundView::ground(index)).unwrap_or(Self::UNSEEN))
+            .map(|index| camera.seen_pixel(GroundView::ground(index)).unwrap_or(Self::UNSEEN))
             .collect();
         Self { pixels }
     }
@@ -91,15 +92,6 @@ impl Unwrapping {
     }
 }
 
-/// The index of the image's pixel that shows a point of the floor.
-fn pixel_of(camera: &Camera, ground: [f64; 2]) -> Option<u32> {
-    let [u, v] = camera.ground_to_pixel(ground)?.map(f64::round);
-    let [width, height] = camera.image;
-    let inside = (0.0..f64::from(width)).contains(&u) && (0.0..f64::from(height)).contains(&v);
-    let pixel = [u as u32, v as u32];
-    (inside && camera.sees(pixel)).then(|| pixel[1] * width + pixel[0])
-}
-
 /// A pixel's colour; black outside of the image.
 fn colour(raw: &[u8], pixel: usize) -> [u8; 3] {
     match raw.get(3 * pixel..3 * pixel + 3) {
@@ -118,8 +110,8 @@ mod tests {
         for index in [0, 1, 799, 800, 320_400, 639_999] {
             assert_eq!(GroundView::index(GroundView::ground(index)), Some(index));
         }
-        let [x, y] = GroundView::ground(0);
+        let [x, y] = GroundView::ground(0).into();
         assert!(x > 2.99 && y > 2.99, "the first pixel is far ahead to the left: {x}, {y}");
-        assert_eq!(GroundView::index([GroundView::REACH + 0.01, 0.0]), None);
+        assert_eq!(GroundView::index(Point2::new(GroundView::REACH + 0.01, 0.0)), None);
     }
 }

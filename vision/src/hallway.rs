@@ -6,6 +6,7 @@ use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undire
 use crate::{
     agreement::OutlineAgreement,
     boundary::{BEARINGS, Boundary, bearing, direction},
+    geometry::angle,
     outline::{Outline, Square},
     params::{HallwayParams, OutlineParams, SensingParams},
     wall::{Axis, WallFrame, WallSegment},
@@ -126,14 +127,14 @@ fn goes_on(
 ) -> bool {
     let HallwayParams { sector, floor_ahead, wall_ahead, .. } = params.hallway;
     let (along, _) = axis.split();
-    let whither = frame.unframed(axis.point(sign, 0.0));
+    let whither = frame.robot_from_walls() * axis.point(sign, 0.0);
     let least = square.half + floor_ahead;
-    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - sector;
+    let first = bearing(angle(whither.coords)) + BEARINGS - sector;
     let ahead = sign * frame.ahead(axis) > 0.0;
     let (mut far, mut near) = (0, 0);
     for bearing in (first..=first + 2 * sector).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];
-        let forwards = sign * frame.framed(direction(bearing))[along];
+        let forwards = sign * (frame.walls_from_robot() * direction(bearing))[along];
         match sight.sure() {
             Some(wall) if wall * forwards < least => near += 1,
             None if sight.floor * forwards < least => {}
@@ -283,6 +284,8 @@ impl FittedHallway {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use nalgebra::Point2;
+
     use super::*;
     use crate::{
         cluster::clusters,
@@ -291,7 +294,7 @@ mod tests {
     };
 
     const DOOR_WIDTH: f64 = 0.75;
-    const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
+    const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: 0.8 };
 
     /// The hallway for a robot at the origin of a place that looks along x.
     fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
@@ -388,7 +391,7 @@ mod tests {
             let hallway = FittedHallway {
                 frame: WallFrame::along(turned),
                 axis: Axis::Y,
-                square: Square { middle: [0.2, 0.0], half: 0.8 },
+                square: Square { middle: [0.2, 0.0].into(), half: 0.8 },
                 status: HallwayStatus::Clear,
                 agreement: OutlineAgreement { support: 1, ..OutlineAgreement::default() },
             };

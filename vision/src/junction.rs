@@ -8,6 +8,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use nalgebra::{Vector2, distance};
 use toposlam_model::driving::scene::{CentreLine, JunctionView, wrapped};
 
 use crate::{
@@ -61,7 +62,7 @@ pub fn junction(
     for half in half_widths(walls, params) {
         for corner in corners {
             let (square, kinds) = around(corner, half);
-            if square.middle.iter().any(|part| part.abs() > max_distance) {
+            if square.middle.coords.amax() > max_distance {
                 continue;
             }
             for doors in kinds {
@@ -119,7 +120,7 @@ fn best_first(guesses: &mut [FittedJunction], params: &OutlineParams) {
 
 /// The distance between two turning points.
 fn apart(one: Square, other: Square) -> f64 {
-    (one.middle[0] - other.middle[0]).hypot(one.middle[1] - other.middle[1])
+    distance(&one.middle, &other.middle)
 }
 
 /// Half the distance between each two walls on opposite sides of the robot, each once.
@@ -141,7 +142,7 @@ fn half_widths(walls: &[WallSegment], params: &SensingParams) -> Vec<f64> {
 
 /// The turning point of a junction with this corner, and the doors that the junction can have.
 fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
-    let [x, y] = corner.arms;
+    let [x, y] = corner.arms.into();
     // The directions of the corner's two walls.
     let of_x = if x > 0.0 { 0 } else { 2 };
     let of_y = if y > 0.0 { 1 } else { 3 };
@@ -158,8 +159,7 @@ fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
         ),
         Bend::Inwards => (half, [doors(&[of_x, of_y]), doors(&[of_x]), doors(&[of_y])]),
     };
-    let middle = [corner.position[0] + outwards * x, corner.position[1] + outwards * y];
-    (Square { middle, half }, kinds)
+    (Square { middle: corner.position + outwards * corner.arms, half }, kinds)
 }
 
 impl FittedJunction {
@@ -178,8 +178,8 @@ impl FittedJunction {
     /// Whether the robot is there: the turning point is neither far ahead nor far behind.
     #[must_use]
     pub fn is_here(&self, params: &JunctionParams) -> bool {
-        let away = -self.square.middle[0];
-        let aside = self.square.middle[1].abs();
+        let away = -self.square.middle.x;
+        let aside = self.square.middle.y.abs();
         (-params.ahead..=params.behind).contains(&away) && aside <= params.ahead
     }
 
@@ -197,9 +197,7 @@ impl FittedJunction {
 
     /// The axis of the hallway that the robot is in.
     fn arm(&self) -> Option<Axis> {
-        let from_middle = self.square.middle.map(|part| -part);
-        let far =
-            |direction: [f64; 2]| direction[0] * from_middle[0] + direction[1] * from_middle[1];
+        let far = |direction: Vector2<f64>| -direction.dot(&self.square.middle.coords);
         (0..4)
             .filter(|&number| {
                 self.doors[number] && far(DIRECTIONS[number]) > self.square.half / 2.0
@@ -213,7 +211,7 @@ impl FittedJunction {
     // paper: sense.centre-lines
     #[must_use]
     pub fn view(&self, params: &OutlineParams) -> JunctionView {
-        let turning_point = self.frame.unframed(self.square.middle);
+        let turning_point = (self.frame.robot_from_walls() * self.square.middle).into();
         let doors = (0..4).rev().filter(|&number| self.doors[number]).map(|number| CentreLine {
             through: turning_point,
             direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
@@ -226,6 +224,8 @@ impl FittedJunction {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
     use crate::{
         boundary::{BEARINGS, Sight, bearing},
@@ -271,7 +271,7 @@ mod tests {
         for doors in kinds {
             let JunctionSearch::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
             assert_eq!(found.doors, doors);
-            let [x, y] = found.frame.unframed(found.square.middle);
+            let [x, y] = (found.frame.robot_from_walls() * found.square.middle).into();
             // 0.3 m ahead and 0.1 m to the right in a hallway to which the robot is turned by 0.2.
             let [ahead, left] = [0.3 * 0.2_f64.cos() - 0.1 * 0.2_f64.sin(), -0.157_601];
             assert!((x - ahead).abs() < 0.01 && (y - left).abs() < 0.01, "{x}, {y}");
@@ -324,8 +324,8 @@ mod tests {
     #[test]
     fn a_corner_gives_the_turning_point_and_the_possible_doors() {
         let corner = |bend| Corner {
-            position: [0.5, 0.8],
-            arms: [-1.0, 1.0],
+            position: Point2::new(0.5, 0.8),
+            arms: Vector2::new(-1.0, 1.0),
             bend,
             formed: CornerSource::Clusters,
         };
@@ -336,7 +336,7 @@ mod tests {
         assert_eq!(kinds[1], [true, true, true, false]);
         assert_eq!(kinds[2], [false, true, true, true]);
         // A corner of the room, ahead to the right.
-        let corner = Corner { position: [0.5, -0.8], ..corner(Bend::Inwards) };
+        let corner = Corner { position: Point2::new(0.5, -0.8), ..corner(Bend::Inwards) };
         let (square, kinds) = around(&corner, HALF);
         assert!((square.middle[0] + 0.3).abs() < 1e-9 && square.middle[1].abs() < 1e-9);
         assert_eq!(kinds[0], [false, true, true, false]);

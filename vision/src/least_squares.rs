@@ -1,68 +1,65 @@
-//! Small linear algebra: normal equations and principal components.
+//! Least squares and principal components.
+
+use nalgebra::{Matrix2, Point2, SMatrix, SVector, Vector2};
+
+use crate::geometry::unit;
 
 /// The normal equations of a least-squares problem with `N` unknowns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalEquations<const N: usize> {
-    matrix: [[f64; N]; N],
-    right: [f64; N],
+    matrix: SMatrix<f64, N, N>,
+    right: SVector<f64, N>,
 }
 
 impl<const N: usize> NormalEquations<N> {
     /// Equations that pull each unknown to zero with a weight.
     pub(crate) fn with_pull(weight: f64) -> Self {
-        let mut matrix = [[0.0; N]; N];
-        for (at, row) in matrix.iter_mut().enumerate() {
-            row[at] = weight;
-        }
-        Self { matrix, right: [0.0; N] }
+        Self { matrix: SMatrix::from_diagonal_element(weight), right: SVector::zeros() }
     }
 
     /// Adds one observation: the unknowns, weighted by a row, sum to a value.
     pub(crate) fn add(&mut self, weight: f64, row: [f64; N], value: f64) {
-        for (at, factor) in row.iter().enumerate() {
-            for (entry, other) in self.matrix[at].iter_mut().zip(row) {
-                *entry += weight * factor * other;
-            }
-            self.right[at] += weight * value * factor;
-        }
+        let row = SVector::from(row);
+        self.matrix += weight * row * row.transpose();
+        self.right += weight * value * row;
     }
 
-    /// The unknowns, by Cholesky's decomposition. `None` if the observations do not determine them.
+    /// The unknowns. `None` if the observations do not determine them.
     pub(crate) fn solve(&self) -> Option<[f64; N]> {
-        let mut root = self.matrix;
-        let mut unknowns = self.right;
-        for column in 0..N {
-            for row in column..N {
-                let done: f64 = (0..column).map(|k| root[row][k] * root[column][k]).sum();
-                let rest = root[row][column] - done;
-                root[row][column] = if row > column {
-                    rest / root[column][column]
-                } else if rest > 0.0 {
-                    rest.sqrt()
-                } else {
-                    return None;
-                };
-            }
-        }
-        for row in 0..N {
-            let done: f64 = (0..row).map(|k| root[row][k] * unknowns[k]).sum();
-            unknowns[row] = (unknowns[row] - done) / root[row][row];
-        }
-        for row in (0..N).rev() {
-            let done: f64 = (row + 1..N).map(|k| root[k][row] * unknowns[k]).sum();
-            unknowns[row] = (unknowns[row] - done) / root[row][row];
-        }
-        Some(unknowns)
+        self.matrix.cholesky().map(|root| root.solve(&self.right).into())
     }
 }
 
-/// The first principal component of a symmetric matrix `[[a, b], [b, c]]`: the unit vector, and the larger
-/// and the smaller eigenvalue.
-pub(crate) fn principal_component(a: f64, b: f64, c: f64) -> ([f64; 2], [f64; 2]) {
-    let (sine, cosine) = ((2.0 * b).atan2(a - c) / 2.0).sin_cos();
-    let middle = f64::midpoint(a, c);
-    let half = ((a - c) / 2.0).hypot(b);
-    ([cosine, sine], [middle + half, middle - half])
+/// The line that fits points best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PrincipalAxis {
+    /// The mean of the points.
+    pub(crate) mean: Point2<f64>,
+    /// The unit vector along the line; which of the two, is not defined.
+    pub(crate) along: Vector2<f64>,
+    /// The variance of the points along the line.
+    pub(crate) major: f64,
+    /// The variance across it.
+    pub(crate) minor: f64,
+}
+
+impl PrincipalAxis {
+    /// The first principal component of points; not a number if there are none.
+    pub(crate) fn of(points: &[Point2<f64>]) -> Self {
+        let count = points.len() as f64;
+        let mean = points.iter().map(|point| point.coords).sum::<Vector2<f64>>() / count;
+        let scatter = |point: &Point2<f64>| {
+            let off = point.coords - mean;
+            off * off.transpose() / count
+        };
+        let covariance: Matrix2<f64> = points.iter().map(scatter).sum();
+        let (a, b, c) = (covariance.m11, covariance.m12, covariance.m22);
+        // In two dimensions this is more exact than nalgebra's `SymmetricEigen`, whose vectors lose digits if the
+        // points lie almost along an axis.
+        let along = unit((2.0 * b).atan2(a - c) / 2.0);
+        let (middle, half) = (f64::midpoint(a, c), ((a - c) / 2.0).hypot(b));
+        Self { mean: mean.into(), along, major: middle + half, minor: middle - half }
+    }
 }
 
 #[cfg(test)]
@@ -89,12 +86,15 @@ mod tests {
 
     #[test]
     fn the_principal_component_is_an_eigenvector() {
-        for [a, b, c] in [[2.0, 0.5, 1.0], [1.0, -0.3, 4.0], [3.0, 0.0, 1.0], [0.0, 0.0, 2.0]] {
-            let ([x, y], [large, small]) = principal_component(a, b, c);
-            near(a * x + b * y, large * x);
-            near(b * x + c * y, large * y);
-            near(large + small, a + c);
-            assert!(large >= small);
+        let shapes = [[2.0, 0.5, 1.0], [1.0, -0.3, 4.0], [3.0, 0.0, 1.0], [0.0, 0.0, 2.0]];
+        for [x, y, z] in shapes {
+            let points = [[x, y], [-x, z], [y, -z], [z, x], [0.3, 0.1]].map(Point2::from);
+            let PrincipalAxis { mean, along, major, minor } = PrincipalAxis::of(&points);
+            let off = points.map(|point| point - mean);
+            let covariance: Matrix2<f64> = off.iter().map(|off| off * off.transpose() / 5.0).sum();
+            assert!((covariance * along - major * along).norm() < 1e-12);
+            near(major + minor, covariance.trace());
+            assert!(major >= minor);
         }
     }
 }

@@ -3,6 +3,7 @@
 //! From the ground up:
 //!
 //! * [`params`]: the thresholds of all steps;
+//! * [`geometry`]: directions and motions, besides what nalgebra has;
 //! * [`image_file`]: the image in a PNG or JPEG file;
 //! * [`colour`]: floor, stripe, marker or something else, by a Bayes classifier on HSV colours;
 //! * [`camera`]: the point of the floor that a pixel shows;
@@ -29,6 +30,7 @@ pub mod colour;
 pub mod corner;
 mod draw;
 pub mod fuzz;
+pub mod geometry;
 pub mod ground_view;
 pub mod hallway;
 pub mod image_file;

@@ -1,22 +1,20 @@
 //! Straight lines through boundary points, by principal components. Section 3.
 
-use crate::{
-    cluster::{Cluster, distance, range},
-    least_squares::principal_component,
-    params::LineParams,
-};
+use nalgebra::{Point2, Vector2, distance};
+
+use crate::{cluster::Cluster, geometry::angle, least_squares::PrincipalAxis, params::LineParams};
 
 /// A straight piece of wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallLine {
     /// The mean of its points.
-    pub middle: [f64; 2],
+    pub middle: Point2<f64>,
     /// The unit vector along it, from the first point to the last.
-    pub along: [f64; 2],
+    pub along: Vector2<f64>,
     /// Its first end, counter-clockwise as seen from the robot, in metres.
-    pub from: [f64; 2],
+    pub from: Point2<f64>,
     /// Its last end.
-    pub to: [f64; 2],
+    pub to: Point2<f64>,
     /// The root mean square of its points' distances from it, in metres.
     pub spread: f64,
     /// The number of its points.
@@ -30,25 +28,13 @@ impl WallLine {
     /// different points.
     // paper: sense.pca
     #[must_use]
-    pub fn through(points: &[[f64; 2]]) -> Option<Self> {
+    pub fn through(points: &[Point2<f64>]) -> Option<Self> {
         let (first, last) = (*points.first()?, *points.last()?);
-        let count = points.len() as f64;
-        let sum = points.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
-        let middle = sum.map(|part| part / count);
-        let mut scatter = [0.0; 3];
-        for point in points {
-            let [x, y] = [point[0] - middle[0], point[1] - middle[1]];
-            for (sum, product) in scatter.iter_mut().zip([x * x, x * y, y * y]) {
-                *sum += product / count;
-            }
-        }
-        let [a, b, c] = scatter;
-        let (vector, [major, minor]) = principal_component(a, b, c);
+        let PrincipalAxis { mean: middle, along, major, minor } = PrincipalAxis::of(points);
         if major <= 0.0 {
             return None;
         }
-        let onwards = vector[0] * (last[0] - first[0]) + vector[1] * (last[1] - first[1]);
-        let along = if onwards < 0.0 { [-vector[0], -vector[1]] } else { [vector[0], vector[1]] };
+        let along = if along.dot(&(last - first)) < 0.0 { -along } else { along };
         let spread = minor.max(0.0).sqrt();
         let line =
             Self { middle, along, from: first, to: last, spread, points: points.len(), cluster: 0 };
@@ -56,22 +42,20 @@ impl WallLine {
     }
 
     /// The point of the line that is nearest to a point.
-    fn foot(&self, point: [f64; 2]) -> [f64; 2] {
-        let at = (point[0] - self.middle[0]) * self.along[0]
-            + (point[1] - self.middle[1]) * self.along[1];
-        [self.middle[0] + at * self.along[0], self.middle[1] + at * self.along[1]]
+    fn foot(&self, point: Point2<f64>) -> Point2<f64> {
+        self.middle + (point - self.middle).dot(&self.along) * self.along
     }
 
     /// Its length in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
-        distance(self.from, self.to)
+        distance(&self.from, &self.to)
     }
 
     /// Its direction, in radians counter-clockwise from ahead.
     #[must_use]
     pub fn direction(&self) -> f64 {
-        self.along[1].atan2(self.along[0])
+        angle(self.along)
     }
 }
 
@@ -101,22 +85,22 @@ fn split(cluster: &Cluster, params: &LineParams) -> Vec<WallLine> {
 }
 
 /// The index of the point farthest from the chord between the ends, if it is far.
-fn bend(points: &[[f64; 2]], params: &LineParams) -> Option<usize> {
+fn bend(points: &[Point2<f64>], params: &LineParams) -> Option<usize> {
     let (&first, &last) = (points.first()?, points.last()?);
     if points.len() < 2 * params.min_points {
         return None;
     }
-    let chord = distance(first, last);
-    let off = |point: [f64; 2]| {
-        if chord < params.min_length {
-            return distance(first, point);
+    let chord = last - first;
+    let off = |point: Point2<f64>| {
+        let from_first = point - first;
+        if chord.norm() < params.min_length {
+            return from_first.norm();
         }
-        let [x, y] = [last[0] - first[0], last[1] - first[1]];
-        ((point[0] - first[0]) * y - (point[1] - first[1]) * x).abs() / chord
+        from_first.perp(&chord).abs() / chord.norm()
     };
     let inner = 1..points.len() - 1;
     let at = inner.max_by(|&one, &other| off(points[one]).total_cmp(&off(points[other])))?;
-    let far = params.bend + params.bend_per_metre * range(points[at]);
+    let far = params.bend + params.bend_per_metre * points[at].coords.norm();
     (off(points[at]) > far).then_some(at)
 }
 
@@ -125,7 +109,7 @@ mod tests {
     use super::*;
 
     fn cluster(points: impl IntoIterator<Item = [f64; 2]>) -> Cluster {
-        Cluster { points: points.into_iter().collect() }
+        Cluster { points: points.into_iter().map(Point2::from).collect() }
     }
 
     // paper: sense.pca
@@ -148,14 +132,14 @@ mod tests {
                 .chain((1..50).map(|step| [1.0 - 0.02 * f64::from(step), 0.48])),
         );
         let [one, other] = split(&bent, &LineParams::default())[..] else { panic!("two lines") };
-        let dot = one.along[0] * other.along[0] + one.along[1] * other.along[1];
+        let dot = one.along.dot(&other.along);
         assert!(dot.abs() < 0.02, "{dot}");
-        assert!(distance(one.to, other.from) < 0.05);
+        assert!(distance(&one.to, &other.from) < 0.05);
     }
 
     #[test]
     fn one_point_is_not_a_line() {
         assert_eq!(WallLine::through(&[]), None);
-        assert_eq!(WallLine::through(&[[1.0, 1.0]; 9]), None);
+        assert_eq!(WallLine::through(&[Point2::new(1.0, 1.0); 9]), None);
     }
 }

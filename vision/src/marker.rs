@@ -1,5 +1,6 @@
 //! The marker: a rectangle on the floor in its own colour. Section 5.1, Figure 10.
 
+use nalgebra::{Point2, UnitComplex, distance};
 use toposlam_model::{
     driving::scene::{JunctionView, MarkerView, undirected},
     percept::Door,
@@ -8,6 +9,7 @@ use toposlam_model::{
 use crate::{
     boundary::{Boundary, bearing},
     colour::PixelClass,
+    geometry::angle,
     ground_view::GroundView,
     line::WallLine,
     params::MarkerParams,
@@ -31,22 +33,20 @@ pub fn marker(
     let line = WallLine::through(&points)?;
     let axis = undirected(line.direction());
     let at_l = junction.filter(|junction| {
-        let [x, y] = junction.turning_point;
         junction.doors.len() == 2
-            && (x - line.middle[0]).hypot(y - line.middle[1]) < params.max_off_centre
+            && distance(&junction.turning_point.into(), &line.middle) < params.max_off_centre
     });
     let Some(junction) = at_l else {
-        return Some(MarkerView { position: line.middle, axis, door: None });
+        return Some(MarkerView { position: line.middle.into(), axis, door: None });
     };
     // The body may hide a part of the marker; then its principal component is wrong. So choose the door
     // whose rectangle contains more of what is seen.
     let explained = |direction: f64| {
-        let (sine, cosine) = direction.sin_cos();
-        let [u, v] = junction.turning_point;
-        let inside = points.iter().filter(|[x, y]| {
-            let [x, y] = [x - u, y - v];
-            (cosine * x + sine * y).abs() <= length / 2.0
-                && (cosine * y - sine * x).abs() <= width / 2.0
+        let marker_from_robot = UnitComplex::new(-direction);
+        let middle = Point2::from(junction.turning_point);
+        let inside = points.iter().filter(|&point| {
+            let off = marker_from_robot * (point - middle);
+            off.x.abs() <= length / 2.0 && off.y.abs() <= width / 2.0
         });
         inside.count()
     };
@@ -60,12 +60,12 @@ pub fn marker(
 }
 
 /// The points of the floor in the marker's colour, without those far from most of them.
-fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<[f64; 2]> {
+fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<Point2<f64>> {
     let on_floor = view.marker.iter().filter_map(|&index| {
-        let [x, y] = GroundView::ground(index as usize);
-        let sight = boundary.sights[bearing(y.atan2(x))];
+        let point = GroundView::ground(index as usize);
+        let sight = boundary.sights[bearing(angle(point.coords))];
         let reach = sight.floor + params.max_behind;
-        (x.hypot(y) <= reach && is_within(view, index as usize)).then_some([x, y])
+        (point.coords.norm() <= reach && is_within(view, index as usize)).then_some(point)
     });
     let points: Vec<_> = on_floor.collect();
     if points.is_empty() {
@@ -76,10 +76,8 @@ fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<
         let middle = parts.len() / 2;
         *parts.select_nth_unstable_by(middle, f64::total_cmp).1
     });
-    points
-        .into_iter()
-        .filter(|[x, y]| (x - median[0]).hypot(y - median[1]) <= params.max_spread)
-        .collect()
+    let median = Point2::from(median);
+    points.into_iter().filter(|point| distance(point, &median) <= params.max_spread).collect()
 }
 
 /// Whether the pixels to the left and above have the colour, too; a speck has no such neighbours.
@@ -96,6 +94,7 @@ fn is_within(view: &GroundView, index: usize) -> bool {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    use nalgebra::Vector2;
     use toposlam_model::driving::scene::CentreLine;
 
     use super::*;
@@ -108,11 +107,9 @@ mod tests {
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
         let mut view = GroundView::unseen();
         for index in 0..view.classes.len() {
-            let [x, y] = GroundView::ground(index);
-            let (sine, cosine) = axis.sin_cos();
-            let [dx, dy] = [x - position[0], y - position[1]];
-            let [along, across] = [cosine * dx + sine * dy, cosine * dy - sine * dx];
-            let on_it = along.abs() <= MARKER_LENGTH / 2.0 && across.abs() <= MARKER_WIDTH / 2.0;
+            let [x, y] = GroundView::ground(index).into();
+            let off = UnitComplex::new(-axis) * Vector2::new(x - position[0], y - position[1]);
+            let on_it = off.x.abs() <= MARKER_LENGTH / 2.0 && off.y.abs() <= MARKER_WIDTH / 2.0;
             view.classes[index] = match () {
                 () if x.hypot(y) < 0.32 => PixelClass::Unseen,
                 () if on_it => PixelClass::Marker,
@@ -148,7 +145,7 @@ mod tests {
         assert_eq!(found([0.0, 0.0], 0.0, None), None);
         let mut view = floor_with_marker([1.5, 0.0], 0.3);
         for index in 0..view.classes.len() {
-            let [x, _] = GroundView::ground(index);
+            let x = GroundView::ground(index).x;
             if (1.0..1.05).contains(&x) {
                 view.classes[index] = PixelClass::Stripe;
             } else if x > 1.05 && view.classes[index] == PixelClass::Floor {

@@ -1,15 +1,21 @@
 //! Outlines: the walls of a hallway or a junction, fitted to what the robot sees. Section 3.
 
+use nalgebra::{Point2, Vector2};
+
 use crate::{
     boundary::Boundary,
-    cluster::range,
     least_squares::NormalEquations,
     params::OutlineParams,
     wall::{Axis, WallFrame},
 };
 
 /// The four directions of a frame, counter-clockwise: x, y, and their opposites.
-pub const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+pub const DIRECTIONS: [Vector2<f64>; 4] = [
+    Vector2::new(1.0, 0.0),
+    Vector2::new(0.0, 1.0),
+    Vector2::new(-1.0, 0.0),
+    Vector2::new(0.0, -1.0),
+];
 
 /// A place with walls along the axes of a frame: a piece of hallway, or a junction with its arms.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +51,7 @@ enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
     /// The turning point of a junction; the point of a hallway's centre line beside the robot.
-    pub middle: [f64; 2],
+    pub middle: Point2<f64>,
     /// Half the width between the walls, in metres.
     pub half: f64,
 }
@@ -90,9 +96,9 @@ impl Outline {
         params: &OutlineParams,
     ) -> Self {
         let mut sides = Vec::with_capacity(MOST_SIDES);
-        for (towards, (&open, [x, y])) in doors.iter().zip(DIRECTIONS).enumerate() {
-            let sign = x + y;
-            let arm = if y == 0.0 { Axis::X } else { Axis::Y };
+        for (towards, (&open, direction)) in doors.iter().zip(DIRECTIONS).enumerate() {
+            let sign = direction.sum();
+            let arm = if direction.y == 0.0 { Axis::X } else { Axis::Y };
             let (along, across) = arm.split();
             let (edge, end) = (half, half + 2.0 * half * params.arm);
             let [near, far] = [edge, end].map(|reach| middle[along] + sign * reach);
@@ -122,7 +128,7 @@ impl Outline {
     }
 
     /// The side that a ray from the robot meets first: its range and its index.
-    pub(crate) fn first_on(&self, ray: [f64; 2]) -> Option<(f64, usize)> {
+    pub(crate) fn first_on(&self, ray: Vector2<f64>) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         for (number, side) in self.sides.iter().enumerate() {
             let (along, across) = side.along.split();
@@ -140,7 +146,7 @@ impl Outline {
     }
 
     /// The distance of a point from the nearest wall, in metres.
-    pub(crate) fn distance(&self, point: [f64; 2]) -> f64 {
+    pub(crate) fn distance(&self, point: Point2<f64>) -> f64 {
         let walls = self.sides.iter().filter(|side| side.is_wall());
         walls.map(|side| side.distance(point)).fold(f64::INFINITY, f64::min)
     }
@@ -158,8 +164,8 @@ impl Outline {
         // What is not seen stays as it is: a pull of a thousandth of a point.
         let mut equations = NormalEquations::<4>::with_pull(1e-3);
         for (_, point) in boundary.points() {
-            let from_robot = range(point);
-            let point = frame.framed(point);
+            let from_robot = point.coords.norm();
+            let point = frame.walls_from_robot() * point;
             let near = near(from_robot, params);
             let walls = self.sides.iter().filter_map(|side| match side.kind {
                 Kind::Wall(sign) => Some((side, sign, side.distance(point))),
@@ -185,7 +191,7 @@ impl Outline {
         }
         let Some(moved) = equations.solve() else { return (square, *frame) };
         let square = Square {
-            middle: [square.middle[0] + moved[1], square.middle[1] + moved[2]],
+            middle: square.middle + Vector2::new(moved[1], moved[2]),
             half: square.half + moved[3],
         };
         (square, WallFrame::along(frame.angle() + moved[0]))
@@ -199,7 +205,7 @@ impl OutlineSide {
     }
 
     /// The distance of a point from it, in metres.
-    fn distance(&self, point: [f64; 2]) -> f64 {
+    fn distance(&self, point: Point2<f64>) -> f64 {
         let (along, across) = self.along.split();
         let beyond = (self.from - point[along]).max(point[along] - self.to).max(0.0);
         beyond.hypot(point[across] - self.offset)
@@ -223,7 +229,7 @@ mod tests {
         let boundary = drawn_place::bearings().look(&view);
         let mut frame = WallFrame::along(-0.27);
         let params = OutlineParams::default();
-        let mut square = Square { middle: [0.16, -0.06], half: 0.78 };
+        let mut square = Square { middle: Point2::new(0.16, -0.06), half: 0.78 };
         for _ in 0..4 {
             (square, frame) = Outline::junction(doors, square, &params)
                 .fitted(square, &boundary, &frame, &params);
@@ -239,10 +245,12 @@ mod tests {
 
     #[test]
     fn a_ray_meets_the_nearest_side_first() {
-        let square = Square { middle: [0.0, 0.0], half: 0.8 };
+        let square = Square { middle: Point2::origin(), half: 0.8 };
         let dead_end =
             Outline::junction([false, false, true, false], square, &OutlineParams::default());
-        let first = |ray| dead_end.first_on(ray).map(|(range, side)| (range, dead_end.sides[side]));
+        let first = |ray: [f64; 2]| {
+            dead_end.first_on(ray.into()).map(|(range, side)| (range, dead_end.sides[side]))
+        };
         let (ahead, wall) = first([1.0, 0.0]).unwrap();
         assert!((ahead - 0.8).abs() < 1e-12 && wall.is_wall() && wall.towards == 0);
         let (behind, open) = first([-1.0, 0.0]).unwrap();

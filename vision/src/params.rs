@@ -14,9 +14,82 @@
 //! shared by other work: [`colour::params`](crate::colour::params) by training and sensing,
 //! [`camera::params`](crate::camera::params) by calibrations, and [`laser::params`](crate::laser::params).
 
-/// Structs whose fields have the given defaults; the docs of each field show its default.
+use std::ops::RangeInclusive;
+
+use serde::de::DeserializeOwned;
+use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
+
+/// What a TOML file can set: a number in a range, a switch, or a table of parameters.
+pub trait Parameter {
+    /// Checks a value of a file. A number lies in the range that is declared for it, or in that of its type.
+    ///
+    /// # Errors
+    /// Returns an error if a number is out of its range.
+    fn check(
+        value: DocumentValue<'_>,
+        range: Option<RangeInclusive<f64>>,
+    ) -> Result<(), DocumentError>;
+}
+
+/// Reads parameters from TOML. What is not in the file has its default.
+///
+/// # Errors
+/// Returns an error if a key is not known, or a number is not one that the parameter can have.
+pub fn read<P: Parameter + DeserializeOwned>(text: &str) -> Result<P, DocumentError> {
+    let document = Document::parse_settings(text.as_bytes())?;
+    let params = document.root().read()?;
+    P::check(document.root(), None)?;
+    Ok(params)
+}
+
+macro_rules! numbers {
+    ($($type:ty: $usual:expr;)*) => {$(
+        impl Parameter for $type {
+            fn check(
+                value: DocumentValue<'_>,
+                range: Option<RangeInclusive<f64>>,
+            ) -> Result<(), DocumentError> {
+                value.number_in("this parameter", range.unwrap_or($usual)).map(|_| ())
+            }
+        }
+    )*};
+}
+
+numbers! {
+    f32: 0.0..=1000.0;
+    f64: 0.0..=1000.0;
+    i32: 1.0..=1000.0;
+    u8: 0.0..=255.0;
+    u32: 1.0..=1000.0;
+    u64: 1.0..=1000.0;
+    usize: 1.0..=1000.0;
+}
+
+impl Parameter for bool {
+    fn check(
+        value: DocumentValue<'_>,
+        _: Option<RangeInclusive<f64>>,
+    ) -> Result<(), DocumentError> {
+        value.truth().map(|_| ())
+    }
+}
+
+impl<T: Parameter, const LENGTH: usize> Parameter for [T; LENGTH] {
+    fn check(
+        value: DocumentValue<'_>,
+        range: Option<RangeInclusive<f64>>,
+    ) -> Result<(), DocumentError> {
+        value.list("a list")?.try_for_each(|item| T::check(item, range.clone()))
+    }
+}
+
+/// Structs of parameters, each with its default, and a number with its range if that is not the usual one of its type.
+/// The docs of each field show its default. [`read`](crate::params::read) reads them.
+#[macro_export]
 macro_rules! params {
-    ($($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $type:ty = $default:expr,)* })*) => {$(
+    ($($(#[$meta:meta])* $name:ident {
+        $($(#[$doc:meta])* $field:ident: $type:ty = $default:expr $(=> $range:expr)?,)*
+    })*) => {$(
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
         #[serde(default, deny_unknown_fields)]
@@ -38,9 +111,22 @@ macro_rules! params {
                 Self::DEFAULT
             }
         }
+
+        impl $crate::params::Parameter for $name {
+            fn check(
+                value: toposlam_model::format::document::DocumentValue<'_>,
+                _: Option<std::ops::RangeInclusive<f64>>,
+            ) -> Result<(), toposlam_model::format::document::DocumentError> {
+                let table = value.any_table()?;
+                $(if let Some(value) = table.get(stringify!($field)) {
+                    let range = None::<std::ops::RangeInclusive<f64>>$(.or(Some($range)))?;
+                    <$type as $crate::params::Parameter>::check(value, range)?;
+                })*
+                Ok(())
+            }
+        }
     )*};
 }
-pub(crate) use params;
 
 params! {
     /// All parameters of sensing.
@@ -279,10 +365,48 @@ pub const MARKER_LENGTH: f64 = 0.60;
 /// Its width, in metres.
 pub const MARKER_WIDTH: f64 = 0.18;
 
+/// The radius of the SuperScout's body, in metres.
+pub const ROBOT_RADIUS: f64 = 0.205;
+
 impl HallwayParams {
     /// Whether a hallway can be this wide; `half` is half its width.
     #[must_use]
     pub fn has_width(&self, half: f64) -> bool {
         (self.half_width[0]..=self.half_width[1]).contains(&half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Debug;
+
+    use serde::Serialize;
+
+    use super::*;
+    use crate::{camera, colour, laser};
+
+    fn is_read_as_written<P: Parameter + DeserializeOwned + Serialize + PartialEq + Debug>(
+        params: P,
+    ) {
+        assert_eq!(read(&toml::to_string(&params).unwrap()), Ok(params));
+    }
+
+    #[test]
+    fn every_default_is_in_its_range() {
+        is_read_as_written(SensingParams::DEFAULT);
+        is_read_as_written(camera::params::RimParams::DEFAULT);
+        is_read_as_written(camera::params::UnchangingParams::DEFAULT);
+        is_read_as_written(colour::params::LightParams::DEFAULT);
+        is_read_as_written(colour::params::TrainingParams::DEFAULT);
+        is_read_as_written(laser::params::LaserParams::DEFAULT);
+        is_read_as_written(laser::params::ArmViewParams::DEFAULT);
+        is_read_as_written(laser::params::DriftParams::DEFAULT);
+        is_read_as_written(laser::params::PlaceParams::DEFAULT);
+    }
+
+    #[test]
+    fn a_whole_number_is_as_good_as_any_other() {
+        let params: laser::params::LaserParams = read("[arm]\nmin_gap = 0").unwrap();
+        assert!(params.arm.min_gap.abs() < 1e-12);
     }
 }

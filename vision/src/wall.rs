@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use nalgebra::{Point2, UnitComplex};
 use toposlam_model::driving::scene::wrapped;
 
 use crate::{
@@ -15,8 +16,7 @@ use crate::{
 pub struct WallFrame {
     /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
     angle: f64,
-    cosine: f64,
-    sine: f64,
+    robot_from_walls: UnitComplex<f64>,
 }
 
 /// An axis of a frame.
@@ -48,8 +48,7 @@ impl WallFrame {
     #[must_use]
     pub fn along(direction: f64) -> Self {
         let angle = wrapped(4.0 * direction) / 4.0;
-        let (sine, cosine) = angle.sin_cos();
-        Self { angle, cosine, sine }
+        Self { angle, robot_from_walls: UnitComplex::new(angle) }
     }
 
     /// The frame along which the most lines run, by length; `None` without lines.
@@ -88,16 +87,16 @@ impl WallFrame {
         if axis == Axis::Y && self.angle > 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// A point or vector in the robot's floor coordinates, in the frame.
+    /// The turn from the frame to the robot's floor coordinates.
     #[must_use]
-    pub fn framed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [self.cosine * x + self.sine * y, self.cosine * y - self.sine * x]
+    pub fn robot_from_walls(&self) -> UnitComplex<f64> {
+        self.robot_from_walls
     }
 
-    /// A point or vector in the frame, in the robot's floor coordinates.
+    /// The turn from the robot's floor coordinates to the frame.
     #[must_use]
-    pub fn unframed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [self.cosine * x - self.sine * y, self.cosine * y + self.sine * x]
+    pub fn walls_from_robot(&self) -> UnitComplex<f64> {
+        self.robot_from_walls.inverse()
     }
 
     /// The lines that run along an axis.
@@ -113,7 +112,8 @@ impl WallFrame {
             return None;
         }
         let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
-        let [middle, from, to] = [line.middle, line.from, line.to].map(|point| self.framed(point));
+        let [middle, from, to] =
+            [line.middle, line.from, line.to].map(|point| self.walls_from_robot() * point);
         let (on, off) = along.split();
         if middle[off].abs() < params.min_offset {
             return None;
@@ -149,10 +149,10 @@ impl Axis {
 
     /// The point with this coordinate along the axis, and that across it.
     #[must_use]
-    pub fn point(self, along: f64, across: f64) -> [f64; 2] {
+    pub fn point(self, along: f64, across: f64) -> Point2<f64> {
         match self {
-            Self::X => [along, across],
-            Self::Y => [across, along],
+            Self::X => Point2::new(along, across),
+            Self::Y => Point2::new(across, along),
         }
     }
 
@@ -169,7 +169,7 @@ impl Axis {
 impl WallSegment {
     /// Whether a point of the frame lies on it.
     #[must_use]
-    pub fn contains(&self, point: [f64; 2], params: &WallParams) -> bool {
+    pub fn contains(&self, point: Point2<f64>, params: &WallParams) -> bool {
         let (along, across) = self.along.split();
         let near = params.on_wall;
         (self.from - near..=self.to + near).contains(&point[along])
@@ -193,7 +193,7 @@ pub fn confirmed(
     params: &WallParams,
 ) -> Boundary {
     boundary.with_sure(|bearing, edge| {
-        let point = frame.framed(direction(bearing)).map(|part| edge.range * part);
+        let point = frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
         walls.iter().any(|wall| wall.length() >= params.long_wall && wall.contains(point, params))
     })
 }
@@ -204,9 +204,10 @@ mod tests {
 
     use super::*;
 
-    fn line(from: [f64; 2], to: [f64; 2]) -> WallLine {
-        let between = |part: f64| [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
-        let points: Vec<_> = (0..=20).map(|step| between(f64::from(step) / 20.0)).collect();
+    fn line(from: impl Into<Point2<f64>>, to: impl Into<Point2<f64>>) -> WallLine {
+        let (from, to) = (from.into(), to.into());
+        let points: Vec<_> =
+            (0..=20).map(|step| from + f64::from(step) / 20.0 * (to - from)).collect();
         WallLine::through(&points).unwrap()
     }
 
@@ -214,10 +215,14 @@ mod tests {
     fn walls_at_right_angles_give_one_frame() {
         for turned in [-0.7, -0.3, 0.0, 0.4, 0.78] {
             let frame = WallFrame::along(turned);
+            let turned_line = |[from, to]: [[f64; 2]; 2]| {
+                let [from, to] = [from, to].map(|end| frame.robot_from_walls() * Point2::from(end));
+                line(from, to)
+            };
             let lines = [
-                line(frame.unframed([-1.0, 0.8]), frame.unframed([1.5, 0.8])),
-                line(frame.unframed([1.5, 0.8]), frame.unframed([1.5, -0.8])),
-                line(frame.unframed([0.3, 0.4]), frame.unframed([0.6, 0.7])),
+                turned_line([[-1.0, 0.8], [1.5, 0.8]]),
+                turned_line([[1.5, 0.8], [1.5, -0.8]]),
+                turned_line([[0.3, 0.4], [0.6, 0.7]]),
             ];
             let found = WallFrame::of(&lines, &WallParams::default()).unwrap();
             assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
@@ -241,10 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_in_a_frame_converts_back() {
-        let frame = WallFrame::along(0.3);
-        let [x, y] = frame.unframed(frame.framed([1.2, -0.7]));
-        assert!((x - 1.2).abs() < 1e-12 && (y + 0.7).abs() < 1e-12);
+    fn the_x_axis_of_a_frame_is_the_one_nearest_to_ahead() {
         assert!((WallFrame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
         assert_eq!(WallFrame::of(&[], &WallParams::default()), None);
     }

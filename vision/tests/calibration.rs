@@ -320,9 +320,12 @@ fn asked(read: Result<Camera, CalibrationError>) -> Result<(), TestCaseError> {
     for at in [-1e300, -1e3, 0.0, 0.5, 100.0, 640.0, 1e5, f64::NAN, f64::INFINITY] {
         for other in [-10.0, 0.0, 480.0, 1e200] {
             let shown = camera.pixel_to_ground([at, other]);
-            prop_assert!(shown.is_none_or(|[x, y]| !x.is_nan() && !y.is_nan()), "{at} {other}");
+            prop_assert!(shown.is_none_or(|at| !at.x.is_nan() && !at.y.is_nan()), "{at} {other}");
             let found = camera.ground_to_pixel([other, at]);
-            prop_assert!(found.is_none_or(|[u, v]| u.is_finite() && v.is_finite()), "{at} {other}");
+            prop_assert!(
+                found.is_none_or(|at| at.x.is_finite() && at.y.is_finite()),
+                "{at} {other}"
+            );
         }
     }
     let _ = camera.sees([640, 300]);

@@ -4,10 +4,14 @@
 
 use std::{fs, io, path::Path};
 
+use nalgebra::{Point2, Vector3};
 use proptest::prelude::*;
-use toposlam_vision::camera::{
-    Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
-    calibration::{self, CalibrationError},
+use toposlam_vision::{
+    camera::{
+        Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
+        calibration::{self, CalibrationError},
+    },
+    geometry::distance,
 };
 
 /// The bytes of a file for the tests.
@@ -25,10 +29,6 @@ fn camera_of(text: &str, named: &str) -> Result<Camera, CalibrationError> {
     calibration::read(text.as_bytes(), &mut |_| Ok(named.as_bytes().to_vec()))
 }
 
-fn apart(one: [f64; 2], other: [f64; 2]) -> f64 {
-    (one[0] - other[0]).hypot(one[1] - other[1])
-}
-
 /// The mirror of a camera.
 fn mirror(camera: &Camera) -> SphericalMirror {
     match camera.optics {
@@ -39,22 +39,17 @@ fn mirror(camera: &Camera) -> SphericalMirror {
 
 /// The floor that a pixel on the mirror shows, by ray tracing: from the pinhole at the origin to the
 /// sphere's surface, reflected there, to the floor.
-fn traced(mirror: &SphericalMirror, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    // `a` and a multiple of `b`.
-    let sum = |a: [f64; 3], factor: f64, b: [f64; 3]| [0, 1, 2].map(|i| a[i] + factor * b[i]);
-    let unit = |a: [f64; 3]| a.map(|part| part / dot(a, a).sqrt());
-    let out = unit([u - mirror.centre[0], mirror.centre[1] - v, mirror.focal]);
-    let middle = [0.0, 0.0, mirror.mirror_distance];
-    let along = dot(out, middle);
-    let beside = sum(middle, -along, out);
-    let half_chord = mirror.mirror_radius.powi(2) - dot(beside, beside);
-    let met = out.map(|part| part * (along - half_chord.sqrt()));
-    let normal = unit(sum(met, -1.0, middle));
-    let back = sum(out, -2.0 * dot(out, normal), normal);
-    let length = -(met[2] + mirror.camera_height) / back[2];
-    (half_chord >= 0.0 && back[2] < 0.0)
-        .then(|| [met[0] + length * back[0], met[1] + length * back[1]])
+fn traced(mirror: &SphericalMirror, pixel: impl Into<Point2<f64>>) -> Option<Point2<f64>> {
+    let off = pixel.into() - mirror.centre;
+    let out = Vector3::new(off.x, -off.y, mirror.focal).normalize();
+    let middle = mirror.mirror_distance * Vector3::z();
+    let along = out.dot(&middle);
+    let half_chord = mirror.mirror_radius.powi(2) - (middle - along * out).norm_squared();
+    let met = (along - half_chord.sqrt()) * out;
+    let normal = (met - middle).normalize();
+    let back = out - 2.0 * out.dot(&normal) * normal;
+    let length = -(met.z + mirror.camera_height) / back.z;
+    (half_chord >= 0.0 && back.z < 0.0).then(|| Point2::from((met + length * back).xy()))
 }
 
 // paper: hardware.height
@@ -84,9 +79,9 @@ fn the_mirror_agrees_with_ray_tracing() {
             let (shown, traced) = (camera.pixel_to_ground(pixel), traced(&mirror, pixel));
             assert_eq!(shown.is_some(), traced.is_some(), "{pixel:?}");
             if let (Some(shown), Some(traced)) = (shown, traced)
-                && shown[0].hypot(shown[1]) < 10.0
+                && shown.coords.norm() < 10.0
             {
-                most = most.max(apart(shown, traced));
+                most = most.max(distance(shown, traced));
             }
         }
     }
@@ -127,8 +122,8 @@ fn opencv_maps_points_to_the_same_pixels() {
     let camera = camera("omnidir.toml");
     for (ground, pixel) in pixels {
         let found = camera.ground_to_pixel(ground).unwrap();
-        assert!(apart(found, pixel) < 1e-9, "{ground:?} is at {found:?}");
-        assert!(apart(camera.pixel_to_ground(pixel).unwrap(), ground) < 1e-8, "{ground:?}");
+        assert!(distance(found, pixel) < 1e-9, "{ground:?} is at {found:?}");
+        assert!(distance(camera.pixel_to_ground(pixel).unwrap(), ground) < 1e-8, "{ground:?}");
     }
 }
 
@@ -150,7 +145,7 @@ fn a_pixel_of_ocamcalib_looks_along_its_polynomial() {
     ];
     for (pixel, ground) in shown {
         let found = camera.pixel_to_ground(pixel).unwrap();
-        assert!(apart(found, ground) < 1e-10, "{pixel:?} shows {found:?}");
+        assert!(distance(found, ground) < 1e-10, "{pixel:?} shows {found:?}");
     }
 }
 
@@ -165,7 +160,7 @@ fn other_tools_calibrations_of_the_superscout_agree_with_its_mirror() {
             let ground = [range * turn.cos(), range * turn.sin()];
             let found = other.ground_to_pixel(ground).unwrap();
             let expected = mirror.ground_to_pixel(ground).unwrap();
-            assert!(apart(found, expected) < pixels, "{name}: {ground:?} is at {found:?}");
+            assert!(distance(found, expected) < pixels, "{name}: {ground:?} is at {found:?}");
         }
     }
 }
@@ -186,11 +181,14 @@ fn ahead_and_left_are_as_in_the_calibration() {
                 .replace("ahead = 90.0", &format!("ahead = {ahead}"))
                 .replace("\"below\"", &format!("\"{seen_from}\""));
             let camera = calibration::read(text.as_bytes(), &mut file).unwrap();
-            let [u, v] = camera.middle();
+            let [u, v] = camera.middle().into();
             for (ground, [right, down]) in [([1.0, 0.0], ahead_at), ([0.0, 1.0], left_at)] {
                 let pixel = camera.ground_to_pixel(ground).unwrap();
-                let far = apart(pixel, [u, v]);
-                assert!(apart(pixel, [u + far * right, v + far * down]) < 1e-9, "{name} {ahead}");
+                let far = distance(pixel, [u, v]);
+                assert!(
+                    distance(pixel, [u + far * right, v + far * down]) < 1e-9,
+                    "{name} {ahead}"
+                );
             }
         }
     }
@@ -208,7 +206,7 @@ fn a_false_inverse_polynomial_does_no_harm() {
         for range in [0.0, 0.01, 0.3, 1.0, 3.0, 30.0] {
             let ground = [0.6 * range, -0.8 * range];
             let [one, other] = [&right, &wrong].map(|camera| camera.ground_to_pixel(ground));
-            assert!(apart(one.unwrap(), other.unwrap()) < 1e-9, "{inverse} {range}");
+            assert!(distance(one.unwrap(), other.unwrap()) < 1e-9, "{inverse} {range}");
         }
     }
 }
@@ -231,7 +229,7 @@ fn either_sign_of_the_polynomial_looks_down() {
 fn without_a_mask_the_floor_is_seen_from_where_the_body_ends() {
     let camera = Camera::superscout();
     let sees = |ground| {
-        camera.sees(camera.ground_to_pixel(ground).unwrap().map(|at: f64| at.round() as u32))
+        camera.sees(camera.ground_to_pixel(ground).unwrap().map(|at| at.round() as u32).into())
     };
     assert!(!sees([0.0, 0.0]) && !sees([0.31, 0.0]) && !sees([0.0, -0.31]));
     assert!(sees([0.33, 0.0]) && sees([0.0, -0.33]) && sees([-2.0, 1.0]));
@@ -263,10 +261,10 @@ fn an_image_twice_as_large_shows_the_same_in_twice_as_many_pixels() {
         let camera = camera(name);
         let large = camera.sized([2560, 1920]);
         for ground in [[0.0, 0.0], [0.5, 0.1], [-2.0, 1.0], [0.1, -3.0]] {
-            let [u, v] = camera.ground_to_pixel(ground).unwrap();
+            let [u, v] = camera.ground_to_pixel(ground).unwrap().into();
             let found = large.ground_to_pixel(ground).unwrap();
-            assert!(apart(found, [2.0 * u + 0.5, 2.0 * v + 0.5]) < 1e-9, "{name} {ground:?}");
-            assert!(apart(large.pixel_to_ground(found).unwrap(), ground) < 1e-9, "{name}");
+            assert!(distance(found, [2.0 * u + 0.5, 2.0 * v + 0.5]) < 1e-9, "{name} {ground:?}");
+            assert!(distance(large.pixel_to_ground(found).unwrap(), ground) < 1e-9, "{name}");
         }
     }
 }
@@ -352,19 +350,24 @@ fn height_and_pose() -> impl Strategy<Value = String> {
 
 /// From pixel to floor and back, and from floor to pixel and back.
 fn round_trips(camera: &Camera, pixel: [f64; 2], ground: [f64; 2]) -> Result<(), TestCaseError> {
-    if let Some(shown) = camera.pixel_to_ground(pixel).filter(|[x, y]| x.hypot(*y) < 200.0) {
+    if let Some(shown) = camera.pixel_to_ground(pixel).filter(|at| at.coords.norm() < 200.0) {
         let back = camera.ground_to_pixel(shown).unwrap();
-        prop_assert!(apart(back, pixel) < 1e-3, "{pixel:?} shows {shown:?}, which is at {back:?}");
+        prop_assert!(
+            distance(back, pixel) < 1e-3,
+            "{pixel:?} shows {shown:?}, which is at {back:?}"
+        );
     }
     let height = camera.height();
     prop_assert!(camera.ground_to_pixel([0.4 * height, 0.3 * height]).is_some());
     if let Some(at) = camera.ground_to_pixel(ground) {
         let back = camera.pixel_to_ground(at).unwrap();
-        prop_assert!(apart(back, ground) < 1e-6, "{ground:?} is at {at:?}, which shows {back:?}");
+        prop_assert!(
+            distance(back, ground) < 1e-6,
+            "{ground:?} is at {at:?}, which shows {back:?}"
+        );
         let ray = camera.ray(at).unwrap();
-        let length = ray.direction.iter().map(|along| along * along).sum::<f64>().sqrt();
-        prop_assert!((length - 1.0).abs() < 1e-12);
-        prop_assert!(apart(ray.floor().unwrap(), ground) < 1e-6);
+        prop_assert!((ray.direction.norm() - 1.0).abs() < 1e-12);
+        prop_assert!(distance(ray.floor().unwrap(), ground) < 1e-6);
     }
     Ok(())
 }
@@ -393,7 +396,7 @@ proptest! {
         round_trips(&camera, pixel, ground)?;
         let traced = traced(&mirror(&camera), camera.ground_to_pixel(ground).unwrap()).unwrap();
         let range = ground[0].hypot(ground[1]);
-        prop_assert!((traced[0].hypot(traced[1]) - range).abs() < 1e-10 * (1.0 + range * range));
+        prop_assert!((traced.coords.norm() - range).abs() < 1e-10 * (1.0 + range * range));
     }
 
     #[test]

@@ -9,6 +9,7 @@ use std::sync::{
 };
 
 use image::{Rgb, RgbImage};
+use nalgebra::Point2;
 use proptest::prelude::*;
 use toposlam_model::enumerate::{Interrupted, Watch};
 use toposlam_vision::{
@@ -22,7 +23,7 @@ use toposlam_vision::{
 static CAMERA: LazyLock<Camera> = LazyLock::new(Camera::superscout);
 static VIEW: LazyLock<TrainingView> = LazyLock::new(|| TrainingView::new(&CAMERA));
 /// The point of the floor that each pixel shows.
-static GROUND: LazyLock<Vec<Option<[f64; 2]>>> = LazyLock::new(|| {
+static GROUND: LazyLock<Vec<Option<Point2<f64>>>> = LazyLock::new(|| {
     let [width, height] = CAMERA.image;
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v].map(f64::from)));
     pixels.map(|pixel| CAMERA.pixel_to_ground(pixel)).collect()
@@ -35,8 +36,8 @@ const COLOURS: [[f64; 3]; 4] =
     [[104.0, 106.0, 110.0], [225.0, 224.0, 216.0], [205.0, 35.0, 140.0], [176.0, 150.0, 112.0]];
 
 /// A hallway along x, seen from its middle, with a marker ahead.
-fn class(ground: [f64; 2]) -> PixelClass {
-    let [x, y] = [ground[0], ground[1].abs()];
+fn class(ground: Point2<f64>) -> PixelClass {
+    let [x, y] = [ground.x, ground.y.abs()];
     if y > 0.8 {
         PixelClass::Other
     } else if y > 0.75 {
@@ -107,7 +108,7 @@ fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
     let lit = table.lit(gain);
     let mut counts = [[0.0; 2]; 4];
     for (pixel, ground) in image.pixels().zip(GROUND.iter()) {
-        let near = ground.filter(|[x, y]| (0.35..3.0).contains(&x.hypot(*y)));
+        let near = ground.filter(|at| (0.35..3.0).contains(&at.coords.norm()));
         let Some(class) = near.map(class) else { continue };
         let place = PixelClass::LEARNED.iter().position(|&learned| learned == class).unwrap();
         counts[place][0] += 1.0;
@@ -167,7 +168,7 @@ fn blurred(shade: bool) -> (RgbImage, RgbImage) {
         let by_tape =
             [PixelClass::Floor, PixelClass::Stripe].map(|class| Rgb(class.label())).contains(&own);
         let in_shade =
-            shade && GROUND[nth].is_some_and(|[x, y]| (-1.2..-1.0).contains(&x) && y.abs() < 0.1);
+            shade && GROUND[nth].is_some_and(|at| (-1.2..-1.0).contains(&at.x) && at.y.abs() < 0.1);
         if is_mixed && by_tape || in_shade {
             *pixel = Rgb(MIXTURE);
         }
@@ -196,8 +197,8 @@ fn cross_validation_counts_every_labelled_pixel_once() {
     for folds in [2, 3, 4] {
         let confusion = training.cross_validate(folds, &()).unwrap();
         let all: u64 = PixelClass::LEARNED.map(|class| confusion.of(class)).iter().sum();
-        let shown = |ground: &&Option<[f64; 2]>| {
-            ground.is_some_and(|[x, y]| (0.32..=3.0).contains(&x.hypot(y)))
+        let shown = |ground: &&Option<Point2<f64>>| {
+            ground.is_some_and(|at| (0.32..=3.0).contains(&at.coords.norm()))
         };
         assert_eq!(all, 4 * GROUND.iter().filter(shown).count() as u64);
         for class in PixelClass::LEARNED {

@@ -10,7 +10,7 @@ use toposlam_logs::{
     topic_map::TopicMap,
     writer::LogWriter,
 };
-use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
+use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
 use super::*;
 
@@ -56,7 +56,7 @@ impl Written {
             range_min: 0.1,
             range_max: 9.0,
         };
-        let scan = Scan::new(geometry, vec![1.0; 5], ScannerPose::default()).unwrap();
+        let scan = Scan::new(geometry, vec![1.0; 5], nalgebra::Isometry2::identity()).unwrap();
         let message = LaserScanMessage::new(stamp, &scan);
         self.writer.write(SCAN, stamp.nanoseconds(), &message).unwrap();
     }

@@ -140,7 +140,7 @@ impl Options {
         let mut events = log.recorded();
         if self.inferred {
             events.events = log.inferred();
-            events.measurement_noise.standing = NEAR;
+            events.measurement_noise.standing = params::SceneEventParams::DEFAULT.near;
         }
         for event in &mut events.events {
             match &mut event.kind {

@@ -2,8 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use nalgebra::{Isometry2, Vector2};
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
-use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
+use toposlam_vision::{
+    geometry::from_robot,
+    laser::scan::{Scan, ScanGeometry},
+};
 
 use super::Parameters;
 use crate::value::Value;
@@ -28,16 +32,18 @@ pub(crate) fn reading(
     let ranges: Vec<_> =
         ranges.iter().map(|range| range.f64().unwrap_or(f64::NAN) as f32).collect();
     let odometry = pose(line, ["odom_x", "odom_y", "odom_theta"])?;
-    let (geometry, mount) = if type_name == "carmen/ROBOTLASER1" {
-        (geometry(line)?, between(&odometry, &pose(line, ["laser_x", "laser_y", "laser_theta"])?))
+    let (geometry, robot_from_scanner) = if type_name == "carmen/ROBOTLASER1" {
+        let scanner = pose(line, ["laser_x", "laser_y", "laser_theta"])?;
+        (geometry(line)?, from_robot(&odometry).inverse() * from_robot(&scanner))
     } else {
         let (ahead, heading) = match type_name {
             "carmen/RLASER" => (parameters.rear_offset, PI),
             _ => (parameters.front_offset, 0.0),
         };
-        (old_geometry(ranges.len()), ScannerPose { position: [ahead, 0.0], heading })
+        (old_geometry(ranges.len()), Isometry2::new(Vector2::new(ahead, 0.0), heading))
     };
-    let scan = Scan::new(geometry, ranges, mount).map_err(|error| error.to_string())?;
+    let scan =
+        Scan::new(geometry, ranges, robot_from_scanner).map_err(|error| error.to_string())?;
     Ok(RecordedScan { scan, odometry })
 }
 
@@ -74,16 +80,6 @@ fn geometry(line: &Value<'_>) -> Result<ScanGeometry, String> {
 fn pose(line: &Value<'_>, names: [&str; 3]) -> Result<Odometry, String> {
     let [x, y, heading] = names.map(|name| number(line, name));
     Ok(Odometry { position: [x?, y?], heading: wrapped(heading?) })
-}
-
-/// The pose of a scanner on its robot, by the poses of both.
-fn between(robot: &Odometry, scanner: &Odometry) -> ScannerPose {
-    let [x, y] = [0, 1].map(|axis| scanner.position[axis] - robot.position[axis]);
-    let (sine, cosine) = robot.heading.sin_cos();
-    ScannerPose {
-        position: [x * cosine + y * sine, y * cosine - x * sine],
-        heading: wrapped(scanner.heading - robot.heading),
-    }
 }
 
 fn number(line: &Value<'_>, name: &str) -> Result<f64, String> {

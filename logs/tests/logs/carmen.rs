@@ -10,6 +10,7 @@ use std::{
 };
 
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
+use nalgebra::Point2;
 use toposlam_logs::{
     Format,
     entries::{Content, Entry},
@@ -88,7 +89,7 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
         let [(time, odometry, scan)] = &scans(&log)[..] else { panic!() };
         // The logger's clock, and not the sender's.
         assert_eq!((*time, *odometry), (11_000_000_000, [1.0, 2.0, 3.0]));
-        assert_eq!((scan.mount().position, scan.mount().heading), ([0.25, 0.0], 0.0));
+        assert_eq!((scan.scanner(), scan.heading()), (Point2::new(0.25, 0.0), 0.0));
         let readings: Vec<_> = scan.readings().collect();
         let expected = [Reading::Hit(1.5), Reading::Hit(49.5), Reading::NoReturn];
         for ((bearing, reading), (index, expected)) in readings.iter().zip((0..).zip(expected)) {
@@ -107,8 +108,8 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
         let rear = TopicMap::read(b"[scan]\ntopic = \"RLASER\"").unwrap().bind(&log).unwrap();
         let rear = log.entries(&rear).next().unwrap().unwrap();
         let Content::Event(EventKind::Frame(frame)) = rear.content else { panic!() };
-        let mount = frame.scan.as_ref().unwrap().mount();
-        assert_eq!((mount.position, mount.heading), ([-0.5, 0.0], PI));
+        let scan = frame.scan.as_ref().unwrap();
+        assert_eq!((scan.scanner(), scan.heading()), (Point2::new(-0.5, 0.0), PI));
         assert_eq!(frame.odometry.position, [4.0, 5.0]);
     }
 }
@@ -120,8 +121,8 @@ fn the_newer_message_records_its_angles_and_the_pose_of_its_scanner() {
     let [(time, odometry, scan)] = &scans(&log)[..] else { panic!() };
     assert_eq!((*time, odometry[0], odometry[1]), (5_000_000_000, 1.0, 2.0));
     // Half a metre ahead of a robot that looks along y.
-    let [x, y] = scan.mount().position;
-    assert!((x - 0.5).abs() < 1e-6 && y.abs() < 1e-6 && scan.mount().heading.abs() < 1e-12);
+    let [x, y] = scan.scanner().into();
+    assert!((x - 0.5).abs() < 1e-6 && y.abs() < 1e-6 && scan.heading().abs() < 1e-12);
     let readings: Vec<_> = scan.readings().collect();
     assert_eq!(
         readings,

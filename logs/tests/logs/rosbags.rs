@@ -53,8 +53,8 @@ fn read(log: &Log) -> Found {
             Content::Event(EventKind::Frame(frame)) => {
                 let scan = frame.scan.unwrap();
                 let bits = scan.ranges().iter().map(|range| range.to_bits()).collect();
-                let [x, y] = scan.mount().position;
-                scans.push((stamp, bits, [x, y, scan.mount().heading]));
+                let [x, y] = scan.scanner().into();
+                scans.push((stamp, bits, [x, y, scan.heading()]));
                 let kinds: Vec<_> = scan.readings().map(|(_, reading)| reading).collect();
                 let [Reading::Hit(_), rest @ ..] = &kinds[..] else { panic!("{kinds:?}") };
                 let [invalid, none] = [Reading::Invalid, Reading::NoReturn];

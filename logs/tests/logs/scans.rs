@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use nalgebra::Point2;
 use toposlam_logs::{
     entries::Content,
     reader::Log,
@@ -73,15 +74,14 @@ const USUAL: [f32; 4] = [-1.0, 1.0, 0.1, 10.0];
 fn a_scanner_is_where_the_transforms_of_its_frame_place_it() {
     let scan = || scan(USUAL, &[1.0, f32::INFINITY, f32::NAN]);
     // Without transforms, the scanner is the robot.
-    let mount = read(&[scan()]).unwrap().scan.unwrap().mount();
-    assert_eq!((mount.position, mount.heading), ([0.0, 0.0], 0.0));
+    let alone = read(&[scan()]).unwrap().scan.unwrap();
+    assert_eq!((alone.scanner(), alone.heading()), (Point2::origin(), 0.0));
     let turned = ("/base_link", "laser", [0.5, 0.25, 1.0], [0.0, 0.0, 1.0, 0.0]);
     let moving = ("odom", "base_link", [7.0, 7.0, 0.0], LEVEL);
     for name in ["/tf", "/tf_static"] {
-        let mount =
-            read(&[scan(), transforms(name, &[moving, turned])]).unwrap().scan.unwrap().mount();
-        assert_eq!(mount.position, [0.5, 0.25], "{name}");
-        assert!((mount.heading - PI).abs() < 1e-12, "{name}");
+        let scan = read(&[scan(), transforms(name, &[moving, turned])]).unwrap().scan.unwrap();
+        assert_eq!(scan.scanner(), Point2::new(0.5, 0.25), "{name}");
+        assert!((scan.heading() - PI).abs() < 1e-12, "{name}");
     }
     // Upside down, what is left of the scanner is on its right.
     let over = ("base_footprint", "laser", [0.0; 3], [1.0, 0.0, 0.0, 0.0]);

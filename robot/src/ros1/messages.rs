@@ -21,7 +21,7 @@ use toposlam_model::driving::{
     odometry,
     scene::{MarkerView, undirected},
 };
-use toposlam_vision::laser::scan::{Scan, ScanGeometry, ScannerPose};
+use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
 use crate::superscout::WheelSpeeds;
 
@@ -161,7 +161,7 @@ pub(super) fn read_scan(bytes: &[u8]) -> Option<LiveScan> {
         range_min: message.range_min.into(),
         range_max: message.range_max.into(),
     };
-    let scan = Scan::new(geometry, message.ranges, ScannerPose::default()).ok()?;
+    let scan = Scan::new(geometry, message.ranges, nalgebra::Isometry2::identity()).ok()?;
     Some(LiveScan { stamp: nanoseconds(message.header.stamp), scan })
 }
 
@@ -233,7 +233,8 @@ mod tests {
             range_min: 0.125,
             range_max: 30.0,
         };
-        let sweep = Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], ScannerPose::default());
+        let sweep =
+            Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], nalgebra::Isometry2::identity());
         let sweep = LiveScan { stamp: 7, scan: sweep.unwrap() };
         assert_eq!(read_scan(&scan(1, 7, &sweep.scan)), Some(sweep));
         let found = MarkerView { position: [0.5, -0.25], axis: 1.0, door: None };

@@ -16,7 +16,7 @@ use toposlam_model::measurement::MeasurementNoise;
 // paper: hardware.drive
 pub const WHEEL_BASE: f64 = 0.3452;
 /// The robot's radius, in metres.
-pub const RADIUS: f64 = 0.205;
+pub const RADIUS: f64 = toposlam_vision::params::ROBOT_RADIUS;
 /// The highest speed, in metres a second.
 pub const SPEED: f64 = 0.20;
 /// The highest turn rate on the spot, in radians a second: 20 degrees.

@@ -70,5 +70,5 @@ pub fn needs_camera(option: &str) -> CliError {
 pub fn read_scanner(path: &Path) -> Result<ScannerParams, CliError> {
     let bytes = input::read(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| CliError::in_file(path, error))?;
-    ScannerParams::from_toml(text).map_err(|error| CliError::in_file(path, error))
+    toposlam_vision::params::read(text).map_err(|error| CliError::in_file(path, error))
 }

@@ -6,10 +6,12 @@
 
 use std::f32::consts::TAU;
 
+use toposlam_vision::params::ROBOT_RADIUS;
+
 use crate::render::{effects::Effects, optics::RayPath, rig::PixelRay};
 
 /// Radius of the robot's body and height of its top, in metres.
-const RADIUS: f32 = 0.205;
+const RADIUS: f32 = ROBOT_RADIUS as f32;
 const TOP: f32 = 0.35;
 
 /// Half the laptop's length and width, and its height, in metres.

@@ -6,7 +6,10 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::{BuildingWall, FloorPlan, Rectangle, walls},
 };
-use toposlam_vision::colour::StripeKind;
+use toposlam_vision::{
+    colour::StripeKind,
+    params::{MARKER_LENGTH, MARKER_WIDTH},
+};
 
 use crate::render::{
     cables::Cables,
@@ -21,7 +24,7 @@ use crate::render::{
 };
 
 /// Length and width of the marker, in metres.
-const MARKER: [f64; 2] = [0.60, 0.18];
+const MARKER: [f64; 2] = [MARKER_LENGTH, MARKER_WIDTH];
 
 /// Width and height of a door, and width of its frame, in metres.
 const DOOR_WIDTH: f64 = 0.90;

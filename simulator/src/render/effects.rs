@@ -214,7 +214,7 @@ impl Effects {
             middle[axis] + self.zoom * (mirror.centre[axis] - middle[axis]) + shift[axis]
         };
         let optics = OpticsModel::SphericalMirror(SphericalMirror {
-            centre: [zoomed(0), zoomed(1)],
+            centre: [zoomed(0), zoomed(1)].into(),
             focal: self.zoom * mirror.focal,
             ..*mirror
         });
@@ -349,7 +349,7 @@ mod tests {
         effects.set("off-centre", -0.03).unwrap();
         let cropped = effects.camera(&camera).unwrap();
         let OpticsModel::SphericalMirror(mirror) = cropped.optics else { panic!() };
-        let ([u, v], rim) = (mirror.centre, mirror.rim());
+        let ([u, v], rim) = (mirror.centre.into(), mirror.rim());
         assert!((rim / 960.0 - 0.68).abs() < 0.001, "{rim}");
         assert!((u - 611.4).abs() < 0.1 && (v - 480.2).abs() < 0.1, "{u} {v}");
         let sides = [u - rim < 0.0, v - rim < 0.0, u + rim > 1279.0, v + rim > 959.0];

@@ -11,7 +11,7 @@ use std::{f64::consts::TAU, sync::Arc};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use toposlam_model::driving::{pose::Pose, scene::wrapped};
-use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry, ScannerPose};
+use toposlam_vision::laser::scan::{Scan, ScanError, ScanGeometry};
 
 use crate::render::{StreamPurpose, stream};
 
@@ -81,7 +81,7 @@ impl LaserScanner {
             range_min: params.least_range,
             range_max: params.range,
         };
-        Scan::new(geometry, ranges.collect(), ScannerPose::default())
+        Scan::new(geometry, ranges.collect(), nalgebra::Isometry2::identity())
     }
 
     /// What each of a number of rays meets, from an angle on, counter-clockwise.

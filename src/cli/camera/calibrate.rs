@@ -129,7 +129,7 @@ impl CalibrateArguments {
         let rim = match &self.rim {
             Some(given) => {
                 given.check(images[0].dimensions().into())?;
-                rim::given(&grey, given.centre, given.radius)
+                rim::given(&grey, given.centre.into(), given.radius)
             }
             None => rim::find(&grey),
         };
@@ -207,7 +207,7 @@ impl CalibrateArguments {
             ..Camera::superscout()
         };
         // Report values out of range before the long work begins. Any focal length will do.
-        let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2], ..mirror };
+        let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2].into(), ..mirror };
         let probe = OpticsModel::SphericalMirror(some);
         checked(&Camera { optics: probe, ..known.clone() })?;
         Ok((known, mirror))
@@ -276,7 +276,7 @@ impl CalibrateArguments {
                 &Report {
                     images: self.images.len(),
                     image: camera.image,
-                    centre: mirror.centre,
+                    centre: mirror.centre.into(),
                     rim: hundredth(rim.radius),
                     rim_from: if self.rim.is_some() { "option" } else { "images" },
                     focal: mirror.focal,
@@ -289,7 +289,7 @@ impl CalibrateArguments {
         if self.out.is_none() {
             return Ok(());
         }
-        let [u, v] = mirror.centre;
+        let [u, v] = mirror.centre.into();
         writeln!(out, "centre  {u:.1}, {v:.1} pixels")?;
         let from = if self.rim.is_some() { "given, " } else { "" };
         writeln!(

@@ -10,6 +10,7 @@ use toposlam_logs::{
     record::{EventKind, Frame},
     topic_map::Role,
 };
+use toposlam_vision::geometry::from_robot;
 
 use super::{CliError, JudgedLog};
 use crate::{
@@ -61,14 +62,14 @@ fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError>
         else {
             continue;
         };
-        let (sine, cosine) = odometry.heading.sin_cos();
         let [east, north] = odometry.position;
-        if ![east, north, cosine].iter().all(|number| number.is_finite()) {
+        if ![east, north, odometry.heading].iter().all(|number| number.is_finite()) {
             continue;
         }
         picture.way.push(odometry.position);
-        for [x, y] in scan.hits() {
-            picture.hits.add([east + x * cosine - y * sine, north + x * sine + y * cosine]);
+        let odometry_from_robot = from_robot(&odometry);
+        for hit in scan.hits() {
+            picture.hits.add((odometry_from_robot * hit).into());
         }
     }
     Ok(picture)

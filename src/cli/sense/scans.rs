@@ -10,12 +10,14 @@ use toposlam_logs::{
     topic_map::{Role, TopicMap},
 };
 use toposlam_model::enumerate::Watch;
-use toposlam_vision::laser::{
-    junctions::LaserJunction,
-    pictures,
-    plane::Motion,
-    scan::Scan,
-    sensor::{LaserSensor, LaserView},
+use toposlam_vision::{
+    geometry::from_robot,
+    laser::{
+        junctions::LaserJunction,
+        pictures,
+        scan::Scan,
+        sensor::{LaserSensor, LaserView},
+    },
 };
 
 use super::SenseArguments;
@@ -47,11 +49,11 @@ struct JunctionLine {
 
 impl JunctionLine {
     fn new(junction: &LaserJunction, view: &LaserView) -> Self {
-        let to_robot = Motion::from_robot(&view.robot).inverse();
+        let robot_from_map = from_robot(&view.robot).inverse();
         let door = |&arm: &f64| rounded_angle(view.robot.seen(arm), std::f64::consts::PI);
         Self {
             degree: junction.arms.len(),
-            position: to_robot.point(junction.centre).map(rounded),
+            position: (robot_from_map * junction.centre).map(rounded).into(),
             doors: junction.arms.iter().map(door).collect(),
         }
     }

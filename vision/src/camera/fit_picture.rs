@@ -1,9 +1,10 @@
 //! A calibration drawn over an image.
 
 use image::{Rgb, RgbImage};
+use nalgebra::{Point2, Vector2};
 
 use super::{Camera, OpticsModel, rim::Rim};
-use crate::draw;
+use crate::{draw, geometry::unit};
 
 /// The rim and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
@@ -28,37 +29,32 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
         }
     }
     for range in [1.0, 2.0, 3.0] {
-        let at = |angle: f64| camera.ground_to_pixel([range * angle.cos(), range * angle.sin()]);
+        let at = |angle: f64| camera.ground_to_pixel(Point2::from(range * unit(angle)));
         closed(&mut picture, at, BLUE);
     }
-    let round = |radius: f64| {
-        move |angle: f64| {
-            let [u, v] = rim.centre;
-            Some([u + radius * angle.cos(), v + radius * angle.sin()])
-        }
-    };
+    let round = |radius: f64| move |angle: f64| Some(rim.centre + radius * unit(angle));
     if let OpticsModel::SphericalMirror(mirror) = &camera.optics {
         closed(&mut picture, round(mirror.horizon()), GREEN);
     }
     closed(&mut picture, round(rim.radius), GREEN);
     // On both sides of the rim, so that the rim itself stays visible.
     for place in rim.places.iter().step_by(6) {
-        let out = [0, 1].map(|axis| (place[axis] - rim.centre[axis]) / rim.radius);
-        let tick = |far: f64| [0, 1].map(|axis| place[axis] + far * out[axis]);
+        let out = (place - rim.centre) / rim.radius;
+        let tick = |far: f64| place + far * out;
         segment(&mut picture, tick(3.0), tick(9.0), YELLOW);
     }
-    let [u, v] = camera.middle();
-    for [across, down] in [[12.0, 0.0], [0.0, 12.0]] {
-        segment(&mut picture, [u - across, v - down], [u + across, v + down], WHITE);
+    let middle = camera.middle();
+    for arm in [Vector2::new(12.0, 0.0), Vector2::new(0.0, 12.0)] {
+        segment(&mut picture, middle - arm, middle + arm, WHITE);
     }
     if let Some(ahead) = camera.ground_to_pixel([1.0, 0.0]) {
-        segment(&mut picture, [u, v], ahead, WHITE);
+        segment(&mut picture, middle, ahead, WHITE);
     }
     picture
 }
 
 /// A closed curve, by angle.
-fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<[f64; 2]>, colour: Rgb<u8>) {
+fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<Point2<f64>>, colour: Rgb<u8>) {
     const STEPS: u32 = 720;
     let angle = |step: u32| f64::from(step) * std::f64::consts::TAU / f64::from(STEPS);
     for step in 0..STEPS {
@@ -68,7 +64,7 @@ fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<[f64; 2]>, colour: 
     }
 }
 
-fn segment(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
-    let [from, to] = [from, to].map(|end| end.map(|part| part as f32));
+fn segment(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
+    let [from, to] = [from, to].map(|end| end.map(|part| part as f32).into());
     draw::line(picture, from, to, colour);
 }

@@ -6,8 +6,10 @@
 //! onto a plane at distance one, distorted there (k1, k2, p1, p2), and mapped to pixels by a matrix. The
 //! model's z axis points straight down, to the middle of the image.
 
+use nalgebra::{Matrix2, Point2, Point3, Vector2, Vector3};
+
 use super::{
-    ViewingRay, length,
+    ViewingRay,
     optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place, yaml,
@@ -30,7 +32,7 @@ pub struct Mei {
     /// The matrix from the plane to pixels.
     focal: [f64; 2],
     skew: f64,
-    centre: [f64; 2],
+    centre: Point2<f64>,
     /// The distance from the middle of the plane up to which the distortion can be inverted.
     reach: f64,
 }
@@ -92,10 +94,10 @@ impl Mei {
                 within("the focal length down", focal_v, focal_range)?,
             ],
             skew: within("the skew", skew, [-100.0, 100.0])?,
-            centre: [
+            centre: Point2::new(
                 within("the centre's u", centre_u, [0.0, 16384.0])?,
                 within("the centre's v", centre_v, [0.0, 16384.0])?,
-            ],
+            ),
             reach: 0.0,
         }
         .reaching()
@@ -108,7 +110,7 @@ impl Mei {
         // The distortion's derivative is symmetric. In a disc in which both of its eigenvalues are
         // positive, no two points are distorted to the same one. Radially and across they are at least:
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
-        let tangential = -6.0 * length([p1, p2]);
+        let tangential = -6.0 * Vector2::new(p1, p2).norm();
         let across = [1.0 - Self::LEAST_SLOPE, tangential, k1, 0.0, k2];
         let along = [1.0 - Self::LEAST_SLOPE, tangential, 3.0 * k1, 0.0, 5.0 * k2];
         let first = |slope: &[f64]| first_change(slope, [0.0, end]).unwrap_or(end);
@@ -125,7 +127,7 @@ impl Mei {
         self.image
     }
 
-    pub(super) fn centre(&self) -> [f64; 2] {
+    pub(super) fn centre(&self) -> Point2<f64> {
         self.centre
     }
 
@@ -141,81 +143,80 @@ impl Mei {
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
-        let y = (pixel[1] - self.centre[1]) / self.focal[1];
-        let x = (pixel[0] - self.centre[0] - self.skew * y) / self.focal[0];
-        let [x, y] = self.undistorted([x, y])?;
-        let square = x * x + y * y;
+    pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
+        let off = pixel - self.centre;
+        let y = off.y / self.focal[1];
+        let x = (off.x - self.skew * y) / self.focal[0];
+        let at = self.undistorted(Vector2::new(x, y))?;
+        let square = at.norm_squared();
         let under_root = 1.0 + (1.0 - self.xi * self.xi) * square;
         if under_root.is_nan() || under_root < 0.0 {
             return None;
         }
         let scale = (self.xi + under_root.sqrt()) / (1.0 + square);
         Some(ViewingRay {
-            origin: [0.0, 0.0, self.viewpoint_height],
-            direction: [scale * x, -scale * y, self.xi - scale],
+            origin: Point3::new(0.0, 0.0, self.viewpoint_height),
+            direction: Vector3::new(scale * at.x, -scale * at.y, self.xi - scale),
         })
     }
 
     /// The pixel that shows a point of the floor, in the image's axes.
-    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
+    pub(super) fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
         let down = self.viewpoint_height;
-        let far = length([length([right, top]), down]);
-        let [x, y] = [right, -top].map(|across| across / (down + self.xi * far));
-        let radius = length([x, y]);
+        let far = Vector2::new(ground.coords.norm(), down).norm();
+        let at = Vector2::new(ground.x, -ground.y) / (down + self.xi * far);
+        let radius = at.norm();
         if radius.is_nan() || radius > self.reach {
             return None;
         }
-        let ([x, y], _) = self.distorted([x, y]);
-        Some([
-            self.focal[0] * x + self.skew * y + self.centre[0],
-            self.focal[1] * y + self.centre[1],
-        ])
+        let (at, _) = self.distorted(at);
+        Some(Point2::new(
+            self.focal[0] * at.x + self.skew * at.y + self.centre.x,
+            self.focal[1] * at.y + self.centre.y,
+        ))
     }
 
-    /// A point of the plane after distortion, and the derivative: along x, across, along y.
-    fn distorted(&self, [x, y]: [f64; 2]) -> ([f64; 2], [f64; 3]) {
+    /// A point of the plane after distortion, and the derivative.
+    fn distorted(&self, at: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
+        let [x, y] = at.into();
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
         let square = x * x + y * y;
         let scale = 1.0 + square * (k1 + square * k2);
         let slope = 2.0 * (k1 + 2.0 * k2 * square);
+        let across = slope * x * y + 2.0 * p1 * x + 2.0 * p2 * y;
         (
-            [
+            Vector2::new(
                 x * scale + 2.0 * p1 * x * y + p2 * (square + 2.0 * x * x),
                 y * scale + 2.0 * p2 * x * y + p1 * (square + 2.0 * y * y),
-            ],
-            [
+            ),
+            Matrix2::new(
                 scale + slope * x * x + 2.0 * p1 * y + 6.0 * p2 * x,
-                slope * x * y + 2.0 * p1 * x + 2.0 * p2 * y,
+                across,
+                across,
                 scale + slope * y * y + 2.0 * p2 * x + 6.0 * p1 * y,
-            ],
+            ),
         )
     }
 
     /// The point of the plane that is distorted to this one.
-    fn undistorted(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
-        let near = 1e-13 * (1.0 + length(distorted));
-        let lack = |at: [f64; 2]| {
+    fn undistorted(&self, distorted: Vector2<f64>) -> Option<Vector2<f64>> {
+        let near = 1e-13 * (1.0 + distorted.norm());
+        let lack = |at: Vector2<f64>| {
             let (found, slope) = self.distorted(at);
-            let rest = [distorted[0] - found[0], distorted[1] - found[1]];
-            (at, rest, slope)
+            (at, distorted - found, slope)
         };
         let (mut at, mut rest, mut slope) = lack(self.undistorted_radially(distorted)?);
         for _ in 0..50 {
-            if length(rest) <= near {
+            if rest.norm() <= near {
                 return Some(at);
             }
-            let determinant = slope[0] * slope[2] - slope[1] * slope[1];
-            let step = [
-                (slope[2] * rest[0] - slope[1] * rest[1]) / determinant,
-                (slope[0] * rest[1] - slope[1] * rest[0]) / determinant,
-            ];
+            let step = slope.try_inverse()? * rest;
             // Newton's step, shortened if it does not get nearer.
             (at, rest, slope) = (0..30).find_map(|halves| {
                 let share = 0.5_f64.powi(halves);
-                let next = lack([at[0] + share * step[0], at[1] + share * step[1]]);
-                let inside = length(next.0) <= self.reach;
-                (inside && length(next.1) < length(rest)).then_some(next)
+                let next = lack(at + share * step);
+                let inside = next.0.norm() <= self.reach;
+                (inside && next.1.norm() < rest.norm()).then_some(next)
             })?;
         }
         None
@@ -223,17 +224,17 @@ impl Mei {
 
     /// The same without tangential distortion, inside the reach. `None` if a point outside of the reach
     /// is distorted to here.
-    fn undistorted_radially(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
-        let far = length(distorted);
+    fn undistorted_radially(&self, distorted: Vector2<f64>) -> Option<Vector2<f64>> {
+        let far = distorted.norm();
         if far == 0.0 {
-            return Some([0.0; 2]);
+            return Some(distorted);
         }
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
         let lack = |radius: f64| {
             let (value, slope) = polynomial(&[0.0, 1.0, 0.0, k1, 0.0, k2], radius);
             (value - far, slope)
         };
-        let shifted = 3.0 * length([p1, p2]) * self.reach * self.reach;
+        let shifted = 3.0 * Vector2::new(p1, p2).norm() * self.reach * self.reach;
         let end = lack(self.reach).0;
         let radius = if end > 0.0 {
             root(lack, [0.0, self.reach], far)
@@ -242,7 +243,7 @@ impl Mei {
         } else {
             return None;
         };
-        Some(distorted.map(|across| across * radius / far))
+        Some(distorted * radius / far)
     }
 }
 

@@ -21,6 +21,8 @@ mod spherical;
 pub mod unchanging;
 mod yaml;
 
+use nalgebra::{Matrix2, Point2, Point3, Vector3};
+
 pub use fit_picture::fit_picture;
 pub use mask::{Mask, MaskError};
 pub use mei::Mei;
@@ -48,15 +50,9 @@ pub enum OpticsModel {
     Mei(Mei),
 }
 
-/// The length of a vector; its square must be neither too large nor too small for a number.
-#[inline]
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
-}
-
 /// A place in an image that is scaled by a factor: pixel centres are integers, so an image begins at
 /// -0.5.
-fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
+fn scaled_place(place: Point2<f64>, factor: f64) -> Point2<f64> {
     place.map(|at| (at + 0.5) * factor - 0.5)
 }
 
@@ -79,24 +75,23 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewingRay {
     /// The point at which it leaves the mirror; the viewpoint of a camera with a single one.
-    pub origin: [f64; 3],
+    pub origin: Point3<f64>,
     /// Its direction, of length one.
-    pub direction: [f64; 3],
+    pub direction: Vector3<f64>,
 }
 
 impl ViewingRay {
     /// The point at which it meets the floor; `None` if it does not go down.
     #[must_use]
-    pub fn floor(&self) -> Option<[f64; 2]> {
-        let length = -self.origin[2] / self.direction[2];
-        (self.direction[2] < 0.0)
-            .then(|| [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis]))
+    pub fn floor(&self) -> Option<Point2<f64>> {
+        let length = -self.origin.z / self.direction.z;
+        (self.direction.z < 0.0).then(|| (self.origin + length * self.direction).xy())
     }
 }
 
 impl OpticsModel {
     /// The ray of a pixel, in the image's axes: x to its right, y to its top, z up from the floor.
-    fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
+    fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
         match self {
             Self::SphericalMirror(mirror) => mirror.ray(pixel),
             Self::OCamCalib(ocam) => ocam.ray(pixel),
@@ -105,7 +100,7 @@ impl OpticsModel {
     }
 
     /// The pixel that shows a point of the floor, in the image's axes.
-    fn pixel(&self, ground: [f64; 2]) -> Option<[f64; 2]> {
+    fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
         match self {
             Self::SphericalMirror(mirror) => mirror.pixel(ground),
             Self::OCamCalib(ocam) => ocam.pixel(ground),
@@ -127,7 +122,7 @@ impl Camera {
             ahead: std::f64::consts::FRAC_PI_2,
             seen_from: SeenFrom::Below,
             optics: OpticsModel::SphericalMirror(SphericalMirror {
-                centre: [640.0, 480.0],
+                centre: Point2::new(640.0, 480.0),
                 focal: 1272.8,
                 mirror_radius: 0.05,
                 mirror_distance: 0.15,
@@ -155,7 +150,7 @@ impl Camera {
 
     /// The pixel that looks straight down.
     #[must_use]
-    pub fn middle(&self) -> [f64; 2] {
+    pub fn middle(&self) -> Point2<f64> {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.centre,
             OpticsModel::OCamCalib(ocam) => ocam.centre(),
@@ -186,26 +181,38 @@ impl Camera {
 
     /// The ray along which a pixel looks; `None` outside of the mirror or of the calibration.
     #[must_use]
-    pub fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
-        let ViewingRay { origin, direction } = self.optics.ray(pixel)?;
-        let turned = |[right, top, up]: [f64; 3]| {
-            let [x, y] = self.to_robot([right, top]);
-            [x, y, up]
-        };
-        Some(ViewingRay { origin: turned(origin), direction: turned(direction) })
+    pub fn ray(&self, pixel: impl Into<Point2<f64>>) -> Option<ViewingRay> {
+        let ViewingRay { origin, direction } = self.optics.ray(pixel.into())?;
+        let robot_from_image = self.robot_from_image().to_homogeneous();
+        Some(ViewingRay {
+            origin: robot_from_image * origin,
+            direction: robot_from_image * direction,
+        })
     }
 
     /// The point of the floor that a pixel shows; `None` above the horizon and outside of the mirror.
     #[must_use]
-    pub fn pixel_to_ground(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
-        self.optics.ray(pixel)?.floor().map(|ground| self.to_robot(ground))
+    pub fn pixel_to_ground(&self, pixel: impl Into<Point2<f64>>) -> Option<Point2<f64>> {
+        self.optics.ray(pixel.into())?.floor().map(|ground| self.robot_from_image() * ground)
     }
 
     /// The pixel that shows a point of the floor, which may lie outside of the image; `None` if none
     /// does.
     #[must_use]
-    pub fn ground_to_pixel(&self, ground: [f64; 2]) -> Option<[f64; 2]> {
-        self.optics.pixel(self.to_image(ground))
+    pub fn ground_to_pixel(&self, ground: impl Into<Point2<f64>>) -> Option<Point2<f64>> {
+        let ground: Point2<f64> = ground.into();
+        self.optics.pixel(self.robot_from_image().transpose() * ground)
+    }
+
+    /// The index of the image's pixel, row by row, that shows a point of the floor; `None` if none does, or something
+    /// is in the way.
+    #[must_use]
+    pub fn seen_pixel(&self, ground: Point2<f64>) -> Option<u32> {
+        let [u, v] = self.ground_to_pixel(ground)?.map(f64::round).into();
+        let [width, height] = self.image;
+        let inside = (0.0..f64::from(width)).contains(&u) && (0.0..f64::from(height)).contains(&v);
+        let pixel = [u as u32, v as u32];
+        (inside && self.sees(pixel)).then(|| pixel[1] * width + pixel[0])
     }
 
     /// Whether the floor can be seen in a pixel: neither body, strut nor rim is in the way.
@@ -216,26 +223,16 @@ impl Camera {
             && self.mask.as_ref().is_none_or(|mask| mask.sees(pixel))
             && self
                 .pixel_to_ground(pixel.map(f64::from))
-                .is_some_and(|[x, y]| self.mask.is_some() || x.hypot(y) >= Self::HIDDEN)
+                .is_some_and(|at| self.mask.is_some() || at.coords.norm() >= Self::HIDDEN)
     }
 
-    /// From the image's axes, right and top, to the robot's, ahead and left.
-    fn to_robot(&self, [right, top]: [f64; 2]) -> [f64; 2] {
+    /// From the image's axes, right and top, to the robot's, ahead and left: a turn, or a turn and a reflection. Its
+    /// inverse is its transpose.
+    fn robot_from_image(&self) -> Matrix2<f64> {
         let (sine, cosine) = self.ahead.sin_cos();
-        [right * cosine + top * sine, self.mirrored() * (right * sine - top * cosine)]
-    }
-
-    /// From the robot's axes to the image's.
-    fn to_image(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (sine, cosine) = self.ahead.sin_cos();
-        let y = self.mirrored() * y;
-        [x * cosine + y * sine, x * sine - y * cosine]
-    }
-
-    fn mirrored(&self) -> f64 {
         match self.seen_from {
-            SeenFrom::Below => 1.0,
-            SeenFrom::Above => -1.0,
+            SeenFrom::Below => Matrix2::new(cosine, sine, sine, -cosine),
+            SeenFrom::Above => Matrix2::new(cosine, sine, -sine, cosine),
         }
     }
 }

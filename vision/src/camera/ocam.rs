@@ -11,8 +11,10 @@
 //! its inverse, the centre's row and column, the affine c, d and e, and the image's height and width. In
 //! the file rows and columns count from 0 (in the toolbox itself, from 1).
 
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+
 use super::{
-    ViewingRay, length,
+    ViewingRay,
     optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place,
@@ -31,7 +33,7 @@ pub struct OCam {
     down: Vec<f64>,
     /// Roughly its inverse: the distance from the middle by the angle above level.
     inverse: Vec<f64>,
-    centre: [f64; 2],
+    centre: Point2<f64>,
     /// c, d and e: rows and columns are `[[c, d], [e, 1]]` times (x, y).
     affine: [f64; 3],
     /// The distance from the middle up to which points look farther and farther out.
@@ -69,7 +71,7 @@ impl OCam {
             image: [width, height],
             down: direct,
             inverse,
-            centre: [column, row],
+            centre: Point2::new(column, row),
             affine,
             reach: 0.0,
             horizon: 0.0,
@@ -86,13 +88,8 @@ impl OCam {
         }
         let [width, height] = self.image.map(f64::from);
         let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
-        let edge = corners
-            .map(|corner| {
-                let [right, top] = self.plane(corner);
-                length([right, top])
-            })
-            .into_iter()
-            .fold(0.0, f64::max);
+        let edge = corners.map(|corner| self.plane(corner.into()).norm());
+        let edge = edge.into_iter().fold(0.0, f64::max);
         within("the polynomial at the edge", polynomial(&self.down, edge).0, [-1e9, 1e9])?;
         // The angle from straight down grows with rho for as long as f - rho f' is positive.
         let growing: Vec<f64> = self.down.iter().zip(0_u32..).map(growth).collect();
@@ -107,7 +104,7 @@ impl OCam {
         self.image
     }
 
-    pub(super) fn centre(&self) -> [f64; 2] {
+    pub(super) fn centre(&self) -> Point2<f64> {
         self.centre
     }
 
@@ -127,32 +124,32 @@ impl OCam {
     }
 
     /// The point of the model's plane at a pixel: to the right, and to the top.
-    fn plane(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let ([c, d, e], [row, column]) = (self.affine, [v - self.centre[1], u - self.centre[0]]);
+    fn plane(&self, pixel: Point2<f64>) -> Vector2<f64> {
+        let ([c, d, e], [column, row]) = (self.affine, (pixel - self.centre).into());
         let scale = 1.0 / (c - d * e);
-        [scale * (c * column - e * row), -scale * (row - d * column)]
+        Vector2::new(scale * (c * column - e * row), -scale * (row - d * column))
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
-        let [right, top] = self.plane(pixel);
-        let rho = length([right, top]);
+    pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
+        let across = self.plane(pixel);
+        let rho = across.norm();
         if rho.is_nan() || rho > self.reach {
             return None;
         }
         let down = polynomial(&self.down, rho).0;
-        let length = length([rho, down]);
+        let length = Vector2::new(rho, down).norm();
         Some(ViewingRay {
-            origin: [0.0, 0.0, self.viewpoint_height],
-            direction: [right / length, top / length, -down / length],
+            origin: Point3::new(0.0, 0.0, self.viewpoint_height),
+            direction: Vector3::new(across.x, across.y, -down) / length,
         })
     }
 
     /// The pixel that shows a point of the floor, in the image's axes.
     ///
     /// The search starts with the file's own inverse, which is only an approximation.
-    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
-        let range = length([right, top]);
+    pub(super) fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
+        let range = ground.coords.norm();
         let lack = |rho: f64| {
             let (down, slope) = polynomial(&self.down, rho);
             (rho * self.viewpoint_height - range * down, self.viewpoint_height - range * slope)
@@ -167,8 +164,8 @@ impl OCam {
         } else {
             0.0
         };
-        let ([c, d, e], [x, y]) = (self.affine, [-scale * top, scale * right]);
-        Some([self.centre[0] + e * x + y, self.centre[1] + c * x + d * y])
+        let ([c, d, e], [x, y]) = (self.affine, [-scale * ground.y, scale * ground.x]);
+        Some(Point2::new(self.centre.x + e * x + y, self.centre.y + c * x + d * y))
     }
 }
 

@@ -7,7 +7,7 @@
 //! * **views**: chosen on rendered images with and without clutter, so that no circle that is found is wrong
 //!   (`robot/tests/rim.rs`, `vision/tests/rim.rs`, the tests of `camera::unchanging`).
 
-use crate::params::params;
+use crate::params;
 
 params! {
     /// How the circle of a mirror's rim is found.

@@ -10,14 +10,16 @@
 //! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
 //! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
 
-use super::{ViewingRay, length, root::root, scaled_place};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+
+use super::{ViewingRay, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
 // paper: hardware.camera
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalMirror {
     /// The point at which the axis meets the image, in pixels.
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     /// Focal length, in pixels.
     pub focal: f64,
     /// Radius of the sphere, in metres.
@@ -51,8 +53,8 @@ impl SphericalMirror {
     /// `None` from the horizon on.
     #[must_use]
     pub fn range(&self, radius: f64) -> Option<f64> {
-        let [u, v] = self.centre;
-        self.ray([u + radius, v])?.floor().map(|[range, _]| range)
+        let pixel = self.centre + Vector2::new(radius, 0.0);
+        self.ray(pixel)?.floor().map(|ground| ground.x)
     }
 
     /// The distance from the centre, in pixels, at which the floor at this distance from the axis is
@@ -68,13 +70,13 @@ impl SphericalMirror {
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
-        let [right, top] = [pixel[0] - self.centre[0], self.centre[1] - pixel[1]];
+    pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
+        let off = Vector2::new(pixel.x - self.centre.x, self.centre.y - pixel.y);
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
         // In coordinates from the pinhole (away from the axis, up): the ray, and its intersection with
         // the sphere.
-        let from_centre = length([right, top]);
-        let focal_ray = length([from_centre, self.focal]);
+        let from_centre = off.norm();
+        let focal_ray = Vector2::new(from_centre, self.focal).norm();
         let along = distance * self.focal / focal_ray;
         let half_chord = along * along - (distance * distance - radius * radius);
         if half_chord.is_nan() || half_chord < 0.0 {
@@ -90,21 +92,21 @@ impl SphericalMirror {
         let down = scale * (up * twice_cosine - at * twice_sine);
         // The middle of the image looks along the axis, so it has no azimuth.
         let level = if from_centre > 0.0 { 1.0 / from_centre } else { 0.0 };
-        let [right, top] = [level * right, level * top];
+        let [right, top] = (level * off).into();
         Some(ViewingRay {
-            origin: [at * right, at * top, self.camera_height + up],
-            direction: [out * right, out * top, -down],
+            origin: Point3::new(at * right, at * top, self.camera_height + up),
+            direction: Vector3::new(out * right, out * top, -down),
         })
     }
 
     /// The pixel that shows a point of the floor, in the image's axes.
-    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
-        let range = length([right, top]);
+    pub(super) fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
+        let range = ground.coords.norm();
         if range == 0.0 {
             return Some(self.centre);
         }
         let scale = self.radius(range)? / range;
-        Some([self.centre[0] + scale * right, self.centre[1] - scale * top])
+        Some(self.centre + scale * Vector2::new(ground.x, -ground.y))
     }
 
     /// The height of the sphere's centre above the floor.
@@ -147,8 +149,8 @@ impl SphericalMirror {
         };
         // A first guess: a single viewpoint, and a mirror that is flat like its lowest point.
         let viewpoint = self.height() - 0.5 * radius;
-        let half_tangent = range / (viewpoint + length([viewpoint, range]));
-        let half_sine = half_tangent / length([1.0, half_tangent]);
+        let half_tangent = range / (viewpoint + Vector2::new(viewpoint, range).norm());
+        let half_sine = half_tangent / Vector2::new(1.0, half_tangent).norm();
         let guess = 2.0 * half_sine / (2.0 + radius / (distance - radius));
         root(lack, [0.0, self.horizon_sine()], guess)
     }

@@ -10,14 +10,16 @@
 #![allow(clippy::cast_sign_loss, reason = "sizes are not negative")]
 
 use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
+use nalgebra::Point2;
 use thiserror::Error;
 
 use super::{
-    Mask, length,
+    Mask,
     morphology::{Colours, close, dilate, open, pieces, smooth},
     params::UnchangingParams,
     rim::Rim,
 };
+use crate::geometry::angle;
 
 /// Why the pixels that never change cannot be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -68,15 +70,15 @@ pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, Unchangi
 
 /// The mirror in the image.
 struct Disc {
-    centre: [f64; 2],
+    centre: Point2<f64>,
     radius: f64,
 }
 
 impl Disc {
     /// Whether a pixel is inside of it and not at its border.
     fn holds(&self, u: u32, v: u32) -> bool {
-        let off = [f64::from(u) - self.centre[0], f64::from(v) - self.centre[1]];
-        length(off) < self.radius - 1.5
+        let off = Point2::new(u, v).map(f64::from) - self.centre;
+        off.norm() < self.radius - 1.5
     }
 }
 
@@ -256,8 +258,8 @@ impl Struts {
     }
 
     fn hide(&self, u: u32, v: u32, disc: &Disc) -> bool {
-        let turn = (f64::from(v) - disc.centre[1]).atan2(f64::from(u) - disc.centre[0])
-            / std::f64::consts::TAU;
+        let off = Point2::new(u, v).map(f64::from) - disc.centre;
+        let turn = angle(off) / std::f64::consts::TAU;
         let bearing = (turn.rem_euclid(1.0) * Self::BEARINGS as f64) as usize;
         self.hidden[bearing % Self::BEARINGS]
     }

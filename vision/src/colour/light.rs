@@ -1,10 +1,11 @@
 //! The light of an image, from the floor beside the robot's body.
 
 use image::RgbImage;
+use nalgebra::Point2;
 use thiserror::Error;
 
 use super::{Gain, params::LightParams};
-use crate::camera::Camera;
+use crate::{camera::Camera, geometry::unit};
 
 /// A ring of samples beside the robot's body, evenly spread in bearing and range. There is floor
 /// wherever the robot is.
@@ -22,23 +23,17 @@ impl FloorRing {
     /// The ring in the images of a camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
-        let [width, height] = camera.image;
         let samples = (0..LIGHT.ranges).flat_map(|nth| {
             let range = LIGHT.ring[0]
                 + (LIGHT.ring[1] - LIGHT.ring[0]) * f64::from(nth) / f64::from(LIGHT.ranges - 1);
             (0..LIGHT.bearings).map(move |nth| {
                 let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(LIGHT.bearings);
-                [range * bearing.cos(), range * bearing.sin()]
+                Point2::from(range * unit(bearing))
             })
         });
         let pixels = samples
-            .filter_map(|ground| {
-                let [u, v] = camera.ground_to_pixel(ground)?.map(f64::round);
-                let inside = u >= 0.0 && v >= 0.0 && u < f64::from(width) && v < f64::from(height);
-                let pixel = [u as u32, v as u32];
-                (inside && camera.sees(pixel))
-                    .then(|| pixel[1] as usize * width as usize + pixel[0] as usize)
-            })
+            .filter_map(|ground| camera.seen_pixel(ground))
+            .map(|pixel| pixel as usize)
             .collect();
         Self { size: camera.image, pixels }
     }

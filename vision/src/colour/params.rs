@@ -6,7 +6,7 @@
 //! * **geometry**: the robot or the numbers of an image give the value;
 //! * **views**: chosen on rendered views of other buildings than those learned from (`docs/sensing.md`).
 
-use crate::params::params;
+use crate::params;
 
 params! {
     /// How the light of an image is found: the colour of the floor beside the robot's body.

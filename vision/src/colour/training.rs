@@ -33,7 +33,7 @@ impl TrainingView {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
             let ground = camera.pixel_to_ground(pixel.map(f64::from));
-            ground.is_some_and(|[x, y]| x.hypot(y) <= TRAINING.range) && camera.sees(pixel)
+            ground.is_some_and(|at| at.coords.norm() <= TRAINING.range) && camera.sees(pixel)
         };
         let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
         let ground = pixels

@@ -2,12 +2,16 @@
 //! seen far; through the door of a room one sees its far wall. Of a corridor that bends soon, or that was
 //! seen from the side only, one sees straight walls.
 
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::Point2;
+
 use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
     params::ArmViewParams,
-    plane::{direction, distance},
 };
+use crate::geometry::{direction, distance, unit};
 
 /// The view along an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +34,7 @@ const VIEW: ArmViewParams = ArmViewParams::DEFAULT;
 /// A ray on the local map.
 #[derive(Clone, Copy)]
 struct Ray {
-    from: [f64; 2],
+    from: Point2<f64>,
     angle: f64,
 }
 
@@ -38,14 +42,14 @@ impl ArmView {
     /// The view along a way by its middle line, which begins at a meet point with this distance from the walls;
     /// it is far from a distance to the meet point on. All in metres.
     pub(super) fn new(
-        line: &[([f64; 2], f64)],
-        (meet, clearance): ([f64; 2], f64),
+        line: &[(Point2<f64>, f64)],
+        (meet, clearance): (Point2<f64>, f64),
         (grid, clearances): (&Grid, &Clearances),
         far: f64,
     ) -> Self {
         let behind = |least: f64| {
             let beyond =
-                |(point, _): &&([f64; 2], f64)| distance(*point, meet) >= clearance + least;
+                |(point, _): &&(Point2<f64>, f64)| distance(*point, meet) >= clearance + least;
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
         let Some((mouth, towards)) = behind(VIEW.mouth).zip(behind(VIEW.ahead)) else {
@@ -53,8 +57,8 @@ impl ArmView {
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
-        let (sine, cosine) = ahead.sin_cos();
-        let starts = VIEW.aside.map(|aside| [mouth[0] - aside * sine, mouth[1] + aside * cosine]);
+        let left = unit(ahead + FRAC_PI_2);
+        let starts = VIEW.aside.map(|aside| mouth + aside * left);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
         for number in (0..=VIEW.fan).flat_map(|number| [number, -number]) {
             let angle = ahead + VIEW.step * f64::from(number);
@@ -77,16 +81,15 @@ impl ArmView {
 }
 
 impl Ray {
-    fn at(&self, length: f64) -> [f64; 2] {
-        let (sine, cosine) = self.angle.sin_cos();
-        [self.from[0] + length * cosine, self.from[1] + length * sine]
+    fn at(&self, length: f64) -> Point2<f64> {
+        self.from + length * unit(self.angle)
     }
 
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
     fn walled(&self, length: f64, side: f64, grid: &Grid, clearances: &Clearances) -> f64 {
         let points = ((length.min(VIEW.far) / VIEW.apart) as u32).max(1);
-        let across = self.angle + side * std::f64::consts::FRAC_PI_2;
+        let across = self.angle + side * FRAC_PI_2;
         let beside = |point: u32| {
             let from = self.at(VIEW.apart * f64::from(point));
             let (off, cell) = clearances.sight(grid, from, across, VIEW.beside);

@@ -2,11 +2,13 @@
 
 use std::f64::consts::SQRT_2;
 
+use nalgebra::Point2;
+
 use super::{
     distance::squared_distances,
-    grid::{Cell, Grid},
-    plane::floor,
+    grid::{Cell, Grid, floor},
 };
+use crate::geometry::unit;
 
 /// Squared distances of each free cell, in cells; the numbers of the others mean nothing.
 #[derive(Clone, Debug)]
@@ -31,16 +33,15 @@ impl Clearances {
     /// How far one sees on the map from a point in a direction: the length up to the first cell that is not
     /// free, or to a limit, in metres; and what that cell is. The line is sampled twice for each cell.
     #[must_use]
-    pub fn sight(&self, grid: &Grid, from: [f64; 2], direction: f64, limit: f64) -> (f64, Cell) {
+    pub fn sight(&self, grid: &Grid, from: Point2<f64>, direction: f64, limit: f64) -> (f64, Cell) {
         let step = grid.cell / 2.0;
         let last = ((limit / step).floor().max(-1.0) as i64).saturating_add(1);
         let (columns, rows) = (grid.columns as i64, grid.rows() as i64);
-        let (sine, cosine) = direction.sin_cos();
-        let ahead = [0.5 * cosine, 0.5 * sine];
-        let start = [0, 1].map(|axis| (from[axis] - grid.origin[axis]) / grid.cell);
+        let ahead = 0.5 * unit(direction);
+        let start = (from - grid.origin) / grid.cell;
         let mut sample = 0;
         loop {
-            let [column, row] = [0, 1].map(|axis| floor(start[axis] + sample as f64 * ahead[axis]));
+            let [column, row] = (start + sample as f64 * ahead).map(floor).into();
             if !(0..columns).contains(&column) || !(0..rows).contains(&row) {
                 return (sample as f64 * step, Cell::Unknown);
             }
@@ -75,7 +76,7 @@ mod tests {
             cells.push(Cell::Unknown);
         }
         cells.extend(vec![Cell::Unknown; columns]);
-        Grid { columns, cell: 0.5, origin: [-1.0, 2.0], cells }
+        Grid { columns, cell: 0.5, origin: Point2::new(-1.0, 2.0), cells }
     }
 
     proptest! {
@@ -93,7 +94,7 @@ mod tests {
                 let part: f64 = part[axis];
                 grid.origin[axis] + part * grid.cell * sides[axis] as f64
             });
-            let seen = Clearances::new(&grid).sight(&grid, from, direction, limit);
+            let seen = Clearances::new(&grid).sight(&grid, from.into(), direction, limit);
             let (sine, cosine) = direction.sin_cos();
             let step = grid.cell / 2.0;
             let samples = (0_u32..).map(|number| f64::from(number) * step);

@@ -5,7 +5,6 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use super::{
     matching::ScanMatcher,
     params::{DriftParams, LaserParams},
-    plane::distance,
     scan::Scan,
 };
 
@@ -42,7 +41,7 @@ impl DriftMeter {
     pub fn see(&mut self, scan: &Scan, odometry: &Odometry) {
         let params = self.params.map;
         if let Some(last) = self.last {
-            let driven = distance(last.position, odometry.position);
+            let driven = last.distance(odometry);
             let turned = wrapped(odometry.heading - last.heading).abs();
             // Neither is what is not a number.
             if !(driven >= params.every || turned >= params.every_turn) {
@@ -52,7 +51,7 @@ impl DriftMeter {
         }
         self.last = Some(*odometry);
         self.matcher.see(scan, odometry, self.way, self.way - params.memory);
-        let correction = self.matcher.correction().turn;
+        let correction = self.matcher.correction().rotation.angle();
         let (begun, before) = *self.begun.get_or_insert((self.way, correction));
         if self.way - begun >= DRIFT.stretch {
             self.changes

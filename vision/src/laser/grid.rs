@@ -1,9 +1,8 @@
 //! The local map around the robot: cells that are free, occupied or unknown.
 
-use super::{
-    params::LocalMapParams,
-    plane::{distance, floor},
-};
+use nalgebra::{Point2, Vector2, distance};
+
+use super::params::LocalMapParams;
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,9 +23,15 @@ pub struct Grid {
     /// The side of a cell, in metres.
     pub cell: f64,
     /// The corner with the least coordinates, in metres in the frame of the local map.
-    pub origin: [f64; 2],
+    pub origin: Point2<f64>,
     /// The cells, row by row.
     pub cells: Vec<Cell>,
+}
+
+/// The greatest whole number that is not above this one. `f64::floor` calls a function on older processors.
+pub(super) fn floor(number: f64) -> i64 {
+    let towards_zero = number as i64;
+    towards_zero.saturating_sub(i64::from(number < towards_zero as f64))
 }
 
 impl Grid {
@@ -38,7 +43,7 @@ impl Grid {
 
     /// The index of the cell at a point, if it is on the map.
     #[must_use]
-    pub fn index(&self, point: [f64; 2]) -> Option<usize> {
+    pub fn index(&self, point: Point2<f64>) -> Option<usize> {
         let [column, row] = self.column_row(point);
         let within = |at: i64, count: usize| (0..count as i64).contains(&at);
         let is_on_map = within(column, self.columns) && within(row, self.rows());
@@ -47,21 +52,21 @@ impl Grid {
 
     /// The column and the row of a point, on the map or not.
     #[must_use]
-    pub fn column_row(&self, point: [f64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| floor((point[axis] - self.origin[axis]) / self.cell))
+    pub fn column_row(&self, point: Point2<f64>) -> [i64; 2] {
+        ((point - self.origin) / self.cell).map(floor).into()
     }
 
     /// The middle of a cell.
     #[must_use]
-    pub fn point(&self, index: usize) -> [f64; 2] {
-        let at = [index % self.columns, index / self.columns];
-        [0, 1].map(|axis| self.origin[axis] + (at[axis] as f64 + 0.5) * self.cell)
+    pub fn point(&self, index: usize) -> Point2<f64> {
+        let [column, row] = [index % self.columns, index / self.columns];
+        self.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
     }
 
     /// The cells whose middles are within a distance of a point, in metres, in their order.
     pub(super) fn cells_near(
         &self,
-        point: [f64; 2],
+        point: Point2<f64>,
         within: f64,
     ) -> impl Iterator<Item = usize> + '_ {
         let reach = (within / self.cell).ceil() as i64;
@@ -75,7 +80,7 @@ impl Grid {
             around(column, self.columns)
                 .map(move |column| row as usize * self.columns + column as usize)
         });
-        cells.filter(move |&at| distance(self.point(at), point) <= within)
+        cells.filter(move |&at| distance(&self.point(at), &point) <= within)
     }
 
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.

@@ -2,20 +2,21 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{Point2, Vector2};
 use toposlam_model::driving::scene::wrapped;
 
 use super::{
     ends::WayEnd,
     params::{ArmParams, CornerParams, LaserParams},
-    plane::{direction, distance},
     way_graph::{Way, WayGraph, WayNode},
 };
+use crate::geometry::{direction, distance};
 
 /// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserJunction {
     /// Its centre, in metres on the local map.
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     /// The distance from the centre to the nearest wall, in metres.
     pub clearance: f64,
     /// The direction of each arm on the local map, in radians, clockwise.
@@ -60,10 +61,8 @@ impl WayGraph {
             if members.is_empty() {
                 continue;
             }
-            let centre = [0, 1].map(|axis| {
-                let all = members.iter().map(|&node| self.nodes[node].point[axis]);
-                all.sum::<f64>() / members.len() as f64
-            });
+            let all = members.iter().map(|&node| self.nodes[node].point.coords);
+            let centre = Point2::from(all.sum::<Vector2<f64>>() / members.len() as f64);
             let clearances = members.iter().map(|&node| self.nodes[node].clearance);
             let clearance = clearances.fold(0.0, f64::max);
             let gate = clearance + params.direction;
@@ -156,8 +155,8 @@ mod tests {
 
     #[test]
     fn a_corridor_around_a_block_has_two_arms_at_the_junction_where_it_begins_and_ends() {
-        let node = |point| WayNode { point, clearance: 1.0, end: None };
-        let line = |points: &[[f64; 2]]| points.iter().map(|&point| (point, 1.0)).collect();
+        let node = |point: [f64; 2]| WayNode { point: point.into(), clearance: 1.0, end: None };
+        let line = |points: &[[f64; 2]]| points.iter().map(|&point| (point.into(), 1.0)).collect();
         let way = |nodes, points: &[[f64; 2]]| Way {
             nodes,
             line: line(points),

@@ -5,14 +5,14 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
 
-use super::{
-    params::MatchingParams,
-    plane::{Motion, distance, dot, floor},
-    scan::Scan,
+use super::{grid::floor, params::MatchingParams, scan::Scan};
+use crate::{
+    geometry::{distance, from_robot, motion_between, moved},
+    least_squares::{NormalEquations, PrincipalAxis},
 };
-use crate::least_squares::{NormalEquations, principal_component};
 
 /// Matches scans with the walls of earlier ones.
 #[derive(Clone, Debug)]
@@ -27,9 +27,9 @@ pub struct ScanMatcher {
 /// A point of a wall.
 #[derive(Clone, Copy, Debug)]
 struct WallPoint {
-    point: [f64; 2],
+    point: Point2<f64>,
     /// The unit vector across the wall, to the side from which it was seen.
-    normal: [f64; 2],
+    normal: Vector2<f64>,
     /// The length of the robot's way when it was seen, in metres.
     way: f64,
 }
@@ -44,8 +44,9 @@ impl ScanMatcher {
     /// The motion from the frame in which scans are placed to that of the local map, at the last scan. They are the same
     /// at first.
     #[must_use]
-    pub fn correction(&self) -> Motion {
-        self.last.map_or_else(Motion::default, |[odometry, pose]| Motion::between(&odometry, &pose))
+    pub fn correction(&self) -> Isometry2<f64> {
+        self.last
+            .map_or_else(Isometry2::identity, |[odometry, pose]| motion_between(&odometry, &pose))
     }
 
     /// Takes the next scan, the odometry at its time, and the length of the robot's way until then, in
@@ -56,7 +57,7 @@ impl ScanMatcher {
             return *odometry;
         }
         let points = wall_points(scan, &self.params, way);
-        let predicted = self.correction().pose(odometry);
+        let predicted = moved(&self.correction(), odometry);
         let pose = match &self.last {
             Some([last, _]) => self.matched(&points, &predicted, last, odometry),
             None => predicted,
@@ -96,19 +97,17 @@ impl ScanMatcher {
             equations.add(shift, [1.0, 0.0, 0.0], off[0]);
             equations.add(shift, [0.0, 1.0, 0.0], off[1]);
             equations.add(turn, [0.0, 0.0, 1.0], back);
-            let motion = Motion::from_robot(&pose);
-            let direction = Motion { shift: [0.0; 2], ..motion };
+            let map_from_robot = from_robot(&pose);
             let mut matches = 0;
             for point in points {
-                let at = motion.point(point.point);
-                let normal = direction.point(point.normal);
+                let at = map_from_robot * point.point;
+                let normal = map_from_robot * point.normal;
                 let Some((wall, across)) = self.nearest(at, normal, gate) else { continue };
                 matches += 1;
                 // Tukey's biweight: what is far off does not count.
                 let weight = (1.0 - (across / gate).powi(2)).powi(2) / params.deviation.powi(2);
-                let arm = [0, 1].map(|axis| at[axis] - pose.position[axis]);
-                let lever = arm[0] * wall[1] - arm[1] * wall[0];
-                equations.add(weight, [wall[0], wall[1], lever], across);
+                let lever = (at - Point2::from(pose.position)).perp(&wall);
+                equations.add(weight, [wall.x, wall.y, lever], across);
             }
             if matches < params.min_matches {
                 return *predicted;
@@ -128,18 +127,23 @@ impl ScanMatcher {
 
     /// The normal of the wall on which a point lies, seen from the same side, and the distance to it along
     /// the normal, in metres, which is at most the gate.
-    fn nearest(&self, at: [f64; 2], normal: [f64; 2], gate: f64) -> Option<([f64; 2], f64)> {
+    fn nearest(
+        &self,
+        at: Point2<f64>,
+        normal: Vector2<f64>,
+        gate: f64,
+    ) -> Option<(Vector2<f64>, f64)> {
         let mut nearest = None;
         let mut least = self.params.reach;
         let [column, row] = square(at);
         for square in (-1..=1).flat_map(|x| (-1..=1).map(move |y| [column + x, row + y])) {
             for wall in self.walls.get(&square).into_iter().flatten() {
-                let off = [0, 1].map(|axis| wall.point[axis] - at[axis]);
-                let across = dot(off, wall.normal);
-                let away = off[0].hypot(off[1]);
+                let off = wall.point - at;
+                let across = off.dot(&wall.normal);
+                let away = off.norm();
                 if away < least
                     && across.abs() <= gate
-                    && dot(normal, wall.normal) > self.params.same_direction
+                    && normal.dot(&wall.normal) > self.params.same_direction
                 {
                     least = away;
                     nearest = Some((wall.normal, across));
@@ -151,18 +155,17 @@ impl ScanMatcher {
 
     /// Adds points of walls, in the robot's frame, where there are none yet.
     fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
-        let motion = Motion::from_robot(pose);
-        let direction = Motion { shift: [0.0; 2], ..motion };
+        let map_from_robot = from_robot(pose);
         for point in points {
             let added = WallPoint {
-                point: motion.point(point.point),
-                normal: direction.point(point.normal),
+                point: map_from_robot * point.point,
+                normal: map_from_robot * point.normal,
                 way: point.way,
             };
             let near = self.walls.entry(square(added.point)).or_default();
             let is_known = near.iter().any(|known| {
                 distance(known.point, added.point) < self.params.spacing
-                    && dot(known.normal, added.normal) > self.params.same_direction
+                    && known.normal.dot(&added.normal) > self.params.same_direction
             });
             if !is_known {
                 near.push(added);
@@ -173,9 +176,9 @@ impl ScanMatcher {
 
 /// The points of a scan that lie on straight walls, in the robot's frame.
 fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint> {
-    let scanner = scan.mount().position;
-    let is_near = |hit: &[f64; 2]| distance(scanner, *hit) <= params.range;
-    let hits: Vec<[f64; 2]> = scan.hits().filter(is_near).collect();
+    let scanner = scan.scanner();
+    let is_near = |hit: &Point2<f64>| distance(scanner, *hit) <= params.range;
+    let hits: Vec<Point2<f64>> = scan.hits().filter(is_near).collect();
     let joined = |one: usize| {
         let [one, other] = [hits.get(one)?, hits.get(one + 1)?];
         (distance(*one, *other) <= params.max_step).then_some(())
@@ -194,26 +197,20 @@ fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint>
             }
         };
         let Some(normal) = line.and_then(|line| normal(line, params.straight)) else { continue };
-        let to_scanner = [0, 1].map(|axis| scanner[axis] - point[axis]);
-        let side = dot(normal, to_scanner).signum();
-        points.push(WallPoint { point, normal: normal.map(|axis| side * axis), way });
+        let side = normal.dot(&(scanner - point)).signum();
+        points.push(WallPoint { point, normal: side * normal, way });
     }
     points
 }
 
 /// The unit vector across a line of points, if it is straight: if their deviation from it is at most this
 /// many metres.
-fn normal(line: &[[f64; 2]], straight: f64) -> Option<[f64; 2]> {
-    let count = line.len() as f64;
-    let mean = [0, 1].map(|axis| line.iter().map(|point| point[axis]).sum::<f64>() / count);
-    let product = |one: usize, other: usize| {
-        line.iter().map(|at| (at[one] - mean[one]) * (at[other] - mean[other])).sum::<f64>() / count
-    };
-    let (along, [_, across]) = principal_component(product(0, 0), product(0, 1), product(1, 1));
-    (across <= straight * straight).then_some([-along[1], along[0]])
+fn normal(line: &[Point2<f64>], straight: f64) -> Option<Vector2<f64>> {
+    let PrincipalAxis { along, minor, .. } = PrincipalAxis::of(line);
+    (minor <= straight * straight).then_some(Vector2::new(-along.y, along.x))
 }
 
 /// The square metre of a point.
-fn square(point: [f64; 2]) -> [i64; 2] {
-    point.map(floor)
+fn square(point: Point2<f64>) -> [i64; 2] {
+    point.map(floor).into()
 }

@@ -2,8 +2,7 @@
 //!
 //! From the ground up:
 //!
-//! * [`params`]: the thresholds of all steps, and [`params_file`]: a file with them;
-//! * [`plane`]: distances, directions and motions;
+//! * [`params`]: the thresholds of all steps;
 //! * [`scan`]: one sweep of the scanner;
 //! * [`matching`]: where it was taken, by odometry and by the walls of earlier scans;
 //! * [`drift`]: how much the heading of odometry drifts;
@@ -29,9 +28,7 @@ pub mod grid;
 pub mod junctions;
 pub mod matching;
 pub mod params;
-pub mod params_file;
 pub mod pictures;
-pub mod plane;
 mod ray_counts;
 pub mod scan;
 pub mod scene;

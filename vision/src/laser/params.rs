@@ -1,14 +1,25 @@
 //! The parameters of sensing with a laser scanner, in one place.
 //!
-//! Lengths are in metres and angles in radians. A file sets those of [`LaserParams`]
-//! ([`params_file`](super::params_file)); the others are the same for all buildings. The defaults are for buildings
-//! with corridors, and come from:
+//! Lengths are in metres and angles in radians. A TOML file sets those of [`LaserParams`], with one table for each of
+//! its structs ([`params::read`]); the others are the same for all buildings. The defaults are for buildings with
+//! corridors, and come from:
 //!
 //! * **geometry**: the robot, the scanner or the building gives the value;
 //! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them;
 //! * **simulated buildings**: chosen on those of `evaluate laser --seed 7`.
+//!
+//! When to change one for another building:
+//!
+//! * [`ArmParams::min_arm`], if corridors are shorter than 10 m between junctions and ends, or rooms deeper;
+//! * [`LocalMapParams::min_width`], if corridors are narrower than 1.2 m, or doors of rooms wider;
+//! * [`ArmParams::min_width`] and [`ArmParams::max_width`], if corridors are not about 2 m wide;
+//! * [`CornerParams::corners`], if bends and dead ends are vertices of the world;
+//! * [`MatchingParams::rounds`] (8), if the heading of odometry drifts and the log is sensed live, before its drift can
+//!   be measured;
+//! * [`LocalMapParams::memory`], if odometry drifts more than a cell on 18 m;
+//! * [`VisitParams::views`] and [`VisitParams::agree`], if the robot passes junctions faster than it takes scans.
 
-use crate::params::params;
+use crate::params;
 
 params! {
     /// All parameters of sensing with a laser scanner.
@@ -44,7 +55,7 @@ params! {
         same_direction: f64 = 0.866,
         /// The number of times that points are matched and the pose is improved; 8 are enough. With 0
         /// odometry alone decides: on the logs, which do not drift, more junctions are right then. Logs.
-        rounds: usize = 0,
+        rounds: usize = 0 => 0.0..=100.0,
         /// If the heading of the odometry of a log drifts by more than this in 10 m, its scans are matched
         /// nevertheless. Geometry: far fewer scans are off the walls of a local map by a cell with less.
         max_drift: f64 = 0.02,
@@ -73,11 +84,11 @@ params! {
 
     /// The local map: what the last scans have shown around the robot.
     LocalMapParams {
-        /// The side of a cell. Geometry: a quarter of the narrowest way, an eighth of a corridor.
-        cell: f64 = 0.15,
+        /// The side of a cell; a map of more cells would need too much memory. Geometry: a quarter of the narrowest way, an eighth of a corridor.
+        cell: f64 = 0.15 => 0.02..=1.0,
         /// Junctions and their arms are looked for up to this far from the robot, along both axes.
         /// Geometry: more than [`ArmParams::min_arm`] from a junction a few metres away.
-        reach: f64 = 16.0,
+        reach: f64 = 16.0 => 2.0..=40.0,
         /// A scan is forgotten when the robot has driven this far since. Logs.
         memory: f64 = 18.0,
         /// A scan is used when the robot has driven this far since the last one that was, or has turned
@@ -210,7 +221,7 @@ params! {
         /// The angle between two of them. Geometry: 2 degrees.
         step: f64 = 0.035,
         /// How far to the left of the middle line they begin. Geometry: two cells.
-        aside: [f64; 3] = [-0.3, 0.0, 0.3],
+        aside: [f64; 3] = [-0.3, 0.0, 0.3] => -10.0..=10.0,
         /// Walls are looked for up to this far on a line of sight, ... Geometry: [`ArmParams::min_arm`].
         far: f64 = 10.0,
         /// ... up to this far beside it, ... Geometry: more than the width of a corridor.
@@ -270,5 +281,61 @@ params! {
         /// Successive readings are neighbours if their bearings differ by less than this. Geometry: scanners have a
         /// reading at least every 2 degrees.
         next: f64 = 0.06,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::read;
+
+    #[test]
+    fn a_file_changes_what_is_in_it_and_nothing_else() {
+        let params: LaserParams = read("[arm]\nmin_arm = 6.5\n[corner]\ncorners = true").unwrap();
+        let mut expected = LaserParams::default();
+        expected.arm.min_arm = 6.5;
+        expected.corner.corners = true;
+        assert_eq!(params, expected);
+        assert_eq!(read(""), Ok(LaserParams::default()));
+    }
+
+    #[test]
+    fn the_defaults_are_read_as_they_are_written() {
+        let text = toml::to_string(&LaserParams::default()).unwrap();
+        assert!(text.contains("min_arm = 10.0"), "{text}");
+        assert_eq!(read(&text), Ok(LaserParams::default()));
+    }
+
+    #[test]
+    fn unknown_keys_and_impossible_numbers_are_errors() {
+        let message = |text: &str| read::<LaserParams>(text).unwrap_err().to_string();
+        let unknown = message("[corner]\n[arm]\nmin = 2.0");
+        assert!(
+            unknown
+                .starts_with("line 3, column 1: arm.min: unknown key; expected one of: min_arm, "),
+            "{unknown}"
+        );
+        assert_eq!(
+            message("min_arm = 2.0"),
+            "line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit"
+        );
+        assert_eq!(
+            message("[arm]\nmin_arm = \"far\""),
+            "line 2, column 11: arm.min_arm: expected a number, found a text"
+        );
+        for (text, place, range) in [
+            ("[arm]\nmin_arm = -1.0", "line 2, column 11: arm.min_arm: -1 ", "0 and 1000"),
+            ("[arm]\nmin_arm = nan", "line 2, column 11: arm.min_arm: NaN ", "0 and 1000"),
+            ("[map]\ncell = 0.0001", "line 2, column 8: map.cell: 0.0001 ", "0.02 and 1"),
+            ("[map]\nreach = inf", "line 2, column 9: map.reach: inf ", "2 and 40"),
+            ("[visit]\nviews = 0", "line 2, column 9: visit.views: 0 ", "1 and 1000"),
+        ] {
+            let range = format!("{place}is out of range; this parameter lies between {range}");
+            assert_eq!(message(text), range);
+        }
+        for text in ["[arm", "[corner]\ncorners = yes"] {
+            let message = message(text);
+            assert!(message.starts_with("line ") && !message.contains('\n'), "{message}");
+        }
     }
 }

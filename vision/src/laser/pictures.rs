@@ -2,18 +2,19 @@
 //! ways, and the junctions.
 
 use image::{Rgb, RgbImage};
+use nalgebra::Point2;
 
 use super::{
     ends::WayEnd,
     grid::{Cell, Grid},
     junctions::LaserJunction,
-    plane::Motion,
     scan::Scan,
     sensor::LaserView,
 };
 use crate::{
     annotate::{BODY, CYAN, DARK, GREEN, LegendSign, ORANGE, REACH, RED, StageLegend, WHITE},
     draw,
+    geometry::{from_robot, unit},
 };
 
 /// The names of the steps, in their order.
@@ -97,23 +98,23 @@ impl<'g> Canvas<'g> {
     }
 
     /// The pixel of a point.
-    fn at(&self, point: [f64; 2]) -> [f32; 2] {
+    fn at(&self, point: Point2<f64>) -> [f32; 2] {
         let pixel = |axis: usize| {
             ((point[axis] - self.grid.origin[axis]) / self.grid.cell * ZOOM as f64) as f32
         };
         [pixel(0), self.picture.height() as f32 - pixel(1)]
     }
 
-    fn pixel(&self, point: [f64; 2]) -> [i32; 2] {
+    fn pixel(&self, point: Point2<f64>) -> [i32; 2] {
         self.at(point).map(|at| at as i32)
     }
 
-    fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+    fn line(&mut self, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
         let (from, to) = (self.at(from), self.at(to));
         draw::line(&mut self.picture, from, to, colour);
     }
 
-    fn thick(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+    fn thick(&mut self, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
         let (from, to) = (self.at(from), self.at(to));
         for [right, down] in [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
             let pen = |[u, v]: [f32; 2]| [u + right, v + down];
@@ -121,14 +122,14 @@ impl<'g> Canvas<'g> {
         }
     }
 
-    fn ring(&mut self, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+    fn ring(&mut self, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
         let at = self.pixel(point);
         for radius in [radius, radius - 1] {
             draw::ring(&mut self.picture, at, radius, colour);
         }
     }
 
-    fn dot(&mut self, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+    fn dot(&mut self, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
         let at = self.pixel(point);
         draw::disc(&mut self.picture, at, radius, colour);
     }
@@ -136,19 +137,19 @@ impl<'g> Canvas<'g> {
     /// The picture with the robot on it.
     fn with_robot(mut self, view: &LaserView) -> RgbImage {
         let radius = (ROBOT / self.grid.cell * ZOOM as f64) as i32;
-        self.dot(view.robot.position, radius, BODY);
-        self.ring(view.robot.position, radius, WHITE);
-        let ahead = Motion::from_robot(&view.robot).point([2.0 * ROBOT, 0.0]);
-        self.line(view.robot.position, ahead, WHITE);
+        let robot = Point2::from(view.robot.position);
+        self.dot(robot, radius, BODY);
+        self.ring(robot, radius, WHITE);
+        self.line(robot, robot + 2.0 * ROBOT * unit(view.robot.heading), WHITE);
         self.picture
     }
 }
 
 fn rays(view: &LaserView, scan: &Scan) -> RgbImage {
     let mut canvas = Canvas::new(&view.grid, |_| DARK);
-    let motion = Motion::from_robot(&view.robot);
-    let hits: Vec<[f64; 2]> = scan.hits().map(|hit| motion.point(hit)).collect();
-    let scanner = motion.point(scan.mount().position);
+    let map_from_robot = from_robot(&view.robot);
+    let hits: Vec<Point2<f64>> = scan.hits().map(|hit| map_from_robot * hit).collect();
+    let scanner = map_from_robot * scan.scanner();
     for &hit in &hits {
         canvas.line(scanner, hit, REACH);
     }
@@ -202,9 +203,9 @@ fn junctions(view: &LaserView) -> RgbImage {
     }
     for LaserJunction { centre, clearance, arms, .. } in &view.junctions {
         for &arm in arms {
-            let frame = Motion { turn: arm, shift: *centre };
-            let [near, far] = [*clearance, clearance + DOOR];
-            canvas.thick(frame.point([near, 0.0]), frame.point([far, 0.0]), GREEN);
+            let [near, far] =
+                [*clearance, clearance + DOOR].map(|range| centre + range * unit(arm));
+            canvas.thick(near, far, GREEN);
         }
         canvas.dot(*centre, 5, WHITE);
     }

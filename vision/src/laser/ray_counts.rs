@@ -1,22 +1,23 @@
 //! Where rays of the last scans have passed and where they have ended, on the local map.
 
+use nalgebra::{Point2, Vector2};
+
 use super::{
-    grid::{Cell, Grid},
+    grid::{Cell, Grid, floor},
     params::LocalMapParams,
-    plane::floor,
 };
 
 /// The rays of one scan, in metres on the local map.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rays {
     /// Where the scanner was.
-    pub from: [f64; 2],
+    pub from: Point2<f64>,
     /// Where rays ended at an obstacle.
-    pub hits: Vec<[f64; 2]>,
+    pub hits: Vec<Point2<f64>>,
     /// Where rays between two neighbours would have ended at the latest.
-    pub between: Vec<[f64; 2]>,
+    pub between: Vec<Point2<f64>>,
     /// Straight pieces of wall between the ends of neighbouring rays.
-    pub walls: Vec<[[f64; 2]; 2]>,
+    pub walls: Vec<[Point2<f64>; 2]>,
 }
 
 /// Counts of rays. Rays are added, and removed again when their scan is forgotten.
@@ -25,7 +26,7 @@ pub(super) struct RayCounts {
     side: usize,
     cell: f64,
     /// The corner with the least coordinates, in metres.
-    origin: [f64; 2],
+    origin: Point2<f64>,
     hits: Vec<u32>,
     passes: Vec<u32>,
 }
@@ -33,13 +34,12 @@ pub(super) struct RayCounts {
 impl RayCounts {
     /// Counts around a point, in a square of this many cells a side. The corners of cells lie `shift` cells from
     /// the origin of the frame.
-    pub(super) fn around(point: [f64; 2], side: usize, cell: f64, shift: [f64; 2]) -> Self {
+    pub(super) fn around(point: Point2<f64>, side: usize, cell: f64, shift: Vector2<f64>) -> Self {
         let half = (side / 2) as f64;
-        let corner = |axis: usize| ((point[axis] / cell).floor() - half + shift[axis]) * cell;
         Self {
             side,
             cell,
-            origin: [0, 1].map(corner),
+            origin: ((point / cell).map(|at| at.floor() - half) + shift) * cell,
             hits: vec![0; side * side],
             passes: vec![0; side * side],
         }
@@ -83,14 +83,14 @@ impl RayCounts {
     }
 
     /// Whether a window of this many cells a side fits around a point.
-    pub(super) fn covers(&self, point: [f64; 2], window: usize) -> bool {
+    pub(super) fn covers(&self, point: Point2<f64>, window: usize) -> bool {
         let half = (window / 2) as i64;
         cell_at(self.place(point)).iter().all(|&at| at - half >= 0 && at + half < self.side as i64)
     }
 
     /// What is known around a point, in a square of an odd number of cells a side, which must fit; without
     /// the rows and columns in which nothing is known, except one on each side.
-    pub(super) fn window(&self, point: [f64; 2], side: usize, params: &LocalMapParams) -> Grid {
+    pub(super) fn window(&self, point: Point2<f64>, side: usize, params: &LocalMapParams) -> Grid {
         let half = (side / 2) as i64;
         // The window without its border.
         let [west, south] = cell_at(self.place(point)).map(|at| (at - half + 1).max(1) as usize);
@@ -124,8 +124,8 @@ impl RayCounts {
             cells.push(Cell::Unknown);
         }
         cells.extend(vec![Cell::Unknown; columns]);
-        let corner = [west + left, south + bottom].map(|at| at as f64 - 1.0);
-        let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis] * self.cell);
+        let corner = Vector2::new(west + left, south + bottom).map(|at| at as f64 - 1.0);
+        let origin = self.origin + corner * self.cell;
         Grid { columns, cell: self.cell, origin, cells }
     }
 
@@ -140,8 +140,8 @@ impl RayCounts {
     }
 
     /// A point in cells from the corner.
-    fn place(&self, point: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| (point[axis] - self.origin[axis]) / self.cell)
+    fn place(&self, point: Point2<f64>) -> Vector2<f64> {
+        (point - self.origin) / self.cell
     }
 
     fn index(&self, [column, row]: [i64; 2]) -> Option<usize> {
@@ -151,19 +151,19 @@ impl RayCounts {
 }
 
 /// The cell at a place; far away, one beyond every map.
-fn cell_at(place: [f64; 2]) -> [i64; 2] {
-    place.map(|at| floor(at.clamp(-1e9, 1e9)))
+fn cell_at(place: Vector2<f64>) -> [i64; 2] {
+    place.map(|at| floor(at.clamp(-1e9, 1e9))).into()
 }
 
 /// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.
-fn cells(from: [f64; 2], to: [f64; 2], density: f64) -> impl Iterator<Item = [i64; 2]> {
+fn cells(from: Vector2<f64>, to: Vector2<f64>, density: f64) -> impl Iterator<Item = [i64; 2]> {
     let [from, to] = [from, to].map(|place| place.map(|at| at.clamp(-1e9, 1e9)));
-    let off = [0, 1].map(|axis| to[axis] - from[axis]);
-    let steps = (density * off[0].abs().max(off[1].abs())).ceil().max(1.0);
-    let step = off.map(|off| off / steps);
+    let off = to - from;
+    let steps = (density * off.amax()).ceil().max(1.0);
+    let step = off / steps;
     let mut last = None;
     (0..=steps as u32).filter_map(move |number| {
-        let at = [0, 1].map(|axis| floor(from[axis] + f64::from(number) * step[axis]));
-        (last.replace(at) != Some(at)).then_some(at)
+        let at = (from + f64::from(number) * step).map(floor);
+        (last.replace(at) != Some(at)).then_some(at.into())
     })
 }

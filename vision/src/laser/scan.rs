@@ -3,17 +3,11 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Isometry2, Point2};
 use thiserror::Error;
 use toposlam_model::driving::scene::wrapped;
 
-/// The pose of a scanner on its robot: x ahead, y to the left.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ScannerPose {
-    /// In metres from the robot's centre.
-    pub position: [f64; 2],
-    /// The direction of the scanner's x axis, in radians counter-clockwise from ahead.
-    pub heading: f64,
-}
+use crate::geometry::unit;
 
 /// The angles and the limits of a scan, as they are recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +27,7 @@ pub struct ScanGeometry {
 pub struct Scan {
     geometry: ScanGeometry,
     ranges: Vec<f32>,
-    mount: ScannerPose,
+    robot_from_scanner: Isometry2<f64>,
 }
 
 /// What the scanner measured in one direction.
@@ -73,12 +67,12 @@ impl Scan {
     /// A scan. Readings in clockwise order are reversed.
     ///
     /// # Errors
-    /// Returns an error if there are no readings, or if a number of the geometry or of the mount is
+    /// Returns an error if there are no readings, or if a number of the geometry or of the scanner's pose is
     /// impossible. Any range is accepted: see [`Reading`].
     pub fn new(
         mut geometry: ScanGeometry,
         mut ranges: Vec<f32>,
-        mount: ScannerPose,
+        robot_from_scanner: Isometry2<f64>,
     ) -> Result<Self, ScanError> {
         let ScanGeometry { angle_min, angle_increment, range_min, range_max } = geometry;
         let last = ranges.len().checked_sub(1).ok_or(ScanError::NoReadings)?;
@@ -86,8 +80,9 @@ impl Scan {
             return Err(ScanError::Increment(angle_increment));
         }
         let angle_max = angle_min + last as f64 * angle_increment;
-        let [x, y] = mount.position;
-        if ![angle_max, x, y, mount.heading].iter().all(|number| number.is_finite()) {
+        let [x, y] = robot_from_scanner.translation.vector.into();
+        let heading = robot_from_scanner.rotation.angle();
+        if ![angle_max, x, y, heading].iter().all(|number| number.is_finite()) {
             return Err(ScanError::NotFinite);
         }
         // Not a number is not in order either.
@@ -99,7 +94,7 @@ impl Scan {
             geometry.angle_min = angle_max;
             geometry.angle_increment = -angle_increment;
         }
-        Ok(Self { geometry, ranges, mount })
+        Ok(Self { geometry, ranges, robot_from_scanner })
     }
 
     /// The angles and the limits; the increment is positive.
@@ -118,7 +113,7 @@ impl Scan {
     /// Directions are counter-clockwise from the robot's heading.
     #[must_use]
     pub fn angle_off(&self, bearing: f64) -> f64 {
-        let from_first = (bearing - self.mount.heading - self.geometry.angle_min).rem_euclid(TAU);
+        let from_first = (bearing - self.heading() - self.geometry.angle_min).rem_euclid(TAU);
         (from_first - self.field_of_view()).max(0.0).min(TAU - from_first)
     }
 
@@ -128,17 +123,29 @@ impl Scan {
         &self.ranges
     }
 
-    /// The pose of the scanner on the robot.
+    /// The pose of the scanner on the robot, whose x axis points ahead.
     #[must_use]
-    pub fn mount(&self) -> ScannerPose {
-        self.mount
+    pub fn robot_from_scanner(&self) -> Isometry2<f64> {
+        self.robot_from_scanner
+    }
+
+    /// Where the scanner is, in metres in the robot's frame.
+    #[must_use]
+    pub fn scanner(&self) -> Point2<f64> {
+        self.robot_from_scanner.translation.vector.into()
+    }
+
+    /// The direction of the scanner's x axis, in radians counter-clockwise from the robot's heading.
+    #[must_use]
+    pub fn heading(&self) -> f64 {
+        self.robot_from_scanner.rotation.angle()
     }
 
     /// The readings in counter-clockwise order, each with its bearing: the direction in which it was taken
     /// from the scanner, in radians counter-clockwise from the robot's heading, above -pi and up to pi.
     #[must_use]
     pub fn readings(&self) -> impl ExactSizeIterator<Item = (f64, Reading)> + '_ {
-        let first = self.mount.heading + self.geometry.angle_min;
+        let first = self.heading() + self.geometry.angle_min;
         self.ranges.iter().enumerate().map(move |(index, &range)| {
             let bearing = wrapped(first + index as f64 * self.geometry.angle_increment);
             (bearing, self.reading(range.into()))
@@ -146,7 +153,7 @@ impl Scan {
     }
 
     /// The points that were hit, in metres in the robot's frame, in counter-clockwise order.
-    pub fn hits(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub fn hits(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.readings().filter_map(|(bearing, reading)| match reading {
             Reading::Hit(range) => Some(self.point(bearing, range)),
             Reading::NoReturn | Reading::Invalid => None,
@@ -155,10 +162,8 @@ impl Scan {
 
     /// The point at a bearing and a range from the scanner, in metres in the robot's frame.
     #[must_use]
-    pub fn point(&self, bearing: f64, range: f64) -> [f64; 2] {
-        let (sine, cosine) = bearing.sin_cos();
-        let [x, y] = self.mount.position;
-        [x + range * cosine, y + range * sine]
+    pub fn point(&self, bearing: f64, range: f64) -> Point2<f64> {
+        self.scanner() + range * unit(bearing)
     }
 
     fn reading(&self, range: f64) -> Reading {
@@ -176,7 +181,10 @@ impl Scan {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    use nalgebra::Vector2;
+
     use super::*;
+    use crate::geometry::distance;
 
     const HALF_CIRCLE: ScanGeometry = ScanGeometry {
         angle_min: -FRAC_PI_2,
@@ -186,7 +194,7 @@ mod tests {
     };
 
     fn scan(geometry: ScanGeometry, ranges: &[f32]) -> Result<Scan, ScanError> {
-        Scan::new(geometry, ranges.to_vec(), ScannerPose::default())
+        Scan::new(geometry, ranges.to_vec(), Isometry2::identity())
     }
 
     #[test]
@@ -220,15 +228,15 @@ mod tests {
     #[test]
     fn bearings_and_points_are_those_of_the_robot() {
         // A scanner 0.2 m behind the centre that looks back.
-        let mount = ScannerPose { position: [-0.2, 0.0], heading: PI };
-        let scan = Scan::new(HALF_CIRCLE, vec![1.0, 2.0, f32::INFINITY], mount).unwrap();
+        let behind = Isometry2::new(Vector2::new(-0.2, 0.0), PI);
+        let scan = Scan::new(HALF_CIRCLE, vec![1.0, 2.0, f32::INFINITY], behind).unwrap();
         let bearings: Vec<_> = scan.readings().map(|(bearing, _)| bearing).collect();
         for (bearing, expected) in bearings.iter().zip([FRAC_PI_2, PI, -FRAC_PI_2]) {
             assert!((bearing - expected).abs() < 1e-12, "{bearings:?}");
         }
         let hits: Vec<_> = scan.hits().collect();
         for (hit, expected) in hits.iter().zip([[-0.2, 1.0], [-2.2, 0.0]]) {
-            assert!((0..2).all(|axis| (hit[axis] - expected[axis]).abs() < 1e-12), "{hits:?}");
+            assert!(distance(*hit, expected) < 1e-12, "{hits:?}");
         }
         assert_eq!(hits.len(), 2);
     }
@@ -246,7 +254,7 @@ mod tests {
             let geometry = ScanGeometry { range_min: min, range_max: max, ..HALF_CIRCLE };
             assert!(matches!(scan(geometry, &[1.0]), Err(ScanError::Limits { .. })), "{min} {max}");
         }
-        let mount = ScannerPose { position: [0.0, f64::NAN], heading: 0.0 };
-        assert_eq!(Scan::new(HALF_CIRCLE, vec![1.0], mount), Err(ScanError::NotFinite));
+        let nowhere = Isometry2::translation(0.0, f64::NAN);
+        assert_eq!(Scan::new(HALF_CIRCLE, vec![1.0], nowhere), Err(ScanError::NotFinite));
     }
 }

@@ -9,6 +9,7 @@ use std::{
     f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU},
 };
 
+use nalgebra::Point2;
 use toposlam_model::driving::{
     odometry::Odometry,
     scene::{HallwayStatus, HallwayView, JunctionView, Place, Reason, Unclear, wrapped},
@@ -20,6 +21,7 @@ use super::{
 };
 use crate::{
     boundary::{BEARINGS, Boundary, Sight},
+    geometry::{angle, from_robot, unit},
     params::SensingParams,
     sensing::place_within,
 };
@@ -38,7 +40,7 @@ pub struct ScanPlaceSensor {
 
 /// What a scan has hit between two successive readings, from one to the other; a hit that has no neighbour is a piece
 /// without length.
-type WallPiece = [[f64; 2]; 2];
+type WallPiece = [Point2<f64>; 2];
 
 /// A hallway that was sensed.
 #[derive(Clone, Copy, Debug)]
@@ -106,11 +108,9 @@ impl ScanPlaceSensor {
 
     /// Remembers a scan, and the odometry when it was taken.
     pub fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
-        let (sine, cosine) = odometry.heading.sin_cos();
-        let [east, north] = odometry.position;
-        let place =
-            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
-        let pieces = wall_pieces(scan).into_iter().map(|piece| piece.map(place)).collect();
+        let odometry_from_robot = from_robot(odometry);
+        let place = |piece: WallPiece| piece.map(|end| odometry_from_robot * end);
+        let pieces = wall_pieces(scan).into_iter().map(place).collect();
         self.last.push_back((*odometry, pieces));
         while self.last.len() > PLACE.remembered {
             self.last.pop_front();
@@ -137,7 +137,8 @@ impl ScanPlaceSensor {
             self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < PLACE.hidden)?;
         let heading = wrapped(view.heading + then.heading - odometry.heading);
         // How far the robot has come to the left.
-        let aside = across(seen(&then, odometry.position), view.heading);
+        let aside =
+            across(from_robot(&then).inverse() * Point2::from(odometry.position), view.heading);
         let (left, right) = (view.left - aside, view.right + aside);
         let slack = PLACE.wall_slack + width - view.left - view.right;
         let mut beside = [0, 0];
@@ -173,6 +174,7 @@ impl ScanPlaceSensor {
     fn boundary(&self, scan: &Scan, odometry: &Odometry) -> Boundary {
         let mut sights = vec![None; BEARINGS];
         for (at, pieces) in &self.last {
+            let robot_from_odometry = from_robot(odometry).inverse();
             let is_here = at.distance(odometry) < PLACE.look_again;
             let mut add = |bearing: usize, range: f64| {
                 let known: &mut Option<f64> = &mut sights[bearing];
@@ -183,7 +185,7 @@ impl ScanPlaceSensor {
                 };
             };
             for piece in pieces {
-                let [(from, near), (to, far)] = piece.map(|end| polar(seen(odometry, end)));
+                let [(from, near), (to, far)] = piece.map(|end| polar(robot_from_odometry * end));
                 add(nearest_bearing(from), near);
                 let turn = wrapped(to - from);
                 // The robot may see it from its other side.
@@ -313,31 +315,26 @@ fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
     range.map_or_else(Sight::default, Sight::measured)
 }
 
-/// A point of the frame of odometry, in the robot's frame.
-fn seen(odometry: &Odometry, [x, y]: [f64; 2]) -> [f64; 2] {
-    let (sine, cosine) = odometry.heading.sin_cos();
-    let off = [x - odometry.position[0], y - odometry.position[1]];
-    [off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine]
-}
-
 /// How far a point is along a direction, and to the left of it.
-fn along([x, y]: [f64; 2], direction: f64) -> f64 {
-    x * direction.cos() + y * direction.sin()
+fn along(point: Point2<f64>, direction: f64) -> f64 {
+    unit(direction).dot(&point.coords)
 }
 
-fn across([x, y]: [f64; 2], direction: f64) -> f64 {
-    y * direction.cos() - x * direction.sin()
+fn across(point: Point2<f64>, direction: f64) -> f64 {
+    unit(direction).perp(&point.coords)
 }
 
 /// The bearing and the range of a point.
-fn polar([x, y]: [f64; 2]) -> (f64, f64) {
-    (y.atan2(x), x.hypot(y))
+fn polar(point: Point2<f64>) -> (f64, f64) {
+    (angle(point.coords), point.coords.norm())
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Isometry2;
+
     use super::*;
-    use crate::laser::scan::{ScanGeometry, ScannerPose};
+    use crate::laser::scan::ScanGeometry;
 
     /// A wall or another surface: its ends, in metres.
     type Surface = [[f64; 2]; 2];
@@ -388,7 +385,7 @@ mod tests {
                     surfaces.iter().filter_map(|&one| range(odometry.position, bearing, one));
                 ranges.fold(f64::INFINITY, f64::min) as f32
             };
-            let scan = Scan::new(geometry, (0..360).map(ray).collect(), ScannerPose::default());
+            let scan = Scan::new(geometry, (0..360).map(ray).collect(), Isometry2::identity());
             (odometry.position[0], sensor.sense(&scan.unwrap(), &odometry))
         };
         (0..=steps).map(place).collect()
@@ -457,7 +454,7 @@ mod tests {
                 range_max: 30.0,
             };
             let ranges = vec![2.0; count.into()];
-            Scan::new(geometry, ranges, ScannerPose::default()).unwrap()
+            Scan::new(geometry, ranges, Isometry2::identity()).unwrap()
         };
         let headings = |count| {
             ScanPlaceSensor::default()
@@ -475,10 +472,10 @@ mod tests {
         let geometry =
             ScanGeometry { angle_min: 0.2, angle_increment: 0.01, range_min: 0.1, range_max: 30.0 };
         let ranges = [0.2_f64, 0.21].map(|bearing| (1.0 / bearing.sin()) as f32);
-        let scan = Scan::new(geometry, ranges.to_vec(), ScannerPose::default()).unwrap();
+        let scan = Scan::new(geometry, ranges.to_vec(), Isometry2::identity()).unwrap();
         sensor.remember(&scan, &Odometry::default());
         let later = Odometry { position: [4.8, 0.0], heading: 0.0 };
-        let nothing = Scan::new(geometry, vec![f32::NAN], ScannerPose::default()).unwrap();
+        let nothing = Scan::new(geometry, vec![f32::NAN], Isometry2::identity()).unwrap();
         let boundary = sensor.boundary(&nothing, &later);
         let seen = boundary.points().count();
         assert!(seen > 10, "{seen}");

@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 
+use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
@@ -11,7 +12,6 @@ use super::{
     junctions::LaserJunction,
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
-    plane::{Motion, distance},
     ray_counts::{RayCounts, Rays},
     scan::{Reading, Scan},
     skeleton::Skeleton,
@@ -19,6 +19,7 @@ use super::{
     wall_frame::to_walls,
     way_graph::{ArmJudge, CountedArms, WayGraph},
 };
+use crate::geometry::{distance, from_robot, moved};
 
 /// Senses junctions with a laser scanner.
 #[derive(Clone, Debug)]
@@ -26,7 +27,7 @@ pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
     /// From the frame of odometry to the one in which scans are placed; `None` before the first scan.
-    frame: Option<Motion>,
+    frame: Option<Isometry2<f64>>,
     /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
     counts: Vec<RayCounts>,
     /// The number of views so far.
@@ -47,7 +48,7 @@ pub struct LaserView {
     /// Where the robot is, in the frame of the local map.
     pub robot: Odometry,
     /// The motion from the frame of the local map to that of odometry. It is right near the robot.
-    pub to_odometry: Motion,
+    pub odometry_from_map: Isometry2<f64>,
     /// The local map.
     pub grid: Grid,
     /// The distances on it.
@@ -66,7 +67,7 @@ pub struct LaserView {
 const FARTHEST: f64 = 1e7;
 /// Corners of cells, in cells from the origin. Successive views take them in turn: what several views agree on must not
 /// depend on how the walls lie in the cells.
-const CORNERS: [[f64; 2]; 2] = [[0.0, 0.0], [0.5, 0.5]];
+const CORNERS: [Vector2<f64>; 2] = [Vector2::new(0.0, 0.0), Vector2::new(0.5, 0.5)];
 /// The counts reach this many times as far as a window of the local map.
 const MARGIN: usize = 3;
 
@@ -97,7 +98,7 @@ impl LaserSensor {
             return None;
         }
         if let Some(last) = self.last {
-            let driven = distance(last.position, odometry.position);
+            let driven = last.distance(odometry);
             let turned = wrapped(odometry.heading - last.heading).abs();
             if driven < params.every && turned < params.every_turn {
                 return None;
@@ -106,21 +107,22 @@ impl LaserSensor {
         }
         self.last = Some(*odometry);
         let frame = *self.frame.get_or_insert_with(|| to_walls(scan, odometry));
-        let placed = frame.pose(odometry);
+        let placed = moved(&frame, odometry);
         let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
+        let position = Point2::from(robot.position);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
-        self.add(rays(scan, &robot, &params), robot.position, side);
+        self.add(rays(scan, &robot, &params), position, side);
         self.viewpoints.push_back(Viewpoint::new(scan, &robot));
         let counts = self.counts.get(self.views % self.counts.len().max(1))?;
         self.views += 1;
-        let mut grid = counts.window(robot.position, side, &params);
+        let mut grid = counts.window(position, side, &params);
         grid.clean(&params);
         let clearances = Clearances::new(&grid);
-        let skeleton = Skeleton::new(&grid, &clearances, robot.position, &self.params);
+        let skeleton = Skeleton::new(&grid, &clearances, position, &self.params);
         let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
         let ways = ways.unwrap_or_default();
         let judge = ArmJudge {
-            robot: robot.position,
+            robot: position,
             grid: &grid,
             clearances: &clearances,
             viewpoints: self.viewpoints.make_contiguous(),
@@ -133,10 +135,10 @@ impl LaserSensor {
         } else {
             junctions.clone()
         };
-        let to_odometry = frame.inverse().after(&self.matcher.correction().inverse());
+        let odometry_from_map = (self.matcher.correction() * frame).inverse();
         Some(LaserView {
             robot,
-            to_odometry,
+            odometry_from_map,
             grid,
             clearances,
             skeleton,
@@ -147,7 +149,7 @@ impl LaserSensor {
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
-    fn add(&mut self, rays: Rays, robot: [f64; 2], side: usize) {
+    fn add(&mut self, rays: Rays, robot: Point2<f64>, side: usize) {
         let covers = |counts: &RayCounts| counts.covers(robot, side);
         let moved = self.counts.is_empty() || !self.counts.iter().all(covers);
         let forgotten = self.way - self.params.map.memory;
@@ -175,10 +177,8 @@ impl LaserSensor {
 
 /// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
 fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
-    let (sine, cosine) = robot.heading.sin_cos();
-    let [east, north] = robot.position;
-    let place = |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
-    let mut rays = Rays { from: place(scan.mount().position), ..Rays::default() };
+    let map_from_robot = from_robot(robot);
+    let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan
         .readings()
         .map(|(bearing, reading)| match reading {
@@ -188,8 +188,8 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
         .collect();
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
-    let point = |bearing: f64, range: f64| place(scan.point(bearing, range));
-    let ends: Vec<Option<[f64; 2]>> =
+    let point = |bearing: f64, range: f64| map_from_robot * scan.point(bearing, range);
+    let ends: Vec<Option<Point2<f64>>> =
         readings.iter().map(|&(bearing, range)| Some(point(bearing, range?))).collect();
     let end = |index: usize| *ends.get(index)?;
     // The next reading with a return, if those without one in between cover a small angle only.
@@ -222,7 +222,7 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
         let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
         let [before, Some(one), Some(two), after] = four else { continue };
         let gap = distance(one, two);
-        let on_line = |line: Option<[f64; 2]>, from: [f64; 2], to: [f64; 2], range: f64| {
+        let on_line = |line: Option<Point2<f64>>, from, to, range: f64| {
             let met = met(rays.from, to, line?, from)?;
             Some((met - range).abs() < 0.3 * gap.max(0.3))
         };
@@ -240,13 +240,14 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
 }
 
 /// The range at which the ray from one point towards another meets the line through two points.
-fn met(from: [f64; 2], towards: [f64; 2], one: [f64; 2], other: [f64; 2]) -> Option<f64> {
-    let range = distance(from, towards);
-    let ray = [0, 1].map(|axis| (towards[axis] - from[axis]) / range);
-    let line = [0, 1].map(|axis| other[axis] - one[axis]);
-    let off = [0, 1].map(|axis| one[axis] - from[axis]);
-    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-    let met = cross(off, line) / cross(ray, line);
+fn met(
+    from: Point2<f64>,
+    towards: Point2<f64>,
+    one: Point2<f64>,
+    other: Point2<f64>,
+) -> Option<f64> {
+    let (ray, line) = ((towards - from).normalize(), other - one);
+    let met = (one - from).perp(&line) / ray.perp(&line);
     (met.is_finite() && met > 0.0).then_some(met)
 }
 
@@ -255,9 +256,9 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::laser::{
-        grid::Cell,
-        scan::{ScanGeometry, ScannerPose},
+    use crate::{
+        geometry::unit,
+        laser::{grid::Cell, scan::ScanGeometry},
     };
 
     /// A scan all around from the middle of an endless corridor, 2 m wide, along the x axis. Nothing
@@ -271,10 +272,10 @@ mod tests {
             let range = 1.0 / bearing.sin().abs();
             if range > 30.0 || is_silent(bearing) { f32::INFINITY } else { range as f32 }
         };
-        Scan::new(geometry, (0..360).map(range).collect(), ScannerPose::default()).unwrap()
+        Scan::new(geometry, (0..360).map(range).collect(), Isometry2::identity()).unwrap()
     }
 
-    fn cells(scan: &Scan, points: &[[f64; 2]]) -> Vec<Cell> {
+    fn cells(scan: &Scan, points: &[Point2<f64>]) -> Vec<Cell> {
         let view = LaserSensor::new(LaserParams::default()).see(scan, &Odometry::default());
         let grid = view.unwrap().grid;
         points.iter().map(|&point| grid.cells[grid.index(point).unwrap()]).collect()
@@ -282,15 +283,15 @@ mod tests {
 
     #[test]
     fn the_middle_of_a_corridor_is_free_beyond_the_range_of_the_scanner() {
-        let points = [-14.0, -8.0, 8.0, 14.0].map(|x| [x, 0.0]);
+        let points = [-14.0, -8.0, 8.0, 14.0].map(|x| Point2::new(x, 0.0));
         assert_eq!(cells(&along_corridor(|_| false), &points), [Cell::Free; 4]);
     }
 
     #[test]
     fn what_a_wide_angle_without_returns_hides_is_unknown() {
         let is_silent = |bearing: f64| (bearing - 0.3).abs() < 0.2;
-        let beside = [0.3_f64.cos(), 0.3_f64.sin()].map(|part| 2.0 * part);
-        let seen = cells(&along_corridor(is_silent), &[beside, [8.0, 0.0]]);
+        let beside = Point2::from(2.0 * unit(0.3));
+        let seen = cells(&along_corridor(is_silent), &[beside, Point2::new(8.0, 0.0)]);
         assert_eq!(seen, [Cell::Unknown, Cell::Free]);
     }
 }

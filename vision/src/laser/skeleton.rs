@@ -2,6 +2,8 @@
 //! map: homotopic thinning in the order of the distance to the nearest obstacle (Pudney, 1998). It keeps
 //! the ends of the ways, and so has no branches into corners.
 
+use nalgebra::Point2;
+
 use super::{
     clearances::Clearances,
     counting_sort::sorted_by_key,
@@ -25,7 +27,7 @@ impl Skeleton {
     pub fn new(
         grid: &Grid,
         clearances: &Clearances,
-        robot: [f64; 2],
+        robot: Point2<f64>,
         params: &LaserParams,
     ) -> Option<Self> {
         let radius = params.map.min_width / 2.0 / grid.cell;
@@ -43,7 +45,7 @@ impl Skeleton {
 }
 
 /// The cell of a set that is nearest to a point, within a distance in metres.
-fn nearest(set: &[bool], grid: &Grid, point: [f64; 2], within: f64) -> Option<usize> {
+fn nearest(set: &[bool], grid: &Grid, point: Point2<f64>, within: f64) -> Option<usize> {
     let reach = (within / grid.cell).ceil() as i64;
     let [x, y] = grid.column_row(point);
     let around = |at: i64, count: usize| {

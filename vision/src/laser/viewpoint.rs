@@ -1,20 +1,21 @@
 //! Where a scan was taken, and in which directions: where a scanner that does not look all around did not look, and
 //! what it looked at without seeing it.
 
+use nalgebra::Point2;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
-    plane::{Motion, direction, distance},
     scan::{Reading, Scan},
 };
+use crate::geometry::{direction, distance, from_robot, unit};
 
 /// Where a scan was taken, and the sector that it covers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Viewpoint {
     /// The place of the scanner, in metres in the frame of the local map.
-    point: [f64; 2],
+    point: Point2<f64>,
     /// The direction of the sector's middle, and half of its angle, in radians.
     middle: f64,
     half: f64,
@@ -45,7 +46,6 @@ impl Viewpoint {
     /// The viewpoint of a scan that a robot took.
     pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
         let half = scan.field_of_view() / 2.0;
-        let mount = scan.mount();
         let invalid: Vec<bool> =
             scan.readings().map(|(_, reading)| reading == Reading::Invalid).collect();
         let is_invalid = |index: usize| invalid.get(index).copied().unwrap_or(false);
@@ -53,8 +53,8 @@ impl Viewpoint {
             is_invalid(index) && (is_invalid(index + 1) || index > 0 && is_invalid(index - 1))
         };
         Self {
-            point: Motion::from_robot(robot).point(mount.position),
-            middle: robot.heading + mount.heading + scan.geometry().angle_min + half,
+            point: from_robot(robot) * scan.scanner(),
+            middle: robot.heading + scan.heading() + scan.geometry().angle_min + half,
             half,
             blind: (0..invalid.len()).map(is_blind).collect(),
             step: scan.geometry().angle_increment,
@@ -64,7 +64,7 @@ impl Viewpoint {
 
     /// Whether the scan looked at a point. What is unknown hides nothing: a surface that reflects no ray back may be
     /// why it is unknown.
-    pub(super) fn look(&self, point: [f64; 2], grid: &Grid, clearances: &Clearances) -> Look {
+    pub(super) fn look(&self, point: Point2<f64>, grid: &Grid, clearances: &Clearances) -> Look {
         let off = distance(self.point, point);
         // Farther away, rays are wider apart than cells.
         let range = FARTHEST.min(self.range).min(grid.cell / self.step);
@@ -80,7 +80,7 @@ impl Viewpoint {
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
     pub(super) fn turn_to(
         &self,
-        point: [f64; 2],
+        point: Point2<f64>,
         grid: &Grid,
         clearances: &Clearances,
     ) -> Option<f64> {
@@ -95,16 +95,15 @@ impl Viewpoint {
 /// Whether there is a wall on the map within so many metres of a point in a direction.
 fn is_wall_within(
     length: f64,
-    from: [f64; 2],
+    from: Point2<f64>,
     direction: f64,
     grid: &Grid,
     clearances: &Clearances,
 ) -> bool {
-    let (sine, cosine) = direction.sin_cos();
+    let ray = unit(direction);
     let mut at = 0.0;
     while at < length {
-        let point = [from[0] + at * cosine, from[1] + at * sine];
-        let (free, cell) = clearances.sight(grid, point, direction, length - at);
+        let (free, cell) = clearances.sight(grid, from + at * ray, direction, length - at);
         at += free;
         if cell == Cell::Occupied {
             return at < length;
@@ -118,11 +117,13 @@ fn is_wall_within(
 mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+    use nalgebra::Isometry2;
+
     use super::*;
-    use crate::laser::scan::{ScanGeometry, ScannerPose};
+    use crate::laser::scan::ScanGeometry;
 
     /// How far a point lies beyond the edge of a sector on a map.
-    fn turn_to(viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid) -> Option<f64> {
+    fn turn_to(viewpoint: &Viewpoint, point: Point2<f64>, grid: &Grid) -> Option<f64> {
         viewpoint.turn_to(point, grid, &Clearances::new(grid))
     }
 
@@ -134,29 +135,29 @@ mod tests {
             range_min: 0.0,
             range_max: 80.0,
         };
-        let scan = Scan::new(geometry, vec![1.0; readings], ScannerPose::default()).unwrap();
+        let scan = Scan::new(geometry, vec![1.0; readings], Isometry2::identity()).unwrap();
         let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
         let cells = vec![Cell::Free; 100 * 100];
-        let grid = Grid { columns: 100, cell: 0.1, origin: [0.0; 2], cells };
+        let grid = Grid { columns: 100, cell: 0.1, origin: Point2::origin(), cells };
         (Viewpoint::new(&scan, &robot), grid)
     }
 
     #[test]
     fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
         let (viewpoint, mut grid) = viewpoint(181);
-        assert_eq!(turn_to(&viewpoint, [6.05, 6.05], &grid), None, "ahead");
-        let turn = turn_to(&viewpoint, [4.05, 6.05], &grid).unwrap();
+        assert_eq!(turn_to(&viewpoint, [6.05, 6.05].into(), &grid), None, "ahead");
+        let turn = turn_to(&viewpoint, [4.05, 6.05].into(), &grid).unwrap();
         assert!((turn - FRAC_PI_4).abs() < 1e-9, "{turn}");
-        let wall = grid.index([4.55, 5.55]).unwrap();
+        let wall = grid.index([4.55, 5.55].into()).unwrap();
         grid.cells[wall] = Cell::Occupied;
-        assert_eq!(turn_to(&viewpoint, [4.05, 6.05], &grid), None, "behind a wall");
+        assert_eq!(turn_to(&viewpoint, [4.05, 6.05].into(), &grid), None, "behind a wall");
     }
 
     #[test]
     fn nothing_is_beyond_a_sector_that_goes_all_around() {
         let (viewpoint, grid) = viewpoint(361);
         for point in [[4.0, 6.0], [4.0, 5.0], [4.0, 4.0]] {
-            assert_eq!(turn_to(&viewpoint, point, &grid), None);
+            assert_eq!(turn_to(&viewpoint, point.into(), &grid), None);
         }
     }
 
@@ -165,17 +166,17 @@ mod tests {
         let (viewpoint, mut grid) = viewpoint(181);
         let look = |point, grid: &Grid| viewpoint.look(point, grid, &Clearances::new(grid));
         let ahead = [8.05, 5.05];
-        assert_eq!(look(ahead, &grid), Look::At);
-        assert_eq!(look([2.05, 5.05], &grid), Look::Aside);
-        let between = grid.index([6.55, 5.05]).unwrap();
+        assert_eq!(look(ahead.into(), &grid), Look::At);
+        assert_eq!(look([2.05, 5.05].into(), &grid), Look::Aside);
+        let between = grid.index([6.55, 5.05].into()).unwrap();
         grid.cells[between] = Cell::Unknown;
-        assert_eq!(look(ahead, &grid), Look::At, "what is unknown hides nothing");
+        assert_eq!(look(ahead.into(), &grid), Look::At, "what is unknown hides nothing");
         grid.cells[between] = Cell::Occupied;
-        assert_eq!(look(ahead, &grid), Look::Hidden, "behind a wall");
+        assert_eq!(look(ahead.into(), &grid), Look::Hidden, "behind a wall");
         let near = Viewpoint { range: 2.0, ..viewpoint.clone() };
-        assert_eq!(near.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
+        assert_eq!(near.look([8.05, 6.05].into(), &grid, &Clearances::new(&grid)), Look::Hidden);
         let sparse = Viewpoint { step: 0.1, ..viewpoint.clone() };
-        assert_eq!(sparse.look([8.05, 6.05], &grid, &Clearances::new(&grid)), Look::Hidden);
+        assert_eq!(sparse.look([8.05, 6.05].into(), &grid, &Clearances::new(&grid)), Look::Hidden);
     }
 
     #[test]
@@ -190,9 +191,9 @@ mod tests {
             };
             let mut ranges = vec![f32::INFINITY; 181];
             ranges[invalid].fill(0.0);
-            let scan = Scan::new(geometry, ranges, ScannerPose::default()).unwrap();
+            let scan = Scan::new(geometry, ranges, Isometry2::identity()).unwrap();
             let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
-            Viewpoint::new(&scan, &robot).look([8.05, 5.05], &grid, &Clearances::new(&grid))
+            Viewpoint::new(&scan, &robot).look([8.05, 5.05].into(), &grid, &Clearances::new(&grid))
         };
         assert_eq!(look(0..0), Look::At);
         assert_eq!(look(80..100), Look::Aside);

@@ -1,21 +1,20 @@
 //! A frame for the local map that the odometry's own frame has no part in: where the robot was at the first scan,
 //! with the axes along the walls. What is seen in cells depends a little on how walls lie in them.
 
+use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::odometry::Odometry;
 
-use super::{
-    plane::{Motion, direction, distance},
-    scan::{Reading, Scan},
-};
+use super::scan::{Reading, Scan};
+use crate::geometry::{angle, from_robot, unit};
 
 /// Hits of successive readings that are farther apart are on different surfaces, in metres.
 const ONE_WALL: f64 = 1.0;
 
 /// The motion from the frame of odometry to the one whose origin is where the robot was when this scan was taken, and
 /// whose axes are along the walls that it shows.
-pub(super) fn to_walls(scan: &Scan, odometry: &Odometry) -> Motion {
+pub(super) fn to_walls(scan: &Scan, odometry: &Odometry) -> Isometry2<f64> {
     let heading = odometry.heading + direction_of_walls(scan);
-    Motion::from_robot(&Odometry { heading, ..*odometry }).inverse()
+    from_robot(&Odometry { heading, ..*odometry }).inverse()
 }
 
 /// The direction along or across most of the walls in a scan, relative to the robot, in radians from -pi/4 to pi/4:
@@ -25,19 +24,17 @@ fn direction_of_walls(scan: &Scan) -> f64 {
         Reading::Hit(range) => Some(scan.point(bearing, range)),
         Reading::NoReturn | Reading::Invalid => None,
     });
-    let hits: Vec<Option<[f64; 2]>> = hits.collect();
-    let mut sums = [0.0; 2];
+    let hits: Vec<Option<Point2<f64>>> = hits.collect();
+    let mut sum = Vector2::zeros();
     for pair in hits.windows(2) {
         let [Some(one), Some(other)] = *pair else { continue };
-        let length = distance(one, other);
-        if length < ONE_WALL {
+        let along = other - one;
+        if along.norm() < ONE_WALL {
             // Four times the direction is the same along a wall and across it.
-            let (sine, cosine) = (4.0 * direction(one, other)).sin_cos();
-            sums[0] += length * cosine;
-            sums[1] += length * sine;
+            sum += along.norm() * unit(4.0 * angle(along));
         }
     }
-    sums[1].atan2(sums[0]) / 4.0
+    angle(sum) / 4.0
 }
 
 #[cfg(test)]
@@ -47,7 +44,7 @@ mod tests {
     use toposlam_model::driving::scene::wrapped;
 
     use super::*;
-    use crate::laser::scan::{ScanGeometry, ScannerPose};
+    use crate::{geometry::moved, laser::scan::ScanGeometry};
 
     /// A scan from the middle of a corridor, 2 m wide, by a robot that is turned to its left.
     fn in_corridor(turned: f64) -> Scan {
@@ -58,7 +55,7 @@ mod tests {
             let bearing = -PI + f64::from(index) * angle_increment + turned;
             (1.0 / bearing.sin().abs()).min(1e6) as f32
         };
-        Scan::new(geometry, (0..360).map(range).collect(), ScannerPose::default()).unwrap()
+        Scan::new(geometry, (0..360).map(range).collect(), Isometry2::identity()).unwrap()
     }
 
     #[test]
@@ -67,10 +64,10 @@ mod tests {
             let turned = degrees.to_radians();
             let odometry = Odometry { position: [3.0, -2.0], heading: 1.0 + turned };
             let motion = to_walls(&in_corridor(turned), &odometry);
-            let walls = wrapped(1.0 + motion.turn);
+            let walls = wrapped(1.0 + motion.rotation.angle());
             let off = (walls + FRAC_PI_4).rem_euclid(FRAC_PI_2) - FRAC_PI_4;
             assert!(off.abs() < 1e-3, "{degrees}: {walls}");
-            assert!(motion.pose(&odometry).distance(&Odometry::default()) < 1e-9);
+            assert!(moved(&motion, &odometry).distance(&Odometry::default()) < 1e-9);
         }
     }
 }

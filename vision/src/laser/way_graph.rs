@@ -3,22 +3,24 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Point2;
+
 use super::{
     arm_view::ArmView,
     clearances::Clearances,
     ends::{End, WayEnd},
     grid::{Cell, Grid},
     params::ArmParams,
-    plane::distance,
     skeleton::Skeleton,
     viewpoint::{Look, Viewpoint},
 };
+use crate::geometry::distance;
 
 /// A meet point, or the end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayNode {
     /// Where it is, in metres on the local map.
-    pub point: [f64; 2],
+    pub point: Point2<f64>,
     /// The distance to the nearest wall, in metres.
     pub clearance: f64,
     /// The end; `None` at a meet point.
@@ -32,7 +34,7 @@ pub struct Way {
     pub nodes: [usize; 2],
     /// Its middle line from the first node to the second, in metres on the local map, with the
     /// distance to the nearest wall.
-    pub line: Vec<([f64; 2], f64)>,
+    pub line: Vec<(Point2<f64>, f64)>,
     /// Its length, in metres.
     pub length: f64,
     /// Whether it is certain that the way is an arm, if it leads to an end: the robot was there, or it is seen far
@@ -75,7 +77,7 @@ enum ArmStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ArmJudge<'a> {
     /// Where the robot is.
-    pub robot: [f64; 2],
+    pub robot: Point2<f64>,
     /// The local map.
     pub grid: &'a Grid,
     /// The distances on it.
@@ -101,7 +103,7 @@ struct UnseenBorder {
 
 impl ArmJudge<'_> {
     /// The unseen border near an end of a way.
-    fn unseen_border(&self, end: [f64; 2]) -> UnseenBorder {
+    fn unseen_border(&self, end: Point2<f64>) -> UnseenBorder {
         let Self { grid, clearances, params, .. } = *self;
         let is_border = |&at: &usize| {
             grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
@@ -121,7 +123,7 @@ impl ArmJudge<'_> {
     }
 
     /// Whether the scans looked at an unknown point.
-    fn look(&self, point: [f64; 2]) -> Look {
+    fn look(&self, point: Point2<f64>) -> Look {
         let (mut at, mut aside) = (0, false);
         for viewpoint in self.viewpoints {
             match viewpoint.look(point, self.grid, self.clearances) {
@@ -138,7 +140,7 @@ impl ArmJudge<'_> {
 }
 
 /// The length of a line of neighbouring cells, without its steps.
-fn length(line: &[([f64; 2], f64)]) -> f64 {
+fn length(line: &[(Point2<f64>, f64)]) -> f64 {
     let sparse: Vec<_> = line.iter().step_by(4).chain(line.last()).collect();
     sparse.windows(2).map(|two| distance(two[0].0, two[1].0)).sum()
 }
@@ -248,7 +250,7 @@ impl WayGraph {
     /// meet point, and that is seen to go nowhere. The meet point becomes an end. Returns whether there was one.
     fn prune_loop(&mut self, judge: &ArmJudge<'_>, degrees: &mut [usize]) -> bool {
         let ArmJudge { robot, params, .. } = *judge;
-        let is_near = |&(point, _): &([f64; 2], f64)| distance(point, robot) < params.robot_near;
+        let is_near = |&(point, _): &(Point2<f64>, f64)| distance(point, robot) < params.robot_near;
         let is_alcove = |way: &Way| {
             way.nodes[0] == way.nodes[1]
                 && degrees[way.nodes[0]] == 3
@@ -384,7 +386,7 @@ impl Way {
     }
 
     /// Its middle line from its first node, and the same from its second.
-    pub(super) fn lines(&self) -> [Vec<([f64; 2], f64)>; 2] {
+    pub(super) fn lines(&self) -> [Vec<(Point2<f64>, f64)>; 2] {
         let back = self.line.iter().rev().copied().collect();
         [self.line.clone(), back]
     }
@@ -418,12 +420,13 @@ impl Skeleton {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    use nalgebra::Isometry2;
     use toposlam_model::driving::odometry::Odometry;
 
     use super::*;
     use crate::laser::{
         params::LaserParams,
-        scan::{Scan, ScanGeometry, ScannerPose},
+        scan::{Scan, ScanGeometry},
     };
 
     /// A map with walls everywhere but in free rectangles: their first and last columns and rows.
@@ -443,11 +446,11 @@ mod tests {
             }
         };
         let cells = (0..columns * rows).map(cell).collect();
-        Grid { columns, cell: 0.15, origin: [0.0; 2], cells }
+        Grid { columns, cell: 0.15, origin: [0.0; 2].into(), cells }
     }
 
     /// The number of arms of each junction on a map.
-    fn degrees(grid: &Grid, robot: [f64; 2]) -> Vec<usize> {
+    fn degrees(grid: &Grid, robot: Point2<f64>) -> Vec<usize> {
         degrees_from(&[], CountedArms::Seen, grid, robot)
     }
 
@@ -455,7 +458,7 @@ mod tests {
         viewpoints: &[Viewpoint],
         counted: CountedArms,
         grid: &Grid,
-        robot: [f64; 2],
+        robot: Point2<f64>,
     ) -> Vec<usize> {
         let params = LaserParams::default();
         let clearances = Clearances::new(grid);
@@ -488,9 +491,12 @@ mod tests {
         };
         let robot = [10.0, 2.4];
         // The pillar is 1.05 m wide.
-        assert!(degrees(&around(26, 9), robot).is_empty());
+        assert!(degrees(&around(26, 9), robot.into()).is_empty());
         // The block is 9.15 m wide.
-        assert_eq!(degrees(&around(86, 12), robot).iter().filter(|&&arms| arms == 3).count(), 2);
+        assert_eq!(
+            degrees(&around(86, 12), robot.into()).iter().filter(|&&arms| arms == 3).count(),
+            2
+        );
     }
 
     #[test]
@@ -509,13 +515,13 @@ mod tests {
                 range_min: 0.1,
                 range_max: 30.0,
             };
-            let scan = Scan::new(geometry, vec![1.0; 181], ScannerPose::default()).unwrap();
+            let scan = Scan::new(geometry, vec![1.0; 181], Isometry2::identity()).unwrap();
             let at = Odometry { position: [19.6, 3.5], heading };
             vec![Viewpoint::new(&scan, &at); LOOKS]
         };
         let seen = |viewpoints: &[Viewpoint]| {
             [CountedArms::Seen, CountedArms::SeenOrInDoubt]
-                .map(|counted| degrees_from(viewpoints, counted, &grid, robot))
+                .map(|counted| degrees_from(viewpoints, counted, &grid, robot.into()))
         };
         assert_eq!(seen(&[]), [vec![3], vec![3]], "no scan could see it");
         assert_eq!(seen(&scans(-FRAC_PI_2)), [vec![], vec![3]], "no scan looked there");

@@ -1,7 +1,7 @@
 //! Where a robot drives that leaves a place in a direction: along a corridor, into an alcove, or up to a wall.
 
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::laser::plane::{direction, distance};
+use toposlam_vision::geometry::{direction, distance};
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
 use crate::{ConvexPolygon, Corridor};

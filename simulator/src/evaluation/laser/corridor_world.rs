@@ -9,7 +9,7 @@ use std::f64::consts::{SQRT_2, TAU};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::laser::plane::{direction, distance};
+use toposlam_vision::geometry::{direction, distance};
 
 use crate::{Corridor, CorridorPlan, Lobby};
 

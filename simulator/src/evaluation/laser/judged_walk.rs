@@ -2,17 +2,16 @@
 
 use std::{f64::consts::TAU, sync::Arc};
 
+use nalgebra::Point2;
 use toposlam_conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents};
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     enumerate::Watch,
     percept::Door,
 };
-use toposlam_vision::laser::{
-    junctions::LaserJunction,
-    params::LaserParams,
-    plane::{Motion, distance},
-    sensor::LaserView,
+use toposlam_vision::{
+    geometry::{distance, motion_between},
+    laser::{junctions::LaserJunction, params::LaserParams, sensor::LaserView},
 };
 
 use super::{
@@ -195,15 +194,15 @@ impl WalkSampler {
             return None;
         }
         let Pose { position, heading } = pose;
-        let to_local_map = Motion::between(&Odometry { position, heading }, &view.robot);
-        let centre = to_local_map.point(world.places[place]);
+        let map_from_plan = motion_between(&Odometry { position, heading }, &view.robot);
+        let centre = map_from_plan * Point2::from(world.places[place]);
         let off = |junction: &&LaserJunction| distance(junction.centre, centre);
         let found = seen.iter().filter(|junction| off(junction) < SAME.max(world.clearance(place)));
         let found = found.min_by(|one, other| off(one).total_cmp(&off(other)));
         let Some(found) = found else { return Some(SeenFrom::Junction(JunctionVerdict::Unseen)) };
         let arms = world.arms(place);
         let is_seen = |direction: f64| {
-            let direction = direction + to_local_map.turn;
+            let direction = direction + map_from_plan.rotation.angle();
             found.arms.iter().any(|&arm| wrapped(arm - direction).abs() < SAME_ARM)
         };
         let is_right =

@@ -6,6 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::{Isometry2, Point2};
 use thiserror::Error;
 use toposlam_conform::{EventSource, LaserEvents, StandingPercept, StandingPlace};
 use toposlam_model::{
@@ -16,18 +17,18 @@ use toposlam_model::{
     percept::{Door, Percept, Sighting},
     world::World,
 };
-use toposlam_vision::laser::{
-    junctions::LaserJunction,
-    params::LaserParams,
-    plane::{Motion, direction, distance},
-    scan::Scan,
-    sensor::LaserView,
-    way_graph::WayGraph,
+use toposlam_vision::{
+    geometry::{direction, distance, motion_between},
+    laser::{
+        junctions::LaserJunction, params::LaserParams, scan::Scan, sensor::LaserView,
+        way_graph::WayGraph,
+    },
 };
 
 use super::{
     corridor_pilot::{CorridorPilot, PilotLeg},
     corridor_world::CorridorWorld,
+    robot_params::LaserRobotParams,
     smoothed_world::SmoothedWorld,
     walk::{WalkDriver, WalkStep, clockwise},
 };
@@ -79,7 +80,7 @@ pub(super) struct LaserRobot<'w> {
     /// The number of steps that were sensed.
     pub(super) sensed: usize,
     /// From the local map to the frame of odometry, in the last view.
-    pub(super) to_odometry: Motion,
+    pub(super) odometry_from_map: Isometry2<f64>,
     /// What may be junctions, in each view since it began to look around.
     pub(super) seen: Vec<Vec<LaserJunction>>,
     /// The centre and the extent of the place that it left last, while it is near, on the local map.
@@ -110,37 +111,8 @@ enum LegResult {
     AtPlace(StandingPlace, f64),
 }
 
-/// A place is left when the robot is this far from its walls, in metres.
-const AWAY: f64 = 2.5;
-/// The robot has come in by the direction of where it was when it was this far from the junction's walls, in metres.
-const BEFORE: f64 = 1.0;
-/// A place in a view this near is the one where the robot stands, in metres.
-const HERE: f64 = 3.0;
-/// Directions nearer to each other are those of one arm, in radians.
-const SAME_ARM: f64 = 0.6;
-/// Ways that meet this near to the robot are an opening beside it, in metres.
-const OPENING: f64 = 1.0;
-/// Where it has turned around within this distance, and has not driven this far since, it need not do so again, in
-/// metres.
-const LOOKED: f64 = 2.0;
-const FORGOTTEN: f64 = 10.0;
-/// A scanner with a larger field of view sees what is behind the robot, in radians.
-const ALL_AROUND: f64 = 6.0;
-/// What is this near to the centre of a place in a view is the same place, in metres.
-const AT_CENTRE: f64 = 2.0;
-/// An arm is certain if it is in this part of so many last views.
-const CERTAIN: f64 = 0.75;
-const VIEWS: usize = 6;
-/// How often it looks again.
-const LOOKS: usize = 8;
-/// How far it goes on to look again, in metres.
-const FURTHER: f64 = 1.5;
-/// How often a robot that got lost tries to come to a junction.
-const TRIES: usize = 6;
-/// The marker is seen from up to this far from its place, in metres besides the clearance.
-const MARKER: f64 = 2.0;
-/// The longest way of a run, in metres.
-const FARTHEST: f64 = 30_000.0;
+/// The parameters.
+const ROBOT: LaserRobotParams = LaserRobotParams::DEFAULT;
 
 impl LaserRobot<'_> {
     /// Drives away in a direction on the plan until it is at a junction, or cannot go on.
@@ -161,7 +133,7 @@ impl LaserRobot<'_> {
                 }
                 LegResult::LookedAround => {}
                 LegResult::Driven => {
-                    let is_other = distance(begin, leg.to) > 2.0 * AWAY;
+                    let is_other = distance(begin, leg.to) > 2.0 * ROBOT.left_behind;
                     let is_junction = leg.junction(self.world).is_some();
                     self.tally.passed += u64::from(is_other && is_junction);
                     points.push(leg.to);
@@ -174,7 +146,7 @@ impl LaserRobot<'_> {
             }
             along += distance(before, self.driver.at());
             before = self.driver.at();
-            if self.driver.way > FARTHEST {
+            if self.driver.way > ROBOT.longest_way {
                 return Err(ScanFailure::TooFar);
             }
         }
@@ -183,7 +155,7 @@ impl LaserRobot<'_> {
                 self.driver.drive_to(point);
                 self.sense()?;
             }
-            self.left = Some((self.on_local_map(), 1.0));
+            self.left = Some((self.on_local_map().into(), 1.0));
             return Err(ScanFailure::Alcove);
         }
         self.left = None;
@@ -232,9 +204,9 @@ impl LaserRobot<'_> {
 
     /// Goes to the centre of a place, if it can stand there.
     fn go_to(&mut self, place: &StandingPlace) -> Result<(), ScanFailure> {
-        let centre = self.to_plan().point(place.centre);
-        if self.pilot.has_space_at(centre) && distance(centre, self.driver.at()) > 0.2 {
-            self.driver.drive_to(centre);
+        let centre = self.plan_from_map() * place.centre;
+        if self.pilot.has_space_at(centre.into()) && distance(centre, self.driver.at()) > 0.2 {
+            self.driver.drive_to(centre.into());
             self.sense()?;
         }
         Ok(())
@@ -251,13 +223,18 @@ impl LaserRobot<'_> {
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
         let (mut last, mut has_moved, mut tries) = (place, false, 0);
-        for _ in 0..LOOKS {
+        for _ in 0..ROBOT.looks {
             let Some(place) = self.events.standing() else {
                 let off = |seen: &&LaserJunction| distance(seen.centre, self.on_local_map());
-                let near = self.seen.last().into_iter().flatten().filter(|seen| off(seen) < HERE);
+                let near = self
+                    .seen
+                    .last()
+                    .into_iter()
+                    .flatten()
+                    .filter(|seen| off(seen) < ROBOT.same_place);
                 let near = near.min_by(|one, other| off(one).total_cmp(&off(other)));
                 let Some(seen) = near.filter(|_| !has_moved) else {
-                    self.left = Some((last.centre, last.clearance));
+                    self.left = Some((last.centre.into(), last.clearance));
                     return Ok(None);
                 };
                 let (centre, clearance) = (seen.centre, seen.clearance);
@@ -267,7 +244,7 @@ impl LaserRobot<'_> {
                 self.look_around()?;
                 continue;
             };
-            let turn = self.to_plan().turn;
+            let turn = self.plan_from_map().rotation.angle();
             last = place.clone();
             let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
             let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
@@ -287,7 +264,7 @@ impl LaserRobot<'_> {
                     continue;
                 }
                 StandingPercept::Undecided if known.is_empty() => {
-                    self.left = Some((place.centre, place.clearance));
+                    self.left = Some((place.centre.into(), place.clearance));
                     return Err(ScanFailure::Undecided);
                 }
                 StandingPercept::Undecided => {
@@ -303,10 +280,10 @@ impl LaserRobot<'_> {
                     doors.push(arm);
                 }
             }
-            self.left = Some((place.centre, place.clearance));
+            self.left = Some((place.centre.into(), place.clearance));
             return Ok((doors.len() >= 3).then(|| in_order(doors, entry)));
         }
-        self.left = Some((last.centre, last.clearance));
+        self.left = Some((last.centre.into(), last.clearance));
         Err(ScanFailure::Undecided)
     }
 
@@ -342,7 +319,7 @@ impl LaserRobot<'_> {
     fn look_from_further(&mut self, towards: f64) -> Result<(), ScanFailure> {
         let begin = self.driver.at();
         let leg = self.pilot.leave(begin, towards);
-        let share = (FURTHER / distance(begin, leg.to).max(1e-9)).min(1.0);
+        let share = (ROBOT.further / distance(begin, leg.to).max(1e-9)).min(1.0);
         self.driver.drive_to([0, 1].map(|axis| begin[axis] + share * (leg.to[axis] - begin[axis])));
         self.driver.look_around();
         self.driver.drive_to(begin);
@@ -351,7 +328,7 @@ impl LaserRobot<'_> {
     }
 
     fn look_around(&mut self) -> Result<(), ScanFailure> {
-        self.looked = Some((self.on_local_map(), self.driver.way));
+        self.looked = Some((self.on_local_map().into(), self.driver.way));
         self.seen.clear();
         self.driver.look_around();
         self.sense()?;
@@ -364,15 +341,15 @@ impl LaserRobot<'_> {
     fn is_opening(&self, view: &LaserView, scan: &Scan) -> bool {
         let robot = view.robot.position;
         let has_looked = self.looked.is_some_and(|(at, way)| {
-            distance(at, robot) < LOOKED && self.driver_way() - way < FORGOTTEN
+            distance(at, robot) < ROBOT.looked && self.driver_way() - way < ROBOT.look_memory
         });
-        if has_looked || scan.field_of_view() > ALL_AROUND {
+        if has_looked || scan.field_of_view() > ROBOT.all_around {
             return false;
         }
         let Some(skeleton) = &view.skeleton else { return false };
         let ways = WayGraph::new(skeleton, &view.grid, &view.clearances);
         let is_meet = |&node: &usize| ways.at(node).len() >= 3;
-        let near = |node: &usize| distance(ways.nodes[*node].point, robot) < OPENING;
+        let near = |node: &usize| distance(ways.nodes[*node].point, robot) < ROBOT.opening;
         (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))
     }
 
@@ -384,13 +361,13 @@ impl LaserRobot<'_> {
     /// What may be a junction at a place, in a view.
     fn seen_at<'v>(view: &'v [LaserJunction], place: &StandingPlace) -> Option<&'v LaserJunction> {
         let off = |seen: &&LaserJunction| distance(seen.centre, place.centre);
-        let near = view.iter().filter(|seen| off(seen) < place.clearance.max(AT_CENTRE));
+        let near = view.iter().filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre));
         near.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
     /// The directions of the arms of a place that are not certain in most of the last views.
     fn uncertain_arms(&self, place: &StandingPlace) -> Vec<f64> {
-        let views = &self.seen[self.seen.len().saturating_sub(VIEWS)..];
+        let views = &self.seen[self.seen.len().saturating_sub(ROBOT.views)..];
         // The direction, the number of views that show the arm, and of those in which it is certain.
         let mut arms: Vec<(f64, usize, usize)> = Vec::new();
         for seen in views.iter().filter_map(|view| Self::seen_at(view, place)) {
@@ -402,16 +379,16 @@ impl LaserRobot<'_> {
                 }
             }
         }
-        let enough = (CERTAIN * views.len() as f64).ceil() as usize;
+        let enough = (ROBOT.certain * views.len() as f64).ceil() as usize;
         let uncertain = arms.iter().filter(|arm| arm.1 > 1 && arm.2 < enough);
         uncertain.map(|&(arm, ..)| arm).collect()
     }
 
     /// The direction on the plan from a place to where the robot was before.
     fn came_from(&self, place: &StandingPlace) -> f64 {
-        let centre = self.to_plan().point(place.centre);
-        let far = place.clearance.max(1.0) + BEFORE;
-        self.driver.before_entering(centre, far).map_or_else(
+        let centre = self.plan_from_map() * place.centre;
+        let far = place.clearance.max(1.0) + ROBOT.came_from;
+        self.driver.before_entering(centre.into(), far).map_or_else(
             || self.driver.heading().unwrap_or_default() + PI,
             |point| direction(centre, point),
         )
@@ -420,7 +397,7 @@ impl LaserRobot<'_> {
     /// Whether a place is the one that it left last.
     fn is_left(&self, place: &StandingPlace) -> bool {
         self.left.is_some_and(|(centre, clearance)| {
-            distance(centre, place.centre) < AWAY.max(1.5 * clearance)
+            distance(centre, place.centre) < ROBOT.left_behind.max(1.5 * clearance)
         })
     }
 
@@ -444,30 +421,32 @@ impl LaserRobot<'_> {
         };
         let source = EventSource { time: number as u64, ..EventSource::default() };
         if let Some(view) = self.events.see(source, &scan, &step.odometry) {
-            self.to_odometry = view.to_odometry;
+            self.odometry_from_map = view.odometry_from_map;
             self.is_at_opening = self.is_opening(&view, &scan);
             self.seen.push(view.possible_junctions);
         }
         let at = self.on_local_map();
-        if self.left.is_some_and(|(left, clearance)| distance(left, at) > clearance + 2.0 * AWAY) {
+        if self.left.is_some_and(|(left, clearance)| {
+            distance(left, at) > clearance + 2.0 * ROBOT.left_behind
+        }) {
             self.left = None;
         }
         Ok(())
     }
 
     /// Where it is on the local map.
-    fn on_local_map(&self) -> [f64; 2] {
+    fn on_local_map(&self) -> Point2<f64> {
         let at = self.last_step().map_or(self.driver.at(), |step| step.odometry.position);
-        self.to_odometry.inverse().point(at)
+        self.odometry_from_map.inverse() * Point2::from(at)
     }
 
     /// From the local map to the plan, which is right near the robot.
-    fn to_plan(&self) -> Motion {
-        let to_plan = self.last_step().map_or_else(Motion::default, |step| {
+    fn plan_from_map(&self) -> Isometry2<f64> {
+        let plan_from_odometry = self.last_step().map_or_else(Isometry2::identity, |step| {
             let Pose { position, heading } = step.pose;
-            Motion::between(&step.odometry, &Odometry { position, heading })
+            motion_between(&step.odometry, &Odometry { position, heading })
         });
-        to_plan.after(&self.to_odometry)
+        plan_from_odometry * self.odometry_from_map
     }
 
     /// The step of the last scan.
@@ -481,7 +460,8 @@ impl LaserRobot<'_> {
         let entry = *here.doors.first()?;
         let is_here = |dart: &Dart| {
             let place = self.smoothed.place_of(*dart);
-            distance(self.world.places[place], at) < self.world.clearance(place) + MARKER
+            distance(self.world.places[place], at)
+                < self.world.clearance(place) + ROBOT.marker_range
         };
         let off = |dart: &Dart| wrapped(self.direction_of(*dart) - entry).abs();
         let darts = self.smoothed.graph.darts().filter(is_here);
@@ -503,7 +483,7 @@ impl LaserRobot<'_> {
     fn sighting(&self, here: &Here) -> Sighting {
         let place = self.smoothed.place_of(self.facing);
         let off = distance(self.world.places[place], self.driver.at());
-        if off > self.world.clearance(place) + MARKER {
+        if off > self.world.clearance(place) + ROBOT.marker_range {
             return Sighting::Nothing;
         }
         let towards = self.direction_of(self.facing);
@@ -534,7 +514,7 @@ impl Relocate for LaserRobot<'_> {
         if matches!(error, ScanFailure::Stopped | ScanFailure::TooFar) {
             return Err(error);
         }
-        for number in 0..TRIES {
+        for number in 0..ROBOT.tries {
             let ahead = self.driver.heading().unwrap_or_default();
             let towards = if number % 2 == 0 { ahead } else { ahead + PI };
             match self.drive(towards) {
@@ -548,7 +528,7 @@ impl Relocate for LaserRobot<'_> {
 }
 
 fn is_same(one: f64, other: f64) -> bool {
-    wrapped(one - other).abs() < SAME_ARM
+    wrapped(one - other).abs() < ROBOT.same_arm
 }
 
 /// Directions clockwise from the one that is nearest to the entry.

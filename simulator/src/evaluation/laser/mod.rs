@@ -5,6 +5,7 @@ pub mod corridor_world;
 pub mod judged_walk;
 pub mod laser_report;
 pub mod laser_robot;
+pub mod robot_params;
 pub mod scanned_run;
 pub mod smoothed_world;
 pub mod walk;

@@ -2,6 +2,7 @@
 
 use std::{borrow::Cow, sync::Arc};
 
+use nalgebra::Isometry2;
 use rand::seq::IndexedRandom;
 use toposlam_conform::LaserEvents;
 use toposlam_model::{
@@ -11,7 +12,6 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
-use toposlam_vision::laser::plane::Motion;
 
 use super::{
     super::parallel::made_in_turn,
@@ -108,7 +108,7 @@ impl WalkSampler {
             facing,
             watch,
             sensed: 0,
-            to_odometry: Motion::default(),
+            odometry_from_map: Isometry2::identity(),
             seen: Vec::new(),
             left: None,
             looked: None,

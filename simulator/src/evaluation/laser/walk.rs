@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose, scene::wrapped};
-use toposlam_vision::laser::plane::distance;
+use toposlam_vision::geometry::distance;
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
 

@@ -2,6 +2,7 @@
 
 use std::{io, ops::RangeInclusive};
 
+use nalgebra::Point2;
 use toposlam_model::format::document::{Document, DocumentTable, DocumentValue};
 
 use super::{
@@ -76,7 +77,7 @@ fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel),
         let what = "the centre of the mirror, in the image,";
         value.number_in(what, 0.0..=f64::from(side) - 1.0)
     };
-    let centre = [in_image(across, image[0])?, in_image(down, image[1])?];
+    let centre = Point2::new(in_image(across, image[0])?, in_image(down, image[1])?);
     let focal = table.need("focal")?.number_in("a focal length in pixels", FOCAL)?;
     let mirror_radius = table
         .need("mirror_radius")?

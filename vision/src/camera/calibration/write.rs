@@ -24,7 +24,7 @@ pub fn to_toml(camera: &Camera) -> String {
         OpticsModel::SphericalMirror(mirror) => {
             line("kind", quoted("spherical-mirror"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
-            let [u, v] = mirror.centre;
+            let [u, v] = mirror.centre.into();
             let centre = format!("[{}, {}]", number(u), number(v));
             line("centre", centre, "of the mirror in the image, u to the right, v down");
             line("focal", number(mirror.focal), "pixels");

@@ -3,6 +3,7 @@
 #![allow(clippy::cast_sign_loss, reason = "places inside of an image are not negative")]
 
 use image::GrayImage;
+use nalgebra::Point2;
 
 use super::RimError;
 
@@ -49,18 +50,20 @@ impl Brightness {
     }
 
     /// Whether a place is between pixels.
-    pub(super) fn contains(&self, [u, v]: [f64; 2]) -> bool {
+    pub(super) fn contains(&self, place: Point2<f64>) -> bool {
+        let [u, v] = place.into();
         u >= 0.0 && v >= 0.0 && u < (self.width - 1) as f64 && v < (self.height - 1) as f64
     }
 
     /// The brightness between pixels; `None` outside of the image.
-    pub(super) fn at(&self, place: [f64; 2]) -> Option<f64> {
+    pub(super) fn at(&self, place: Point2<f64>) -> Option<f64> {
         self.contains(place).then(|| self.between(place))
     }
 
     /// The brightness at a place that the image contains.
     #[inline]
-    pub(super) fn between(&self, [u, v]: [f64; 2]) -> f64 {
+    pub(super) fn between(&self, place: Point2<f64>) -> f64 {
+        let [u, v] = place.into();
         // Neither is negative, so this rounds down, faster than `floor`.
         let [column, row] = [u as i32, v as i32];
         let first = row as usize * self.width + column as usize;

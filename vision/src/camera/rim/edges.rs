@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Point2, UnitComplex, Vector2};
+
 use super::{RIM, brightness::Brightness, circle::Circle};
 
 /// The number of bearings on which edges are searched for.
@@ -14,7 +16,7 @@ const ARC: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
 /// A steep edge near a circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CircleEdge {
-    pub(super) at: [f64; 2],
+    pub(super) at: Point2<f64>,
     /// How much brighter it is inside of the circle than outside.
     pub(super) fall: f64,
 }
@@ -38,12 +40,10 @@ impl CircleEdges {
         let steps = (2.0 * reach) as usize + RIM.wide;
         let (mut edges, mut visible) = (Vec::new(), 0);
         for bearing in (0..BEARINGS).step_by(every) {
-            let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
+            let turn = UnitComplex::new(TAU * bearing as f64 / BEARINGS as f64);
             let place = |step: usize, along: f64| {
                 let out = circle.radius + 0.5 * unit * (step as f64 - steps as f64);
-                let along = along * unit;
-                let place = [out * cosine - along * sine, out * sine + along * cosine];
-                [circle.centre[0] + place[0], circle.centre[1] + place[1]]
+                circle.centre + turn * Vector2::new(out, along * unit)
             };
             // The image is convex: if the corners of a rectangle are in it, all of the rectangle is.
             let is_inside = [0, 2 * steps].iter().all(|&step| {
@@ -83,15 +83,14 @@ impl CircleEdges {
             let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };
             let step = steepest as f64 - steps as f64 + shift.clamp(-1.0, 1.0);
             let radius = circle.radius + 0.5 * unit * step;
-            let [u, v] = circle.centre;
-            let at = [u + radius * cosine, v + radius * sine];
+            let at = circle.centre + turn * Vector2::new(radius, 0.0);
             edges.push(CircleEdge { at, fall: fall(steepest).unwrap_or_default() });
         }
         Self { edges, visible }
     }
 
     /// The places of the edges.
-    pub(super) fn places(&self) -> Vec<[f64; 2]> {
+    pub(super) fn places(&self) -> Vec<Point2<f64>> {
         self.edges.iter().map(|edge| edge.at).collect()
     }
 }

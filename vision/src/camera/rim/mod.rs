@@ -21,7 +21,10 @@ mod circle;
 mod edges;
 mod search;
 
+use std::f64::consts::TAU;
+
 use image::GrayImage;
+use nalgebra::{Point2, distance};
 use thiserror::Error;
 
 use brightness::Brightness;
@@ -29,12 +32,13 @@ use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 
 use super::params::RimParams;
+use crate::geometry;
 
 /// A mirror's rim in images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
     /// Its centre, in pixels.
-    pub centre: [f64; 2],
+    pub centre: Point2<f64>,
     /// Its radius, in pixels.
     pub radius: f64,
     /// The share of the full circle that was seen.
@@ -42,7 +46,7 @@ pub struct Rim {
     /// The root mean square distance of its points from the circle, in pixels.
     pub spread: f64,
     /// The points at which it was seen.
-    pub places: Vec<[f64; 2]>,
+    pub places: Vec<Point2<f64>>,
 }
 
 /// Why there is no rim.
@@ -149,7 +153,7 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
 }
 
 fn ambiguous(best: &Circle, other: &Circle) -> RimError {
-    let numbers = |circle: &Circle| [circle.centre[0], circle.centre[1], circle.radius];
+    let numbers = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius];
     RimError::Ambiguous { best: numbers(best), other: numbers(other) }
 }
 
@@ -157,7 +161,7 @@ fn ambiguous(best: &Circle, other: &Circle) -> RimError {
 ///
 /// # Errors
 /// Returns an error if there is no image, or if the images differ in size.
-pub fn given(images: &[GrayImage], centre: [f64; 2], radius: f64) -> Result<Rim, RimError> {
+pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<Rim, RimError> {
     let mean = Brightness::mean(images)?;
     let circle = Circle { centre, radius };
     // What is given by hand is not exact.
@@ -221,10 +225,10 @@ impl CircleFit {
 
     /// Whether it can be a mirror: its centre is in the image, and it is neither small nor huge.
     fn is_plausible(&self, image: &Brightness) -> bool {
-        let Circle { centre: [u, v], radius } = self.circle;
+        let Circle { centre, radius } = self.circle;
         let (width, height) = (image.width as f64, image.height as f64);
-        (0.0..width).contains(&u)
-            && (0.0..height).contains(&v)
+        (0.0..width).contains(&centre.x)
+            && (0.0..height).contains(&centre.y)
             && (0.2 * width.min(height)..0.75 * width.max(height)).contains(&radius)
     }
 
@@ -274,9 +278,8 @@ impl CircleFit {
 
     /// Whether this is the outer border of a dark ring around a circle.
     fn is_outside_of_ring(&self, image: &Brightness, inner: &Circle) -> bool {
-        let [across, down] = [0, 1].map(|axis| self.circle.centre[axis] - inner.centre[axis]);
         let width = self.circle.radius - inner.radius;
-        crate::camera::length([across, down]) <= RIM.same * inner.radius
+        distance(&self.circle.centre, &inner.centre) <= RIM.same * inner.radius
             && width > 0.0
             && width <= RIM.widest_ring * self.circle.radius
             && is_dark_between(image, inner, &self.circle)
@@ -285,15 +288,15 @@ impl CircleFit {
     /// The circles that share an arc with this one, and are nearer or farther on the opposite side: if it is
     /// the inner border of a ring on one side and the outer border on the other, they are the borders.
     fn beside(&self, image: &Brightness) -> Vec<Self> {
-        let Circle { centre: [u, v], radius } = self.circle;
+        let Circle { centre, radius } = self.circle;
         let mut fits = Vec::new();
         for side in 0..RIM.sides {
-            let (sine, cosine) = (std::f64::consts::TAU * side as f64 / RIM.sides as f64).sin_cos();
+            let towards = geometry::unit(TAU * side as f64 / RIM.sides as f64);
             for step in 1..=6 {
                 for sign in [-1.0, 1.0] {
                     // Half of the difference between the borders, and the same arc on this side.
                     let shift = 0.01 * f64::from(step) * radius * sign;
-                    let centre = [u - shift * cosine, v - shift * sine];
+                    let centre = centre - shift * towards;
                     let circle = Circle { centre, radius: radius + shift };
                     fits.push(Self::on(
                         image,
@@ -335,10 +338,8 @@ impl CircleFit {
 fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
     let (mut rings, mut darker) = (Vec::new(), 0_usize);
     for bearing in (0..BEARINGS).step_by(RIM.every) {
-        let (sine, cosine) = (std::f64::consts::TAU * bearing as f64 / BEARINGS as f64).sin_cos();
-        let at = |radius: f64| {
-            image.at([outer.centre[0] + radius * cosine, outer.centre[1] + radius * sine])
-        };
+        let towards = geometry::unit(TAU * bearing as f64 / BEARINGS as f64);
+        let at = |radius: f64| image.at(outer.centre + radius * towards);
         let width = outer.radius - inner.radius;
         let samples = [0.5, 1.5].map(|part| at(inner.radius + part * width));
         if let [Some(ring), Some(outside)] = samples {

@@ -5,17 +5,16 @@
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
+use nalgebra::{Point2, Vector2};
+
 use super::{RIM, brightness::Brightness, circle::Circle};
+use crate::geometry::unit;
 
 /// The number of bearings on which circles of larger images are compared.
 const BEARINGS: usize = 240;
 
-static DIRECTIONS: LazyLock<[[f64; 2]; BEARINGS]> = LazyLock::new(|| {
-    std::array::from_fn(|bearing| {
-        let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
-        [cosine, sine]
-    })
-});
+static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> =
+    LazyLock::new(|| std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64)));
 
 /// The circles of an image that may be a mirror's rim.
 pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
@@ -124,7 +123,7 @@ impl Slopes {
                 }
             }
             circles.extend(kept.iter().map(|&[u, v, radius]| Circle {
-                centre: [u as f64, v as f64],
+                centre: Point2::new(u as f64, v as f64),
                 radius: radius as f64,
             }));
         }
@@ -175,7 +174,7 @@ impl Slopes {
         for u in shifts {
             for v in shifts {
                 for out in shifts {
-                    let centre = [circle.centre[0] + u, circle.centre[1] + v];
+                    let centre = circle.centre + Vector2::new(u, v);
                     let shifted = Circle { centre, radius: circle.radius + out };
                     let score = self.score(&shifted);
                     if score > best.0 {
@@ -190,16 +189,15 @@ impl Slopes {
     /// How many edges there are along a circle.
     fn score(&self, circle: &Circle) -> f64 {
         let (mut sum, mut visible) = (0.0, 0_u32);
-        for [cosine, sine] in DIRECTIONS.iter() {
-            let u = (circle.centre[0] + circle.radius * cosine).round();
-            let v = (circle.centre[1] + circle.radius * sine).round();
+        for out in DIRECTIONS.iter() {
+            let [u, v] = (circle.centre + circle.radius * out).map(f64::round).into();
             let inside =
                 u >= 1.0 && v >= 1.0 && u < (self.width - 1) as f64 && v < (self.height - 1) as f64;
             if !inside {
                 continue;
             }
             let [right, down] = self.falls[v as usize * self.width + u as usize];
-            let fall = (right * *cosine as f32 + down * *sine as f32).abs();
+            let fall = (right * out.x as f32 + down * out.y as f32).abs();
             sum += f64::from(fall / (fall + RIM.half));
             visible += 1;
         }

@@ -1,0 +1,43 @@
+//! The parameters of a robot that explores corridors by a laser scanner.
+//!
+//! Lengths are in metres and angles in radians. The values are for corridors that are about 2 m wide.
+
+use toposlam_vision::params;
+
+params! {
+    /// How the robot decides where it stands, and when it looks again.
+    LaserRobotParams {
+        /// A place is left when the robot is this far from its walls.
+        left_behind: f64 = 2.5,
+        /// The robot has come in by the direction of where it was when it was this far from the junction's walls.
+        came_from: f64 = 1.0,
+        /// A place in a view this near is the one where the robot stands.
+        same_place: f64 = 3.0,
+        /// Directions nearer to each other are those of one arm.
+        same_arm: f64 = 0.6,
+        /// Ways that meet this near to the robot are an opening beside it.
+        opening: f64 = 1.0,
+        /// Where it has turned around within this distance, it need not do so again, ...
+        looked: f64 = 2.0,
+        /// ... unless it has driven this far since.
+        look_memory: f64 = 10.0,
+        /// A scanner with a larger field of view sees what is behind the robot.
+        all_around: f64 = 6.0,
+        /// What is this near to the centre of a place in a view is the same place.
+        at_centre: f64 = 2.0,
+        /// An arm is certain if it is in this part of the last views.
+        certain: f64 = 0.75,
+        /// The number of these views.
+        views: usize = 6,
+        /// How often it looks again.
+        looks: usize = 8,
+        /// How far it goes on to look again.
+        further: f64 = 1.5,
+        /// How often a robot that got lost tries to come to a junction.
+        tries: usize = 6,
+        /// The marker is seen from up to this far from its place, besides the clearance.
+        marker_range: f64 = 2.0,
+        /// The longest way of a run.
+        longest_way: f64 = 30_000.0 => 0.0..=100_000.0,
+    }
+}

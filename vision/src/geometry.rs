@@ -1,0 +1,84 @@
+//! Geometry of the plane, besides what nalgebra has: directions as angles, and a robot's pose as a motion.
+//!
+//! Points, vectors and rigid motions are nalgebra's. A motion is named after its frames: `map_from_robot` takes a point
+//! of the robot's frame to the map's. Directions are radians counter-clockwise from the x axis of their frame. The types
+//! of the model, which does without nalgebra, are converted where they enter and leave.
+
+use nalgebra::{Isometry2, Point2, Vector2};
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+/// The unit vector in a direction.
+#[inline]
+#[must_use]
+pub fn unit(direction: f64) -> Vector2<f64> {
+    let (sine, cosine) = direction.sin_cos();
+    Vector2::new(cosine, sine)
+}
+
+/// The direction of a vector, from -pi to pi.
+#[inline]
+#[must_use]
+pub fn angle(vector: Vector2<f64>) -> f64 {
+    vector.y.atan2(vector.x)
+}
+
+/// The direction from one point to another, from -pi to pi.
+#[must_use]
+pub fn direction(from: impl Into<Point2<f64>>, to: impl Into<Point2<f64>>) -> f64 {
+    angle(to.into() - from.into())
+}
+
+/// The distance of two points.
+#[must_use]
+pub fn distance(one: impl Into<Point2<f64>>, other: impl Into<Point2<f64>>) -> f64 {
+    (other.into() - one.into()).norm()
+}
+
+/// The motion from the robot's frame to the one in which its pose is given.
+#[must_use]
+pub fn from_robot(pose: &Odometry) -> Isometry2<f64> {
+    Isometry2::new(Vector2::from(pose.position), pose.heading)
+}
+
+/// The motion after which a robot at the first pose is at the second.
+#[must_use]
+pub fn motion_between(from: &Odometry, to: &Odometry) -> Isometry2<f64> {
+    from_robot(to) * from_robot(from).inverse()
+}
+
+/// Where a motion takes a robot.
+#[must_use]
+pub fn moved(motion: &Isometry2<f64>, pose: &Odometry) -> Odometry {
+    Odometry {
+        position: (motion * Point2::from(pose.position)).into(),
+        heading: wrapped(motion.rotation.angle() + pose.heading),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    fn near(one: &Odometry, other: &Odometry) {
+        assert!(one.distance(other) < 1e-12, "{one:?} and {other:?}");
+        assert!(wrapped(one.heading - other.heading).abs() < 1e-12, "{one:?} and {other:?}");
+    }
+
+    #[test]
+    fn a_motion_between_poses_moves_one_to_the_other_and_its_inverse_moves_it_back() {
+        let from = Odometry { position: [1.0, -2.0], heading: 2.5 };
+        let to = Odometry { position: [-3.0, 0.5], heading: -2.0 };
+        let motion = motion_between(&from, &to);
+        near(&moved(&motion, &from), &to);
+        near(&moved(&motion.inverse(), &to), &from);
+    }
+
+    #[test]
+    fn what_is_ahead_of_a_robot_that_looks_north_is_north_of_it() {
+        let pose = Odometry { position: [1.0, 2.0], heading: FRAC_PI_2 };
+        let ahead = from_robot(&pose) * Point2::new(3.0, 0.0);
+        assert!(distance(ahead, [1.0, 5.0]) < 1e-12, "{ahead}");
+    }
+}
