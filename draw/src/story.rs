@@ -5,7 +5,7 @@ mod movable;
 mod safeguard;
 
 use std::{
-    fmt::Display,
+    fmt::{self, Display, Formatter},
     io::{self, Write},
     mem,
 };
@@ -20,7 +20,7 @@ use toposlam_model::{
 
 use crate::{
     moment::grouped,
-    text::{counted, print_hanging, print_indented, print_paragraph, vertices},
+    text::{counted, print_indented, vertices},
 };
 
 /// How much a story contains.
@@ -35,12 +35,39 @@ pub struct StoryDetail {
 /// How many rejected candidates of a round are printed unless all are wanted.
 const PRINTED_REJECTIONS: usize = 4;
 
-/// Prints a run while it goes on.
+/// A line of a story, before it is wrapped.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StoryLine {
+    head: String,
+    /// By how many columns the lines are indented that follow in a terminal.
+    indent: usize,
+    text: String,
+}
+
+impl StoryLine {
+    fn hanging(head: String, text: String) -> Self {
+        Self { indent: head.len(), head, text }
+    }
+
+    /// Prints it in wrapped lines.
+    fn print(&self, out: &mut dyn Write) -> io::Result<()> {
+        print_indented(out, &self.head, self.indent, &self.text)
+    }
+}
+
+/// The whole line.
+impl Display for StoryLine {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.head, self.text)
+    }
+}
+
+/// Puts the events of a run into words.
 #[derive(Debug)]
-pub struct Story<W> {
-    out: W,
+pub struct Story {
+    /// Since they were last taken.
+    lines: Vec<StoryLine>,
     detail: StoryDetail,
-    result: io::Result<()>,
     round: u64,
     actions: Vec<Action>,
     /// Rejected in this round. With a movable marker: in this stage of the round.
@@ -51,34 +78,32 @@ pub struct Story<W> {
     moves: u64,
 }
 
-impl<W: Write> Story<W> {
+impl Story {
     /// The story of a run in a world, from its start.
-    pub fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
-        Self::with_head(out, &head(world, facing), detail)
+    #[must_use]
+    pub fn new(world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
+        Self::with_head(head(world, facing), detail)
     }
 
     /// The story of a run in a world that the head describes.
-    pub fn with_head(mut out: W, head: &str, detail: StoryDetail) -> Self {
-        let result = print_paragraph(&mut out, head);
-        let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
-        Self { out, detail, result, round: 0, actions, rejected, moves_not_printed, moves: 0 }
-    }
-
-    /// The output.
     #[must_use]
-    pub fn out(&self) -> &W {
-        &self.out
+    pub fn with_head(head: String, detail: StoryDetail) -> Self {
+        let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
+        let lines = vec![StoryLine { text: head, ..StoryLine::default() }];
+        Self { lines, detail, round: 0, actions, rejected, moves_not_printed, moves: 0 }
     }
 
-    /// The output, after the last event.
-    ///
-    /// # Errors
-    /// Returns the first error of the output.
-    pub fn finish(self) -> io::Result<W> {
-        self.result.map(|()| self.out)
+    /// An empty line and a paragraph.
+    fn add_section(&mut self, text: String) {
+        self.lines.push(StoryLine::default());
+        self.add_paragraph(text);
     }
 
-    fn print_event(&mut self, journey: &Journey, event: MappingEvent) -> io::Result<()> {
+    fn add_paragraph(&mut self, text: String) {
+        self.lines.push(StoryLine { text, ..StoryLine::default() });
+    }
+
+    fn add_event(&mut self, journey: &Journey, event: MappingEvent) {
         let map = journey.map();
         if self.detail.doors {
             self.actions.extend(event.action());
@@ -90,12 +115,12 @@ impl<W: Write> Story<W> {
                     _ => "Its marker lies here",
                 };
                 let text = format!("{marker}, at vertex v0 of the map. It senses {percept}.");
-                print_paragraph(&mut self.out, &text)
+                self.add_paragraph(text);
             }
-            MappingEvent::Moved { .. } => Ok(()),
+            MappingEvent::Moved { .. } => {}
             MappingEvent::Arrived { edge, percept, contradicted, hypotheses } => {
-                self.print_round(journey, edge, "", percept)?;
-                self.print_candidates(contradicted, hypotheses)
+                self.add_round(journey, edge, "", percept);
+                self.add_candidates(contradicted, hypotheses);
             }
             MappingEvent::Rejected { hypothesis, followed, expected, perceived } => {
                 let why = format!(
@@ -104,52 +129,46 @@ impl<W: Write> Story<W> {
                     percept_text(expected, perceived),
                     percept_text(perceived, expected),
                 );
-                self.print_rejected(journey, &dart(map, hypothesis), &why)
+                self.add_rejected(journey, &dart(map, hypothesis), &why);
             }
             MappingEvent::Confirmed { hypothesis, followed } => {
                 let why = match followed {
                     0 => "the marker is here and points as expected",
                     _ => "its path leads to the marker, which points as expected",
                 };
-                self.print_confirmed(journey, &dart(map, hypothesis), why)
+                self.add_confirmed(journey, &dart(map, hypothesis), why);
             }
             MappingEvent::LoopClosed { edge, other } => {
                 let (edge, other) = (dart(map, edge), dart(map, other));
-                self.print_line(format!("So {edge} and {other} are the two ends of one edge."))?;
-                self.print_map(map)
+                self.add_line(format!("So {edge} and {other} are the two ends of one edge."));
+                self.add_map(map);
             }
             MappingEvent::VertexAdded { edge, vertex } => {
-                self.print_omitted()?;
+                self.add_omitted();
                 let edge = dart(map, edge);
-                self.print_line(format!("So {edge} leads to a new vertex, v{}.", vertex.0))?;
-                self.print_map(map)
+                self.add_line(format!("So {edge} leads to a new vertex, v{}.", vertex.0));
+                self.add_map(map);
             }
-            MappingEvent::Movable(event) => self.print_movable(journey, event),
-            MappingEvent::Folding(event) => self.print_folding(journey, event),
-            MappingEvent::Safeguard(event) => self.print_safeguard(journey, event),
+            MappingEvent::Movable(event) => self.add_movable(journey, event),
+            MappingEvent::Folding(event) => self.add_folding(journey, event),
+            MappingEvent::Safeguard(event) => self.add_safeguard(journey, event),
         }
     }
 
     /// A round begins: the robot has followed an unexplored dart.
-    fn print_round(
-        &mut self,
-        journey: &Journey,
-        edge: Dart,
-        with: &str,
-        percept: Percept,
-    ) -> io::Result<()> {
+    fn add_round(&mut self, journey: &Journey, edge: Dart, with: &str, percept: Percept) {
         self.round += 1;
         let (round, edge) = (grouped(self.round.into()), dart(journey.map(), edge));
         let moves = self.take_moves(journey);
-        writeln!(self.out)?;
+        self.lines.push(StoryLine::default());
         let text = format!("the robot takes {edge}{with}{moves} and senses {percept}.");
-        print_hanging(&mut self.out, &format!("Round {round}: "), &text)
+        self.lines.push(StoryLine::hanging(format!("Round {round}: "), text));
     }
 
     /// How many unexplored darts may be the other end of the edge that was just taken.
-    fn print_candidates(&mut self, contradicted: usize, left: usize) -> io::Result<()> {
+    fn add_candidates(&mut self, contradicted: usize, left: usize) {
         if contradicted + left == 0 {
-            return self.print_line("No other dart is unexplored.");
+            return self.add_line("No other dart is unexplored.");
         }
         let darts = counted(contradicted + left, "dart");
         let ruled_out = match contradicted {
@@ -160,61 +179,60 @@ impl<W: Write> Story<W> {
             0 => "no candidate".to_owned(),
             some => counted(some, "candidate"),
         };
-        self.print_line(format!(
+        self.add_line(format!(
             "Possible other ends: {darts}. The percept rules out {ruled_out}: {left} left."
-        ))
+        ));
     }
 
     /// A candidate is rejected.
-    fn print_rejected(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
+    fn add_rejected(&mut self, journey: &Journey, what: &str, why: &str) {
         self.rejected += 1;
         if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
             self.moves_not_printed += journey.moves() - self.moves;
             self.moves = journey.moves();
-            return Ok(());
+            return;
         }
         let moves = self.take_moves(journey);
-        self.print_line(format!("Candidate {what}: rejected {why}{moves}."))
+        self.add_line(format!("Candidate {what}: rejected {why}{moves}."));
     }
 
     /// A candidate is confirmed.
-    fn print_confirmed(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
-        self.print_omitted()?;
+    fn add_confirmed(&mut self, journey: &Journey, what: &str, why: &str) {
+        self.add_omitted();
         let moves = self.take_moves(journey);
-        self.print_line(format!("Candidate {what}: confirmed, {why}{moves}."))
+        self.add_line(format!("Candidate {what}: confirmed, {why}{moves}."));
     }
 
     /// How many rejected candidates were not printed.
-    fn print_omitted(&mut self) -> io::Result<()> {
+    fn add_omitted(&mut self) {
         let (rejected, moves) =
             (mem::take(&mut self.rejected), mem::take(&mut self.moves_not_printed));
         if rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
             let more = grouped((rejected - PRINTED_REJECTIONS) as u128);
-            self.print_line(format!("... and {more} more, all rejected{}.", in_moves(moves)))?;
+            self.add_line(format!("... and {more} more, all rejected{}.", in_moves(moves)));
         }
-        Ok(())
     }
 
     /// The doors since they were last printed, if they are wanted.
-    fn print_doors(&mut self) -> io::Result<()> {
+    fn add_doors(&mut self) {
         if !self.detail.doors {
-            return Ok(());
+            return;
         }
         let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
-        print_hanging(&mut self.out, "  Doors: ", &doors.join(" "))
+        self.lines.push(StoryLine::hanging("  Doors: ".to_owned(), doors.join(" ")));
     }
 
-    fn print_map(&mut self, map: &PartialMap) -> io::Result<()> {
-        self.print_doors()?;
+    fn add_map(&mut self, map: &PartialMap) {
+        self.add_doors();
         let unexplored = map.unexplored_count() as usize;
         let edges = counted((map.dart_count() - unexplored) / 2, "edge");
         let (vertices, unexplored) = (vertices(map.vertex_count()), counted(unexplored, "dart"));
-        self.print_line(format!("Known: {vertices}, {edges}. Unexplored: {unexplored}."))
+        self.add_line(format!("Known: {vertices}, {edges}. Unexplored: {unexplored}."));
     }
 
     /// A line of a round.
-    fn print_line(&mut self, text: impl Display) -> io::Result<()> {
-        print_indented(&mut self.out, "  ", 4, &text.to_string())
+    fn add_line(&mut self, text: impl Display) {
+        self.lines.push(StoryLine { head: "  ".to_owned(), indent: 4, text: text.to_string() });
     }
 
     /// The moves since the last line, in parentheses.
@@ -223,11 +241,47 @@ impl<W: Write> Story<W> {
     }
 }
 
-impl<W: ?Sized, O: Write> Observer<W> for Story<O> {
-    fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
-        if self.result.is_ok() {
-            self.result = self.print_event(journey, event);
+/// A story that is printed while the run goes on, if there is an output.
+#[derive(Debug)]
+pub struct PrintedStory<W> {
+    story: Story,
+    out: Option<W>,
+    result: io::Result<()>,
+}
+
+impl<W: Write> PrintedStory<W> {
+    /// A story without events.
+    pub fn new(story: Story, out: Option<W>) -> Self {
+        Self { story, out, result: Ok(()) }
+    }
+
+    /// Prints the lines since the last call, and returns them.
+    pub fn print(&mut self) -> Vec<StoryLine> {
+        let lines = mem::take(&mut self.story.lines);
+        if let (Ok(()), Some(out)) = (&self.result, &mut self.out) {
+            self.result = lines.iter().try_for_each(|line| line.print(out));
         }
+        lines
+    }
+
+    /// Puts an event into words and prints them. Returns the new lines.
+    pub fn add(&mut self, journey: &Journey, event: MappingEvent) -> Vec<StoryLine> {
+        self.story.add_event(journey, event);
+        self.print()
+    }
+
+    /// The output, after the last event.
+    ///
+    /// # Errors
+    /// Returns the first error of the output.
+    pub fn finish(self) -> io::Result<Option<W>> {
+        self.result.map(|()| self.out)
+    }
+}
+
+impl<W: ?Sized, O: Write> Observer<W> for PrintedStory<O> {
+    fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
+        self.add(journey, event);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use thiserror::Error;
-use toposlam_draw::story::{Story, StoryDetail, head};
+use toposlam_draw::story::{PrintedStory, Story, StoryDetail};
 use toposlam_model::{enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, Journey, MappingAlgorithm, MappingError, MappingEvent, Observer}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World}};
 
 use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, world::CoreWorld};
@@ -66,7 +66,7 @@ impl MarkerCarrier for StoppableWorld<'_, '_> {
 
 /// The story and the actions of a run.
 struct Recorder {
-    story: Story<Vec<u8>>,
+    story: PrintedStory<Vec<u8>>,
     actions: Vec<Action>,
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn explore(
         let marked = GraphWorld::with_marker(&world.graph, algorithm.marker(), facing);
         let mut robot = StoppableWorld { world: marked, watcher };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = Story::with_head(Vec::new(), &head(world, facing), detail);
+        let story = PrintedStory::new(Story::new(world, facing, detail), Some(Vec::new()));
         let mut recorder = Recorder { story, actions: Vec::new() };
         let (journey, mapped) = algorithm.map_world(&mut robot, max_darts, &mut recorder);
         let judged = mapped.map(|()| {
@@ -125,7 +125,7 @@ pub(crate) fn explore(
     let graph = graph.ok_or_else(|| error(py, "InternalError", "the map is not complete"))?;
     let about = format!("The map of {}, made in {} moves", world.name, journey.moves());
     let map = NamedWorld::numbered(&format!("{}-map", world.name), &about, graph, Some(FACING));
-    let story = recorder.story.finish().unwrap_or_default();
+    let story = recorder.story.finish().ok().flatten().unwrap_or_default();
     Ok(Explored {
         moves: journey.moves(),
         actions: crate::comparison::actions(py, &recorder.actions)?,

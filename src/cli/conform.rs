@@ -61,7 +61,7 @@ use robot_marker::RobotMarker;
 Examples:
   toposlam simulate worlds/shape-6.toml --by-scene --log run.mcap
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
-  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml \\
+  toposlam conform theirs.bag --topics topics.toml --calibration camera.toml \\
     --colours colours.toml
   toposlam conform scans.log.gz --driver anyone --marker directional \\
     --assume-marker
@@ -94,7 +94,7 @@ pub(super) struct ConformArguments {
     /// The robot's marker [default: from the log, or else directional]
     #[arg(long, value_enum, value_name = "MARKER")]
     marker: Option<RobotMarker>,
-    /// For events inferred from laser scans: check the log as if a marker had lain at the place that --mapping
+    /// For events inferred from laser scans: check the log as if a marker had lain at the place that --topics
     /// gives, or else at the first junction that the robot visited, along its entry door
     #[arg(long)]
     assume_marker: bool,

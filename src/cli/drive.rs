@@ -38,7 +38,7 @@ toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
                       --colours <FILE>
        toposlam drive [OPTIONS] --ros <URI> --sensor laser",
     after_help = help_end(
-        NOTES,
+        &notes(),
         &[
             (0, "the building is mapped"),
             (1, "the robot gave up"),
@@ -63,21 +63,9 @@ pub(super) struct DriveArguments {
     colours: Option<PathBuf>,
     #[command(flatten)]
     options: RunOptions,
-    /// The topic of images: sensor_msgs/CompressedImage
-    #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
-    image_topic: String,
-    /// With --sensor laser: the topic of scans, sensor_msgs/LaserScan
-    #[arg(long, value_name = "TOPIC", default_value = SCAN)]
-    scan_topic: String,
-    /// With --sensor laser: the topic of the marker's pose, geometry_msgs/PoseStamped
-    #[arg(long, value_name = "TOPIC", default_value = MARKER)]
-    marker_topic: String,
-    /// The topic of odometry: nav_msgs/Odometry, stamped by the same clock as the images
-    #[arg(long, value_name = "TOPIC", default_value = ODOM)]
-    odom_topic: String,
-    /// The topic of wheel commands: geometry_msgs/Twist
-    #[arg(long, value_name = "TOPIC", default_value = CMD_VEL)]
-    cmd_vel_topic: String,
+    /// Use another topic (repeatable); the topics are listed below
+    #[arg(long, value_name = "WHAT=TOPIC", value_parser = topic)]
+    topic: Vec<(&'static str, String)>,
     /// Stop if the robot sends nothing for this long, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = patience)]
     patience: f64,
@@ -98,6 +86,25 @@ pub(super) struct DriveArguments {
     json: bool,
 }
 
+/// What each topic carries, its usual name and its type.
+const TOPICS: [(&str, &str, &str); 5] = [
+    ("images", IMAGE, "sensor_msgs/CompressedImage"),
+    ("scans", SCAN, "sensor_msgs/LaserScan, with --sensor laser"),
+    ("marker", MARKER, "geometry_msgs/PoseStamped, with --sensor laser"),
+    ("odometry", ODOM, "nav_msgs/Odometry, by the clock of the images"),
+    ("wheels", CMD_VEL, "geometry_msgs/Twist, to the robot"),
+];
+
+/// Parses what a topic carries, and its name.
+fn topic(text: &str) -> Result<(&'static str, String), String> {
+    let known = text.split_once('=').and_then(|(what, name)| {
+        let (what, ..) = TOPICS.iter().find(|(known, ..)| *known == what)?;
+        Some((*what, name.to_owned()))
+    });
+    let names = TOPICS.map(|(what, ..)| what).join(", ");
+    known.ok_or_else(|| format!("write WHAT=TOPIC, as in images=/camera; WHAT is one of {names}"))
+}
+
 /// Parses the time without messages.
 fn patience(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| (0.1..=60.0).contains(seconds));
@@ -113,6 +120,12 @@ impl DriveArguments {
 }
 
 /// Notes and examples.
+fn notes() -> String {
+    let topics =
+        TOPICS.map(|(what, topic, kind)| format!("  {what:<9} {topic:<26}  {kind}\n")).concat();
+    format!("Topics:\n{topics}\n{NOTES}")
+}
+
 const NOTES: &str =
     "The run is not checked against --plan while the robot drives. Check its log with toposlam conform.
 

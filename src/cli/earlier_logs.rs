@@ -29,7 +29,7 @@ pub(super) fn earlier_walks_of(
                 "it was made in another world, or from another start",
             ));
         }
-        let found = earlier_walks(&opened.log, &opened.mapping);
+        let found = earlier_walks(&opened.log, &opened.topics);
         let found = found.map_err(|error| CliError::in_file(path, error))?;
         if found.is_empty() {
             return Err(CliError::in_file(path, "it records no walk"));

@@ -31,7 +31,7 @@ use super::{
 };
 use crate::{
     picture::{self, WorldPicture},
-    story::{Story, StoryDetail, head},
+    story::{PrintedStory, Story, StoryDetail, head},
 };
 use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
@@ -233,7 +233,8 @@ impl ExploreArguments {
             RunPrinter::Summary(Summary::default(), out)
         } else {
             let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
-            RunPrinter::Story(Box::new(Story::new(out, world, facing, detail)))
+            let story = Story::new(world, facing, detail);
+            RunPrinter::Story(Box::new(PrintedStory::new(story, Some(out))))
         })
     }
 

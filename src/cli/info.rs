@@ -32,7 +32,7 @@ use super::{
 ///
 /// A log is a ROS 1 bag (version 2.0), an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events
 /// as JSON lines or CSV, from this program or any other. The command also lists the topics that could carry images, scans, odometry, motion,
-/// percepts and doors. If several topics could, or none is recognised, a mapping file selects the topic.
+/// percepts and doors. If several topics could, or none is recognised, a topics file selects the topic.
 ///
 /// A log is listed from its index, if it has one. --verify reads all of it, and compares it with its
 /// checksums and its index.
@@ -40,7 +40,7 @@ use super::{
 #[command(after_help = help_end(
     "\
 Examples:
-  toposlam info run.mcap --write-mapping mapping.toml
+  toposlam info run.mcap --write-topics topics.toml
   toposlam info run.mcap --verify
 
 A log that cannot be read is reported, and the others are shown.",
@@ -55,12 +55,12 @@ pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// Check that this mapping file fits each log
-    #[arg(long, value_name = "FILE", conflicts_with = "write_mapping")]
-    mapping: Option<PathBuf>,
-    /// Write a mapping file with the topics that are unambiguous
+    /// Check that this topics file fits each log
+    #[arg(long, value_name = "FILE", conflicts_with = "write_topics")]
+    topics: Option<PathBuf>,
+    /// Write a topics file with the topics that are unambiguous
     #[arg(long, value_name = "FILE")]
-    write_mapping: Option<PathBuf>,
+    write_topics: Option<PathBuf>,
     /// Read everything, and compare it with the checksums and the index of the log
     #[arg(long)]
     verify: bool,
@@ -88,7 +88,7 @@ struct Line<'l> {
     skipped: Option<SkippedLinesFields<'l>>,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
-    /// For each role, the topics that could carry it, or the one in the mapping file.
+    /// For each role, the topics that could carry it, or the one in the topics file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
 }
 
@@ -131,13 +131,13 @@ struct TopicLine<'l> {
 
 impl InfoArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        if let Some(path) = &self.write_mapping {
+        if let Some(path) = &self.write_topics {
             output::check_place(path, &["toml"])?;
             if self.logs.len() > 1 {
-                return Err(CliError::at("--write-mapping", "this needs exactly one log"));
+                return Err(CliError::at("--write-topics", "this needs exactly one log"));
             }
         }
-        let mapping = match &self.mapping {
+        let topics = match &self.topics {
             None => None,
             Some(path) => {
                 let read = TopicMap::read(&input::read(path)?);
@@ -146,7 +146,7 @@ impl InfoArguments {
         };
         let mut inputs = SeveralInputs::new();
         for path in &self.logs {
-            let shown = self.show(out, path, mapping.as_ref());
+            let shown = self.show(out, path, topics.as_ref());
             if let (true, Err(error @ CliError::Input(_))) = (self.json, &shown) {
                 print_unread(out, &path.display().to_string(), &error.cause_in(path))?;
             }
@@ -163,7 +163,7 @@ impl InfoArguments {
         &self,
         out: &mut dyn Write,
         path: &Path,
-        mapping: Option<&(&PathBuf, TopicMap)>,
+        topics: Option<&(&PathBuf, TopicMap)>,
     ) -> Result<(ReadTo, Outcome), CliError> {
         let log = match input::log_or_cause(path)? {
             Ok(log) => log,
@@ -173,14 +173,14 @@ impl InfoArguments {
             }
             Err(error) => return Err(CliError::in_file(path, error)),
         };
-        if let Some((mapping_path, mapping)) = mapping {
-            mapping.bind(&log).map_err(|error| {
-                CliError::in_file(mapping_path, format!("{error} ({})", path.display()))
+        if let Some((topics_path, topics)) = topics {
+            topics.bind(&log).map_err(|error| {
+                CliError::in_file(topics_path, format!("{error} ({})", path.display()))
             })?;
         }
-        let carriers = carriers(&log, mapping.map(|(_, mapping)| mapping));
-        if let Some(target) = &self.write_mapping {
-            write_mapping(target, &log, &carriers)?;
+        let carriers = carriers(&log, topics.map(|(_, topics)| topics));
+        if let Some(target) = &self.write_topics {
+            write_topics(target, &log, &carriers)?;
         }
         let verification = if self.verify { Some(verify(path, &log)?) } else { None };
         if self.json {
@@ -218,9 +218,9 @@ enum ReadTo {
 }
 
 /// For each role, the names of the topics that carry it or could carry it.
-fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static str, Vec<&'l str>)> {
-    if let Some(mapping) = mapping {
-        let carriers = mapping.carriers();
+fn carriers<'l>(log: &'l Log, topics: Option<&'l TopicMap>) -> Vec<(&'static str, Vec<&'l str>)> {
+    if let Some(topics) = topics {
+        let carriers = topics.carriers();
         return carriers.map(|(role, carrier)| (role.name(), vec![&*carrier.topic])).collect();
     }
     let name = |topic: usize| log.topics().get(topic).map(|topic| &*topic.name);
@@ -424,7 +424,7 @@ fn print(
     print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
     writeln!(out)?;
     if carriers.is_empty() {
-        writeln!(out, "No topic of a run is recognised; select topics with a mapping file.")?;
+        writeln!(out, "No topic of a run is recognised; select topics with a topics file.")?;
     }
     let rows: Vec<_> = carriers
         .iter()
@@ -440,9 +440,9 @@ fn print(
 }
 
 /// Writes the roles with one possible topic; those with several are comments.
-fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), CliError> {
-    let mapping = TopicMap::unambiguous(log);
-    if mapping.is_empty() {
+fn write_topics(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), CliError> {
+    let topics = TopicMap::unambiguous(log);
+    if topics.is_empty() {
         return Err(CliError::in_file(path, "no role has exactly one possible topic"));
     }
     let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
@@ -450,6 +450,6 @@ fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Resu
         let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
         format!("\n# [{role}]\n# topic = {}\n", topics.join(" or "))
     });
-    let text = mapping.to_toml() + &comments.collect::<String>();
+    let text = topics.to_toml() + &comments.collect::<String>();
     output::write_whole(path, text.as_bytes())
 }

@@ -26,7 +26,6 @@ mod safeguards;
 mod sense;
 mod simulate;
 mod skipped_lines;
-mod story_lines;
 mod version;
 mod walk_page;
 
@@ -144,13 +143,13 @@ fn without_ros() -> CliError {
 #[must_use]
 pub fn run(revision: Option<&str>) -> ExitCode {
     version::set_revision(revision);
-    let renamed = match old_names::with_new_command(env::args_os().collect()) {
+    let renamed = match old_names::with_new_names(env::args_os().collect()) {
         Ok(renamed) => renamed,
         Err(gone) => return gone.report(),
     };
     let arguments = parse(&renamed.arguments);
     arguments.terminal.apply();
-    if let Some(remark) = renamed.remark {
+    for remark in renamed.remarks {
         remark!("{remark}");
     }
     let mut out = ReportOutput::new(io::stdout().lock());

@@ -3,7 +3,7 @@
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgAction, Command, builder::UnknownArgumentValueParser};
+use clap::{Arg, Command, builder::UnknownArgumentValueParser};
 
 use super::CliError;
 
@@ -15,6 +15,10 @@ const COMMANDS: [(&str, &[&str]); 5] = [
     ("render", &["draw", "--pose=start"]),
     ("replay", &["conform", "--rerun"]),
 ];
+
+/// The old options and the new ones, which take the same values.
+const RENAMED: [(&str, &str); 2] =
+    [("--mapping", "--topics"), ("--write-mapping", "--write-topics")];
 
 /// The commands that are gone, and what takes their place.
 const GONE: [(&str, &str); 4] = [
@@ -30,15 +34,24 @@ const GONE: [(&str, &str); 4] = [
 /// The arguments with the new name of their command.
 pub(super) struct RenamedArguments {
     pub(super) arguments: Vec<OsString>,
-    /// Says the new name, if there is one.
-    pub(super) remark: Option<String>,
+    /// Each says a new name.
+    pub(super) remarks: Vec<String>,
 }
 
-/// Replaces an old command, the first argument that is not an option.
+/// Replaces old options, and an old command, the first argument that is not an option.
 ///
 /// # Errors
 /// Returns an error if the command is gone.
-pub(super) fn with_new_command(mut arguments: Vec<OsString>) -> Result<RenamedArguments, CliError> {
+pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArguments, CliError> {
+    let mut remarks = Vec::new();
+    for argument in &mut arguments {
+        let text = argument.to_string_lossy();
+        let (name, value) = text.split_at(text.find('=').unwrap_or(text.len()));
+        if let Some((old, new)) = RENAMED.iter().find(|(old, _)| *old == name) {
+            remarks.push(format!("`{old}` is now `{new}`"));
+            *argument = format!("{new}{value}").into();
+        }
+    }
     let is_value = |before: &OsString| before == "--color";
     let at = (1..arguments.len()).find(|&index| {
         !arguments[index].to_string_lossy().starts_with('-') && !is_value(&arguments[index - 1])
@@ -48,17 +61,16 @@ pub(super) fn with_new_command(mut arguments: Vec<OsString>) -> Result<RenamedAr
         return Err(CliError::at(*name, format!("this command is gone; {instead}")));
     }
     let renamed = COMMANDS.iter().find(|(old, _)| *old == name);
-    let (Some(at), Some((old, new))) = (at, renamed) else {
-        return Ok(RenamedArguments { arguments, remark: None });
-    };
-    let remark = format!("`{old}` is now `{}`", new.join(" "));
-    let name_of = |word: &str| word.split('=').next().unwrap_or_default().to_owned();
-    let is_given = |word: &&str| {
-        arguments.iter().any(|given| given.to_str().map(name_of) == Some(name_of(word)))
-    };
-    let words: Vec<_> = new.iter().filter(|word| !is_given(word)).map(OsString::from).collect();
-    arguments.splice(at..=at, words);
-    Ok(RenamedArguments { arguments, remark: Some(remark) })
+    if let (Some(at), Some((old, new))) = (at, renamed) {
+        remarks.push(format!("`{old}` is now `{}`", new.join(" ")));
+        let name_of = |word: &str| word.split('=').next().unwrap_or_default().to_owned();
+        let is_given = |word: &str| {
+            arguments.iter().any(|given| given.to_str().map(name_of) == Some(name_of(word)))
+        };
+        let words: Vec<_> = new.iter().filter(|word| !is_given(word)).map(OsString::from).collect();
+        arguments.splice(at..=at, words);
+    }
+    Ok(RenamedArguments { arguments, remarks })
 }
 
 /// An option that was renamed.
@@ -66,7 +78,6 @@ struct RenamedOption {
     verb: &'static [&'static str],
     old: &'static str,
     new: &'static str,
-    action: ArgAction,
 }
 
 const fn renamed(
@@ -74,15 +85,25 @@ const fn renamed(
     old: &'static str,
     new: &'static str,
 ) -> RenamedOption {
-    RenamedOption { verb, old, new, action: ArgAction::Set }
+    RenamedOption { verb, old, new }
 }
 
-const OPTIONS: [RenamedOption; 6] = [
+const OPTIONS: [RenamedOption; 16] = [
     renamed(&["check"], "max-edges", "--edges 1..=N"),
     renamed(&["counterexample"], "edges", "--max-edges"),
     renamed(&["counterexample"], "out", "--out-dir"),
     renamed(&["conform"], "edges", "--max-edges"),
     renamed(&["camera", "calibrate"], "start", "--initial"),
+    renamed(&["camera", "calibrate"], "mirror-radius", "--initial"),
+    renamed(&["camera", "calibrate"], "mirror-distance", "--initial"),
+    renamed(&["camera", "calibrate"], "camera-height", "--initial"),
+    renamed(&["camera", "calibrate"], "ahead", "--initial"),
+    renamed(&["camera", "calibrate"], "seen-from", "--initial"),
+    renamed(&["drive"], "image-topic", "--topic images=TOPIC"),
+    renamed(&["drive"], "scan-topic", "--topic scans=TOPIC"),
+    renamed(&["drive"], "marker-topic", "--topic marker=TOPIC"),
+    renamed(&["drive"], "odom-topic", "--topic odometry=TOPIC"),
+    renamed(&["drive"], "cmd-vel-topic", "--topic wheels=TOPIC"),
     renamed(&["simulate"], "picture-time", "--image-time"),
 ];
 
@@ -95,8 +116,7 @@ fn add(command: Command, renamed: &RenamedOption, verb: &[&str]) -> Command {
     let Some((first, rest)) = verb.split_first() else {
         let error = UnknownArgumentValueParser::suggest_arg(renamed.new);
         let old = Arg::new(renamed.old).long(renamed.old).hide(true);
-        return command
-            .arg(old.value_name("VALUE").action(renamed.action.clone()).value_parser(error));
+        return command.arg(old.value_name("VALUE").value_parser(error));
     };
     command.mut_subcommand(first, |command| add(command, renamed, rest))
 }

@@ -25,7 +25,7 @@ use super::{CliError, input, mapping_marker::AlgorithmOption};
 pub(super) struct LogOptions {
     /// What each topic carries [default: by the message types; see `toposlam info`]
     #[arg(long, value_name = "FILE")]
-    mapping: Option<PathBuf>,
+    topics: Option<PathBuf>,
     /// The camera calibration, for images [default: the one in the log]
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
@@ -37,8 +37,8 @@ pub(super) struct LogOptions {
 /// An open log.
 pub(super) struct OpenLog {
     pub(super) log: Log,
-    pub(super) mapping: TopicMap,
-    mapping_path: Option<PathBuf>,
+    pub(super) topics: TopicMap,
+    topics_path: Option<PathBuf>,
     calibration_path: Option<PathBuf>,
     pub(super) run: Option<Run>,
     sensing: Option<(Camera, ColourModel)>,
@@ -50,19 +50,19 @@ const ANNOTATED: &str = toposlam_logs::recorder::ANNOTATED;
 impl OpenLog {
     pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, CliError> {
         let log = input::open_log(path)?;
-        let mapping = match &sources.mapping {
+        let topics = match &sources.topics {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
                 .map_err(|error| CliError::in_file(file, error))?
                 .completed(&log),
         };
-        let mapping_path = sources.mapping.clone();
+        let topics_path = sources.topics.clone();
         let calibration_path = sources.calibration.clone();
         let mut opened =
-            Self { log, mapping, mapping_path, calibration_path, run: None, sensing: None };
-        let bound = opened.mapping.bind(&opened.log);
-        bound.map_err(|error| opened.wrong_mapping(path, &error))?;
-        opened.run = head(path, &opened.log, &opened.mapping)?;
+            Self { log, topics, topics_path, calibration_path, run: None, sensing: None };
+        let bound = opened.topics.bind(&opened.log);
+        bound.map_err(|error| opened.wrong_topics(path, &error))?;
+        opened.run = head(path, &opened.log, &opened.topics)?;
         opened.check_used(path, sources)?;
         opened.sensing =
             opened.sensing(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
@@ -76,8 +76,8 @@ impl OpenLog {
             return Ok(());
         };
         // Of several topics one may carry images; then another error names them.
-        let ambiguous = self.mapping_path.is_none() && TopicMap::from_log(&self.log).is_err();
-        if self.mapping.carrier(Role::Image).is_none() && !ambiguous {
+        let ambiguous = self.topics_path.is_none() && TopicMap::from_log(&self.log).is_err();
+        if self.topics.carrier(Role::Image).is_none() && !ambiguous {
             let cause = format!("this is for images, and {} has none", path.display());
             return Err(CliError::at(option, cause));
         }
@@ -89,7 +89,7 @@ impl OpenLog {
     /// # Errors
     /// Returns an error if there is none, for example because several topics could carry the same data.
     pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, CliError> {
-        if let Some(evidence) = Evidence::of(&self.mapping) {
+        if let Some(evidence) = Evidence::of(&self.topics) {
             return Ok(evidence);
         }
         if self.has_one_percept() {
@@ -98,7 +98,7 @@ impl OpenLog {
         if self.log.messages_total() == 0 {
             return Err(CliError::in_file(path, "the log is empty: it has no messages"));
         }
-        if self.mapping_path.is_none() {
+        if self.topics_path.is_none() {
             TopicMap::from_log(&self.log).map_err(|error| CliError::in_file(path, error))?;
         }
         Err(CliError::in_file(path, ExtractError::NothingMapped))
@@ -106,7 +106,7 @@ impl OpenLog {
 
     /// Whether the log has one percept and no doors: then its robot did not move.
     fn has_one_percept(&self) -> bool {
-        let Some(percept) = self.mapping.carrier(Role::Percept) else { return false };
+        let Some(percept) = self.topics.carrier(Role::Percept) else { return false };
         let topics = self.log.topics();
         topics.iter().any(|topic| topic.name == percept.topic && topic.messages == 1)
     }
@@ -144,7 +144,7 @@ impl OpenLog {
 
     /// The log and how its messages are read, with the sensor for its images if they are sensed.
     pub(super) fn source<'l>(&'l self, sensor: Option<&'l Sensor>) -> LogSource<'l> {
-        LogSource { log: &self.log, topics: &self.mapping, head: self.run.as_ref(), sensor }
+        LogSource { log: &self.log, topics: &self.topics, head: self.run.as_ref(), sensor }
     }
 
     /// The sensor that makes scenes of its images.
@@ -167,8 +167,8 @@ impl OpenLog {
     }
 
     /// The error for a topic map that does not fit its log.
-    pub(super) fn wrong_mapping(&self, log: &Path, error: &TopicMapError) -> CliError {
-        match &self.mapping_path {
+    pub(super) fn wrong_topics(&self, log: &Path, error: &TopicMapError) -> CliError {
+        match &self.topics_path {
             Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
             None => CliError::in_file(log, error),
         }
@@ -185,11 +185,11 @@ impl OpenLog {
     /// The last image up to a message, with its scene drawn over it if it is known.
     pub(super) fn image(&self, last_message: EventId) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
-        let mapping = match annotated {
+        let topics = match annotated {
             Some(_) => TopicMap::of(Role::Image, ANNOTATED),
-            None => self.mapping.only(&[Role::Image]),
+            None => self.topics.only(&[Role::Image]),
         };
-        let bound = mapping.bind(&self.log).ok()?;
+        let bound = topics.bind(&self.log).ok()?;
         let mut last = None;
         for entry in self.log.entries(&bound) {
             match entry.ok()? {
@@ -216,9 +216,9 @@ impl OpenLog {
 }
 
 /// The description of the run at the beginning of a log.
-fn head(path: &Path, log: &Log, mapping: &TopicMap) -> Result<Option<Run>, CliError> {
+fn head(path: &Path, log: &Log, topics: &TopicMap) -> Result<Option<Run>, CliError> {
     let failed = |error| CliError::in_file(path, error);
-    let Ok(bound) = mapping.only(&[Role::Run]).bind(log) else { return Ok(None) };
+    let Ok(bound) = topics.only(&[Role::Run]).bind(log) else { return Ok(None) };
     for entry in log.entries(&bound) {
         if let Content::Run(run) = entry.map_err(failed)?.content {
             return Ok(Some(run));

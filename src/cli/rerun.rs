@@ -86,11 +86,11 @@ impl Rerun<'_> {
         }
         let dart_bound = self.max_darts.unwrap_or(dart_bound);
         let settings = RunSettings { budget, ..RunSettings::new(method, dart_bound) };
-        let (log, topics) = (&opened.log, &opened.mapping);
+        let (log, topics) = (&opened.log, &opened.topics);
         let replay = replay(log, topics, opened.sensor(), &settings);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
-            ReplayError::TopicMap(error) => opened.wrong_mapping(self.log, &error),
+            ReplayError::TopicMap(error) => opened.wrong_topics(self.log, &error),
             ReplayError::Calibration(error) => opened.wrong_calibration(self.log, &error),
             error => CliError::in_file(self.log, error),
         })?;

@@ -69,7 +69,7 @@ pub(super) struct SenseArguments {
     scans: Option<ScanRange>,
     /// For logs: what each topic carries [default: by the message types]
     #[arg(long, value_name = "FILE")]
-    mapping: Option<PathBuf>,
+    topics: Option<PathBuf>,
     #[command(flatten)]
     laser: LaserOptions,
     /// Folder for a picture of each processing stage of each image or scan
@@ -137,7 +137,7 @@ impl SenseArguments {
                 return Err(CliError::at(option, "this is for images, and no input is an image"));
             }
         }
-        let for_logs = [("--scans", self.scans.is_some()), ("--mapping", self.mapping.is_some())];
+        let for_logs = [("--scans", self.scans.is_some()), ("--topics", self.topics.is_some())];
         let given = for_logs.into_iter().find(|&(_, is_given)| is_given).map(|(option, _)| option);
         if let Some(option) = given.or(self.laser.given()).filter(|_| !any_log) {
             return Err(CliError::at(option, "this is for laser scans, and no input is a log"));

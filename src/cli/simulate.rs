@@ -44,13 +44,12 @@ use super::{
     progress::{Progress, StopSignal},
     robot_sensor::SensorChoice,
     run_options::RunOptions,
-    story_lines::StoryLines,
     text::capital,
 };
 use crate::{
     page, picture,
     run_page_data::RunPageData,
-    story::{Story, StoryDetail},
+    story::{PrintedStory, Story, StoryDetail},
 };
 
 /// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
@@ -318,7 +317,7 @@ impl SimulateArguments {
         let progress = if hidden { progress.hidden() } else { progress };
         let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = Story::new(StoryLines::new(terminal), world, facing, detail);
+        let story = PrintedStory::new(Story::new(world, facing, detail), terminal);
         let mut capture = RunCapture::new(story, progress, images);
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));

@@ -273,7 +273,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[text], "text.mcap: "),
         (&[log, "--quirks", quirks], "cannot be tolerated"),
         (&[log, "--quirks", misspelt], "misspelt.toml: line 3, column 1: quirk[0].cuase: unknown"),
-        (&[log, "--mapping", mapping], "/nowhere"),
+        (&[log, "--topics", mapping], "/nowhere"),
         (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
@@ -543,7 +543,7 @@ fn the_marker_is_asked_for_if_it_is_not_recorded() {
     let topics = "[percept]\ntopic = \"/toposlam/percept\"\ndegree = \"degree\"\n\
                   [door]\ntopic = \"/toposlam/door\"\ndoor = \"door\"\n";
     fs::write(&mapping, topics).unwrap();
-    let mapping = ["--mapping", mapping.to_str().unwrap()];
+    let mapping = ["--topics", mapping.to_str().unwrap()];
     // Nothing is mapped as the marker: that is not a marker that was not seen.
     for arguments in [&[][..], &["--driver", "anyone"], &["--world", SHAPE_6]] {
         let output = run([&["conform", log][..], &mapping, arguments].concat());

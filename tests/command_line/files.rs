@@ -112,14 +112,14 @@ const OUTPUTS: [OutputOption; 41] = [
         ],
     ),
     output("sense", "--stages", &[]),
-    output("info", "--write-mapping", &[("l.toml", "info IN --write-mapping OUT")]),
+    output("info", "--write-topics", &[("l.toml", "info IN --write-topics OUT")]),
     output(
         "conform",
         "--html",
         &[
             ("l.html", "conform IN --html OUT"),
             ("w.html", "conform LOG --world IN --html OUT"),
-            ("m.html", "conform LOG --mapping IN --html OUT"),
+            ("m.html", "conform LOG --topics IN --html OUT"),
         ],
     ),
     output(
@@ -139,7 +139,7 @@ const OUTPUTS: [OutputOption; 41] = [
         "--map",
         &[
             ("l.toml", "conform --rerun IN --map OUT"),
-            ("m.toml", "conform --rerun LOG --mapping IN --map OUT"),
+            ("m.toml", "conform --rerun LOG --topics IN --map OUT"),
         ],
     ),
 ];
@@ -152,10 +152,10 @@ const INPUTS: [(&str, &[&str]); 8] = [
     ("draw", &["--calibration"]),
     ("camera calibrate", &["--initial"]),
     ("camera train", &["--images", "--labels", "--calibration"]),
-    ("sense", &["--calibration", "--colours", "--laser-params", "--mapping"]),
+    ("sense", &["--calibration", "--colours", "--laser-params", "--topics"]),
     (
         "conform",
-        &["--world", "--mapping", "--calibration", "--colours", "--quirks", "--laser-params"],
+        &["--world", "--topics", "--calibration", "--colours", "--quirks", "--laser-params"],
     ),
 ];
 
@@ -185,7 +185,7 @@ fn every_option_that_writes_a_file_is_in_the_list() {
                 known.insert("--hosts".to_owned());
             }
             "info" => {
-                known.insert("--mapping".to_owned());
+                known.insert("--topics".to_owned());
             }
             _ => {}
         }

@@ -88,7 +88,7 @@ const VERBS: [(&str, &[&str]); 13] = [
         "drive",
         &["--ros", "--calibration", "--log", "--map", "/cmd_vel", "conform", "--features ros1"],
     ),
-    ("info", &["--mapping", "--write-mapping", "--json"]),
+    ("info", &["--topics", "--write-topics", "--json"]),
     (
         "conform",
         &[

@@ -102,15 +102,15 @@ fn an_error_is_one_message_with_file_and_place() {
 fn a_topic_map_is_written_and_checked_against_its_log() {
     let mapping = folder("info").join("mapping.toml");
     let path = mapping.to_str().unwrap();
-    stdout_of(["info", RUN, "--write-mapping", path]);
+    stdout_of(["info", RUN, "--write-topics", path]);
     let text = fs::read_to_string(&mapping).unwrap();
     assert!(
         text.starts_with("[image]\ntopic = \"/camera/image/compressed\"\n\n[odometry]\n"),
         "{text}"
     );
-    let text = stdout_of(["info", RUN, "--mapping", path]);
+    let text = stdout_of(["info", RUN, "--topics", path]);
     assert!(text.contains("  odometry  /odom\n"), "{text}");
-    let output = run(["info", "fuzz/corpus/bag/bz2", "--mapping", path]);
+    let output = run(["info", "fuzz/corpus/bag/bz2", "--topics", path]);
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
     assert!(
@@ -118,14 +118,14 @@ fn a_topic_map_is_written_and_checked_against_its_log() {
         "{message}"
     );
     fs::write(&mapping, "[image]\ntopic = \"/a\"\nsize = 3\n").unwrap();
-    let output = run(["info", RUN, "--mapping", path]);
+    let output = run(["info", RUN, "--topics", path]);
     let message = stderr(&output);
     assert!(
         message.contains("mapping.toml: line 3, column 1: image.size: unknown key"),
         "{message}"
     );
     // Nothing is clear in this one.
-    let output = run(["info", "fuzz/corpus/bag/bz2", "--write-mapping", path]);
+    let output = run(["info", "fuzz/corpus/bag/bz2", "--write-topics", path]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no role has exactly one possible topic"));
 }

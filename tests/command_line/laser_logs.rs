@@ -114,7 +114,7 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
     for (at, options) in [
         (None, vec!["--assume-marker"]),
         // Nearer to the stem than to the other arms.
-        (Some("[0.5, -0.5, 2.8]"), vec!["--assume-marker", "--mapping", mapping_text]),
+        (Some("[0.5, -0.5, 2.8]"), vec!["--assume-marker", "--topics", mapping_text]),
     ] {
         if let Some(at) = at {
             fs::write(&mapping, format!("[marker]\nat = {at}\n")).unwrap();
@@ -132,7 +132,7 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
     }
     // In the known building the marker may lie anywhere.
     let world = ["--world", "worlds/real/seattle.toml", "--start", "any"];
-    let with_place = ["--assume-marker", "--mapping", mapping_text];
+    let with_place = ["--assume-marker", "--topics", mapping_text];
     let (code, lines) = conform(&log, &[&world[..], &with_place].concat());
     assert_eq!((code, &lines[2]["verdict"]), (Some(0), &"conforms".into()), "{lines:?}");
     // An undirected marker leaves open how the robot came back.
@@ -160,15 +160,15 @@ fn a_marker_that_is_assumed_is_bad_usage_unless_it_is_asked_for() {
     for (log, options, message) in [
         (
             &*log,
-            &["--mapping", mapping][..],
-            "[marker] at of --mapping: the log has no marker there; to assume one, add --assume-marker",
+            &["--topics", mapping][..],
+            "[marker] at of --topics: the log has no marker there; to assume one, add --assume-marker",
         ),
         (
             &log,
-            &["--mapping", flat, "--assume-marker"],
-            "[marker] at of --mapping: a directional marker needs a heading: at = [x, y, heading]",
+            &["--topics", flat, "--assume-marker"],
+            "[marker] at of --topics: a directional marker needs a heading: at = [x, y, heading]",
         ),
-        (&log, &["--mapping", fiducial], "the log has no topic \"/tag\"; it has: FLASER"),
+        (&log, &["--topics", fiducial], "the log has no topic \"/tag\"; it has: FLASER"),
         (
             &log,
             &["--assume-marker", "--marker", "none"],
@@ -279,7 +279,7 @@ fn a_real_building_and_its_twin_on_the_torus_explain_the_same_log() {
     let log = logs.join("aces.log.gz");
     let log = log.to_str().unwrap();
     let marker =
-        ["--marker", "undirected", "--assume-marker", "--mapping", mapping.to_str().unwrap()];
+        ["--marker", "undirected", "--assume-marker", "--topics", mapping.to_str().unwrap()];
     for world in [&["--world", "worlds/real/aces.toml"][..], &["--class", "planar"]] {
         let (code, lines) = conform(log, &[&marker[..], world].concat());
         let verdict = lines.last().unwrap();

@@ -207,7 +207,7 @@ fn a_folder_of_rosbag2_is_one_log() {
     stdout_of(["conform", at, "--world", "worlds/shape-6.toml", "--html", html]);
     assert!(fs::read_to_string(html).unwrap().contains("conforms"));
     // The files of the folder are inputs.
-    let output = run(["info", at, "--write-mapping", file]);
+    let output = run(["info", at, "--write-topics", file]);
     assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
     fs::write(folder.join("metadata.yaml"), "relative_file_paths: [run_1.mcap]\n").unwrap();
     let output = run(["info", at]);

@@ -41,7 +41,7 @@ fn a_truncated_log_is_replayed_to_its_end_and_a_log_without_commands_is_an_error
     let bytes = fs::read(&log).unwrap();
     let mapping = folder.join("mapping.toml");
     fs::write(&mapping, "[odometry]\ntopic = \"/odom\"\n").unwrap();
-    let output = run(["conform", "--rerun", path, "--mapping", mapping.to_str().unwrap()]);
+    let output = run(["conform", "--rerun", path, "--topics", mapping.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("it has neither images nor scenes"), "{}", stderr(&output));
     fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();

@@ -1,21 +1,12 @@
 //! The story of audits and recoveries.
 
-use std::io::{self, Write};
-
 use toposlam_model::mapping::{Journey, SafeguardEvent};
 
 use super::Story;
-use crate::{
-    moment::grouped,
-    text::{counted, print_paragraph},
-};
+use crate::{moment::grouped, text::counted};
 
-impl<W: Write> Story<W> {
-    pub(super) fn print_safeguard(
-        &mut self,
-        journey: &Journey,
-        event: SafeguardEvent,
-    ) -> io::Result<()> {
+impl Story {
+    pub(super) fn add_safeguard(&mut self, journey: &Journey, event: SafeguardEvent) {
         let moves = match event {
             // An audit has its own moves.
             SafeguardEvent::AuditBegun | SafeguardEvent::AuditPassed { .. } => String::new(),
@@ -26,8 +17,8 @@ impl<W: Write> Story<W> {
             SafeguardEvent::AuditPassed { moves } => {
                 let moves = counted(moves as usize, "move");
                 let text = format!("Every percept of the audit is as the map predicts ({moves}).");
-                print_paragraph(&mut self.out, &text)?;
-                return self.print_doors();
+                self.add_paragraph(text);
+                return self.add_doors();
             }
             SafeguardEvent::Contradicted(contradiction) => {
                 format!("Contradiction{moves}: {contradiction}. The robot looks for the marker.")
@@ -53,7 +44,6 @@ impl<W: Write> Story<W> {
                 format!("The robot tries {} once more.", counted(doors, "blocked door"))
             }
         };
-        writeln!(self.out)?;
-        print_paragraph(&mut self.out, &text)
+        self.add_section(text);
     }
 }

@@ -7,13 +7,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::ValueEnum;
 use image::{GrayImage, RgbImage, imageops::grayscale};
 use serde::Serialize;
 use toposlam_vision::camera::{
-    Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
-    calibration::{self, CalibrationError},
-    fit_picture,
+    Camera, Mask, OpticsModel, SphericalMirror, calibration, fit_picture,
     rim::{self, Rim, RimError},
     unchanging,
 };
@@ -29,7 +26,7 @@ use crate::cli::{
 /// border of the image may cut off parts of the mirror's rim, and what is seen just inside of the rim may
 /// be as dark as what is outside. If the rim is not certain, no calibration is written: then take more
 /// images, or set the rim with --rim. The focal length is computed from the rim and from the mirror's
-/// radius and distance, which you measure.
+/// radius and distance, which you measure and write into the file of --initial.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -38,8 +35,10 @@ Example:
     --picture fit.png --mask-out mask.png
   toposlam camera calibrate view.png --rim 611,480,652 --out camera.toml
 
-Missing values are taken from --initial. Without it they are the SuperScout's: \
-radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
+What the images do not show (the mirror's radius and distance, the camera's height, the direction of ahead, and \
+the side from which the camera sees the mirror) is taken from --initial. Without it, it is that of the SuperScout: \
+radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below. For another robot, write a calibration, change \
+these values in the file, and use it as --initial.",
     &[
         (0, "the rim was found, or was given"),
         (2, "bad usage or input, or no rim was found for certain"),
@@ -59,21 +58,6 @@ pub(super) struct CalibrateArguments {
     /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
     initial: Option<PathBuf>,
-    /// Radius of the spherical mirror, in metres
-    #[arg(long, value_name = "METRES")]
-    mirror_radius: Option<f64>,
-    /// Distance from the camera's pinhole up to the sphere's centre, in metres
-    #[arg(long, value_name = "METRES")]
-    mirror_distance: Option<f64>,
-    /// Height of the pinhole above the floor, in metres
-    #[arg(long, value_name = "METRES")]
-    camera_height: Option<f64>,
-    /// Direction of ahead in the image, in degrees counter-clockwise from the right
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
-    ahead: Option<f64>,
-    /// Side from which the camera sees the mirror
-    #[arg(long, value_name = "WHERE")]
-    seen_from: Option<From>,
     /// Also draw the fit over the first image: .png, .jpg or .jpeg
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -91,14 +75,6 @@ pub(super) struct CalibrateArguments {
 struct GivenRim {
     centre: [f64; 2],
     radius: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum From {
-    /// Image right is the robot's left
-    Below,
-    /// Image right is the robot's right
-    Above,
 }
 
 /// The JSON line.
@@ -188,28 +164,12 @@ impl CalibrateArguments {
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
             return Err(CliError::in_file(path, cause));
         };
-        let mirror = SphericalMirror {
-            mirror_radius: self.mirror_radius.unwrap_or(mirror.mirror_radius),
-            mirror_distance: self.mirror_distance.unwrap_or(mirror.mirror_distance),
-            camera_height: self.camera_height.unwrap_or(mirror.camera_height),
-            ..mirror
-        };
-        let ahead = self.ahead.map_or(initial.ahead, f64::to_radians);
-        let seen_from = match self.seen_from {
-            Some(From::Below) => SeenFrom::Below,
-            Some(From::Above) => SeenFrom::Above,
-            None => initial.seen_from,
-        };
         let known = Camera {
             optics: OpticsModel::SphericalMirror(mirror),
-            ahead,
-            seen_from,
+            ahead: initial.ahead,
+            seen_from: initial.seen_from,
             ..Camera::superscout()
         };
-        // Report values out of range before the long work begins. Any focal length will do.
-        let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2].into(), ..mirror };
-        let probe = OpticsModel::SphericalMirror(some);
-        checked(&Camera { optics: probe, ..known.clone() })?;
         Ok((known, mirror))
     }
 
@@ -372,15 +332,8 @@ fn hundredth(number: f64) -> f64 {
 fn checked(camera: &Camera) -> Result<(), CliError> {
     let text = calibration::to_toml(camera);
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
-    match calibration::read(text.as_bytes(), nothing) {
-        Ok(_) => Ok(()),
-        // The options have the names of the keys.
-        Err(CalibrationError { position, kind }) if !position.key.is_empty() => {
-            let name = position.key.trim_start_matches("camera.").replace('_', "-");
-            Err(CliError::at(format!("--{name}"), kind))
-        }
-        Err(error) => Err(CliError::at("the calibration that was found", error)),
-    }
+    let read = calibration::read(text.as_bytes(), nothing);
+    read.map(|_| ()).map_err(|error| CliError::at("the calibration that was found", error))
 }
 
 fn same_size(

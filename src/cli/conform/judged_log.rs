@@ -76,7 +76,7 @@ impl ConformArguments {
     /// What the events are derived from: as chosen, or else the best that the log has.
     fn evidence(&self, path: &Path, opened: &OpenLog) -> Result<Evidence, CliError> {
         match self.events {
-            Some(source) if Evidence::from(source).is_in(&opened.mapping) => Ok(source.into()),
+            Some(source) if Evidence::from(source).is_in(&opened.topics) => Ok(source.into()),
             Some(_) => {
                 let cause = "the log does not have what this needs";
                 Err(CliError::at("--events", format!("{cause} ({})", path.display())))
@@ -100,20 +100,20 @@ fn not_checked(path: &Path, opened: &OpenLog, error: CheckError) -> CliError {
         CheckError::MarkerPlace(error) => match error {
             MarkerPlaceError::AssumedWithoutLaser => CliError::at("--assume-marker", error),
             MarkerPlaceError::AssumedBesideSightings => {
-                let cause = "the log has sightings of a marker: [marker] of --mapping";
+                let cause = "the log has sightings of a marker: [marker] of --topics";
                 CliError::at("--assume-marker", cause)
             }
-            MarkerPlaceError::MappedWithoutLaser => CliError::at("[marker] of --mapping", error),
+            MarkerPlaceError::MappedWithoutLaser => CliError::at("[marker] of --topics", error),
             MarkerPlaceError::PlaceNotAssumed => {
                 let cause = format!("{error}; to assume one, add --assume-marker");
-                CliError::at("[marker] at of --mapping", cause)
+                CliError::at("[marker] at of --topics", cause)
             }
             MarkerPlaceError::SightingsWithoutMarker => {
-                CliError::at("[marker] of --mapping", format!("{error}: --marker none"))
+                CliError::at("[marker] of --topics", format!("{error}: --marker none"))
             }
-            MarkerPlaceError::Assumed(error) => CliError::at("[marker] at of --mapping", error),
+            MarkerPlaceError::Assumed(error) => CliError::at("[marker] at of --topics", error),
         },
-        CheckError::Extract(ExtractError::TopicMap(error)) => opened.wrong_mapping(path, &error),
+        CheckError::Extract(ExtractError::TopicMap(error)) => opened.wrong_topics(path, &error),
         error @ CheckError::Judge(JudgeError::Marker(SightingError::NoDoor)) => {
             CliError::in_file(path, format!("{error}{WITHOUT_DOOR}"))
         }

@@ -53,7 +53,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &JudgedLog) -> Result<(), C
 fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError> {
     let failed = |error: &dyn std::error::Error| CliError::in_file(path, error);
     let log = &judged.opened.log;
-    let mapping = judged.opened.mapping.only(&[Role::Scan, Role::Odometry]);
+    let mapping = judged.opened.topics.only(&[Role::Scan, Role::Odometry]);
     let bound = mapping.bind(log).map_err(|error| failed(&error))?;
     let mut picture = LaserRunPicture::default();
     for entry in log.entries(&bound) {

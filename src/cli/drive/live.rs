@@ -10,7 +10,7 @@ use std::{
 use toposlam_logs::{
     messages,
     record::{Event, EventKind, RobotSensor, RunObserver},
-    recorder::{self, Recorder},
+    recorder::Recorder,
     world_hash,
     writer::LogWriteError,
 };
@@ -18,7 +18,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingEvent, Observer},
+    mapping::{Journey, MappingEvent},
 };
 use toposlam_robot::{
     explorer::RobotExplorer,
@@ -33,17 +33,16 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{CliError, DriveArguments, Outcome, result::DriveResult};
+use super::{CliError, DriveArguments, Outcome, TOPICS, result::DriveResult};
 use crate::{
     cli::{
         input, output,
         progress::Progress,
         robot_sensor::{SensorChoice, needs_camera},
-        story_lines::StoryLines,
         text::quoted,
         version,
     },
-    story::{Story, StoryDetail},
+    story::{PrintedStory, Story, StoryDetail},
 };
 
 impl DriveArguments {
@@ -78,11 +77,11 @@ impl DriveArguments {
         let stop = progress.clone();
         let topics = RobotTopics {
             master: self.ros.clone(),
-            images: self.image_topic.clone(),
-            scans: self.scan_topic.clone(),
-            marker: self.marker_topic.clone(),
-            odometry: self.odom_topic.clone(),
-            wheels: self.cmd_vel_topic.clone(),
+            images: self.topic("images"),
+            scans: self.topic("scans"),
+            marker: self.topic("marker"),
+            odometry: self.topic("odometry"),
+            wheels: self.topic("wheels"),
         };
         let patience = Duration::from_secs_f64(self.patience);
         let robot = match LiveRobot::connect(&topics, live, patience, move || stop.stop()) {
@@ -100,24 +99,34 @@ impl DriveArguments {
         let files = (&self.calibration, &self.colours);
         match (self.sensor, files) {
             (SensorChoice::Laser, (None, None)) => {
-                let is_default = self.image_topic == recorder::IMAGE;
-                if is_default { Ok(None) } else { Err(needs_camera("--image-topic")) }
+                self.check_unused_topics(&["images"], "camera")?;
+                Ok(None)
             }
             (SensorChoice::Laser, (Some(_), _)) => Err(needs_camera("--calibration")),
             (SensorChoice::Laser, (None, Some(_))) => Err(needs_camera("--colours")),
             (_, (None, _)) => Err(needed("--calibration")),
             (_, (_, None)) => Err(needed("--colours")),
             (_, (Some(camera), Some(colours))) => {
-                let topics = [
-                    ("--scan-topic", &self.scan_topic, recorder::SCAN),
-                    ("--marker-topic", &self.marker_topic, recorder::MARKER),
-                ];
-                if let Some((option, ..)) = topics.iter().find(|(_, topic, usual)| topic != usual) {
-                    return Err(CliError::at(option, "has an effect only with --sensor laser"));
-                }
+                self.check_unused_topics(&["scans", "marker"], "laser")?;
                 Ok(Some((input::read_camera(camera)?, input::read_colours(colours)?)))
             }
         }
+    }
+
+    /// Returns an error if a topic is given that only the other sensor has.
+    fn check_unused_topics(&self, unused: &[&str], sensor: &str) -> Result<(), CliError> {
+        let given = self.topic.iter().find(|(what, _)| unused.contains(what));
+        given.map_or(Ok(()), |(what, _)| {
+            let cause = format!("{what} has an effect only with --sensor {sensor}");
+            Err(CliError::at("--topic", cause))
+        })
+    }
+
+    /// The name of a topic.
+    fn topic(&self, what: &str) -> String {
+        let given = self.topic.iter().rev().find(|(given, _)| *given == what);
+        let usual = TOPICS.iter().find(|(known, ..)| *known == what).map(|(_, usual, _)| *usual);
+        given.map_or(usual.unwrap_or_default(), |(_, topic)| topic).to_owned()
     }
 
     #[expect(clippy::too_many_arguments, reason = "these are the parts of one run")]
@@ -132,13 +141,12 @@ impl DriveArguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
-        let lines = StoryLines::new(terminal);
         let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = match world {
-            Some((world, facing)) => Story::new(lines, world, *facing, detail),
-            None => Story::with_head(lines, &format!("A robot at {}.", self.ros), detail),
+            Some((world, facing)) => Story::new(world, *facing, detail),
+            None => Story::with_head(format!("A robot at {}.", self.ros), detail),
         };
-        let mut narrator = Narrator { story, progress };
+        let mut narrator = Narrator { story: PrintedStory::new(story, terminal), progress };
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
         let (mapping, mapped) = explorer.map(settings);
         let moves = explorer.moves();
@@ -220,22 +228,18 @@ impl DriveArguments {
     /// The command of this run, without the options for its outputs.
     fn command(&self) -> Result<String, CliError> {
         let path = |path: &std::path::PathBuf| path.display().to_string();
-        let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
         let options = [
             ("--ros", Some(self.ros.clone())),
             ("--sensor", (self.sensor == SensorChoice::Laser).then(|| "laser".to_owned())),
             ("--calibration", self.calibration.as_ref().map(path)),
             ("--colours", self.colours.as_ref().map(path)),
-            ("--image-topic", unless(&self.image_topic, recorder::IMAGE)),
-            ("--scan-topic", unless(&self.scan_topic, recorder::SCAN)),
-            ("--marker-topic", unless(&self.marker_topic, recorder::MARKER)),
-            ("--odom-topic", unless(&self.odom_topic, recorder::ODOM)),
-            ("--cmd-vel-topic", unless(&self.cmd_vel_topic, recorder::CMD_VEL)),
             ("--plan", self.plan.as_ref().map(path)),
             ("--start", self.start.clone()),
         ];
-        let options =
-            options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
+        let topics = self.topic.iter();
+        let topics = topics.map(|(what, topic)| ("--topic", Some(format!("{what}={topic}"))));
+        let options = options.into_iter().chain(topics);
+        let options = options.filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
         let words = words.into_iter().chain(self.options.words()?).chain(options.flatten());
         Ok(words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" "))
@@ -244,7 +248,7 @@ impl DriveArguments {
 
 /// Prints the story of the mapping algorithm and the progress.
 struct Narrator<'o, 'p> {
-    story: Story<StoryLines<'o>>,
+    story: PrintedStory<&'o mut dyn Write>,
     progress: &'p Progress,
 }
 
@@ -256,7 +260,7 @@ impl RunObserver for Narrator<'_, '_> {
     }
 
     fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
-        self.story.event(&mut (), journey, event);
+        self.story.add(journey, event);
     }
 
     fn stop(&self) -> bool {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 
 use super::{doors_writer::DoorsWriter, summary::Summary};
-use crate::story::Story;
+use crate::story::PrintedStory;
 
 /// Prints a run.
 pub(super) enum RunPrinter<'o, W: Write> {
@@ -14,7 +14,7 @@ pub(super) enum RunPrinter<'o, W: Write> {
     /// Counts, at the end.
     Summary(Summary, &'o mut W),
     /// Each round.
-    Story(Box<Story<&'o mut W>>),
+    Story(Box<PrintedStory<&'o mut W>>),
 }
 
 impl<W: Write> RunPrinter<'_, W> {

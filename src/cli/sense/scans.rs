@@ -76,15 +76,15 @@ impl SenseArguments {
     pub(super) fn sense_scans(&self, path: &Path, out: &mut dyn Write) -> Result<(), CliError> {
         let wrong = |error: &dyn std::fmt::Display| CliError::in_file(path, error.to_string());
         let log = input::open_log(path)?;
-        let mapping = match &self.mapping {
+        let topics = match &self.topics {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
                 .map_err(|error| CliError::in_file(file, error))?,
         };
-        if !Evidence::Laser.is_in(&mapping) {
+        if !Evidence::Laser.is_in(&topics) {
             return Err(wrong(&"this is no image, and no log with laser scans and odometry"));
         }
-        let bound = mapping.only(&[Role::Scan, Role::Odometry]).bind(&log);
+        let bound = topics.only(&[Role::Scan, Role::Odometry]).bind(&log);
         let bound = bound.map_err(|error| wrong(&error))?;
         if !self.json {
             writeln!(out, "{}", path.display())?;

@@ -1,6 +1,6 @@
 //! What is kept of a simulated run for its page and its picture: frames, arrivals, maps and the story.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{io::Write, path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
 use toposlam_logs::record::{Event, EventKind, Frame, RunObserver};
@@ -12,21 +12,22 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
-    mapping::{Journey, MappingEvent, Observer, PartialMap},
+    mapping::{Journey, MappingEvent, PartialMap},
     percept::Door,
 };
 use toposlam_simulator::run::Run;
 use toposlam_vision::{annotate, camera::Camera};
 
-use super::{CliError, Story};
+use super::CliError;
 use crate::{
-    cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines},
+    cli::{picture_file, progress::Progress, scene::in_words},
     run_page_data::{PageArrival, PageFrame, RunPageData},
+    story::{PrintedStory, StoryLine},
 };
 
 /// Observes a simulated run, and keeps what its page and its picture show.
 pub(super) struct RunCapture<'o> {
-    story: Story<StoryLines<'o>>,
+    story: PrintedStory<&'o mut dyn Write>,
     progress: Progress,
     images: KeptImages,
     rounds: Vec<PageFrame>,
@@ -35,8 +36,8 @@ pub(super) struct RunCapture<'o> {
     /// The latest door.
     door: Option<Door>,
     maps: Vec<PartialMap>,
-    /// The story up to the last frame.
-    unwrapped: UnwrappedStory,
+    /// The lines of the story.
+    lines: Vec<String>,
     moves: u64,
     /// The error of the first image that could not be written.
     failure: Option<CliError>,
@@ -59,10 +60,11 @@ const QUALITY: u8 = 60;
 
 impl<'o> RunCapture<'o> {
     pub(super) fn new(
-        story: Story<StoryLines<'o>>,
+        mut story: PrintedStory<&'o mut dyn Write>,
         progress: Progress,
         images: KeptImages,
     ) -> Self {
+        let lines = story.print().iter().map(StoryLine::to_string).collect();
         Self {
             story,
             progress,
@@ -71,7 +73,7 @@ impl<'o> RunCapture<'o> {
             arrivals: Vec::new(),
             door: None,
             maps: Vec::new(),
-            unwrapped: UnwrappedStory::default(),
+            lines,
             moves: 0,
             failure: None,
         }
@@ -82,15 +84,14 @@ impl<'o> RunCapture<'o> {
     /// # Errors
     /// Returns an error if the story or an image could not be written.
     pub(super) fn finish(
-        mut self,
+        self,
         name: &str,
         plan: &Arc<FloorPlan>,
         facing: Dart,
         run: &Run,
     ) -> Result<RunPageData, CliError> {
         self.progress.finish();
-        let story = self.story.finish()?.into_text();
-        self.unwrapped.read(&story);
+        self.story.finish()?;
         if let Some(failure) = self.failure {
             return Err(failure);
         }
@@ -108,7 +109,7 @@ impl<'o> RunCapture<'o> {
             facing,
             rounds: self.rounds,
             calls: calls.collect(),
-            story: self.unwrapped.lines,
+            story: self.lines,
             maps: self.maps,
             ending: String::new(),
         })
@@ -116,7 +117,6 @@ impl<'o> RunCapture<'o> {
 
     fn frame(&mut self, frame: &Frame, pose: Pose) {
         self.progress.part_done(1);
-        self.unwrapped.read(self.story.out().text());
         let round = PageFrame {
             time: frame.taken,
             pose,
@@ -125,7 +125,7 @@ impl<'o> RunCapture<'o> {
             scene: frame.scene.as_ref().map(in_words).unwrap_or_default(),
             command: None,
             image: self.annotated(frame),
-            story: self.unwrapped.lines.len(),
+            story: self.lines.len(),
             maps: self.maps.len(),
         };
         self.rounds.push(round);
@@ -149,44 +149,6 @@ impl<'o> RunCapture<'o> {
         let mut bytes = Vec::new();
         small.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, QUALITY)).ok()?;
         Some(bytes)
-    }
-}
-
-/// The lines of a story before they were wrapped for a terminal: a page wraps them itself. The story is read
-/// while it grows, each line once.
-#[derive(Default)]
-struct UnwrappedStory {
-    lines: Vec<String>,
-    /// The number of bytes that were read.
-    read: usize,
-}
-
-impl UnwrappedStory {
-    /// Reads the whole lines that a story has since it was last read.
-    fn read(&mut self, story: &str) {
-        let new = story.get(self.read..).unwrap_or_default();
-        let Some((whole, _)) = new.rsplit_once('\n') else { return };
-        whole.split('\n').for_each(|line| self.push(line));
-        self.read += whole.len() + 1;
-    }
-
-    fn push(&mut self, line: &str) {
-        /// The indent of a line that continues the one before, at least.
-        const CONTINUES: &str = "    ";
-        match self.lines.last_mut() {
-            // A paragraph is not indented: each of its lines but the last ends within a sentence.
-            Some(last)
-                if line.starts_with(CONTINUES)
-                    || !(last.is_empty()
-                        || line.is_empty()
-                        || line.starts_with(' ')
-                        || last.ends_with(['.', ':'])) =>
-            {
-                last.push(' ');
-                last.push_str(line.trim_start());
-            }
-            _ => self.lines.push(line.to_owned()),
-        }
     }
 }
 
@@ -218,7 +180,8 @@ impl RunObserver for RunCapture<'_> {
     }
 
     fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
-        self.story.event(&mut (), journey, event);
+        let lines = self.story.add(journey, event);
+        self.lines.extend(lines.iter().map(StoryLine::to_string));
         if event.grows_map() {
             self.maps.push(journey.map().clone());
         }
@@ -226,35 +189,5 @@ impl RunObserver for RunCapture<'_> {
 
     fn stop(&self) -> bool {
         self.failure.is_some() || self.progress.stop()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_story_for_a_page_is_not_wrapped() {
-        let story = "World w. The robot starts at a, with its back to the door to\nb.\nIt senses 2 doors.\n\n\
-                     Round 1: the robot takes v0.0 (1 move) and\n         senses 1 door.\n  \
-                     Candidate v1.1: rejected, sensed 3\n    doors (2 moves).\n  Known: 2 vertices.\n";
-        // However much of it is there when it is read.
-        for step in [1, 40, story.len()] {
-            let mut read = UnwrappedStory::default();
-            for end in (0..story.len()).step_by(step).chain([story.len()]) {
-                read.read(&story[..end]);
-            }
-            assert_eq!(
-                read.lines,
-                [
-                    "World w. The robot starts at a, with its back to the door to b.",
-                    "It senses 2 doors.",
-                    "",
-                    "Round 1: the robot takes v0.0 (1 move) and senses 1 door.",
-                    "  Candidate v1.1: rejected, sensed 3 doors (2 moves).",
-                    "  Known: 2 vertices.",
-                ]
-            );
-        }
     }
 }
