@@ -372,6 +372,6 @@ fn bad_hosts_are_refused() {
     for other in ["--shard 1/2", "--choices all", "--estimate", "--from worlds/petersen.toml"] {
         let ended = alone(&format!("check --hosts hosts.txt --process 0 {other}"));
         assert_eq!(ended.code, Some(2), "{other}: {}", ended.error);
-        assert!(ended.error.contains("cannot be shared by machines"), "{other}: {}", ended.error);
+        assert!(ended.error.contains("cannot be used with"), "{other}: {}", ended.error);
     }
 }

@@ -274,7 +274,8 @@ impl<W: Write> PrintedStory<W> {
     ///
     /// # Errors
     /// Returns the first error of the output.
-    pub fn finish(self) -> io::Result<Option<W>> {
+    pub fn finish(mut self) -> io::Result<Option<W>> {
+        self.print();
         self.result.map(|()| self.out)
     }
 }

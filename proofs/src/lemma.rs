@@ -1,5 +1,7 @@
 //! Lemmas and their declaration.
 
+use serde::Serialize;
+
 use crate::{
     bytes::Bytes,
     choose::CaseResult,
@@ -7,10 +9,11 @@ use crate::{
     replay::{CaseReplay, ChoicesError, ReplayedCase},
 };
 
-/// A lemma: a statement, and the engines that check it.
-#[derive(Clone, Copy, Debug)]
+/// A lemma: a statement, and the engines that check it. `toposlam proofs --json` prints it.
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Lemma {
     /// Its name.
+    #[serde(rename = "lemma")]
     pub name: &'static str,
     /// Its statement, a sentence.
     pub sentence: &'static str,
@@ -27,31 +30,35 @@ pub struct Lemma {
 }
 
 /// The check of a lemma on every case within a bound.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Exhaustive {
     /// The bound, in words.
     pub bound: &'static str,
     /// The number of cases within it. A check that finds another number fails.
     pub cases: u64,
     /// The lemma, for the driver that goes through all cases.
+    #[serde(skip)]
     pub body: fn(&mut ChoiceOdometer) -> CaseResult,
     /// The lemma, for making one case again.
+    #[serde(skip)]
     pub replay: fn(&mut CaseReplay) -> CaseResult,
 }
 
 /// The check of a lemma on random cases.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Sampled {
     /// The bound, in words.
     pub bound: &'static str,
     /// The lemma, for the driver that reads bytes.
+    #[serde(skip)]
     pub body: fn(&mut Bytes) -> CaseResult,
     /// The lemma, for making one case again.
+    #[serde(skip)]
     pub replay: fn(&mut CaseReplay) -> CaseResult,
 }
 
 /// The check of a lemma by Kani.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Kani {
     /// The bound, in words.
     pub bound: &'static str,

@@ -81,6 +81,9 @@ Ctrl-C stops the check and prints the results so far.",
              the connection to another process is lost; no probe of an estimate found a start"),
     ],
 ))]
+#[command(mut_arg("hosts", |hosts| {
+    hosts.conflicts_with_all(["shard", "from", "explorer", "estimate", "choices"])
+}))]
 pub(super) struct CheckArguments {
     /// Number of edges, as in 6, or a range, as in 1..=6
     #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
@@ -135,7 +138,7 @@ pub(super) struct CheckArguments {
 
     /// Record finished parts of the work in a folder. If a check is killed, the same command continues
     /// from there. With --hosts, process 0 records the parts of all
-    #[arg(long, value_name = "DIR", conflicts_with = "from")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["from", "choices"])]
     journal: Option<PathBuf>,
 
     /// Do not check: add up the results of the shards of a check, the files of --json; each shard must be
@@ -186,8 +189,6 @@ impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
-        self.check_shared_options()?;
-        self.check_cluster_options()?;
         self.ci.check_places()?;
         if self.add {
             return self.add_shards(out);
@@ -251,34 +252,6 @@ impl CheckArguments {
             write_worst(path, worst)?;
         }
         Ok(outcome)
-    }
-
-    /// With all choices, runs do not share their beginnings.
-    fn check_shared_options(&self) -> Result<(), CliError> {
-        match self.choices {
-            ChoicesOption::All if self.estimate.estimate => {
-                Err(needs_default_choices("--estimate"))
-            }
-            ChoicesOption::All if self.journal.is_some() => Err(needs_default_choices("--journal")),
-            ChoicesOption::All | ChoicesOption::Default => Ok(()),
-        }
-    }
-
-    /// The options of several machines.
-    fn check_cluster_options(&self) -> Result<(), CliError> {
-        let other = [
-            ("--shard", self.shard != Shard::WHOLE),
-            ("--from", self.from.is_some()),
-            ("--explorer", self.explorer.is_given()),
-            ("--estimate", self.estimate.estimate),
-            ("--choices", self.choices == ChoicesOption::All),
-        ];
-        match other.into_iter().find(|(_, is_given)| self.cluster.is_given() && *is_given) {
-            Some((option, _)) => {
-                Err(CliError::at(option, "this cannot be shared by machines; leave out --hosts"))
-            }
-            None => Ok(()),
-        }
     }
 
     /// Connects to the other processes, if there are others.

@@ -34,11 +34,6 @@ pub(super) struct ClusterOptions {
 pub(super) type SharedSetting = (&'static str, String);
 
 impl ClusterOptions {
-    /// Whether several processes share the work.
-    pub(super) fn is_given(&self) -> bool {
-        self.hosts.is_some()
-    }
-
     /// Connects to the other processes, if there are others.
     ///
     /// # Errors

@@ -71,7 +71,7 @@ pub(super) struct InfoArguments {
 
 /// What `--json` prints for a log.
 #[derive(Serialize)]
-struct Line<'l> {
+struct InfoLine<'l> {
     log: String,
     format: &'static str,
     compression: Option<&'static str>,
@@ -329,8 +329,8 @@ fn line<'l>(
     log: &'l Log,
     verification: Option<&Verification>,
     carriers: Vec<(&'static str, Vec<&'l str>)>,
-) -> Line<'l> {
-    Line {
+) -> InfoLine<'l> {
+    InfoLine {
         log: path.display().to_string(),
         format: format(log),
         compression: log.compression().map(FileCompression::name),

@@ -42,7 +42,7 @@ pub(super) struct Rerun<'a> {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Line {
+struct RerunLine {
     log: String,
     pictures: u64,
     moves: u64,
@@ -116,10 +116,10 @@ impl Rerun<'_> {
         Ok(outcome(&replay))
     }
 
-    fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Line {
+    fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> RerunLine {
         let map = replay.mapping.map();
         let both = |agreement: Agreement| [agreement.agree, agreement.of];
-        Line {
+        RerunLine {
             log: self.log.display().to_string(),
             pictures: replay.comparison.frames,
             moves: replay.mapping.moves(),

@@ -85,7 +85,7 @@ pub(super) struct SenseArguments {
 
 /// The JSON line of an image.
 #[derive(Serialize)]
-struct Line {
+struct ImageLine {
     image: String,
     #[serde(flatten)]
     scene: SceneLine,
@@ -190,7 +190,7 @@ impl SenseArguments {
         let scene = self.scene(camera, sensor, path, name)?;
         if self.json {
             let image = path.display().to_string();
-            return print_line(out, "image", &Line { image, scene: SceneLine::from(&scene) });
+            return print_line(out, "image", &ImageLine { image, scene: SceneLine::from(&scene) });
         }
         writeln!(out, "{}", path.display())?;
         for (label, text) in rows(&scene) {

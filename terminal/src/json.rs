@@ -15,7 +15,7 @@ const SCHEMA: u32 = 1;
 
 /// A line: its version, its kind and its content.
 #[derive(Serialize)]
-struct Line<'c, C> {
+struct VersionedLine<'c, C> {
     schema: u32,
     kind: &'static str,
     #[serde(flatten)]
@@ -23,7 +23,7 @@ struct Line<'c, C> {
 }
 
 fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String> {
-    Ok(serde_json::to_string(&Line { schema: SCHEMA, kind, content })?)
+    Ok(serde_json::to_string(&VersionedLine { schema: SCHEMA, kind, content })?)
 }
 
 /// Prints an object on a line of its own, after its version and its kind.

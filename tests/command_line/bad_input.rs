@@ -210,8 +210,8 @@ fn an_option_without_effect_is_an_error() {
         (&["simulate", WORLD, "--by-scene", "--effects", "none"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--effect", "blur=1"], "cannot be used with"),
         (&["simulate", WORLD, "--by-scene", "--size", "640x480"], "cannot be used with"),
-        (&["simulate", WORLD, "--speed", "2"], "--speed: this needs --ros"),
-        (&["simulate", WORLD, "--by-scene", "--speed", "2"], "--speed: this needs --ros"),
+        (&["simulate", WORLD, "--speed", "2"], "not provided:\n  --ros <URI>"),
+        (&["simulate", WORLD, "--by-scene", "--speed", "2"], "not provided:\n  --ros <URI>"),
         (
             &[
                 "draw", WORLD, "--pose", "start", "--effect", "blur=1", "--effect", "blur=2",

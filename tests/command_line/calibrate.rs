@@ -298,5 +298,5 @@ fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
         assert!(stdout(&output).is_empty() && names_in(&folder).is_empty(), "{arguments:?}");
     }
     let output = run(["camera", "calibrate", image, "--mask-out", &mask]);
-    assert!(stderr(&output).starts_with("error: --mask-out: this goes with --out"));
+    assert!(stderr(&output).contains("not provided:\n  --out <FILE>"));
 }

@@ -63,7 +63,7 @@ pub(super) struct CalibrateArguments {
     picture: Option<PathBuf>,
     /// Also write a mask without the pixels that never change (body, struts, lens): .png; needs at least
     /// four images from different places
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", requires = "out")]
     mask_out: Option<PathBuf>,
     /// Print one JSON object, and the calibration only to --out
     #[arg(long)]
@@ -146,9 +146,6 @@ impl CalibrateArguments {
             if let Some(path) = path {
                 output::check_place(path, endings)?;
             }
-        }
-        if let (Some(_), None) = (&self.mask_out, &self.out) {
-            return Err(CliError::at("--mask-out", "this goes with --out, the file that names it"));
         }
         Ok(())
     }

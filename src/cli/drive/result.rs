@@ -39,7 +39,7 @@ pub(super) struct DriveResult<'a> {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Line<'a> {
+struct DriveLine<'a> {
     world: &'a str,
     ending: &'a str,
     error: Option<String>,
@@ -126,7 +126,7 @@ impl DriveResult<'_> {
             Err(MappingError::World(ExplorerError::Budget { .. })) => "out-of-budget",
             Err(_) => "gave-up",
         };
-        let line = Line {
+        let line = DriveLine {
             world: self.world,
             ending,
             error: self.mapped.err().map(ToString::to_string),

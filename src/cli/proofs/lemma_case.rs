@@ -60,7 +60,7 @@ impl<'a> LemmaCase<'a> {
             Err(Stop::Excluded) => (Outcome::Incomplete, "excluded"),
         };
         if json {
-            let line = Line {
+            let line = CaseLine {
                 lemma: self.lemma.name,
                 engine: self.engine.name(),
                 choices: self.choices,
@@ -115,7 +115,7 @@ fn command(lemma: &Lemma, engine: Engine, choices: &[u8]) -> String {
 
 /// The line of `--json` for a case.
 #[derive(Serialize)]
-struct Line<'a> {
+struct CaseLine<'a> {
     lemma: &'a str,
     engine: &'a str,
     choices: &'a [u8],

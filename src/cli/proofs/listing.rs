@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
+use toposlam_proofs::{Lemma, Theorem, theorems::FILE};
 
 use super::cases;
 use crate::cli::{
@@ -86,36 +86,6 @@ fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
     print_hanging(out, &format!("  {label:width$}  "), text)
 }
 
-/// The line of `--json` for a lemma.
-#[derive(Serialize)]
-struct Line<'a> {
-    lemma: &'a str,
-    sentence: &'a str,
-    paper: &'a str,
-    file: &'a str,
-    exhaustive: ExhaustiveLine<'a>,
-    sampled: Option<SampledLine<'a>>,
-    kani: Option<KaniLine<'a>>,
-}
-
-#[derive(Serialize)]
-struct ExhaustiveLine<'a> {
-    bound: &'a str,
-    cases: u64,
-}
-
-#[derive(Serialize)]
-struct SampledLine<'a> {
-    bound: &'a str,
-}
-
-#[derive(Serialize)]
-struct KaniLine<'a> {
-    bound: &'a str,
-    unwind: u32,
-    harness: &'a str,
-}
-
 /// The line of `--json` for a theorem.
 #[derive(Serialize)]
 struct TheoremLine<'a> {
@@ -147,17 +117,7 @@ fn print_json(
     theorems: &[Theorem],
 ) -> Result<(), CliError> {
     for lemma in lemmas {
-        let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
-        let line = Line {
-            lemma: name,
-            sentence,
-            paper,
-            file,
-            exhaustive: ExhaustiveLine { bound: exhaustive.bound, cases: exhaustive.cases },
-            sampled: sampled.map(|sampled| SampledLine { bound: sampled.bound }),
-            kani: kani.map(|Kani { bound, unwind, harness }| KaniLine { bound, unwind, harness }),
-        };
-        print_line(out, "lemma", &line)?;
+        print_line(out, "lemma", lemma)?;
     }
     for Theorem { name, sentence, paper } in theorems {
         let coq = CoqLine { bound: EVERY_WORLD };

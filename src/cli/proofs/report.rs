@@ -173,7 +173,7 @@ fn failed_case<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<Lemma
 
 /// The line of `--json` for a lemma.
 #[derive(Serialize)]
-struct Line<'a> {
+struct CheckLine<'a> {
     lemma: &'a str,
     /// The number of cases before the first one in which it fails.
     cases: u64,
@@ -204,7 +204,7 @@ fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Resu
         CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => Outcome::Violated,
         CheckEnd::Interrupted { .. } => Outcome::Incomplete,
     };
-    let line = Line {
+    let line = CheckLine {
         lemma: lemma.name,
         cases: end.cases(),
         seconds: *seconds,

@@ -49,7 +49,7 @@ const SHOWN: f64 = 0.01;
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Line {
+struct SimulationLine {
     plan: String,
     start: String,
     seed: u64,
@@ -185,7 +185,7 @@ impl SimulationResult<'_> {
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let run = self.run;
         let divergence = run.divergence();
-        let line = Line {
+        let line = SimulationLine {
             plan: self.world.name.clone(),
             start: self.world.start_text(self.facing),
             seed: self.seed,

@@ -107,7 +107,7 @@ impl TrainingReport<'_> {
         print_line(
             out,
             "training",
-            &Line {
+            &TrainingLine {
                 images: self.training.images(),
                 left_out: left_out.collect(),
                 folds,
@@ -122,7 +122,7 @@ impl TrainingReport<'_> {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Line<'t> {
+struct TrainingLine<'t> {
     images: usize,
     left_out: Vec<Value>,
     folds: Option<usize>,
