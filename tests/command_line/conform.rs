@@ -1,16 +1,12 @@
-//! `toposlam conform`: what is stdout_of of a log, with which exit code, and what is written.
+//! `toposlam conform`: the verdicts and their facts, with which exit code, and what is written.
+//!
+//! The sentences are in `tests/snapshots/conform`.
 
-use std::{
-    cell::Cell,
-    f64::consts::PI,
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{cell::Cell, f64::consts::PI, path::Path, process::Command};
 
 use serde_json::{Value, json};
 use toposlam_logs::{
-    messages::{Door, Percept, ProjectMessage, Scene, Stamp},
+    messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
     recorder::ODOM,
     standard::{OdometryMessage, Twist},
     writer::LogWriter,
@@ -18,47 +14,79 @@ use toposlam_logs::{
 use toposlam_model::{counts::grouped, driving};
 
 use super::{
+    Scratch,
     containers::{rewritten, set_stamp, stamp},
-    folder, objects, run, stderr, stdout, stdout_of,
+    has, objects, read_world, stderr, stdout,
 };
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
+const OF_SHAPE_6: &str = "conform run.mcap --world worlds/shape-6.toml";
+const OF_SHAPE_8: &str = "conform run.mcap --world worlds/shape-8.toml";
 
-/// The log of a run without images. Algorithm 1 maps, unless the arguments choose how.
-pub(super) fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
-    let log = folder.join("run.mcap");
-    let simulate = ["simulate", world, "--by-scene", "--json", "--log", log.to_str().unwrap()];
-    let chooses = arguments.iter().any(|word| ["--algorithm", "--recover"].contains(word));
-    let algorithm: &[&str] = if chooses { &[] } else { &["--algorithm", "algorithm1"] };
-    run([&simulate[..], algorithm, arguments].concat());
-    log
+/// A folder with the log of a run without images, `run.mcap`. Algorithm 1 maps, unless the options choose how.
+fn logged(name: &str, world: &str, options: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    log(&scratch, world, options);
+    scratch
 }
 
-/// The log of a run in shape 6, and the file of its page.
-fn log_and_page(name: &str) -> [PathBuf; 2] {
-    let folder = folder(name);
-    [logged(&folder, SHAPE_6, &["--seed", "3"]), folder.join("report.html")]
+fn log(scratch: &Scratch, world: &str, options: &str) {
+    let chooses = ["--algorithm", "--recover"].iter().any(|option| options.contains(option));
+    let algorithm = if chooses { "" } else { "--algorithm algorithm1" };
+    scratch.run(&format!("simulate {world} --by-scene --log run.mcap {algorithm} {options}"));
 }
 
-/// The exit code and what `--json` says.
-pub(super) fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
-    let conform = ["conform", log.to_str().unwrap(), "--json"];
-    let output = run([&conform[..], arguments].concat());
-    let code = output.status.code();
-    assert!(code != Some(2), "{}", stderr(&output));
-    let lines = objects(&stdout(&output));
-    (code, lines.into_iter().find(|line| line["kind"] == "log").unwrap())
+/// What `--json` prints of a log.
+fn judged(scratch: &Scratch, line: &str, code: i32) -> Value {
+    let lines = scratch.lines(line, code);
+    lines.into_iter().find(|line| line["kind"] == "log").unwrap()
+}
+
+/// Runs the command that a report gives for its shorter log.
+fn again(scratch: &Scratch, report: &Value) -> Value {
+    let command = report["command"].as_str().unwrap().strip_prefix("toposlam ").unwrap();
+    scratch.last(command, 1)
+}
+
+/// Writes `walk.mcap`: percepts and doors of a robot without numbers, shapes and odometry.
+fn walk(scratch: &Scratch, steps: &[(u32, i32, Option<u32>)]) {
+    let log = written(None, steps);
+    scratch.write("walk.mcap", log);
+}
+
+fn written(head: Option<Run>, steps: &[(u32, i32, Option<u32>)]) -> Vec<u8> {
+    let mut writer = LogWriter::new(Vec::new()).unwrap();
+    if let Some(head) = head {
+        writer.write(Run::TOPIC, 0, &head).unwrap();
+    }
+    for (moves, &(degree, marker, door)) in steps.iter().enumerate() {
+        let time = 2 * moves as u64;
+        let stamp = |second| Stamp { sec: second as i32, nanosec: 0 };
+        let number = moves as u32;
+        let percept = Percept {
+            stamp: stamp(time),
+            r#move: number,
+            degree,
+            marker,
+            form: [false; 4],
+            entry: f64::NAN,
+        };
+        writer.write(Percept::TOPIC, time, &percept).unwrap();
+        if let Some(door) = door {
+            let message = Door { stamp: stamp(time + 1), r#move: number + 1, door };
+            writer.write(Door::TOPIC, time + 1, &message).unwrap();
+        }
+    }
+    writer.finish().unwrap()
 }
 
 /// The junctions that the robot visited are the same, whether they are recorded or inferred.
 #[test]
 fn each_visit_is_a_line_if_the_source_of_events_is_chosen() {
-    let log = logged(&folder("conform-visits"), SHAPE_6, &["--seed", "3"]);
+    let scratch = logged("conform-visits", SHAPE_6, "--seed 3");
     let visits = |source: &str| {
-        let log = log.to_str().unwrap();
-        let output = run(["conform", log, "--json", "--world", SHAPE_6, "--events", source]);
-        let mut lines = objects(&stdout(&output));
+        let mut lines = scratch.lines(&format!("{OF_SHAPE_6} --events {source}"), 0);
         assert_eq!(lines.pop().unwrap()["kind"], "log");
         let fields = ["kind", "index", "degree", "door", "marker", "turned_back"];
         let chosen = |line: &Value| fields.map(|field| line[field].clone());
@@ -68,240 +96,269 @@ fn each_visit_is_a_line_if_the_source_of_events_is_chosen() {
     assert_eq!(recorded, visits("scenes"));
     // 15 events: percepts, and a door after each but the last.
     assert_eq!(recorded.len(), 8);
-    assert_eq!(
-        recorded[0][..],
-        serde_json::json!(["event", 0, 2, 0, 0, false]).as_array().unwrap()[..]
-    );
+    assert_eq!(json!(recorded[0]), json!(["event", 0, 2, 0, 0, false]));
     assert_eq!(recorded[7][3], Value::Null);
 }
 
 #[test]
 fn a_correct_log_conforms_to_its_world_to_some_world_and_by_its_scenes() {
-    let log = logged(&folder("conform-good"), SHAPE_6, &["--seed", "3"]);
-    for arguments in [
-        &["--world", SHAPE_6][..],
-        &["--world", SHAPE_6, "--start", "any"],
-        &["--world", SHAPE_6, "--events", "scenes"],
-        &[],
-        &["--class", "corridor"],
-        &["--driver", "anyone"],
+    let scratch = logged("conform-good", SHAPE_6, "--seed 3");
+    // The end is the only dead end of shape 6, and one loop is closed.
+    for (options, confirmed) in [
+        ("--world worlds/shape-6.toml", json!(1)),
+        ("--world worlds/shape-6.toml --start any", json!(1)),
+        ("--world worlds/shape-6.toml --events scenes", json!(1)),
+        ("", json!(1)),
+        ("--class corridor", json!(1)),
+        ("--driver anyone", json!(0)),
     ] {
-        let (code, report) = judged(&log, arguments);
-        assert_eq!(
-            (code, &report["verdict"]),
-            (Some(0), &"conforms".into()),
-            "{arguments:?} {report}"
+        let report = judged(&scratch, &format!("conform run.mcap {options}"), 0);
+        has(
+            &report,
+            &json!({
+                "verdict": "conforms", "event": null, "class": null, "candidates": 1, "events": 15,
+                "coverage.dead-end": 1, "coverage.confirmed": confirmed, "divergence": null,
+            }),
+            options,
         );
-        assert_eq!((&report["event"], &report["class"]), (&Value::Null, &Value::Null));
-        assert_eq!((&report["candidates"], &report["events"]), (&1.into(), &15.into()), "{report}");
-        // The end is the only dead end of shape 6, and one loop is closed.
-        assert_eq!(report["coverage"]["dead-end"], 1);
-        if !arguments.contains(&"anyone") {
-            assert_eq!(report["coverage"]["confirmed"], 1);
-        }
     }
-    let text = stdout_of(["conform", log.to_str().unwrap(), "--world", SHAPE_6]);
-    assert!(text.contains("run.mcap: conforms\n"), "{text}");
-    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("the robot is at end, having come from corner"), "{text}");
+    // An undirected marker is seen with or without a direction.
+    let undirected = "--driver anyone --marker undirected";
+    for options in [
+        "--world worlds/shape-6.toml",
+        "--world worlds/shape-6.toml --start any",
+        "--world worlds/shape-6.toml --events scenes",
+        "--world worlds/shape-6.toml --events scenes --start any",
+        "",
+        "--events scenes",
+    ] {
+        let report = judged(&scratch, &format!("conform run.mcap {undirected} {options}"), 0);
+        assert_eq!(report["verdict"], "conforms", "{options} {report}");
+    }
+    scratch.facts(&[
+        (OF_SHAPE_6, 0, json!({
+            "remarks": [], "recorded.same_world": true, "ending.how": "mapped",
+            "map": { "complete": true, "vertices": 6, "edges": 6, "unexplored": 0 },
+            "doors": { "algorithm": "algorithm1", "choices": "default", "from_event": null },
+        })),
+        // Another world is a remark of the report.
+        (OF_SHAPE_8, 1, json!({
+            "remarks.0": "the log was recorded in another world, shape-6", "world.name": "shape-8",
+            "recorded.world": "shape-6", "recorded.same_world": false,
+        })),
+        // The run of shape 6 meets no L to the left.
+        ("conform run.mcap --require-coverage confirmed,dead-end", 0, json!({ "not_covered": [] })),
+        ("conform run.mcap --require-coverage confirmed,l-left,rejected-on-the-way", 3, json!([
+            { "verdict": "conforms" }, { "not_covered": ["l-left", "rejected-on-the-way"] },
+        ])),
+    ]);
+    let files = "--html report.html --junit report.xml";
+    scratch.out(&format!("conform run.mcap --require-coverage confirmed,l-left {files}"), 3);
+    let [page, xml] = ["report.html", "report.xml"].map(|file| scratch.text(file));
+    assert!(page.contains("<p>2 required cases: not covered: l-left.</p>"), "{page}");
+    assert!(xml.contains("message=\"2 required cases: not covered: l-left\""), "{xml}");
+    scratch.out(&format!("{OF_SHAPE_8} --html report.html"), 1);
+    assert!(scratch.text("report.html").contains("recorded in another world, shape-6"));
+}
+
+#[test]
+fn an_undirected_marker_is_written_in_lines_as_it_is_seen() {
+    let scratch = Scratch::new("conform-undirected");
+    let undirected = "--driver anyone --marker undirected";
+    // Into a dead end beside the marker, and back past it.
+    let walk = |first: &str, last: &str| {
+        format!(
+            "{{\"degree\":2,\"marker\":{first},\"door\":1}}\n{{\"degree\":1,\"marker\":false,\"door\":0}}\n\
+             {{\"degree\":2,\"marker\":{last},\"door\":1}}\n{{\"degree\":3,\"marker\":-1}}\n"
+        )
+    };
+    for (first, last, code) in
+        [("true", "true", 0), ("0", "0", 0), ("0", "true", 0), ("true", "-1", 1)]
+    {
+        scratch.write("events.jsonl", walk(first, last));
+        judged(&scratch, &format!("conform events.jsonl {undirected}"), code);
+    }
+    scratch.write("events.jsonl", walk("true", "true"));
+    let recorded = format!("conform events.jsonl --events recorded {undirected}");
+    assert_eq!(scratch.lines(&recorded, 0)[0]["marker"], true);
+    let message = scratch.error("conform events.jsonl --driver anyone");
+    let expected = "its percepts do not record along which door the marker points; for an undirected \
+                    marker add --driver anyone --marker undirected\n";
+    assert!(message.ends_with(expected), "{message}");
+    // A shorter log has the sightings, too.
+    scratch.write("wrong.jsonl", walk("true", "true").replacen("true", "false", 1));
+    judged(&scratch, &format!("conform wrong.jsonl {undirected} --minimise short.mcap"), 1);
+    if scratch.path("short.mcap").exists() {
+        judged(&scratch, "conform short.mcap --driver anyone", 1);
+    }
 }
 
 #[test]
 fn a_log_of_another_world_diverges_and_so_does_a_shorter_log() {
-    let folder = folder("conform-other");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let short = folder.join("short.mcap");
-    let page = folder.join("report.html");
-    let written = ["--minimise", short.to_str().unwrap(), "--html", page.to_str().unwrap()];
-    let (code, report) = judged(&log, &[&["--world", SHAPE_8][..], &written].concat());
-    assert_eq!((code, &report["verdict"]), (Some(1), &"diverged".into()));
+    let scratch = logged("conform-other", SHAPE_6, "--seed 3");
     // After the first move there is a T, and after the second a corner instead of the other T.
-    assert_eq!((&report["event"], &report["class"]), (&5.into(), &"perception".into()), "{report}");
-    assert_eq!(report["matched"], 4);
-    assert_eq!(report["allowed"], serde_json::json!(["at e, having come from w: 3 doors"]));
-    assert_eq!(report["shorter"].as_array().unwrap().len(), 3);
-    let command = report["command"].as_str().unwrap();
-    let words: Vec<_> = command.split(' ').skip(1).chain(["--json"]).collect();
-    let output = run(&words);
-    assert_eq!(output.status.code(), Some(1), "{command}");
-    let again = objects(&stdout(&output)).remove(0);
-    assert_eq!((&again["event"], &again["class"]), (&3.into(), &"perception".into()), "{again}");
-    let page = fs::read_to_string(page).unwrap();
+    let diverged = format!("{OF_SHAPE_8} --minimise short.mcap --html report.html");
+    let report = judged(&scratch, &diverged, 1);
+    has(
+        &report,
+        &json!({
+            "verdict": "diverged", "event": 5, "class": "perception", "matched": 4, "unique": null,
+            "allowed": ["at e, having come from w: 3 doors"], "shorter.#": 3, "shorter_events.#": 3,
+            "divergence.found.what": "percept", "divergence.allowed.#": 1,
+            "open_doors": null, "never_followed": null,
+        }),
+        &diverged,
+    );
+    assert!(report["divergence"]["allowed"][0]["vertex"].is_string(), "{report}");
+    has(&again(&scratch, &report), &json!({ "event": 3, "class": "perception" }), "short.mcap");
+    let page = scratch.text("report.html");
     assert!(page.contains("diverge") && page.contains("at e, having come from w"), "no page");
+    // The command has the options that decide.
+    let other = format!("{OF_SHAPE_8} --start se:e --minimise short.mcap");
+    let report = judged(&scratch, &other, 1);
+    assert!(report["command"].as_str().unwrap().ends_with(" --start se:e"), "{report}");
+    has(
+        &again(&scratch, &report),
+        &json!({
+            "cause": report["cause"], "class": report["class"],
+            "event": report["shorter"].as_array().unwrap().len(),
+        }),
+        &other,
+    );
+    // A quirk is tolerated and counted, and is not where it diverges.
+    let quirk =
+        "[[quirk]]\nname = \"rebuilt\"\ncause = \"percept\"\nreason = \"the wall is new\"\n";
+    scratch.write("quirks.toml", quirk);
+    let tolerated =
+        scratch.run(&format!("{OF_SHAPE_8} --driver anyone --quirks quirks.toml --json"));
+    let tolerated = objects(&stdout(&tolerated)).remove(0);
+    assert!(tolerated["tolerated"]["rebuilt"].as_u64() > Some(0), "{tolerated}");
+    let without = judged(&scratch, &format!("{OF_SHAPE_8} --driver anyone"), 1);
+    assert_ne!(tolerated["event"], without["event"]);
+    // What is divergent with other choices, or of the robot itself, has its step.
+    let any = judged(&scratch, &format!("{OF_SHAPE_8} --start any"), 1);
+    let what = if any["event"].as_u64().unwrap() % 2 == 1 { "percept" } else { "door" };
+    assert_eq!(any["divergence"]["found"]["what"], what, "{any}");
 }
 
 #[test]
 fn a_truncated_log_and_a_run_that_was_given_up_are_incomplete() {
-    let folder = folder("conform-cut");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let bytes = fs::read(&log).unwrap();
-    fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
-    let (code, report) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    assert!(report["remarks"][0].as_str().unwrap().starts_with("the log is truncated at byte "));
-    let log = logged(&folder, SHAPE_6, &["--fault", "lights-out@20"]);
-    let (code, report) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    assert!(
-        report["remarks"][0].as_str().unwrap().starts_with("the run was given up: "),
-        "{report}"
-    );
-}
-
-#[test]
-fn a_robot_that_was_carried_does_not_conform() {
-    let folder = folder("conform-carried");
-    // A map of shape 8 that is wrong.
-    let carried = (0..20).find_map(|seed| {
-        let seed = seed.to_string();
-        let log = logged(&folder, SHAPE_8, &["--seed", &seed, "--fault", "carried@30"]);
-        let (code, report) = judged(&log, &["--world", SHAPE_8]);
-        (code == Some(1)).then_some(report)
-    });
-    let report = carried.unwrap();
-    assert!(["perception", "motion"].contains(&report["class"].as_str().unwrap()), "{report}");
+    let scratch = logged("conform-cut", SHAPE_6, "--seed 3");
+    let bytes = scratch.bytes("run.mcap");
+    scratch.write("run.mcap", &bytes[..bytes.len() / 2]);
+    let remark = |start: &str| {
+        let report = judged(&scratch, &format!("{OF_SHAPE_6} --html page.html"), 3);
+        assert_eq!(report["verdict"], "incomplete");
+        assert!(report["remarks"][0].as_str().unwrap().starts_with(start), "{report}");
+    };
+    remark("the log is truncated at byte ");
+    // A case that a complete run has is expected.
+    let page = scratch.text("page.html");
+    assert!(page.contains("<tr class=\"missed\"><th scope=\"row\">confirmed</th>"), "{page}");
+    assert!(page.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
+    log(&scratch, SHAPE_6, "--fault lights-out@20");
+    remark("the run was given up: ");
 }
 
 #[test]
 fn a_log_is_compared_with_the_algorithm_that_it_names_or_with_another() {
-    let folder = folder("conform-folding");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3", "--algorithm", "folding"]);
-    for arguments in [&["--world", SHAPE_6][..], &[], &["--algorithm", "folding"]] {
-        let (code, report) = judged(&log, arguments);
-        assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-        let doors = json!({"algorithm": "folding", "choices": "default", "from_event": null});
-        assert_eq!(report["doors"], doors);
-        assert_eq!(report["facts"]["doors"], "those of the folding explorer");
-        assert_eq!(report["map"]["complete"], true);
+    let scratch = logged("conform-folding", SHAPE_6, "--seed 3 --algorithm folding");
+    for options in ["--world worlds/shape-6.toml", "", "--algorithm folding"] {
+        let report = judged(&scratch, &format!("conform run.mcap {options}"), 0);
         // It has junctions, and not the cases of Algorithm 1.
-        assert_eq!(report["coverage"]["dead-end"], 1);
-        assert_eq!(report["coverage"].get("confirmed"), None);
+        has(
+            &report,
+            &json!({
+                "verdict": "conforms", "map.complete": true,
+                "doors": { "algorithm": "folding", "choices": "default", "from_event": null },
+                "coverage.dead-end": 1, "coverage.confirmed": null,
+            }),
+            options,
+        );
     }
-    let (code, report) = judged(&log, &["--max-darts", "3"]);
-    assert_eq!((code, &report["limits"][0]["option"]), (Some(3), &"--max-darts".into()));
-    let path = log.to_str().unwrap();
-    let output = run(["conform", path, "--require-coverage", "confirmed,dead-end"]);
-    assert_eq!(output.status.code(), Some(3));
-    let words = stdout(&output).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("the folding explorer does not have these cases of Algorithm 1: confirmed"),
-        "{words}"
-    );
-    // The page shows it too.
-    let page = folder.join("report.html");
-    judged(&log, &["--html", page.to_str().unwrap()]);
-    assert!(fs::read_to_string(page).unwrap().contains("those of the folding explorer"));
+    let limited = judged(&scratch, "conform run.mcap --max-darts 3", 3);
+    assert_eq!(limited["limits"][0]["option"], "--max-darts");
+    let text = scratch.out("conform run.mcap --require-coverage confirmed,dead-end", 3);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let cause = "the folding explorer does not have these cases of Algorithm 1: confirmed";
+    assert!(text.contains(cause), "{text}");
+    scratch.out("conform run.mcap --html report.html", 0);
+    assert!(scratch.text("report.html").contains("those of the folding explorer"));
+    // Algorithm 1 would come to a T from its other side too.
+    log(&scratch, SHAPE_8, "--seed 3 --algorithm folding");
+    scratch.out(&format!("{OF_SHAPE_8} --html report.html"), 0);
+    let page = scratch.text("report.html");
+    assert!(page.contains("<tr class=\"beyond\"><th scope=\"row\">t-stem-right</th>"));
+    assert!(!page.contains("<tr class=\"missed\">"));
 }
 
 #[test]
 fn a_log_of_algorithm_1_diverges_from_the_folding_explorer_at_a_door() {
-    let folder = folder("conform-not-folding");
-    let log = logged(&folder, "worlds/building-12.toml", &["--seed", "3"]);
-    assert_eq!(judged(&log, &[]).0, Some(0));
-    let short = folder.join("short.mcap");
-    let arguments = ["--algorithm", "folding", "--minimise", short.to_str().unwrap()];
-    let (code, report) = judged(&log, &arguments);
-    assert_eq!((code, &report["class"]), (Some(1), &"algorithm".into()), "{report}");
-    assert_eq!(report["cause"], "door");
-    assert_eq!(report["condition"], "the folding explorer does not take this door here");
+    let scratch = logged("conform-not-folding", "worlds/building-12.toml", "--seed 3");
+    scratch.out("conform run.mcap", 0);
+    let diverged = "conform run.mcap --algorithm folding --minimise short.mcap";
+    let report = judged(&scratch, diverged, 1);
+    has(
+        &report,
+        &json!({
+            "class": "algorithm", "cause": "door", "divergence.found.what": "door",
+            "condition": "the folding explorer does not take this door here",
+        }),
+        diverged,
+    );
     let allowed = report["allowed"][0].as_str().unwrap();
     assert!(allowed.starts_with("door ") && allowed.contains("dart"), "{allowed}");
-    let before = report["event"].as_u64().unwrap() - 1;
-    let doors = format!("those of the folding explorer; up to event {before}");
-    assert_eq!(report["facts"]["doors"], doors);
-    let command = report["command"].as_str().unwrap();
-    assert!(command.ends_with("--algorithm folding"), "{command}");
-    let again = run(command.split(' ').skip(1).collect::<Vec<_>>());
-    assert_eq!(again.status.code(), Some(1), "{command}");
+    assert!(report["divergence"]["allowed"][0]["purpose"].is_string(), "{report}");
+    assert!(report["command"].as_str().unwrap().ends_with("--algorithm folding"), "{report}");
+    again(&scratch, &report);
 }
 
 #[test]
-fn several_logs_are_reported_together() {
-    let folder = folder("conform-several");
-    let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let other = folder.join("other.mcap");
-    fs::copy(&good, &other).unwrap();
-    let paths = [good.to_str().unwrap(), other.to_str().unwrap()];
-    let output = run([&["conform", "--json"][..], &paths].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let report = objects(&stdout(&output));
-    assert_eq!(
-        (report.len(), &report[2]["logs"], &report[2]["conform"]),
-        (3, &2.into(), &2.into())
-    );
+fn several_logs_are_reported_together_and_an_unreadable_one_does_not_hide_the_others() {
+    let scratch = logged("conform-several", SHAPE_6, "--seed 3");
+    scratch.write("other.mcap", scratch.bytes("run.mcap"));
+    scratch.write("text.mcap", "not a log");
+    let report = scratch.lines("conform run.mcap other.mcap", 0);
+    has(&report[2], &json!({ "logs": 2, "conform": 2 }), "conform run.mcap other.mcap");
     let [one, all] =
         [&report[0], &report[2]].map(|report| report["coverage"]["new-vertex"].as_u64());
     assert_eq!(all, one.map(|one| 2 * one));
-    let text = stdout_of([&["conform"][..], &paths].concat());
-    assert!(text.contains("2 logs: 2 conform, 0 diverge, 0 incomplete"), "{text}");
-}
-
-#[test]
-fn a_quirk_is_tolerated_and_counted() {
-    let folder = folder("conform-quirk");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let quirks = folder.join("quirks.toml");
-    let quirk =
-        "[[quirk]]\nname = \"rebuilt\"\ncause = \"percept\"\nreason = \"the wall is new\"\n";
-    fs::write(&quirks, quirk).unwrap();
-    let arguments =
-        ["--world", SHAPE_8, "--driver", "anyone", "--quirks", quirks.to_str().unwrap()];
-    let (_, report) = judged(&log, &arguments);
-    assert!(report["tolerated"]["rebuilt"].as_u64().unwrap() > 0, "{report}");
-    // What is tolerated is not where it diverges.
-    let (_, without) = judged(&log, &arguments[..4]);
-    assert_ne!(report["event"], without["event"]);
-}
-
-#[test]
-fn bad_input_is_one_message_and_exit_code_2() {
-    let folder = folder("conform-bad");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let log = log.to_str().unwrap();
-    let text = folder.join("text.mcap");
-    fs::write(&text, "not a log").unwrap();
-    let quirks = folder.join("quirks.toml");
-    fs::write(&quirks, "[[quirk]]\nname = \"x\"\ncause = \"door\"\nreason = \"y\"\n").unwrap();
-    let mapping = folder.join("mapping.toml");
-    fs::write(&mapping, "[percept]\ntopic = \"/nowhere\"\n").unwrap();
-    let misspelt = folder.join("misspelt.toml");
-    fs::write(&misspelt, "[[quirk]]\nname = \"x\"\ncuase = \"percept\"\nreason = \"y\"\n").unwrap();
-    let files = [&text, &quirks, &mapping, &misspelt];
-    let [text, quirks, mapping, misspelt] = files.map(|path| path.to_str().unwrap());
-    for (arguments, cause) in [
-        (&["missing.mcap"][..], "missing.mcap: "),
-        (&[text], "text.mcap: "),
-        (&[log, "--quirks", quirks], "cannot be tolerated"),
-        (&[log, "--quirks", misspelt], "misspelt.toml: line 3, column 1: quirk[0].cuase: unknown"),
-        (&[log, "--topics", mapping], "/nowhere"),
-        (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
-        (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
-        (&[log, "--minimise", "x.bag"], "x.bag"),
-        (&[log, "--events", "pictures"], "--events: the log does not have"),
-        (&[log, "--max-edges", "0"], "a world has at least one edge"),
-        (&[log, "--edges", "30"], "--edges"),
-        (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
-        (&[log, "--minimise", log], "this output would replace the input"),
-        (&[log, text, "--map", "x.toml"], "--map: this needs exactly one log"),
-        (&[log, text, "--minimise", "x.mcap"], "--minimise: this needs exactly one log"),
-        (&[log, "--marker", "movable"], "--marker"),
-        (&[log, "--driver", "anyone", "--algorithm", "folding"], "--algorithm: with --driver"),
-        (&[log, "--algorithm", "other"], "--algorithm"),
-    ] {
-        let output = run([&["conform"][..], arguments].concat());
-        let stdout_of = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?} {stdout_of}");
-        assert!(
-            stdout_of.starts_with("error: ") && stdout_of.contains(cause),
-            "{arguments:?} {stdout_of}"
-        );
-        assert!(output.stdout.is_empty());
-    }
+    let output = scratch.run("conform --json text.mcap run.mcap missing.mcap");
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("text.mcap: ") && message.contains("missing.mcap: "), "{message}");
+    let report = objects(&stdout(&output));
+    has(
+        &report.clone().into(),
+        &json!([
+            { "kind": "unread" },
+            { "kind": "log", "verdict": "conforms" },
+            { "kind": "unread", "file": "missing.mcap" },
+            { "kind": "logs", "logs": 3, "conform": 1, "unreadable": 2 },
+        ]),
+        "conform",
+    );
+    assert_ne!(report[2]["cause"], "");
+    // So is it on the page, and in JUnit.
+    scratch.out("conform text.mcap run.mcap --html report.html --junit report.xml", 2);
+    let page = scratch.text("report.html");
+    assert!(page.contains("<title>2 logs: 1 conforms, 1 not checked</title>"), "{page}");
+    let junit = scratch.text("report.xml");
+    assert!(junit.contains("tests=\"2\" failures=\"0\" errors=\"1\""), "{junit}");
+    assert!(junit.contains("message=\"the log cannot be checked: "), "{junit}");
+    // A divergence is worse than an incomplete log, and a log that is not read is worse than both.
+    scratch.out(OF_SHAPE_8, 1);
+    scratch.out(&format!("{OF_SHAPE_8} text.mcap"), 2);
+    // What is not known has its reason.
+    walk(&scratch, &[(3, 0, Some(1)), (1, -1, None)]);
+    scratch.out("conform walk.mcap --max-darts 1 --junit report.xml", 3);
+    let junit = scratch.text("report.xml");
+    assert!(junit.contains("Algorithm 1 was followed up to event 1: "), "{junit}");
 }
 
 #[test]
 fn events_out_of_order_are_an_error() {
-    let log = folder("conform-order").join("run.mcap");
+    let scratch = Scratch::new("conform-order");
     let mut writer = LogWriter::new(Vec::new()).unwrap();
     let at = |second| Stamp { sec: second, nanosec: 0 };
     let form = [true, false, false, false];
@@ -309,45 +366,39 @@ fn events_out_of_order_are_an_error() {
     writer.write(Percept::TOPIC, 2, &percept).unwrap();
     let door = Door { stamp: at(1), r#move: 1, door: 0 };
     writer.write(Door::TOPIC, 3, &door).unwrap();
-    fs::write(&log, writer.finish().unwrap()).unwrap();
-    let output = run(["conform", log.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2));
-    let stdout_of = stderr(&output);
-    assert!(
-        stdout_of.contains("message 2: the events are out of order: this one is at 1.000 s"),
-        "{stdout_of}"
-    );
+    scratch.write("run.mcap", writer.finish().unwrap());
+    let message = scratch.error("conform run.mcap");
+    let cause = "message 2: the events are out of order: this one is at 1.000 s";
+    assert!(message.contains(cause), "{message}");
 }
 
 /// PyPI's `rosbags` makes a ROS 1 bag of a log.
 #[test]
 fn a_log_converted_to_ros_1_conforms_and_is_replayed() {
-    let folder = folder("conform-ros1");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let bag = folder.join("run.bag");
+    let scratch = logged("conform-ros1", SHAPE_6, "--seed 3");
     let mut convert = Command::new("rosbags-convert");
-    let Ok(output) = convert.arg("--src").arg(&log).arg("--dst").arg(&bag).output() else {
+    let convert = convert.current_dir(&scratch.0).args(["--src", "run.mcap", "--dst", "run.bag"]);
+    let Ok(output) = convert.output() else {
         let required = std::env::var("TOPOSLAM_PYTHON_LOGS").is_ok_and(|is| is == "required");
         assert!(!required, "there is no rosbags-convert");
         return eprintln!("skipped: there is no rosbags-convert of PyPI's rosbags");
     };
     assert!(output.status.success(), "{}", stderr(&output));
-    let (code, report) = judged(&bag, &["--world", SHAPE_6]);
-    assert_eq!(
-        (code, &report["verdict"], &report["events"]),
-        (Some(0), &"conforms".into(), &15.into())
-    );
-    let replayed =
-        objects(&stdout_of(["conform", "--rerun", bag.to_str().unwrap(), "--json"])).remove(0);
-    assert_eq!((&replayed["map"], &replayed["difference"]), (&true.into(), &Value::Null));
+    scratch.facts(&[
+        (
+            "conform run.bag --world worlds/shape-6.toml",
+            0,
+            json!({ "verdict": "conforms", "events": 15 }),
+        ),
+        ("conform --rerun run.bag", 0, json!({ "map": true, "difference": null })),
+    ]);
 }
 
 /// Somebody drives a robot along x to an L, and then between its doors. The log has only scenes and
 /// odometry.
 #[test]
 fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
-    let folder = folder("conform-strayed");
-    let log = folder.join("run.mcap");
+    let scratch = Scratch::new("conform-strayed");
     let mut writer = LogWriter::new(Vec::new()).unwrap();
     let mut see = |second: i32, x: f64, heading: f64, doors: &[f64]| {
         let stamp = Stamp { sec: second, nanosec: 0 };
@@ -370,26 +421,26 @@ fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
     see(20, -0.5, 0.0, &l);
     see(21, -0.2, 0.0, &l);
     see(22, 0.9, PI / 4.0, &[]);
-    fs::write(&log, writer.finish().unwrap()).unwrap();
-    let short = folder.join("short.mcap");
-    let arguments = ["--driver", "anyone", "--minimise", short.to_str().unwrap()];
-    let (code, report) = judged(&log, &arguments);
-    assert_eq!(
-        (code, &report["class"], &report["cause"]),
-        (Some(1), &"motion".into(), &"aside".into())
+    scratch.write("run.mcap", writer.finish().unwrap());
+    let diverged = "conform run.mcap --driver anyone --minimise short.mcap";
+    let report = judged(&scratch, diverged, 1);
+    has(
+        &report,
+        &json!({
+            "class": "motion", "cause": "aside",
+            "condition": "the robot drove off 45 degrees from the door",
+        }),
+        diverged,
     );
-    assert_eq!(report["condition"], "the robot drove off 45 degrees from the door");
-    let words: Vec<_> = report["command"].as_str().unwrap().split(' ').skip(1).collect();
-    let output = run([&words[..], &["--json"]].concat());
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    let again = objects(&stdout(&output)).remove(0);
-    assert_eq!((&again["cause"], &again["event"]), (&report["cause"], &report["event"]));
-    assert!(fs::metadata(&short).unwrap().len() < fs::metadata(&log).unwrap().len());
+    let shorter = json!({ "cause": report["cause"], "event": report["event"] });
+    has(&again(&scratch, &report), &shorter, "short.mcap");
+    assert!(scratch.bytes("short.mcap").len() < scratch.bytes("run.mcap").len());
 }
 
 /// Real bags, recorded by ROS itself: there is nothing in them that could be judged.
 #[test]
 fn logs_without_evidence_are_an_error() {
+    let scratch = Scratch::new("conform-bags");
     let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/logs");
     if !logs.is_dir() {
         eprintln!("skipped: there are no bags in {}", logs.display());
@@ -400,409 +451,353 @@ fn logs_without_evidence_are_an_error() {
         ("example-unsorted-chunks.bag", "no topics are known for percepts and doors"),
         ("no-messages.bag", "the log is empty: it has no messages"),
     ] {
-        let output = run(["conform", logs.join(name).to_str().unwrap()]);
-        assert_eq!(output.status.code(), Some(2), "{name}");
-        assert!(stderr(&output).contains(cause), "{name}: {}", stderr(&output));
+        let message = scratch.error(&format!("conform {}", logs.join(name).display()));
+        assert!(message.contains(cause), "{name}: {message}");
     }
 }
 
 /// The log of a robot in building 12, without its world, which has 14 edges.
 #[test]
 fn a_complete_run_determines_its_world_whatever_its_size() {
-    let folder = folder("conform-unique");
-    let log = logged(&folder, "worlds/building-12.toml", &["--start", "north-west:north"]);
-    let map = folder.join("smallest.toml");
-    let map = map.to_str().unwrap();
-    // A complete folded trail needs no search.
-    let search = ["--driver", "anyone", "--max-steps", "1", "--map", map];
-    let (code, report) = judged(&log, &search);
-    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-    assert_eq!((&report["unique"], &report["open_doors"]), (&true.into(), &0.into()));
-    assert_eq!(report["smallest"], json!({ "vertices": 12, "edges": 14, "least": true }));
-    assert_eq!((&report["limits"], &report["never_followed"]), (&json!([]), &json!([])));
-    assert_eq!(report["facts"]["unique"], "This log determines its world.");
-    let (code, report) = judged(&log, &["--driver", "anyone", "--world", map]);
-    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-    assert_eq!((&report["unique"], &report["smallest"]), (&true.into(), &Value::Null));
-    // A limit is not a divergence.
-    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "13"]);
-    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    assert_eq!((&report["event"], &report["smallest"]), (&Value::Null, &Value::Null));
-    let edges = json!([{ "option": "--max-edges", "value": 13, "decides": true, "event": null }]);
-    assert_eq!(report["limits"], edges);
-    let remark = report["remarks"][0].as_str().unwrap();
-    assert!(remark.contains("at most 13 edges (--max-edges)"), "{remark}");
-    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "14"]);
-    assert_eq!((code, &report["limits"]), (Some(0), &json!([])), "{report}");
-    // Few edge ends.
-    let (code, report) = judged(&log, &["--max-darts", "1"]);
-    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    let darts = json!([{ "option": "--max-darts", "value": 1, "decides": true, "event": 1 }]);
-    assert_eq!(report["limits"], darts);
-    // A log that diverges determines nothing.
-    let (code, report) = judged(&log, &["--world", SHAPE_8]);
-    assert_eq!((code, &report["unique"]), (Some(1), &Value::Null), "{report}");
-    assert_eq!((&report["open_doors"], &report["never_followed"]), (&Value::Null, &Value::Null));
+    let scratch = logged("conform-unique", "worlds/building-12.toml", "--start north-west:north");
+    let anyone = "conform run.mcap --driver anyone";
+    let limit = |option: &str, value: u32, event: Value| json!([{ "option": option, "value": value, "decides": true, "event": event }]);
+    scratch.facts(&[
+        // A complete folded trail needs no search.
+        (
+            &format!("{anyone} --max-steps 1 --map smallest.toml"),
+            0,
+            json!({
+                "verdict": "conforms", "unique": true, "open_doors": 0, "limits": [],
+                "smallest": { "vertices": 12, "edges": 14, "least": true }, "never_followed": [],
+            }),
+        ),
+        (
+            &format!("{anyone} --world smallest.toml"),
+            0,
+            json!({ "verdict": "conforms", "unique": true, "smallest": null }),
+        ),
+        // A limit is not a divergence.
+        (
+            &format!("{anyone} --max-edges 13"),
+            3,
+            json!({
+                "verdict": "incomplete", "event": null, "smallest": null,
+                "limits": limit("--max-edges", 13, Value::Null),
+            }),
+        ),
+        (&format!("{anyone} --max-edges 14"), 0, json!({ "limits": [] })),
+        // Few edge ends.
+        (
+            "conform run.mcap --max-darts 1",
+            3,
+            json!({
+                "verdict": "incomplete", "limits": limit("--max-darts", 1, 1.into()),
+            }),
+        ),
+    ]);
 }
 
 /// A robot goes from the marker at a junction with three doors to a dead end and back.
 #[test]
 fn doors_that_were_never_followed_are_listed() {
-    let folder = folder("conform-open");
-    let log = walked(&folder, &[(3, 0, Some(1)), (1, -1, Some(0)), (3, 2, None)]);
-    let page = folder.join("open.html");
-    let arguments = ["--driver", "anyone", "--html", page.to_str().unwrap()];
-    let (code, report) = judged(&log, &arguments);
-    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-    assert_eq!((&report["unique"], &report["open_doors"]), (&false.into(), &2.into()));
-    // The two doors are the ends of one hallway, in the smallest world.
-    assert_eq!(report["smallest"], json!({ "vertices": 2, "edges": 2, "least": true }));
-    let door = |door| json!({ "vertex": "v0", "door": door, "toward": null });
-    assert_eq!(report["never_followed"], json!([door(0), door(2)]));
-    let words =
-        "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
-    assert_eq!(report["facts"]["unique"], words);
-    let written = fs::read_to_string(page).unwrap();
-    assert!(written.contains(&format!("<p>{words}</p>")));
-    assert!(written.contains("What the log proves about its world"));
-    // In a class without loops there are two more dead ends.
-    let (_, report) = judged(&log, &["--driver", "anyone", "--class", "simple"]);
-    assert_eq!(report["smallest"], json!({ "vertices": 4, "edges": 3, "least": true }));
-    let output = run(["conform", log.to_str().unwrap(), "--driver", "anyone", "--max-steps", "1"]);
-    let text = stdout(&output);
-    assert!(text.contains("  unique     This log does not determine its world: 2 doors"), "{text}");
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    let scratch = Scratch::new("conform-open");
+    walk(&scratch, &[(3, 0, Some(1)), (1, -1, Some(0)), (3, 2, None)]);
     // In a known world the doors have its names.
-    let world = folder.join("world.toml");
     let star = "name = \"star\"\n[clockwise]\nhub = [\"a\", \"b\", \"c\"]\na = [\"hub\"]\n\
                 b = [\"hub\"]\nc = [\"hub\"]\n[start]\nat = \"hub\"\nfacing = \"a\"\n";
-    fs::write(&world, star).unwrap();
-    let known = ["--driver", "anyone", "--world", world.to_str().unwrap()];
-    let (code, report) = judged(&log, &known);
-    assert_eq!((code, &report["unique"]), (Some(0), &false.into()), "{report}");
-    let words = report["facts"]["unique"].as_str().unwrap();
-    assert!(words.ends_with("2 doors were never followed: hub toward a, hub toward c."), "{words}");
+    scratch.write("world.toml", star);
+    let anyone = "conform walk.mcap --driver anyone";
+    let door = |door| json!({ "vertex": "v0", "door": door, "toward": null });
+    scratch.facts(&[
+        // The two doors are the ends of one hallway, in the smallest world.
+        (
+            &format!("{anyone} --html open.html"),
+            0,
+            json!({
+                "verdict": "conforms", "unique": false, "open_doors": 2,
+                "smallest": { "vertices": 2, "edges": 2, "least": true },
+                "never_followed": [door(0), door(2)],
+            }),
+        ),
+        // In a class without loops there are two more dead ends.
+        (
+            &format!("{anyone} --class simple"),
+            0,
+            json!({ "smallest": { "vertices": 4, "edges": 3, "least": true } }),
+        ),
+        (
+            &format!("{anyone} --world world.toml"),
+            0,
+            json!({
+                "unique": false, "never_followed.#": 2, "never_followed.0.vertex": "hub",
+                "never_followed.0.toward": "a", "never_followed.1.toward": "c",
+            }),
+        ),
+    ]);
+    let page = scratch.text("open.html");
+    let words =
+        "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
+    assert!(page.contains(&format!("<p>{words}</p>")));
+    assert!(page.contains("What the log proves about its world"));
+    // Six doors: smaller worlds stay open if the search is limited, which does not decide.
+    walk(&scratch, &[(6, 0, None)]);
+    let limit = json!({ "option": "--max-steps", "value": 1, "decides": false, "event": null });
+    scratch.facts(&[
+        (
+            &format!("{anyone} --class simple --max-steps 1"),
+            0,
+            json!({
+                "verdict": "conforms", "smallest.least": false, "limits": [limit], "remarks.#": 1,
+            }),
+        ),
+        (&format!("{anyone} --class simple"), 0, json!({ "smallest.least": true, "limits": [] })),
+    ]);
+    // What was not searched does not matter to a log that diverges.
+    walk(&scratch, &[(3, 0, Some(1)), (3, 1, Some(0)), (4, -1, None)]);
+    scratch.facts(&[("conform walk.mcap --max-darts 1", 1, json!({ "remarks": [] }))]);
 }
 
-/// Percepts and doors of a robot without numbers, shapes and odometry.
-pub(super) fn walked(folder: &Path, steps: &[(u32, i32, Option<u32>)]) -> PathBuf {
-    let log = folder.join("walk.mcap");
-    let mut writer = LogWriter::new(Vec::new()).unwrap();
-    for (moves, &(degree, marker, door)) in steps.iter().enumerate() {
-        let time = 2 * moves as u64;
-        let stamp = |second| Stamp { sec: second as i32, nanosec: 0 };
-        let number = moves as u32;
-        let percept = Percept {
-            stamp: stamp(time),
-            r#move: number,
-            degree,
-            marker,
-            form: [false; 4],
-            entry: f64::NAN,
-        };
-        writer.write(Percept::TOPIC, time, &percept).unwrap();
-        if let Some(door) = door {
-            let message = Door { stamp: stamp(time + 1), r#move: number + 1, door };
-            writer.write(Door::TOPIC, time + 1, &message).unwrap();
-        }
-    }
-    fs::write(&log, writer.finish().unwrap()).unwrap();
-    log
+#[test]
+fn the_map_of_a_log_has_the_marker_where_the_robot_saw_it() {
+    let scratch = Scratch::new("conform-map-marker");
+    // From a dead end to a junction with three doors, where the marker lies along door 1.
+    walk(&scratch, &[(1, -1, Some(0)), (3, 1, None)]);
+    scratch.out("conform walk.mcap --driver anyone --map map.toml", 0);
+    let world = read_world(&scratch.path("map.toml"));
+    let facing = world.start.unwrap();
+    assert_eq!(world.graph.degree(world.graph.vertex(facing)), 3);
+    // The robot did not come by the dart of the marker.
+    assert_ne!(world.graph.degree(world.graph.vertex(world.graph.opposite(facing))), 1);
+}
+
+#[test]
+fn facts_of_short_walks() {
+    let scratch = Scratch::new("conform-walks");
+    let facts = |steps: &[(u32, i32, Option<u32>)], line: &str, code: i32, fields: Value| {
+        walk(&scratch, steps);
+        scratch.facts(&[(&format!("conform walk.mcap {line}"), code, fields)]);
+    };
+    let to_a_dead_end = [(3, 0, Some(0)), (1, -1, None)];
+    // Algorithm 1 would go on.
+    let remark = "the log ends before the map is complete";
+    facts(&to_a_dead_end, "", 0, json!({ "verdict": "conforms", "remarks": [remark] }));
+    facts(&to_a_dead_end, "--driver anyone", 0, json!({ "remarks": [] }));
+    let remark = "the log ends with a door: where it led is not recorded";
+    let by_a_door = [(3, 0, Some(0)), (1, -1, Some(0))];
+    facts(&by_a_door, "--driver anyone", 0, json!({ "remarks": [remark] }));
+    // The default choice is door 0.
+    facts(
+        &[(3, 0, Some(2)), (1, -1, None)],
+        "",
+        0,
+        json!({
+            "doors": { "algorithm": "algorithm1", "choices": "other", "from_event": 2 },
+        }),
+    );
+    // A robot that should see its marker does not. Without --marker it may be one that has none.
+    let corridor = [(1, -1, Some(0)), (1, -1, None)];
+    facts(&corridor, "--marker directional", 1, json!({ "event": 1, "cause": "contradiction" }));
+    let message = scratch.error("conform walk.mcap");
+    assert!(message.contains("--driver anyone --marker none"), "{message}");
+    let lengths = json!({ "moves": 2, "measured": 0, "compared": 0 });
+    let there_and_back = [(1, -1, Some(0)), (3, 1, Some(0)), (1, -1, None)];
+    facts(&there_and_back, "--driver anyone", 0, json!({ "lengths": lengths }));
+    // A robot without a marker sees none, and the head of a shorter log says so.
+    walk(&scratch, &[(3, 0, Some(1)), (1, -1, None)]);
+    let unmarked = "conform walk.mcap --driver anyone --marker none --minimise short.mcap";
+    let report = judged(&scratch, unmarked, 1);
+    assert_eq!(report["event"], 1, "{report}");
+    again(&scratch, &report);
+    // A hallway that leads back to its own junction is impossible in some classes only.
+    walk(&scratch, &[(3, 0, Some(1)), (3, 1, None)]);
+    scratch.out("conform walk.mcap --driver anyone", 0);
+    let simple = "conform walk.mcap --driver anyone --class simple --minimise short.mcap";
+    let report = judged(&scratch, simple, 1);
+    assert_eq!(report["cause"], "no-world", "{report}");
+    assert_eq!(again(&scratch, &report)["condition"], report["condition"]);
+    // A head without an end.
+    let head = written(Some(Run::default()), &[(3, 0, Some(0)), (1, -1, None)]);
+    scratch.write("head.mcap", head);
+    let remark = "the log does not record how the run ended";
+    scratch.facts(&[(
+        "conform head.mcap",
+        3,
+        json!({ "verdict": "incomplete", "remarks": [remark] }),
+    )]);
 }
 
 #[test]
 fn a_shorter_log_of_an_impossible_walk_diverges_for_the_same_reason() {
-    let folder = folder("conform-impossible");
+    let scratch = Scratch::new("conform-impossible");
     // There and back again, twice. In the end the first junction has another degree.
     let there = (3, -1, Some(0));
-    let log = walked(&folder, &[(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)]);
-    let short = folder.join("short.mcap");
-    let arguments = ["--driver", "anyone", "--minimise"];
-    let (code, report) = judged(&log, &[&arguments[..], &[short.to_str().unwrap()]].concat());
-    assert_eq!((code, &report["cause"]), (Some(1), &"no-world".into()), "{report}");
-    assert_eq!((&report["event"], &report["class"]), (&9.into(), &"perception".into()));
+    walk(&scratch, &[(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)]);
+    let diverged = "conform walk.mcap --driver anyone --minimise short.mcap";
+    let report = judged(&scratch, diverged, 1);
+    has(&report, &json!({ "cause": "no-world", "event": 9, "class": "perception" }), diverged);
     let condition = report["condition"].as_str().unwrap();
     assert!(condition.starts_with("no world of any size explains"), "{condition}");
     let events = report["shorter"].as_array().unwrap().len();
     assert!((3..9).contains(&events), "{report}");
-    let words: Vec<_> = report["command"].as_str().unwrap().split(' ').skip(1).collect();
-    let output = run([&words[..], &["--json"]].concat());
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    let again = objects(&stdout(&output)).remove(0);
-    assert_eq!((&again["cause"], &again["event"]), (&report["cause"], &events.into()), "{again}");
+    let again = again(&scratch, &report);
+    has(&again, &json!({ "cause": report["cause"], "event": events }), "short.mcap");
     let why = again["condition"].as_str().unwrap();
     assert!(why.ends_with("are the same one, with 3 doors and with 2"), "{why}");
 }
 
 #[test]
 fn the_marker_is_asked_for_if_it_is_not_recorded() {
-    let folder = folder("conform-marker");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let log = log.to_str().unwrap();
-    let mapping = folder.join("mapping.toml");
+    let scratch = logged("conform-marker", SHAPE_6, "--seed 3");
     let topics = "[percept]\ntopic = \"/toposlam/percept\"\ndegree = \"degree\"\n\
                   [door]\ntopic = \"/toposlam/door\"\ndoor = \"door\"\n";
-    fs::write(&mapping, topics).unwrap();
-    let mapping = ["--topics", mapping.to_str().unwrap()];
+    scratch.write("mapping.toml", topics);
+    let mapped = "conform run.mcap --mapping mapping.toml";
     // Nothing is mapped as the marker: that is not a marker that was not seen.
-    for arguments in [&[][..], &["--driver", "anyone"], &["--world", SHAPE_6]] {
-        let output = run([&["conform", log][..], &mapping, arguments].concat());
-        assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
-        let message = stderr(&output);
+    for options in ["", "--driver anyone", "--world worlds/shape-6.toml"] {
+        let message = scratch.error(&format!("{mapped} {options}"));
         assert!(message.contains("--driver anyone --marker none"), "{message}");
     }
-    let without = ["--driver", "anyone", "--marker", "none"];
-    for arguments in [&[][..], &["--world", SHAPE_6, "--start", "any"]] {
-        let output = run([&["conform", log][..], &mapping, &without, arguments].concat());
-        assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
-    }
-    // A marker that the log records is one that the robot has.
-    let (code, report) = judged(Path::new(log), &without);
-    assert_eq!((code, &report["event"]), (Some(1), &1.into()), "{report}");
-    assert_eq!((&report["cause"], &report["class"]), (&"no-world".into(), &"perception".into()));
-    let output = run(["conform", log, "--marker", "none"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("add --driver anyone"), "{}", stderr(&output));
-    // A robot that never sees a marker cannot run Algorithm 1.
-    let corridor = walked(&folder, &[(1, -1, Some(0)), (1, -1, None)]);
-    let output = run(["conform", corridor.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
-    assert!(stderr(&output).contains("--driver anyone --marker none"), "{}", stderr(&output));
-}
-
-#[test]
-fn another_world_is_a_remark_of_the_report() {
-    let [log, page] = log_and_page("conform-remark");
-    let output = run([
-        "conform",
-        log.to_str().unwrap(),
-        "--world",
-        SHAPE_8,
-        "--html",
-        page.to_str().unwrap(),
+    let without = "--driver anyone --marker none";
+    scratch.facts(&[
+        (&format!("{mapped} {without}"), 0, json!({ "verdict": "conforms" })),
+        (
+            &format!("{mapped} {without} --world worlds/shape-6.toml --start any"),
+            0,
+            json!({ "verdict": "conforms" }),
+        ),
+        // A marker that the log records is one that the robot has.
+        (
+            &format!("conform run.mcap {without}"),
+            1,
+            json!({ "event": 1, "cause": "no-world", "class": "perception" }),
+        ),
     ]);
-    let remark = "the log was recorded in another world, shape-6";
-    assert!(stdout(&output).contains(remark), "{}", stdout(&output));
-    assert!(!stderr(&output).contains(remark), "{}", stderr(&output));
-    assert!(fs::read_to_string(page).unwrap().contains("recorded in another world, shape-6"));
-    let (_, report) = judged(&log, &["--world", SHAPE_8]);
-    assert_eq!(report["remarks"][0], remark);
-    let start = &report["recorded"]["start"];
-    let recorded = json!({ "world": "shape-6", "start": start, "same_world": false });
-    assert_eq!((&report["recorded"], &report["world"]["name"]), (&recorded, &"shape-8".into()));
-    let (_, report) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!(report["recorded"]["same_world"], true);
-    let map = json!({ "complete": true, "vertices": 6, "edges": 6, "unexplored": 0 });
-    assert_eq!((&report["map"], &report["ending"]["how"]), (&map, &"mapped".into()));
-    assert_eq!(
-        report["doors"],
-        json!({ "algorithm": "algorithm1", "choices": "default", "from_event": null })
-    );
-    assert_eq!(report["remarks"], serde_json::json!([]));
-}
-
-#[test]
-fn an_unreadable_log_does_not_hide_the_others() {
-    let folder = folder("conform-unreadable");
-    let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let text = folder.join("text.mcap");
-    fs::write(&text, "not a log").unwrap();
-    let [good, text] = [&good, &text].map(|path| path.to_str().unwrap());
-    let output = run(["conform", "--json", text, good, "missing.mcap"]);
-    assert_eq!(output.status.code(), Some(2));
-    let message = stderr(&output);
-    assert!(message.contains("text.mcap: ") && message.contains("missing.mcap: "), "{message}");
-    let report = objects(&stdout(&output));
-    let kinds: Vec<_> = report.iter().map(|line| line["kind"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["unread", "log", "unread", "logs"]);
-    assert_eq!(report[1]["verdict"], "conforms");
-    assert!(report[2]["file"] == "missing.mcap" && report[2]["cause"] != "", "{report:?}");
-    assert_eq!(
-        (&report[3]["logs"], &report[3]["conform"], &report[3]["unreadable"]),
-        (&3.into(), &1.into(), &2.into())
-    );
-    // So is it on the page.
-    let page = folder.join("report.html");
-    run(["conform", text, good, "--html", page.to_str().unwrap()]);
-    let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("<title>2 logs: 1 conforms, 1 not checked</title>"), "{page}");
-    // A divergence is worse than an incomplete log, and a log that is not read is worse than both.
-    let other = ["--world", SHAPE_8];
-    let code = |logs: &[&str]| run([&["conform"][..], logs, &other].concat()).status.code();
-    assert_eq!((code(&[good]), code(&[good, text])), (Some(1), Some(2)));
-}
-
-#[test]
-fn required_cases_that_are_not_covered_are_listed() {
-    let folder = folder("conform-required");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let path = log.to_str().unwrap();
-    let run = |list| run(["conform", path, "--json", "--require-coverage", list]);
-    let output = run("confirmed,dead-end");
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_eq!(objects(&stdout(&output))[1]["not_covered"], serde_json::json!([]));
-    // The run of shape 6 meets no L to the left.
-    let output = run("confirmed,l-left,rejected-on-the-way");
-    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    let report = objects(&stdout(&output));
-    assert_eq!(report[0]["verdict"], "conforms");
-    assert_eq!(report[1]["not_covered"], serde_json::json!(["l-left", "rejected-on-the-way"]));
-    let [page, xml] = ["report.html", "report.xml"].map(|name| folder.join(name));
-    let files = ["--html", page.to_str().unwrap(), "--junit", xml.to_str().unwrap()];
-    let list = ["conform", path, "--require-coverage", "confirmed,l-left"];
-    assert_eq!(super::run([&list[..], &files].concat()).status.code(), Some(3));
-    let [page, xml] = [page, xml].map(|file| fs::read_to_string(file).unwrap());
-    assert!(page.contains("<p>2 required cases: not covered: l-left.</p>"), "{page}");
-    assert!(xml.contains("message=\"2 required cases: not covered: l-left\""), "{xml}");
-    let output = run("confirmed,no-such-case");
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("rejected-at-once"), "{}", stderr(&output));
 }
 
 #[test]
 fn the_page_shows_version_command_date_and_hashes() {
-    let [log, page] = log_and_page("conform-origin");
-    let [log, page] = [&log, &page].map(|path| path.to_str().unwrap());
+    let scratch = logged("conform-origin", SHAPE_6, "--seed 3");
     let write = || {
-        stdout_of(["conform", log, "--world", SHAPE_6, "--html", page]);
-        fs::read_to_string(page).unwrap()
+        scratch.out(&format!("{OF_SHAPE_6} --html page.html"), 0);
+        scratch.text("page.html")
     };
-    let written = write();
-    let command = format!("toposlam conform {log} --world {SHAPE_6} --html {page}");
-    assert!(written.contains(&format!("<code>{command}</code>")));
-    let version = stdout_of(["--version"]);
-    assert!(written.contains(&format!("Made by {} with", version.trim_end())));
+    let page = write();
+    assert!(page.contains(&format!("<code>toposlam {OF_SHAPE_6} --html page.html</code>")));
+    let version = scratch.out("--version", 0);
+    assert!(page.contains(&format!("Made by {} with", version.trim_end())));
     let begun =
         "<th scope=\"row\">first message</th><td>no date: 0.000 s on the clock of the log</td>";
-    assert!(written.contains(begun));
-    let hash = |path: &str| {
-        let output = Command::new("sha256sum").arg(path).output().unwrap();
-        String::from_utf8(output.stdout).unwrap().split(' ').next().unwrap().to_owned()
-    };
-    for path in [log, SHAPE_6] {
-        assert!(written.contains(&format!("<code class=\"hash\">{}</code>", hash(path))), "{path}");
+    assert!(page.contains(begun));
+    for file in ["run.mcap", SHAPE_6] {
+        let output = Command::new("sha256sum").arg(scratch.path(file)).output().unwrap();
+        let hash = stdout(&output).split(' ').next().unwrap().to_owned();
+        assert!(page.contains(&format!("<code class=\"hash\">{hash}</code>")), "{file}");
     }
-    assert_eq!(write(), written, "the same log, the same bytes");
+    assert_eq!(write(), page, "the same log, the same bytes");
     // A complete run has no case that was expected and not reached: the others are grey.
-    assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
-    assert!(!written.contains("<tr class=\"missed\">"));
+    assert!(page.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
+    assert!(!page.contains("<tr class=\"missed\">"));
 }
 
 #[test]
-fn a_case_that_a_complete_run_has_is_expected() {
-    let [log, page] = log_and_page("conform-expected");
-    let cut = log.with_file_name("cut.mcap");
-    let bytes = fs::read(&log).unwrap();
-    fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
-    let [cut, page] = [&cut, &page].map(|path| path.to_str().unwrap());
-    let output = run(["conform", cut, "--world", SHAPE_6, "--html", page]);
-    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    let written = fs::read_to_string(page).unwrap();
-    assert!(written.contains("<tr class=\"missed\"><th scope=\"row\">confirmed</th>"), "{written}");
-    assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
-}
-
-/// An undirected marker is seen with or without a direction. A correct log conforms, whatever its events come from.
-#[test]
-fn a_correct_log_conforms_with_an_undirected_marker() {
-    let folder = folder("conform-undirected");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let undirected = ["--driver", "anyone", "--marker", "undirected"];
-    for more in [
-        &["--world", SHAPE_6][..],
-        &["--world", SHAPE_6, "--start", "any"],
-        &["--world", SHAPE_6, "--events", "scenes"],
-        &["--world", SHAPE_6, "--events", "scenes", "--start", "any"],
-        &[],
-        &["--events", "scenes"],
-    ] {
-        let (code, line) = judged(&log, &[&undirected, more].concat());
-        assert_eq!((code, &line["verdict"]), (Some(0), &"conforms".into()), "{more:?} {line}");
+fn a_recorded_start_counts_only_in_the_world_of_the_log() {
+    let scratch = logged("conform-same-names", SHAPE_6, "--start ne:tee");
+    // Another world with the same names: the way in leads to another junction.
+    let text = scratch.text(SHAPE_6);
+    let text = text.replace("from = \"end\"\nto = \"corner\"", "from = \"end\"\nto = \"ne\"");
+    scratch.write("other.toml", text);
+    for (world, start) in [(SHAPE_6, "ne:tee"), ("other.toml", "corner:tee")] {
+        let output = scratch.run(&format!("conform run.mcap --json --world {world}"));
+        assert_eq!(objects(&stdout(&output))[0]["world"]["start"], start, "{world}");
     }
-    // Into a dead end beside the marker, and back past it, with the marker as it is written in lines.
-    let walk = |first: &str, last: &str| {
-        let lines = folder.join("events.jsonl");
-        let text = format!(
-            "{{\"degree\":2,\"marker\":{first},\"door\":1}}\n{{\"degree\":1,\"marker\":false,\"door\":0}}\n\
-             {{\"degree\":2,\"marker\":{last},\"door\":1}}\n{{\"degree\":3,\"marker\":-1}}\n"
+}
+
+#[test]
+fn a_robot_that_was_carried_was_moved_between_two_events() {
+    let scratch = Scratch::new("conform-moved");
+    let mut shorter = 0;
+    for (seed, image) in [(0, 40), (1, 40), (2, 60)] {
+        log(&scratch, SHAPE_6, &format!("--seed {seed} --fault carried@{image}"));
+        let moved = "conform run.mcap --driver anyone --minimise short.mcap --html moved.html";
+        let report = judged(&scratch, moved, 1);
+        // Percepts may show it first.
+        if report["cause"] != "moved" {
+            continue;
+        }
+        assert_eq!(report["class"], "motion");
+        let condition = report["condition"].as_str().unwrap();
+        assert!(condition.starts_with("moved by hand or slipped between events "), "{condition}");
+        assert!(scratch.text("moved.html").contains("oved by hand or slipped between events "));
+        let again = again(&scratch, &report);
+        // It ends with the event that diverges.
+        let events = report["shorter"].as_array().unwrap().len();
+        has(
+            &again,
+            &json!({
+                "cause": report["cause"], "class": report["class"], "event": events, "events": events,
+            }),
+            "short.mcap",
         );
-        fs::write(&lines, text).unwrap();
-        lines
-    };
-    for (first, last, code) in
-        [("true", "true", 0), ("0", "0", 0), ("0", "true", 0), ("true", "-1", 1)]
-    {
-        let (found, line) = judged(&walk(first, last), &undirected);
-        assert_eq!(found, Some(code), "{first} {last} {line}");
+        let measured = |report: &Value| {
+            let condition = report["condition"].as_str().unwrap();
+            // The way of a closed walk is shorter; how far from its beginning it ends is not.
+            let what = condition.split_once(": ").unwrap().1;
+            what.split_once(" ends ").map_or(what, |(_, off)| off).to_owned()
+        };
+        assert_eq!(measured(&again), measured(&report));
+        shorter += usize::from(events < report["event"].as_u64().unwrap() as usize);
+        if seed == 0 {
+            has(&report["lengths"], &json!({ "moves": 15, "measured": 15 }), "lengths");
+        }
     }
-    let lines = walk("true", "true");
-    let lines = lines.to_str().unwrap();
-    let printed = stdout_of(
-        [&["conform", lines, "--json", "--events", "recorded"], &undirected[..]].concat(),
-    );
-    assert_eq!(objects(&printed)[0]["marker"], true);
-    let directional = run(["conform", lines, "--driver", "anyone"]);
-    let expected = "its percepts do not record along which door the marker points; for an undirected marker add \
-                    --driver anyone --marker undirected\n";
-    assert_eq!(directional.status.code(), Some(2));
-    assert!(stderr(&directional).ends_with(expected), "{}", stderr(&directional));
-    // A shorter log has the sightings, too.
-    let wrong = folder.join("wrong.jsonl");
-    let text = fs::read_to_string(lines).unwrap().replacen("true", "false", 1);
-    fs::write(&wrong, text).unwrap();
-    let short = folder.join("short.mcap");
-    let (code, line) =
-        judged(&wrong, &[&undirected, &["--minimise", short.to_str().unwrap()][..]].concat());
-    assert_eq!(code, Some(1), "{line}");
-    if short.exists() {
-        assert_eq!(judged(&short, &["--driver", "anyone"]).0, Some(1));
-    }
+    assert!(shorter > 0);
+    // A map of shape 8 that is wrong.
+    let carried = (0..20).find_map(|seed| {
+        log(&scratch, SHAPE_8, &format!("--seed {seed} --fault carried@30"));
+        let output = scratch.run(&format!("{OF_SHAPE_8} --json"));
+        (output.status.code() == Some(1)).then(|| objects(&stdout(&output)).remove(0))
+    });
+    let report = carried.unwrap();
+    assert!(["perception", "motion"].contains(&report["class"].as_str().unwrap()), "{report}");
 }
 
 #[test]
-fn an_option_without_effect_on_a_log_is_an_error() {
-    let log = logged(&folder("conform-no-effect"), SHAPE_6, &["--seed", "3"]);
-    let conform = ["conform", log.to_str().unwrap(), "--driver", "anyone"];
-    for (options, place) in [
-        (&["--max-darts", "1"][..], "--max-darts: "),
-        (&["--require-coverage", "t-by-stem,confirmed"], "--require-coverage: "),
-    ] {
-        let output = run([&conform[..], options].concat());
-        assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(place), "{}", stderr(&output));
-    }
-}
-
-#[test]
-fn a_divergence_is_fields_too() {
-    let log = logged(&folder("conform-fields"), SHAPE_6, &["--seed", "3"]);
-    let (code, line) = judged(&log, &["--world", SHAPE_8, "--start", "any"]);
-    assert_eq!(code, Some(1));
-    let Value::Object(divergence) = &line["divergence"] else { panic!("{line}") };
-    let event = line["event"].as_u64().unwrap();
-    let what = if event % 2 == 1 { "percept" } else { "door" };
-    assert_eq!(divergence["found"]["what"], what, "{line}");
-    let allowed = divergence["allowed"].as_array().unwrap();
-    assert_eq!(allowed.len(), line["allowed"].as_array().unwrap().len().min(8), "{line}");
-    assert!(allowed.iter().all(|one| one["vertex"].is_string() || one["purpose"].is_string()));
-    let short = line["shorter_events"].as_array().unwrap();
-    assert_eq!(short.len(), line["shorter"].as_array().unwrap().len(), "{line}");
-    let (_, good) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!(good["divergence"], Value::Null);
+fn a_divergence_in_a_log_of_lines_has_a_line_and_no_time() {
+    let scratch = Scratch::new("conform-lines");
+    // There and back: the first junction has three doors, and then two.
+    let lines = "# a robot that turns around twice\n{\"degree\":3,\"door\":1}\n\
+                 {\"degree\":1,\"door\":0}\n{\"degree\":2,\"door\":null}\n";
+    scratch.write("walk.jsonl", lines);
+    // With stamps it has a time.
+    scratch.write("stamped.jsonl", lines.replace('{', "{\"stamp\":7.5,"));
+    walk(&scratch, &[(3, -1, Some(1)), (1, -1, Some(0)), (2, -1, None)]);
+    let anyone = "--driver anyone --marker none";
+    scratch.facts(&[
+        (
+            &format!("conform walk.jsonl {anyone} --html page.html"),
+            1,
+            json!({
+                "event": 5, "message": 3, "offset": 4, "offset_unit": "line", "time": null,
+            }),
+        ),
+        (&format!("conform stamped.jsonl {anyone}"), 1, json!({ "time": 0.0 })),
+        (&format!("conform walk.mcap {anyone}"), 1, json!({ "event": 5, "offset_unit": "byte" })),
+    ]);
+    let page = scratch.text("page.html");
+    assert!(page.contains("Event 5 of 5</a> \u{b7} message 3 of the log, at line 4 "), "no line");
 }
 
 #[test]
 fn a_scene_or_odometry_with_a_wrong_stamp_is_skipped_and_counted() {
-    let folder = folder("conform-stamps");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let options = ["--events", "scenes", "--world", SHAPE_6];
-    let (code, before) = judged(&log, &options);
+    let scratch = logged("conform-stamps", SHAPE_6, "--seed 3");
+    let before = judged(&scratch, &format!("{OF_SHAPE_6} --events scenes"), 0);
     let none = json!({"off_clock": 0, "scans_without_odometry": 0});
-    assert_eq!((code, &before["skipped_messages"]), (Some(0), &none));
-    let changed = folder.join("changed.mcap");
+    assert_eq!(before["skipped_messages"], none);
     // The stamps of these messages, by their numbers on a topic, become others.
     let change = |topic: &str, seconds: &dyn Fn(usize, i32) -> i32| {
         let mut number = 0;
+        let [log, changed] = ["run.mcap", "changed.mcap"].map(|name| scratch.path(name));
         rewritten(&log, &changed, |_, message| {
             if message.channel.topic == topic {
                 let other = seconds(number, stamp(message));
@@ -815,63 +810,58 @@ fn a_scene_or_odometry_with_a_wrong_stamp_is_skipped_and_counted() {
         });
     };
     let far = 2_000_000_000;
+    let of_changed = "conform changed.mcap --world worlds/shape-6.toml --events scenes";
     for topic in [ODOM, Scene::TOPIC] {
         // In the middle of a stretch of hallway, and at a junction.
         change(topic, &|number, seconds| if [30, 50].contains(&number) { far } else { seconds });
-        let (code, after) = judged(&changed, &options);
-        let skipped = json!({"off_clock": 2, "scans_without_odometry": 0});
-        assert_eq!((code, &after["skipped_messages"]), (Some(0), &skipped), "{topic}");
-        let remark = "skipped messages: 2 whose time is far from that of all others";
-        assert_eq!(after["remarks"][0], remark, "{topic}");
+        let after = judged(&scratch, of_changed, 0);
+        has(
+            &after,
+            &json!({
+                "skipped_messages": {"off_clock": 2, "scans_without_odometry": 0},
+                "remarks.0": "skipped messages: 2 whose time is far from that of all others",
+            }),
+            topic,
+        );
         for fact in ["verdict", "events", "candidates", "unique"] {
             assert_eq!(after[fact], before[fact], "{topic}: {fact}");
         }
     }
     // What cannot be skipped is an error: the time of a scene decides where the robot was.
-    let error = || {
-        let output = run([&["conform", changed.to_str().unwrap()][..], &options].concat());
-        assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
-        stderr(&output)
-    };
     change(Scene::TOPIC, &|number, seconds| if number >= 60 { far } else { seconds });
-    let message = error();
-    assert!(
-        message
-            .contains("its time, 2000000000.000 s, is more than an hour from that of all odometry")
-            && message.contains("those of all 10 images or scenes from there on"),
-        "{message}"
-    );
+    let message = scratch.error(of_changed);
+    for part in [
+        "its time, 2000000000.000 s, is more than an hour from that of all odometry",
+        "those of all 10 images or scenes from there on",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
     for topic in [ODOM, Scene::TOPIC] {
         let jumped = Cell::new(0);
         change(topic, &|number, seconds| {
             jumped.set(if number == 50 { seconds + 1000 } else { jumped.get() });
             if number == 50 { jumped.get() } else { seconds }
         });
-        let message = error();
+        let message = scratch.error(of_changed);
         let back = format!("its clock goes back, from {}.000 s to ", jumped.get());
         assert!(message.contains(&back), "{topic}: {message}");
     }
     // An event has its place in the order; without it the others mean something else.
     change(Percept::TOPIC, &|number, seconds| if number == 2 { far } else { seconds });
-    let output = run(["conform", changed.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
-    let message = stderr(&output);
+    let message = scratch.error("conform changed.mcap");
     assert!(message.contains("the one before it at 2000000000.000 s"), "{message}");
-    fs::remove_dir_all(folder).unwrap();
 }
 
 /// The number of a row is that of the table, not that of the message in the order of time.
 #[cfg(feature = "sqlite")]
 #[test]
 fn a_divergence_in_a_database_names_its_row() {
-    let folder = folder("conform-row");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let [database, page] = ["run.db3", "page.html"].map(|name| folder.join(name));
-    rewritten(&log, &database, |_, _| true);
-    let other = ["--world", SHAPE_8, "--start", "any"];
-    let (code, of_file) = judged(&log, &other);
-    let (same, line) = judged(&database, &other);
-    assert_eq!((code, same), (Some(1), Some(1)), "{line}");
+    let scratch = logged("conform-row", SHAPE_6, "--seed 3");
+    let database = scratch.path("run.db3");
+    rewritten(&scratch.path("run.mcap"), &database, |_, _| true);
+    let of_file = judged(&scratch, &format!("{OF_SHAPE_8} --start any"), 1);
+    let other = "conform run.db3 --world worlds/shape-8.toml --start any";
+    let line = judged(&scratch, other, 1);
     for fact in ["event", "cause", "class", "message", "condition"] {
         assert_eq!(line[fact], of_file[fact], "{fact}");
     }
@@ -886,39 +876,29 @@ fn a_divergence_in_a_database_names_its_row() {
     );
     let is_percept = line["event"].as_u64().unwrap() % 2 == 1;
     assert_eq!(topic.unwrap(), if is_percept { Percept::TOPIC } else { Door::TOPIC });
-    let html = ["--html", page.to_str().unwrap()];
-    let report = run([&["conform", database.to_str().unwrap()][..], &other, &html].concat());
+    let text = scratch.out(&format!("{other} --html page.html"), 1);
     let place = format!(", at row {}", grouped(u64::try_from(row).unwrap().into()));
-    let text = stdout(&report);
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains(&place), "{text}");
-    assert!(fs::read_to_string(page).unwrap().contains(&place));
-    fs::remove_dir_all(folder).unwrap();
+    assert!(scratch.text("page.html").contains(&place));
 }
 
 /// One log is checked, and the next one is being read.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_check_leaves_the_page_as_it_was() {
-    use super::interrupted;
-
-    let folder = folder("conform-interrupted");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let page = folder.join("page.html");
+    let scratch = logged("conform-interrupted", SHAPE_6, "--seed 3");
     for earlier in [None, Some("the page of an earlier check")] {
         if let Some(text) = earlier {
-            fs::write(&page, text).unwrap();
+            scratch.write("page.html", text);
         }
-        let paths = [&log, &page].map(|path| path.to_str().unwrap());
-        let output = interrupted(&["conform", paths[0], "-", "--html", paths[1]]);
+        let paths = ["run.mcap", "page.html"].map(|name| scratch.path(name).display().to_string());
+        let output = super::interrupted(&format!("conform {} - --html {}", paths[0], paths[1]));
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
         assert_eq!(stderr(&output), "interrupted\n");
-        assert_eq!(fs::read_to_string(&page).ok().as_deref(), earlier);
-        let mut files: Vec<_> =
-            fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path()).collect();
-        files.sort();
-        let page = earlier.map(|_| page.clone());
-        assert_eq!(files, page.into_iter().chain([log.clone()]).collect::<Vec<_>>());
+        let files: &[_] =
+            if earlier.is_some() { &["page.html", "run.mcap"] } else { &["run.mcap"] };
+        assert_eq!(scratch.written(), files);
+        assert!(earlier.is_none_or(|earlier| scratch.text("page.html") == earlier));
     }
-    fs::remove_dir_all(folder).unwrap();
 }

@@ -1,13 +1,9 @@
 //! No output replaces an input or another output, of any verb; and no verb reads or writes files past that
 //! check.
 
-use std::{
-    collections::BTreeSet,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeSet, fs, path::Path};
 
-use super::{folder, run, stderr, stdout_of};
+use super::{Scratch, names_in, stderr};
 
 /// An option that writes files.
 struct OutputOption {
@@ -160,8 +156,8 @@ const INPUTS: [(&str, &[&str]); 8] = [
 ];
 
 /// The options of a verb with a file or a folder as their value.
-fn file_options(verb: &str) -> BTreeSet<String> {
-    let help = stdout_of(verb.split(' ').chain(["--help"]));
+fn file_options(scratch: &Scratch, verb: &str) -> BTreeSet<String> {
+    let help = scratch.out(&format!("{verb} --help"), 0);
     let names = help.lines().filter_map(|line| {
         let (option, value) = line.trim_start().split_once(" <")?;
         let is_file = ["FILE>", "DIR>"].contains(&value.trim().trim_end_matches("..."));
@@ -173,6 +169,7 @@ fn file_options(verb: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_option_that_writes_a_file_is_in_the_list() {
+    let scratch = Scratch::new("file_options");
     let verbs: BTreeSet<_> = OUTPUTS.iter().map(|output| output.verb).collect();
     let others = ["proofs"];
     for verb in verbs.into_iter().chain(others) {
@@ -190,157 +187,92 @@ fn every_option_that_writes_a_file_is_in_the_list() {
             _ => {}
         }
         known.remove("");
-        assert_eq!(file_options(verb), known, "{verb}");
+        assert_eq!(file_options(&scratch, verb), known, "{verb}");
     }
 }
 
-/// The inputs of the calls.
-struct Inputs {
-    folder: PathBuf,
-    world: PathBuf,
-    log: PathBuf,
-    calibration: PathBuf,
-    image: PathBuf,
-    /// The lines of a shard of a check.
-    shard: PathBuf,
-}
-
-impl Inputs {
-    fn new() -> Self {
-        let folder = folder("no_output_replaces_an_input");
-        let file = |name: &str| folder.join(name);
-        let (world, log, image) = (file("world.toml"), file("run.mcap"), file("image.png"));
-        let shard = file("shard.jsonl");
-        fs::write(&shard, stdout_of(["check", "--edges", "2", "--shard", "1/2", "--json"]))
-            .unwrap();
-        fs::copy("worlds/shape-8.toml", &world).unwrap();
-        let path = |path: &Path| path.to_str().unwrap().to_owned();
-        stdout_of(["simulate", &path(&world), "--by-scene", "--log", &path(&log)]);
-        stdout_of([
-            "draw",
-            &path(&world),
-            "--pose",
-            "start",
-            "--size",
-            "640x480",
-            "--out",
-            &path(&image),
-        ]);
-        let calibration = file("camera.toml");
-        stdout_of(["camera", "calibrate", &path(&image), "--out", &path(&calibration)]);
-        fs::create_dir(file("empty")).unwrap();
-        Self { folder, world, log, calibration, image, shard }
+/// A folder with an input for each letter with which the names of inputs begin.
+fn inputs() -> Scratch {
+    let scratch = Scratch::new("no_output_replaces_an_input");
+    scratch.write("w", scratch.bytes("worlds/shape-8.toml"));
+    scratch.out("simulate w --by-scene --log l.mcap", 0);
+    scratch.out("draw w --pose start --size 640x480 --out i.png", 0);
+    scratch.out("camera calibrate i.png --out c.toml", 0);
+    scratch.write("s", scratch.out("check --edges 2 --shard 1/2 --json", 0));
+    for other in ["m", "q"] {
+        scratch.write(other, "# a mapping\n");
     }
-
-    /// The content of an input with this name.
-    fn content(&self, name: &str) -> Vec<u8> {
-        let source = match name.as_bytes()[0] {
-            b'w' => &self.world,
-            b'l' => &self.log,
-            b'i' => &self.image,
-            b'c' => &self.calibration,
-            b's' => &self.shard,
-            _ => return b"# a mapping\n".to_vec(),
-        };
-        fs::read(source).unwrap()
-    }
-
-    fn arguments(&self, call: &str, input: &Path, output: &Path) -> Vec<String> {
-        let word = |word: &str| match word {
-            "IN" => input.display().to_string(),
-            "OUT" => output.display().to_string(),
-            "WORLD" => self.world.display().to_string(),
-            "LOG" => self.log.display().to_string(),
-            "IMAGE" => self.image.display().to_string(),
-            "CALIBRATION" | "COLOURS" => self.calibration.display().to_string(),
-            "DIR" => self.folder.join("empty").display().to_string(),
-            word => word.replace("NEW", &self.folder.join("new").display().to_string()),
-        };
-        call.split(' ').map(word).collect()
-    }
+    fs::create_dir(scratch.path("empty")).unwrap();
+    scratch
 }
 
 #[test]
 fn no_output_replaces_an_input() {
-    let inputs = Inputs::new();
+    let scratch = inputs();
+    let before = scratch.written();
+    let sources = before.clone();
     for OutputOption { calls, .. } in &OUTPUTS {
         for &(name, call) in *calls {
-            let case = inputs.folder.join("case");
+            let case = scratch.path("case");
             let _ = fs::remove_dir_all(&case);
             fs::create_dir(&case).unwrap();
-            let (input, content) = (case.join(name), inputs.content(name));
+            let source = sources.iter().find(|source| source.starts_with(&name[..1])).unwrap();
+            let content = scratch.bytes(source);
+            let input = case.join(name);
             fs::write(&input, &content).unwrap();
-            let dotted = inputs.folder.join("empty/../case/.").join(name);
-            let mut outputs = vec![input.clone(), dotted];
+            let mut outputs = vec![format!("case/{name}"), format!("empty/../case/./{name}")];
             #[cfg(unix)]
             for link in ["soft", "hard"] {
-                let link = case.join(format!("{link}-{name}"));
-                if link.to_string_lossy().contains("soft") {
-                    std::os::unix::fs::symlink(name, &link).unwrap();
+                let path = case.join(format!("{link}-{name}"));
+                if link == "soft" {
+                    std::os::unix::fs::symlink(name, &path).unwrap();
                 } else {
-                    fs::hard_link(&input, &link).unwrap();
+                    fs::hard_link(&input, &path).unwrap();
                 }
-                outputs.push(link);
+                outputs.push(format!("case/{link}-{name}"));
             }
-            for path in outputs {
-                let before = super::names_in(&case);
-                let result = run(inputs.arguments(call, &input, &path));
+            let there = names_in(&case);
+            for output in outputs {
+                let word = |word| match word {
+                    "IN" => format!("case/{name}"),
+                    "OUT" => output.clone(),
+                    "WORLD" => "w".to_owned(),
+                    "LOG" => "l.mcap".to_owned(),
+                    "IMAGE" => "i.png".to_owned(),
+                    "CALIBRATION" | "COLOURS" => "c.toml".to_owned(),
+                    "DIR" => "empty".to_owned(),
+                    word => word.replace("NEW", "new"),
+                };
+                let line = call.split(' ').map(word).collect::<Vec<_>>().join(" ");
+                let result = scratch.run(&line);
                 let message = stderr(&result);
-                assert_eq!(result.status.code(), Some(2), "{call}: {message}");
-                let expected = format!("error: {}: this ", path.display());
-                assert!(message.starts_with(&expected), "{call}: {message}");
-                assert!(fs::read(&input).unwrap() == content, "{call} replaced its input");
-                assert_eq!(super::names_in(&case), before, "{call}");
-                assert!(result.stdout.is_empty(), "{call}");
+                assert_eq!(result.status.code(), Some(2), "{line}: {message}");
+                assert!(
+                    message.starts_with(&format!("error: {output}: this ")),
+                    "{line}: {message}"
+                );
+                assert!(fs::read(&input).unwrap() == content, "{line} replaced its input");
+                assert_eq!(names_in(&case), there, "{line}");
+                assert!(result.stdout.is_empty(), "{line}");
             }
+            fs::remove_dir_all(&case).unwrap();
         }
     }
-    let written: Vec<_> = super::names_in(&inputs.folder);
-    assert_eq!(
-        written,
-        ["camera.toml", "case", "empty", "image.png", "run.mcap", "shard.jsonl", "world.toml"]
-    );
+    assert_eq!(scratch.written(), before);
 }
 
 #[test]
 fn two_outputs_of_a_call_are_not_the_same_file() {
-    let folder = folder("two_outputs");
-    let file = folder.join("s.png").display().to_string();
-    let dotted = folder.join("./s.png").display().to_string();
-    let image = folder.join("image.png").display().to_string();
-    stdout_of([
-        "draw",
-        "worlds/shape-8.toml",
-        "--pose",
-        "start",
-        "--size",
-        "640x480",
-        "--out",
-        &image,
-    ]);
-    let calibration = folder.join("new.toml").display().to_string();
-    let calls: [&[&str]; 2] = [
-        &["draw", "worlds/shape-8.toml", "--pose", "start", "--out", &file, "--labels", &dotted],
-        &[
-            "camera",
-            "calibrate",
-            &image,
-            "--out",
-            &calibration,
-            "--picture",
-            &file,
-            "--mask-out",
-            &dotted,
-        ],
-    ];
-    for call in calls {
-        let result = run(call);
-        assert_eq!(result.status.code(), Some(2), "{call:?}");
-        let expected = format!(
-            "error: {dotted}: this is the same file as the output {file}; choose another name\n"
-        );
-        assert_eq!(stderr(&result), expected);
-        assert_eq!(super::names_in(&folder), ["image.png"]);
+    let scratch = Scratch::new("two_outputs");
+    scratch.out("draw worlds/shape-8.toml --pose start --size 640x480 --out image.png", 0);
+    for line in [
+        "draw worlds/shape-8.toml --pose start --out s.png --labels ./s.png",
+        "camera calibrate image.png --out new.toml --picture s.png --mask-out ./s.png",
+    ] {
+        let expected =
+            "error: ./s.png: this is the same file as the output s.png; choose another name\n";
+        assert_eq!(scratch.error(line), expected, "{line}");
+        assert_eq!(scratch.written(), ["image.png"]);
     }
 }
 

@@ -5,13 +5,12 @@ use std::{
     env,
     f64::consts::{FRAC_PI_2, PI, TAU},
     fmt::Write as _,
-    fs,
     path::{Path, PathBuf},
 };
 
 use serde_json::{Value, json};
 
-use super::{folder, objects, run, stderr, stdout};
+use super::{Scratch, has};
 
 /// Corridors along the axes, 2 m wide: a T whose stem comes from the west, and a ring behind it.
 const CORRIDORS: [([f64; 2], [f64; 2]); 5] = [
@@ -74,24 +73,15 @@ fn log(way: &[[f64; 2]]) -> String {
     lines
 }
 
-/// The log around the ring, in a folder.
-fn written(name: &str) -> (PathBuf, String) {
-    let folder = folder(name);
-    let path = folder.join("ring.log");
+/// A folder with the log around the ring, `ring.log`.
+fn ring(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
     let way: Vec<_> = WAY.into_iter().chain([WAY[0]]).collect();
-    fs::write(&path, log(&way)).unwrap();
-    let path = path.to_str().unwrap().to_owned();
-    (folder, path)
+    scratch.write("ring.log", log(&way));
+    scratch
 }
 
-/// The exit code and the lines of `--json`.
-fn conform(log: &str, options: &[&str]) -> (Option<i32>, Vec<Value>) {
-    let arguments =
-        [&["conform", log, "--events", "laser", "--driver", "anyone", "--json"], options];
-    let output = run(arguments.concat());
-    assert!(output.status.code() != Some(2), "{}", stderr(&output));
-    (output.status.code(), objects(&stdout(&output)))
-}
+const RING: &str = "conform ring.log --events laser --driver anyone";
 
 fn markers(lines: &[Value]) -> Vec<&Value> {
     lines.iter().filter(|line| line["kind"] == "event").map(|line| &line["marker"]).collect()
@@ -100,160 +90,112 @@ fn markers(lines: &[Value]) -> Vec<&Value> {
 /// At the T the robot came from the stem, and then from the south: along door 0, and along door 1.
 #[test]
 fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
-    let (folder, log) = written("assumed_marker");
-    let (code, lines) = conform(&log, &["--marker", "none"]);
-    assert_eq!(code, Some(0));
-    let verdict = lines.last().unwrap();
-    assert_eq!((&verdict["unique"], &verdict["assumed_marker"]), (&false.into(), &Value::Null));
-    let scanner = verdict["facts"]["scanner"].as_str().unwrap();
-    assert!(scanner.starts_with("180 degrees: arms that point back"), "{scanner}");
+    let scratch = ring("assumed_marker");
     // Without a marker the two visits may be of different junctions.
-    assert_eq!((lines.len(), &verdict["open_doors"]), (3, &4.into()), "{verdict}");
-    let mapping = folder.join("mapping.toml");
-    let mapping_text = mapping.to_str().unwrap();
-    for (at, options) in [
-        (None, vec!["--assume-marker"]),
-        // Nearer to the stem than to the other arms.
-        (Some("[0.5, -0.5, 2.8]"), vec!["--assume-marker", "--topics", mapping_text]),
-    ] {
-        if let Some(at) = at {
-            fs::write(&mapping, format!("[marker]\nat = {at}\n")).unwrap();
-        }
-        let (code, lines) = conform(&log, &options);
-        assert_eq!((code, markers(&lines)), (Some(0), vec![&json!(0), &json!(1)]), "{lines:?}");
-        let verdict = lines.last().unwrap();
-        assert_eq!(verdict["assumed_marker"]["seen"], 2);
-        assert!(
-            verdict["facts"]["marker"].as_str().unwrap().starts_with("assumed, not in the log: ")
-        );
+    let lines = scratch.lines(&format!("{RING} --marker none"), 0);
+    has(&lines[2], &json!({ "unique": false, "assumed_marker": null, "open_doors": 4 }), RING);
+    // Nearer to the stem than to the other arms.
+    scratch.write("mapping.toml", "[marker]\nat = [0.5, -0.5, 2.8]\n");
+    for options in ["--assume-marker", "--assume-marker --mapping mapping.toml"] {
+        let lines = scratch.lines(&format!("{RING} {options}"), 0);
+        assert_eq!(markers(&lines), [&json!(0), &json!(1)], "{lines:?}");
         // The ring is closed; the end of the stem was never seen.
         let never = json!([{"vertex": "v0", "door": 0, "toward": null}]);
-        assert_eq!((&verdict["unique"], &verdict["never_followed"]), (&false.into(), &never));
+        has(
+            lines.last().unwrap(),
+            &json!({
+                "assumed_marker.seen": 2, "unique": false, "never_followed": never,
+            }),
+            options,
+        );
     }
-    // In the known building the marker may lie anywhere.
-    let world = ["--world", "worlds/real/seattle.toml", "--start", "any"];
-    let with_place = ["--assume-marker", "--topics", mapping_text];
-    let (code, lines) = conform(&log, &[&world[..], &with_place].concat());
-    assert_eq!((code, &lines[2]["verdict"]), (Some(0), &"conforms".into()), "{lines:?}");
-    // An undirected marker leaves open how the robot came back.
-    let (code, lines) = conform(&log, &["--assume-marker", "--marker", "undirected"]);
-    let verdict = lines.last().unwrap();
-    assert_eq!((code, &verdict["unique"]), (Some(0), &false.into()));
-    let unique = "This log does not determine its world: the junction of the marker may have been entered in 2 ways.";
-    assert_eq!(verdict["facts"]["unique"], unique);
-    fs::remove_dir_all(folder).unwrap();
+    scratch.facts(&[
+        // In the known building the marker may lie anywhere.
+        (&format!(
+            "{RING} --world worlds/real/seattle.toml --start any --assume-marker --mapping mapping.toml"
+        ), 0, json!({ "verdict": "conforms" })),
+        // An undirected marker leaves open how the robot came back.
+        (&format!("{RING} --assume-marker --marker undirected"), 0, json!({ "unique": false })),
+    ]);
 }
 
 #[test]
-fn a_marker_that_is_assumed_is_bad_usage_unless_it_is_asked_for() {
-    let (folder, log) = written("assumed_marker_usage");
-    let mapping = folder.join("mapping.toml");
-    fs::write(&mapping, "[marker]\nat = [0, 0, 3.14]\n").unwrap();
-    let flat = folder.join("flat.toml");
-    fs::write(&flat, "[marker]\nat = [0, 0]\n").unwrap();
-    let fiducial = folder.join("fiducial.toml");
-    fs::write(&fiducial, "[marker]\ntopic = \"/tag\"\n").unwrap();
-    let lines = folder.join("lines.jsonl");
-    fs::write(&lines, "{\"degree\":3,\"door\":1}\n{\"degree\":3,\"door\":null}\n").unwrap();
-    let [mapping, flat, fiducial, lines] =
-        [&mapping, &flat, &fiducial, &lines].map(|path| path.to_str().unwrap());
-    for (log, options, message) in [
+fn what_needs_other_scans_or_another_option_is_an_error() {
+    let scratch = ring("laser_usage");
+    for (file, text) in [
+        ("mapping.toml", "[marker]\nat = [0, 0, 3.14]\n"),
+        ("flat.toml", "[marker]\nat = [0, 0]\n"),
+        ("fiducial.toml", "[marker]\ntopic = \"/tag\"\n"),
+        ("lines.jsonl", "{\"degree\":3,\"door\":1}\n{\"degree\":3,\"door\":null}\n"),
+        ("params.toml", "[corner]\n[arm]\nmin = 2.0\n"),
+    ] {
+        scratch.write(file, text);
+    }
+    for (line, cause) in [
         (
-            &*log,
-            &["--topics", mapping][..],
-            "[marker] at of --topics: the log has no marker there; to assume one, add --assume-marker",
+            "conform ring.log --driver anyone --mapping mapping.toml",
+            "[marker] at of --mapping: the log has no marker there; to assume one, add --assume-marker",
         ),
         (
-            &log,
-            &["--topics", flat, "--assume-marker"],
-            "[marker] at of --topics: a directional marker needs a heading: at = [x, y, heading]",
+            "conform ring.log --driver anyone --mapping flat.toml --assume-marker",
+            "[marker] at of --mapping: a directional marker needs a heading: at = [x, y, heading]",
         ),
-        (&log, &["--topics", fiducial], "the log has no topic \"/tag\"; it has: FLASER"),
         (
-            &log,
-            &["--assume-marker", "--marker", "none"],
+            "conform ring.log --driver anyone --mapping fiducial.toml",
+            "the log has no topic \"/tag\"; it has: FLASER",
+        ),
+        (
+            "conform ring.log --driver anyone --assume-marker --marker none",
             "--assume-marker: this needs another marker than none",
         ),
         (
-            lines,
-            &["--assume-marker"],
+            "conform lines.jsonl --driver anyone --assume-marker",
             "--assume-marker: this is for events that are inferred from laser scans",
         ),
         (
-            lines,
-            &["--picture", "a.svg", "--marker", "none"],
+            "conform lines.jsonl --driver anyone --picture a.svg --marker none",
             "--picture: this is for events that are inferred from laser scans",
         ),
+        (
+            "conform ring.log --marker undirected --assume-marker",
+            "--marker undirected: the algorithms need the directional",
+        ),
+        (
+            "conform ring.log --laser-params params.toml",
+            "params.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ",
+        ),
+        ("sense ring.log --scans 9999", "--scans: the log has 2"),
     ] {
-        let output = run([&["conform", log, "--driver", "anyone"], options].concat());
-        assert_eq!(output.status.code(), Some(2), "{options:?} {}", stdout(&output));
-        assert!(stderr(&output).contains(message), "{options:?}: {}", stderr(&output));
+        let message = scratch.error(line);
+        assert!(message.contains(cause), "{line}: {message}");
     }
-    // The algorithms need a directional marker.
-    let output = run(["conform", &log, "--marker", "undirected", "--assume-marker"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("--marker undirected: the algorithms need the directional"));
-    fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn an_unknown_parameter_of_sensing_is_an_error_with_its_place() {
-    let (folder, log) = written("laser_parameters");
-    let params = folder.join("params.toml");
-    fs::write(&params, "[corner]\n[arm]\nmin = 2.0\n").unwrap();
-    let params = params.to_str().unwrap();
-    let output = run(["conform", &log, "--laser-params", params]);
-    assert_eq!(output.status.code(), Some(2));
-    let cause = "params.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ";
-    assert!(stderr(&output).contains(cause), "{}", stderr(&output));
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn a_log_that_begins_elsewhere_than_its_world_has_a_hint() {
-    let (folder, log) = written("laser_elsewhere");
-    let world = ["--marker", "none", "--world", "worlds/figure-1a.toml"];
-    let (code, lines) = conform(&log, &world);
-    let verdict = lines.last().unwrap();
-    assert_eq!((code, &verdict["event"]), (Some(1), &1.into()), "{verdict}");
+    let scratch = ring("laser_elsewhere");
+    let world = format!("{RING} --marker none --world worlds/figure-1a.toml");
     let end = "the log ends with a door: where it led is not recorded";
     let hint = "the log may begin elsewhere: --start any tries every start";
-    assert_eq!(verdict["remarks"], json!([hint, end]));
+    scratch.facts(&[(&world, 1, json!({ "event": 1, "remarks": [hint, end] }))]);
     // With it the log begins at some T of the wheel.
-    let (_, lines) = conform(&log, &[&world[..], &["--start", "any"]].concat());
-    assert_eq!(lines.last().unwrap()["remarks"], json!([end]), "{lines:?}");
-    fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn scans_that_a_log_does_not_have_are_an_error() {
-    let (folder, log) = written("laser_scans");
-    let output = run(["sense", &log, "--scans", "9999"]);
-    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
-    let message = stderr(&output);
-    assert!(
-        message.contains("--scans: the log has 2") && message.contains("counted from 0"),
-        "{message}"
-    );
-    fs::remove_dir_all(folder).unwrap();
+    let output = scratch.run(&format!("{world} --start any --json"));
+    let last = super::objects(&super::stdout(&output)).pop().unwrap();
+    assert_eq!(last["remarks"], json!([end]), "{last}");
 }
 
 #[test]
 fn the_picture_of_a_run_shows_its_visits() {
-    let (folder, log) = written("laser_picture");
-    let [svg, png] = ["run.svg", "run.png"].map(|name| folder.join(name));
-    for picture in [&svg, &png] {
-        let (code, _) =
-            conform(&log, &["--marker", "none", "--picture", picture.to_str().unwrap()]);
-        assert_eq!(code, Some(0));
+    let scratch = ring("laser_picture");
+    for picture in ["run.svg", "run.png"] {
+        scratch.out(&format!("{RING} --marker none --picture {picture}"), 0);
     }
-    let text = fs::read_to_string(svg).unwrap();
+    let text = scratch.text("run.svg");
     for part in [">ring</text>", ">2 visits of junctions; the log conforms</text>", ">3</text>"] {
         assert!(text.contains(part), "{part}");
     }
     assert_eq!(text.matches("class=\"junction\"").count(), 1, "both visits are at one junction");
-    assert!(fs::read(png).unwrap().starts_with(b"\x89PNG"));
-    fs::remove_dir_all(folder).unwrap();
+    assert!(scratch.bytes("run.png").starts_with(b"\x89PNG"));
 }
 
 /// The logs of two real robots, if they exist; `TOPOSLAM_CARMEN_LOGS` names their folder.
@@ -273,26 +215,26 @@ fn carmen() -> Option<PathBuf> {
 #[test]
 fn a_real_building_and_its_twin_on_the_torus_explain_the_same_log() {
     let Some(logs) = carmen() else { return };
-    let folder = folder("real_twin");
-    let mapping = folder.join("hub.toml");
-    fs::write(&mapping, "[marker]\nat = [-0.8, -18.6]\n").unwrap();
+    let scratch = Scratch::new("real_twin");
+    scratch.write("hub.toml", "[marker]\nat = [-0.8, -18.6]\n");
     let log = logs.join("aces.log.gz");
-    let log = log.to_str().unwrap();
-    let marker =
-        ["--marker", "undirected", "--assume-marker", "--topics", mapping.to_str().unwrap()];
-    for world in [&["--world", "worlds/real/aces.toml"][..], &["--class", "planar"]] {
-        let (code, lines) = conform(log, &[&marker[..], world].concat());
-        let verdict = lines.last().unwrap();
-        assert_eq!((code, &verdict["verdict"]), (Some(0), &"conforms".into()), "{verdict}");
-        assert_eq!(verdict["twin"]["figure"], "Figure 1(b)");
-        assert_eq!(verdict["twin"]["genus"], 1);
-        let sentence = verdict["facts"]["twin"].as_str().unwrap();
-        assert!(sentence.contains("Figure 1(b) of the paper"), "{sentence}");
-        assert!(sentence.contains("no walk distinguishes"), "{sentence}");
+    let conform =
+        format!("conform {} --events laser --driver anyone --assume-marker", log.display());
+    let undirected = format!("{conform} --marker undirected --mapping hub.toml");
+    let twin = json!({ "verdict": "conforms", "twin.figure": "Figure 1(b)", "twin.genus": 1 });
+    scratch.facts(&[
+        (&format!("{undirected} --world worlds/real/aces.toml"), 0, twin.clone()),
+        (&format!("{undirected} --class planar"), 0, twin),
+        // With a directional marker there is none.
+        (
+            &format!("{conform} --world worlds/real/aces.toml"),
+            0,
+            json!({ "verdict": "conforms", "twin": null }),
+        ),
+    ]);
+    let text = scratch.out(&format!("{undirected} --class planar"), 0);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in ["Figure 1(b) of the paper", "no walk distinguishes"] {
+        assert!(text.contains(part), "{text}");
     }
-    // With a directional marker there is none.
-    let (_, lines) = conform(log, &["--assume-marker", "--world", "worlds/real/aces.toml"]);
-    let verdict = lines.last().unwrap();
-    assert_eq!((&verdict["verdict"], &verdict["twin"]), (&"conforms".into(), &Value::Null));
-    fs::remove_dir_all(folder).unwrap();
 }

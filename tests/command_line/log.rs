@@ -1,25 +1,14 @@
 //! `toposlam simulate --log`: what is in a log, by readers in Python that share nothing with its writer;
 //! and what is left of one whose writer was killed.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{fs, path::Path, process::Command};
 
 use mcap::{MessageStream, Summary, read::Options};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{folder, objects, read_world, run, stderr, stdout, stdout_of};
+use super::{Scratch, has, stderr};
 
-const SHAPE_6: &str = "worlds/shape-6.toml";
-
-/// Simulates shape 6 and writes a log; what is stdout_of of the run.
-fn logged(log: &Path, arguments: &[&str]) -> Value {
-    let log = log.to_str().unwrap();
-    let simulate = ["simulate", SHAPE_6, "--seed", "3", "--json", "--log", log];
-    objects(&stdout_of([&simulate[..], arguments].concat())).remove(0)
-}
+const SIMULATE: &str = "simulate worlds/shape-6.toml --seed 3 --log";
 
 /// What Python reads in a log; `None`, and why, where it has no readers of logs.
 fn by_python(log: &Path) -> Option<Value> {
@@ -59,74 +48,69 @@ fn agree(report: &Value, line: &Value) {
         (&report["run"]["seed"], &report["run"]["marker"]),
         (&3.into(), &"directional".into())
     );
-    let end = serde_json::json!({"moves": moves, "ending": "mapped", "cause": ""});
+    let end = json!({"moves": moves, "ending": "mapped", "cause": ""});
     assert_eq!(report["end"], end);
     // The degrees of an L, a T, three Ls and a dead end, as the robot comes upon them.
-    let degrees = serde_json::json!([2, 3, 2, 2, 2, 1]);
+    let degrees = json!([2, 3, 2, 2, 2, 1]);
     assert_eq!(report["map"]["degrees"], degrees);
     let opposite: Vec<usize> = serde_json::from_value(report["map"]["opposite"].clone()).unwrap();
     assert!((0..12).all(|dart| opposite[opposite[dart]] == dart), "{opposite:?}");
     let percepts = report["percepts"].as_array().unwrap();
-    assert_eq!(percepts[0], serde_json::json!([0, 2, 0, [true, false, false, true]]));
+    assert_eq!(percepts[0], json!([0, 2, 0, [true, false, false, true]]));
     assert!(percepts.iter().enumerate().all(|(moves, percept)| percept[0] == moves));
     assert!(percepts.iter().all(|percept| {
         let doors = percept[3].as_array().unwrap().iter().filter(|&door| door == true);
         percept[1] == doors.count()
     }));
-    assert_eq!(report["frames"], serde_json::json!(["odom", "base_link"]));
-    assert_eq!(report["first_odometry"], serde_json::json!([0, 0.0, 0.0]));
+    assert_eq!(report["frames"], json!(["odom", "base_link"]));
+    assert_eq!(report["first_odometry"], json!([0, 0.0, 0.0]));
     let last = report["last_odometry"][0].as_f64().unwrap() / 1e9;
     assert!((last - seconds).abs() < 1e-3, "{last} {seconds}");
     let turn: Vec<f64> = serde_json::from_value(report["orientation"].clone()).unwrap();
     assert!((turn.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-9, "{turn:?}");
-    assert_eq!(report["last_cmd_vel"], serde_json::json!([0.0, 0.0]));
+    assert_eq!(report["last_cmd_vel"], json!([0.0, 0.0]));
     for (kind, same) in report["standard_types_are_those_of_ros_2"].as_object().unwrap() {
         assert_eq!(same, true, "{kind}");
     }
 }
 
-fn log_in(folder: &Path, name: &str) -> PathBuf {
-    folder.join(name).with_extension("mcap")
-}
-
 // paper: exp.simulated
 #[test]
 fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
-    let folder = folder("log");
-    let [one, other] = ["one", "other"].map(|name| log_in(&folder, name));
-    let line = logged(&one, &["--by-scene"]);
-    logged(&other, &["--by-scene"]);
-    assert_eq!(fs::read(&one).unwrap(), fs::read(&other).unwrap(), "the same bytes each time");
-    if let Some(report) = by_python(&one) {
+    let scratch = Scratch::new("log");
+    let line = scratch.last(&format!("{SIMULATE} one.mcap --by-scene"), 0);
+    scratch.out(&format!("{SIMULATE} other.mcap --by-scene"), 0);
+    assert_eq!(scratch.bytes("one.mcap"), scratch.bytes("other.mcap"), "the same bytes each time");
+    if let Some(report) = by_python(&scratch.path("one.mcap")) {
         agree(&report, &line);
-        assert_eq!(report["images"], serde_json::json!({}), "there are no images");
-        assert_eq!(report["run"]["calibration"], "");
-        assert_eq!(
-            report["run"]["command"],
-            "toposlam simulate worlds/shape-6.toml --algorithm folding --seed 3 --by-scene"
+        let command =
+            "toposlam simulate worlds/shape-6.toml --algorithm folding --seed 3 --by-scene";
+        has(
+            &report,
+            &json!({
+                "images": {}, "run.calibration": "", "run.command": command,
+            }),
+            "one.mcap",
         );
     }
-    fs::remove_dir_all(folder).unwrap();
 }
 
 // paper: exp.simulated
 #[test]
 fn a_log_contains_the_original_images() {
-    let folder = folder("log_images");
-    let [log, html] = [log_in(&folder, "run"), folder.join("run.html")];
-    let line = logged(&log, &["--effects", "none", "--html", html.to_str().unwrap()]);
-    if let Some(report) = by_python(&log) {
+    let scratch = Scratch::new("log_images");
+    let line = scratch.last(&format!("{SIMULATE} run.mcap --effects none --html run.html"), 0);
+    if let Some(report) = by_python(&scratch.path("run.mcap")) {
         agree(&report, &line);
-        let (image, annotated) = ("/camera/image/compressed", "/camera/annotated/compressed");
-        for topic in [image, annotated] {
-            assert_eq!(report["counts"][topic], line["frames"]);
-        }
         // Without effects the camera gives PNG; the first is taken at once.
-        assert_eq!(report["images"][image], serde_json::json!(["png", 0, 640, 480]));
-        assert_eq!(report["images"][annotated], serde_json::json!(["jpeg", 0, 640, 480]));
+        for (topic, format) in
+            [("/camera/image/compressed", "png"), ("/camera/annotated/compressed", "jpeg")]
+        {
+            assert_eq!(report["counts"][topic], line["frames"]);
+            assert_eq!(report["images"][topic], json!([format, 0, 640, 480]));
+        }
         assert!(report["run"]["calibration"].as_str().unwrap().starts_with("[camera]\nkind = "));
     }
-    fs::remove_dir_all(folder).unwrap();
 }
 
 /// The number of messages that can be read, and the topic of the last.
@@ -140,10 +124,9 @@ fn readable(file: &[u8]) -> (usize, String) {
 
 #[test]
 fn a_log_whose_writer_was_killed_is_read_to_its_last_whole_chunk() {
-    let folder = folder("log_killed");
-    let log = log_in(&folder, "run");
-    logged(&log, &["--by-scene"]);
-    let file = fs::read(&log).unwrap();
+    let scratch = Scratch::new("log_killed");
+    scratch.out(&format!("{SIMULATE} run.mcap --by-scene"), 0);
+    let file = scratch.bytes("run.mcap");
     let summary = Summary::read(&file).unwrap().unwrap();
     let messages = summary.stats.unwrap().message_count as usize;
     assert_eq!(readable(&file), (messages, "/toposlam/end".to_owned()));
@@ -163,37 +146,19 @@ fn a_log_whose_writer_was_killed_is_read_to_its_last_whole_chunk() {
         before = now;
     }
     assert_eq!(before, messages);
-    fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn a_run_that_cannot_begin_leaves_no_log() {
-    let folder = folder("log_bad");
-    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    for (log, more, cause) in [
-        ("run.bag", "--by-scene", "the name must end in .mcap"),
-        ("nowhere/run.mcap", "--by-scene", "there is no folder"),
-        ("run.mcap", "--start=tee:sw", "the start, tee, is a T"),
-        ("run.mcap", "--calibration=missing.toml", "missing.toml: cannot be read"),
-    ] {
-        let output = run(["simulate", SHAPE_6, more, "--log", &path(log)]);
-        let message = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.starts_with("error: ") && message.contains(cause), "{message}");
-    }
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 /// A device that is always full.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_reported_and_ends_the_run() {
-    let output = run(["simulate", SHAPE_6, "--by-scene", "--json", "--log", "/dev/full"]);
-    assert_eq!(output.status.code(), Some(2));
-    let message = stderr(&output);
+    let scratch = Scratch::new("log_full");
+    let message = scratch.error(&format!("{SIMULATE} /dev/full --by-scene --json"));
     assert!(message.starts_with("error: /dev/full: cannot be written: No space"), "{message}");
-    assert!(output.stdout.is_empty(), "{}", stdout(&output));
+    // A run that cannot begin leaves no log; the errors are snapshots.
+    scratch.error(&format!("{SIMULATE} run.mcap --start tee:sw"));
+    scratch.error(&format!("{SIMULATE} run.mcap --calibration missing.toml"));
+    assert_eq!(scratch.written(), [""; 0]);
 }
 
 #[cfg(unix)]
@@ -201,48 +166,40 @@ fn a_full_disk_is_reported_and_ends_the_run() {
 fn the_log_of_an_interrupted_run_ends_with_the_interruption() {
     use std::process::Stdio;
 
-    let folder = folder("log_interrupted");
-    let log = log_in(&folder, "run");
-    let mut robot = super::toposlam();
+    let scratch = Scratch::new("log_interrupted");
+    let log = scratch.path("run.mcap");
     // Far too long to end by itself.
-    robot.args(["simulate", "worlds/building-25.toml", "--start", "north-west:west-upper"]);
-    robot.arg("--log").arg(&log).stdout(Stdio::null()).stderr(Stdio::null());
-    let mut robot = robot.spawn().unwrap();
+    let mut robot = scratch
+        .command("simulate worlds/building-25.toml --start north-west:west-upper --log run.mcap");
+    let mut robot = robot.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     // Its head is written when it sets out.
     while fs::metadata(&log).map_or(0, |file| file.len()) < 1000 {
         assert!(robot.try_wait().unwrap().is_none(), "it ended by itself");
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    let killed = Command::new("kill").args(["-INT", &robot.id().to_string()]).status().unwrap();
-    assert!(killed.success());
+    super::interrupt(&robot);
     assert_eq!(robot.wait().unwrap().code(), Some(3));
     let file = fs::read(&log).unwrap();
     assert!(Summary::read(&file).unwrap().is_some(), "the log is whole");
     let last = MessageStream::new(&file).unwrap().map(Result::unwrap).last().unwrap();
     assert_eq!(last.channel.topic, "/toposlam/end");
     assert!(String::from_utf8_lossy(&last.data).contains("stopped\0"));
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn the_start_of_a_log_is_recognised_by_its_hash() {
-    let folder = folder("log_hash");
-    let hash = |arguments: &[&str]| {
-        let log = log_in(&folder, "run");
-        let simulate = ["simulate", "--by-scene", "--json", "--log", log.to_str().unwrap()];
-        stdout_of([&simulate[..], arguments].concat());
-        let file = fs::read(&log).unwrap();
+    let scratch = Scratch::new("log_hash");
+    let hash = |world: &str| {
+        scratch.out(&format!("simulate {world} --by-scene --log run.mcap"), 0);
+        let file = scratch.bytes("run.mcap");
         let summary = Summary::read(&file).unwrap().unwrap();
         mcap::read::metadata(&file, &summary.metadata_indexes[0]).unwrap().metadata["world_hash"]
             .clone()
     };
-    let renamed = folder.join("renamed.toml");
-    let text = fs::read_to_string(SHAPE_6).unwrap();
-    fs::write(&renamed, text.replace("corner", "x").replace("tee", "y")).unwrap();
-    assert_eq!(read_world(&renamed).graph.edge_count(), 6);
-    let shape = hash(&[SHAPE_6]);
+    let text = scratch.text("worlds/shape-6.toml");
+    scratch.write("renamed.toml", text.replace("corner", "x").replace("tee", "y"));
+    let shape = hash("worlds/shape-6.toml");
     assert!(shape.len() == 64 && shape.bytes().all(|digit| digit.is_ascii_hexdigit()), "{shape}");
-    assert_eq!(hash(&[renamed.to_str().unwrap()]), shape);
-    assert_ne!(hash(&["worlds/shape-8.toml"]), shape);
-    fs::remove_dir_all(folder).unwrap();
+    assert_eq!(hash("renamed.toml"), shape);
+    assert_ne!(hash("worlds/shape-8.toml"), shape);
 }

@@ -7,7 +7,6 @@ mod calibrate;
 mod check;
 mod compare;
 mod conform;
-mod conform_report;
 mod containers;
 mod counterexample;
 mod draw;
@@ -38,7 +37,7 @@ use std::{
     ffi::{OsStr, OsString},
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
+    process::{Child, Command, Output, Stdio},
     sync::{Mutex, PoisonError},
 };
 
@@ -65,20 +64,43 @@ fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
 
 /// Runs the program until it reads its standard input, and sends the signal of Ctrl-C.
 #[cfg(unix)]
-fn interrupted(arguments: &[&str]) -> Output {
+fn interrupted(line: &str) -> Output {
     use std::io::Write as _;
 
     let mut program = toposlam();
-    program.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut program = program.spawn().unwrap();
+    program.args(line.split(' ')).stdin(Stdio::piped());
+    let mut program = program.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // More than a pipe holds: the program reads.
     let mut input = program.stdin.take().unwrap();
     input.write_all(&vec![b' '; 1 << 20]).unwrap();
-    let killed = Command::new("kill").args(["-INT", &program.id().to_string()]).status().unwrap();
-    assert!(killed.success());
+    interrupt(&program);
     let output = program.wait_with_output().unwrap();
     drop(input);
     output
+}
+
+/// Runs the program until it prints a line, and sends the signal of Ctrl-C.
+#[cfg(unix)]
+fn interrupted_after_a_line(line: &str) -> Output {
+    use std::io::{BufRead, BufReader, Read};
+
+    let mut program = toposlam();
+    program.args(line.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut program = program.spawn().unwrap();
+    let mut out = BufReader::new(program.stdout.take().unwrap());
+    let mut text = String::new();
+    out.read_line(&mut text).unwrap();
+    interrupt(&program);
+    out.read_to_string(&mut text).unwrap();
+    let output = program.wait_with_output().unwrap();
+    Output { stdout: text.into_bytes(), ..output }
+}
+
+/// Sends the signal of Ctrl-C.
+#[cfg(unix)]
+fn interrupt(program: &Child) {
+    let killed = Command::new("kill").args(["-INT", &program.id().to_string()]).status().unwrap();
+    assert!(killed.success());
 }
 
 fn check_exit_code(arguments: &[OsString], output: &Output) {
@@ -138,6 +160,134 @@ fn objects(text: &str) -> Vec<Value> {
     let objects: Vec<Value> = lines.collect();
     assert!(text.ends_with('\n') && objects.iter().all(fits_a_schema), "{text}");
     objects
+}
+
+/// A folder in which a test runs the program. It shows the inputs of the repository by their usual names.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let folder = folder(name);
+        for inputs in ["docs", "fuzz", "tests", "vision", "worlds"] {
+            let inputs_path = Path::new(env!("CARGO_MANIFEST_DIR")).join(inputs);
+            #[cfg(unix)]
+            std::os::unix::fs::symlink(inputs_path, folder.join(inputs)).unwrap();
+            #[cfg(windows)]
+            std::os::windows::fs::symlink_dir(inputs_path, folder.join(inputs)).unwrap();
+        }
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    /// The names of the files that the test and the program wrote.
+    fn written(&self) -> Vec<String> {
+        let mut names = names_in(&self.0);
+        names.retain(|name| !self.path(name).is_symlink());
+        names
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = toposlam();
+        command.current_dir(&self.0).args(shlex::split(line).unwrap());
+        command
+    }
+
+    /// Runs a command line to its end. Its exit code is one that the help of the verb has.
+    fn run(&self, line: &str) -> Output {
+        let output = self.command(line).output().unwrap();
+        let words: Vec<_> = shlex::split(line).unwrap().into_iter().map(OsString::from).collect();
+        check_exit_code(&words, &output);
+        output
+    }
+
+    /// The standard output of a run that ends with this exit code.
+    fn out(&self, line: &str, code: i32) -> String {
+        let output = self.run(line);
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{line}: {}{}",
+            stdout(&output),
+            stderr(&output)
+        );
+        stdout(&output)
+    }
+
+    /// The error message of a run that ends with 2.
+    fn error(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert_eq!(output.status.code(), Some(2), "{line}: {}{}", stdout(&output), stderr(&output));
+        stderr(&output)
+    }
+
+    /// The objects that `--json` prints, in a run that ends with this exit code.
+    fn lines(&self, line: &str, code: i32) -> Vec<Value> {
+        objects(&self.out(&format!("{line} --json"), code))
+    }
+
+    /// The last of these objects.
+    fn last(&self, line: &str, code: i32) -> Value {
+        self.lines(line, code).pop().unwrap()
+    }
+
+    /// Checks fields of what `--json` prints: of the last object, or, for a list, of all objects.
+    fn facts(&self, facts: &[(&str, i32, Value)]) {
+        for (line, code, fields) in facts {
+            let found = self.lines(line, *code);
+            match fields {
+                Value::Array(_) => has(&Value::Array(found), fields, line),
+                // Only the exit code.
+                Value::Object(fields) if fields.is_empty() => {}
+                _ => has(found.last().unwrap(), fields, line),
+            }
+        }
+    }
+}
+
+/// Checks that a value has these fields. `a.b` is a field of a field, `a.0` an element, `a.#` the number of
+/// elements, and a missing field is `null`.
+fn has(found: &Value, fields: &Value, place: &str) {
+    match fields {
+        Value::Object(fields) if !fields.is_empty() => {
+            for (path, expected) in fields {
+                let of = |found: Value, name: &str| match (name.parse::<usize>(), &found) {
+                    (_, Value::Array(list)) if name == "#" => list.len().into(),
+                    (Ok(index), Value::Array(list)) => list[index].clone(),
+                    _ => found[name].clone(),
+                };
+                let value = path.split('.').fold(found.clone(), of);
+                has(&value, expected, &format!("{place}: {path}"));
+            }
+        }
+        Value::Array(expected) => {
+            let list = found.as_array().unwrap_or_else(|| panic!("{place}: {found}"));
+            assert_eq!(list.len(), expected.len(), "{place}: {found}");
+            for (found, expected) in list.iter().zip(expected) {
+                has(found, expected, place);
+            }
+        }
+        _ => assert_eq!(found, fields, "{place}"),
+    }
+}
+
+/// The numbers that objects have by this name.
+fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
+    lines.iter().map(|line| line[key].as_u64().unwrap()).collect()
 }
 
 /// An empty folder for a test.

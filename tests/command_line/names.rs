@@ -1,10 +1,9 @@
 //! Names in worlds are any printable text without quotes and path separators, and every output shows them.
 
-use std::{fs, path::Path};
+use serde_json::json;
+use toposlam_model::format::world_file;
 
-use toposlam_model::format::{named_world::NamedWorld, world_file};
-
-use super::{folder, objects, run, stderr, stdout, stdout_of};
+use super::{Scratch, read_world};
 
 /// A floor plan with names that some format could misread.
 const PLAN: &str = r#"name = "Gebäude <i>&東"
@@ -46,96 +45,78 @@ facing = "<b>&"
 
 const NAMES: [&str; 5] = ["Küche", "東口", "<b>&", "a b", "x:y"];
 
-fn written(folder: &Path) -> String {
-    let file = folder.join("東 plan.toml");
-    fs::write(&file, PLAN).unwrap();
-    file.to_str().unwrap().to_owned()
+const FILE: &str = "東 plan.toml";
+
+fn scratch(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    scratch.write(FILE, PLAN);
+    scratch
 }
 
 #[test]
 fn a_world_keeps_its_names_in_every_format() {
-    let folder = folder("names_in_formats");
-    let plan = written(&folder);
-    let world = super::read_world(Path::new(&plan));
+    let scratch = scratch("names_in_formats");
+    let world = read_world(&scratch.path(FILE));
     assert_eq!(world.vertex_names, NAMES);
-    let json = folder.join("w.json");
-    fs::write(&json, world_file::to_json_text(&world)).unwrap();
-    assert_eq!(super::read_world(&json), world);
+    scratch.write("w.json", world_file::to_json_text(&world));
+    assert_eq!(read_world(&scratch.path("w.json")), world);
     assert_eq!(world_file::read(world_file::to_toml(&world).as_bytes()).unwrap(), world);
-    let dot = stdout_of(["draw", &plan, "--format", "dot"]);
+    let dot = scratch.out("draw '東 plan.toml' --format dot", 0);
     assert!(dot.contains("\"Küche\"") && dot.contains("\"<b>&amp;\"") && dot.contains("\"x:y\""));
-    let svg = stdout_of(["draw", &plan]);
+    let svg = scratch.out("draw '東 plan.toml'", 0);
     assert!(svg.contains("Küche") && svg.contains("&lt;b&gt;&amp;") && !svg.contains("<b>"));
-    let png = folder.join("w.png");
-    stdout_of(["draw", &plan, "-o", png.to_str().unwrap()]);
+    scratch.out("draw '東 plan.toml' -o w.png", 0);
 }
 
 #[test]
 fn a_start_is_given_by_any_names() {
-    let folder = folder("names_of_starts");
-    let plan = written(&folder);
+    let scratch = scratch("names_of_starts");
     for start in ["Küche:東口", "東口:a b", "<b>&:Küche", "a b:x:y", "x:y:a b"] {
-        let line = &objects(&stdout_of(["explore", &plan, "--json", "--start", start]))[0];
-        assert_eq!(line["isomorphic"], true, "{start}");
+        let explore = format!("explore '東 plan.toml' --start '{start}'");
+        scratch.facts(&[(&explore, 0, json!({ "isomorphic": true }))]);
     }
-    let wrong = run(["explore", &plan, "--start", "Kuche:東口"]);
-    assert!(stderr(&wrong).contains("there is no vertex `Kuche`; did you mean `Küche`?"));
-    assert!(stdout_of(["compare", &plan, &plan, "--walk", "0,1"]).contains("東口"));
+    let wrong = scratch.error("explore '東 plan.toml' --start 'Kuche:東口'");
+    assert!(wrong.contains("there is no vertex `Kuche`; did you mean `Küche`?"), "{wrong}");
 }
 
 #[test]
 fn the_pages_and_reports_of_a_run_escape_names() {
-    let folder = folder("names_on_pages");
-    let plan = written(&folder);
-    let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    let [log, page, svg, walk, report] =
-        ["東.mcap", "run.html", "run.svg", "walk.html", "conform.html"].map(file);
-    let files = ["--log", &log, "--html", &page, "--svg", &svg];
-    stdout_of([&["simulate", &plan, "--by-scene", "--start", "東口:a b"], &files[..]].concat());
-    stdout_of(["compare", &plan, "worlds/shape-6.toml", "--html", &walk]);
-    let [junit, sarif] = ["j.xml", "s.sarif"].map(file);
-    let reports = ["--html", &report, "--junit", &junit, "--sarif", &sarif];
-    let text = stdout_of([&["conform", &log, "--world", &plan], &reports[..]].concat());
-    assert!(text.contains("from 東口:a b"), "{text}");
-    for page in [&page, &walk, &report, &svg] {
-        let text = fs::read_to_string(page).unwrap();
+    let scratch = scratch("names_on_pages");
+    scratch.out(
+        "simulate '東 plan.toml' --by-scene --start '東口:a b' --log 東.mcap --html run.html --svg run.svg",
+        0,
+    );
+    scratch.out("compare '東 plan.toml' worlds/shape-6.toml --html walk.html", 0);
+    // The log's own start is read again.
+    let reports = "--html conform.html --junit j.xml --sarif s.sarif";
+    let conform = format!("conform 東.mcap --world '東 plan.toml' {reports}");
+    scratch.facts(&[(&conform, 0, json!({ "verdict": "conforms", "world.start": "東口:a b" }))]);
+    for page in ["run.html", "run.svg", "walk.html", "conform.html"] {
+        let text = scratch.text(page);
         assert!(!text.contains("<b>&") && !text.contains("<i>&"), "{page}");
         assert!(text.contains("東"), "{page}");
     }
-    for report in [&junit, &sarif] {
-        assert!(!fs::read_to_string(report).unwrap().contains("<b>&"), "{report}");
+    for report in ["j.xml", "s.sarif"] {
+        assert!(!scratch.text(report).contains("<b>&"), "{report}");
     }
-    // The log's own start is read again.
-    let line = &objects(&stdout_of(["conform", &log, "--world", &plan, "--json"]))[0];
-    assert_eq!(line["verdict"], "conforms");
 }
 
 #[test]
 fn what_is_no_name_is_an_error_with_its_place() {
-    let folder = folder("no_names");
+    let scratch = scratch("no_names");
     let escaped = r#"["", "a/b", "a\\b", "it's", "say \"a\"", "`a`", "a\u0007", "a\n", " a", "a ", "\u202e"]"#;
     let wrong: Vec<String> = serde_json::from_str(escaped).unwrap();
     for name in &wrong {
         let quoted = serde_json::to_string(name).unwrap();
-        let places = [
-            (
-                "w.toml",
-                format!("[clockwise]\n{quoted} = [\"b\"]\nb = [{quoted}]\n"),
-                "line 2, column 1: clockwise.",
-            ),
-            (
-                "w.json",
-                format!("{{\n \"clockwise\": {{\"b\": [{quoted}], {quoted}: [\"b\"]}}}}"),
-                "line 2, column 22: clockwise.b[0]: ",
-            ),
-        ];
-        for (file, text, place) in places {
-            let file = folder.join(file);
-            fs::write(&file, text).unwrap();
-            let output = run(["explore".as_ref(), file.as_os_str()]);
-            let message = stderr(&output);
-            assert_eq!(output.status.code(), Some(2), "{message}");
-            assert!(message.contains(&format!("{}: {place}", file.display())), "{message}");
+        scratch.write("w.toml", format!("[clockwise]\n{quoted} = [\"b\"]\nb = [{quoted}]\n"));
+        let json = format!("{{\n \"clockwise\": {{\"b\": [{quoted}], {quoted}: [\"b\"]}}}}");
+        scratch.write("w.json", json);
+        for (file, place) in [
+            ("w.toml", "line 2, column 1: clockwise."),
+            ("w.json", "line 2, column 22: clockwise.b[0]: "),
+        ] {
+            let message = scratch.error(&format!("explore {file}"));
+            assert!(message.starts_with(&format!("error: {file}: {place}")), "{message}");
             assert!(message.contains("is not a name; a name is printable"), "{message}");
             assert_eq!(message.lines().count(), 1, "{message}");
             assert!(!message.trim_end().contains(char::is_control), "{message}");
@@ -145,8 +126,8 @@ fn what_is_no_name_is_an_error_with_its_place() {
 
 #[test]
 fn an_error_in_a_json_world_has_line_and_column() {
-    let folder = folder("json_places");
-    let cases = [
+    let scratch = scratch("json_places");
+    for (text, place) in [
         (
             "{\"clockwise\": {\n  \"a\": [\"b\", \"c\"],\n  \"b\": [\"a\"],\n  \"c\": [\"b\"]}}",
             "line 2, column 14: clockwise.a[1]: vertex `a` lists the neighbour `c`",
@@ -164,28 +145,19 @@ fn an_error_in_a_json_world_has_line_and_column() {
             "{\"floor\": {\"hallway_width\": 1},\n\"junctions\": {\"a\": [0]}, \"hallways\": []}",
             "line 2, column 20: junctions.a: expected a list of two numbers",
         ),
-    ];
-    for (text, place) in cases {
-        let file = folder.join("w.json");
-        fs::write(&file, text).unwrap();
-        let output = run(["explore".as_ref(), file.as_os_str()]);
-        let message = stderr(&output);
-        assert!(message.starts_with(&format!("error: {}: {place}", file.display())), "{message}");
-        assert_eq!(stdout(&output), "");
+    ] {
+        scratch.write("w.json", text);
+        let message = scratch.error("explore w.json");
+        assert!(message.starts_with(&format!("error: w.json: {place}")), "{message}");
     }
 }
 
 #[test]
 fn a_world_without_a_name_has_that_of_its_file() {
-    let folder = folder("names_of_files");
-    for (file, name) in [("東 口.toml", "東 口"), ("it's.toml", "it_s"), ("a_b-1.toml", "a_b-1")]
-    {
-        let file = folder.join(file);
-        fs::write(&file, "[clockwise]\na = [\"b\"]\nb = [\"a\"]\n").unwrap();
-        let dot = stdout_of(["draw", file.to_str().unwrap(), "--format", "dot"]);
+    let scratch = scratch("names_of_files");
+    for (file, name) in [("東 口", "東 口"), ("it's", "it_s"), ("a_b-1", "a_b-1")] {
+        scratch.write(&format!("{file}.toml"), "[clockwise]\na = [\"b\"]\nb = [\"a\"]\n");
+        let dot = scratch.out(&format!("draw \"{file}.toml\" --format dot"), 0);
         assert!(dot.starts_with(&format!("graph \"{name}\"")), "{dot}");
     }
-    let named =
-        NamedWorld { name: "x".to_owned(), ..super::read_world(&folder.join("a_b-1.toml")) };
-    assert!(world_file::to_toml(&named).starts_with("name = \"x\"\n"));
 }

@@ -1,29 +1,13 @@
 //! `toposlam proofs`: the list, a check, a single case. Nothing here depends on the lemmas and theorems
 //! that exist. The report on a lemma that fails is tested beside the verb.
 
-use std::{fs, process::Output};
+use std::fs;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use toposlam_model::format::world_file;
-use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::ChoicesError, theorems};
+use toposlam_proofs::{Exhibit, Lemma, lemmas, replay::ChoicesError, theorems};
 
-use super::{folder, objects, run, stderr, stdout, stdout_of};
-
-/// The lemmas, the theorems and the totals.
-fn listed() -> (Vec<Value>, Vec<Value>, Value) {
-    let mut lines = objects(&stdout_of(["proofs", "--json"]));
-    let totals = lines.pop().unwrap();
-    let (lemmas, theorems) = lines.into_iter().partition(|line| line.get("lemma").is_some());
-    (lemmas, theorems, totals)
-}
-
-/// The two lemmas with the fewest cases, or the only one.
-fn quick() -> Vec<&'static Lemma> {
-    let mut lemmas: Vec<_> = lemmas::all().collect();
-    lemmas.sort_by_key(|lemma| lemma.exhaustive.cases);
-    lemmas.truncate(2);
-    lemmas
-}
+use super::{Scratch, has, stderr, stdout};
 
 /// The first case of a lemma that shows a world and a walk in it.
 fn case_with_a_walk() -> (&'static Lemma, Vec<u8>) {
@@ -53,110 +37,103 @@ fn choices_text(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }
 
-/// The message of an error.
-fn error_message(output: &Output) -> String {
-    let message = stderr(output);
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(output.stdout.is_empty() && message.starts_with("error: "), "{message}");
-    message
-}
-
 #[test]
 fn every_lemma_is_listed_with_its_place_and_its_engines() {
-    let (lines, proved, totals) = listed();
-    let text = stdout_of(["proofs"]);
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    let scratch = Scratch::new("proofs_list");
+    let mut lines = scratch.lines("proofs", 0);
+    let totals = lines.pop().unwrap();
+    let (lines, proved): (Vec<_>, Vec<_>) =
+        lines.into_iter().partition(|line| line.get("lemma").is_some());
     // Without line breaks.
-    let flowing = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = scratch.out("proofs", 0).split_whitespace().collect::<Vec<_>>().join(" ");
     for (line, lemma) in lines.iter().zip(lemmas::all()) {
-        assert_eq!(line["lemma"], lemma.name);
-        assert!(text.contains(&format!("{}\n  ", lemma.name)), "{text}");
-        for part in ["sentence", "paper", "file"].map(|key| line[key].as_str().unwrap()) {
-            assert!(flowing.contains(part), "{part}");
+        has(
+            line,
+            &json!({
+                "lemma": lemma.name,
+                "exhaustive.cases": lemma.exhaustive.cases,
+                "sampled.bound": lemma.sampled.map(|sampled| sampled.bound),
+                "kani.harness": lemma.kani.map(|kani| kani.harness),
+            }),
+            lemma.name,
+        );
+        for part in ["lemma", "sentence", "paper", "file"].map(|key| line[key].as_str().unwrap()) {
+            assert!(text.contains(part), "{part}");
         }
         assert!(fs::exists(line["file"].as_str().unwrap()).unwrap(), "{line}");
-        assert_eq!(line["exhaustive"]["cases"], lemma.exhaustive.cases);
-        assert!(flowing.contains(&format!("exhaustive {}: ", lemma.exhaustive.bound)));
-        assert_eq!(line["sampled"]["bound"].as_str(), lemma.sampled.map(|sampled| sampled.bound));
-        assert_eq!(line["kani"]["harness"].as_str(), lemma.kani.map(|kani| kani.harness));
+    }
+    for (line, theorem) in proved.iter().zip(theorems::all()) {
+        let (name, sentence, paper) = (&*theorem.name, &*theorem.sentence, &*theorem.paper);
+        has(
+            line,
+            &json!({
+                "theorem": name, "sentence": sentence, "paper": paper, "coq.bound": "every world",
+            }),
+            name,
+        );
+        let file = theorems::FILE;
+        let entry = format!("{name} {sentence} paper {paper} file {file} Coq every world ");
+        assert!(text.contains(&entry), "{entry}");
+        assert!(fs::exists(line["file"].as_str().unwrap()).unwrap(), "{line}");
     }
     let cases: u64 = lines.iter().map(|line| line["exhaustive"]["cases"].as_u64().unwrap()).sum();
-    assert_eq!((&totals["lemmas"], &totals["cases"]), (&lines.len().into(), &cases.into()));
-    assert_eq!(lines.len(), lemmas::all().count());
-    for (line, Theorem { name, sentence, paper }) in proved.iter().zip(theorems::all()) {
-        assert_eq!(
-            (&line["theorem"], &line["coq"]["bound"]),
-            (&name.into(), &"every world".into())
-        );
-        assert_eq!((&line["sentence"], &line["paper"]), (&(&*sentence).into(), &(&*paper).into()));
-        assert!(fs::exists(line["file"].as_str().unwrap()).unwrap(), "{line}");
-        let entry =
-            format!("{name} {sentence} paper {paper} file {} Coq every world ", theorems::FILE);
-        assert!(flowing.contains(&entry), "{entry}");
-    }
-    assert_eq!(proved.len(), theorems::all().count());
-    assert_eq!(totals["theorems"], proved.len());
-    assert!(flowing.contains("neither this program nor cargo test runs it"), "{text}");
-    let last = text.lines().last().unwrap();
-    assert!(last.starts_with(&format!("{} lemma", lines.len())), "{last}");
-    assert!(last.contains(&format!("; {} theorem", proved.len())), "{last}");
+    assert_eq!((lines.len(), proved.len()), (lemmas::all().count(), theorems::all().count()));
+    has(
+        &totals,
+        &json!({
+            "lemmas": lines.len(), "theorems": proved.len(), "cases": cases,
+        }),
+        "proofs",
+    );
 }
 
 #[test]
 fn a_lemma_is_checked_in_every_case() {
-    let lemmas = quick();
-    let names = lemmas.iter().flat_map(|lemma| ["--run", lemma.name]);
-    let lines = objects(&stdout_of(["proofs", "--json"].into_iter().chain(names)));
-    for (line, lemma) in lines.iter().zip(&lemmas) {
-        assert_eq!((&line["lemma"], &line["holds"]), (&lemma.name.into(), &true.into()));
-        assert_eq!(
-            (&line["cases"], &line["choices"]),
-            (&lemma.exhaustive.cases.into(), &Value::Null)
-        );
-        assert!(line["seconds"].is_f64());
-    }
-    let totals = lines.last().unwrap();
-    assert_eq!((&totals["lemmas"], &totals["held"]), (&lemmas.len().into(), &lemmas.len().into()));
-    assert_eq!(totals["holds"], true);
-    let text = stdout_of(["proofs", "--run", lemmas[0].name]);
+    let scratch = Scratch::new("proofs_check");
+    // The two lemmas with the fewest cases.
+    let mut quick: Vec<_> = lemmas::all().collect();
+    quick.sort_by_key(|lemma| lemma.exhaustive.cases);
+    let [one, two] = [quick[0], quick[1]].map(|lemma| (lemma.name, lemma.exhaustive.cases));
+    let run = format!("proofs --run {} --run {}", one.0, two.0);
+    let [one, two] = [one, two].map(
+        |(name, cases)| json!({ "lemma": name, "holds": true, "cases": cases, "choices": null }),
+    );
+    scratch.facts(&[(&run, 0, json!([one, two, { "lemmas": 2, "held": 2, "holds": true }]))]);
+    let text = scratch.out(&format!("proofs --run {}", quick[0].name), 0);
     let row = text.lines().next().unwrap();
-    assert!(row.starts_with(lemmas[0].name) && row.ends_with(" s  holds"), "{text}");
-    assert!(text.lines().last().unwrap().starts_with("holds: 1 of 1 lemma, "), "{text}");
-}
-
-#[test]
-fn an_unknown_name_lists_those_that_exist() {
-    let message = error_message(&run(["proofs", "--run", "the_moon_is_round"]));
+    assert!(row.starts_with(quick[0].name) && row.ends_with(" s  holds"), "{text}");
     let names: Vec<_> = lemmas::all().map(|lemma| lemma.name).collect();
     let cause = "--run: there is no lemma `the_moon_is_round`; there are:";
-    assert_eq!(message, format!("error: {cause}\n  {}\n", names.join("\n  ")));
+    let message = format!("error: {cause}\n  {}\n", names.join("\n  "));
+    assert_eq!(scratch.error("proofs --run the_moon_is_round"), message);
 }
 
 #[test]
 fn the_other_verbs_read_the_world_of_a_case() {
-    let folder = folder("proofs_case");
+    let scratch = Scratch::new("proofs_case");
     let (lemma, choices) = case_with_a_walk();
-    let case = ["proofs", "--run", lemma.name, "--choices", &choices_text(&choices)];
-    let text = stdout_of(case);
-    assert!(text.starts_with(&format!("{}\n  ", lemma.name)), "{text}");
+    let case = format!("proofs --run {} --choices {}", lemma.name, choices_text(&choices));
+    let text = scratch.out(&case, 0);
     let joined = text.replace(" \\\n", " ").split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(joined.contains(&format!(" again: toposlam {} ", case.join(" "))), "{text}");
+    assert!(joined.contains(&format!(" again: toposlam {case} ")), "{text}");
     assert!(text.contains("\n  door   robot at  perceives\n  start  v"), "{text}");
-    assert!(text.ends_with("\n\nholds: the lemma holds in this case\n"), "{text}");
-    assert_eq!(text, stdout_of(case));
+    assert_eq!(text, scratch.out(&case, 0));
 
     let (_, below) = text.split_once(" `toposlam explore`:\n\n").unwrap();
     let length = below.lines().position(|line| line.starts_with("facing = ")).unwrap() + 1;
     let world: String = below.split_inclusive('\n').take(length).collect();
-    let file = folder.join("case.toml");
-    fs::write(&file, &world).unwrap();
-    let file = file.to_str().unwrap();
-    assert!(stdout_of(["explore", file]).contains("It is isomorphic to the world"));
-    assert!(stdout_of(["draw", file]).starts_with("<svg"));
+    scratch.write("case.toml", &world);
+    scratch.facts(&[("explore case.toml", 0, json!({ "isomorphic": true }))]);
+    assert!(scratch.out("draw case.toml", 0).starts_with("<svg"));
 
-    let [line] = objects(&stdout_of(case.into_iter().chain(["--json"]))).try_into().unwrap();
-    assert_eq!((&line["lemma"], &line["holds"]), (&lemma.name.into(), &true.into()));
-    assert_eq!((&line["choices"], &line["verdict"]), (&choices.into(), &"holds".into()));
+    let line = scratch.last(&case, 0);
+    has(
+        &line,
+        &json!({
+            "lemma": lemma.name, "holds": true, "choices": choices, "verdict": "holds",
+        }),
+        &case,
+    );
     let from_json = world_file::read(line["worlds"][0].to_string().as_bytes()).unwrap();
     assert_eq!(from_json, world_file::read(world.as_bytes()).unwrap());
     let walk = &line["walks"][0];
@@ -166,44 +143,48 @@ fn the_other_verbs_read_the_world_of_a_case() {
 
 #[test]
 fn choices_that_make_no_case_are_an_error() {
+    let scratch = Scratch::new("proofs_choices");
     let (lemma, choices) = case_with_a_walk();
-    let rejected = |choices: &[u8]| {
-        let choices = choices_text(choices);
-        error_message(&run(["proofs", "--run", lemma.name, "--choices", &choices]))
-    };
     let length = choices.len();
-    let place = format!("error: --choices: {}: ", lemma.name);
-    let message = rejected(&choices[1..]);
-    let few = format!("a case that begins so has at least {length} choices, not {}", length - 1);
-    assert_eq!(message, format!("{place}{few}\n"));
-    let message = rejected(&[&choices[..], &[0]].concat());
-    let many = format!("the case that begins so has {length} choices, not {}", length + 1);
-    assert_eq!(message, format!("{place}{many}\n"));
-    let message = rejected(&[&[255], &choices[1..]].concat());
-    assert!(message.starts_with(&format!("{place}choice number 1 is 255; it is at most ")));
+    for (choices, cause) in [
+        (
+            choices[1..].to_vec(),
+            format!("a case that begins so has at least {length} choices, not {}\n", length - 1),
+        ),
+        (
+            [&choices[..], &[0]].concat(),
+            format!("the case that begins so has {length} choices, not {}\n", length + 1),
+        ),
+        ([&[255], &choices[1..]].concat(), "choice number 1 is 255; it is at most ".to_owned()),
+    ] {
+        let name = lemma.name;
+        let message =
+            scratch.error(&format!("proofs --run {name} --choices {}", choices_text(&choices)));
+        assert!(message.starts_with(&format!("error: --choices: {name}: {cause}")), "{message}");
+    }
 }
 
 #[test]
 fn a_sampled_case_has_its_own_bound() {
+    let scratch = Scratch::new("proofs_sampled");
     let sampled = |choices: &str, lemma: &Lemma| {
-        run(["proofs", "--run", lemma.name, "--engine", "sampled", "--choices", choices])
+        let choices = format!("--choices '{choices}'");
+        scratch.run(&format!("proofs --run {} --engine sampled {choices}", lemma.name))
     };
     for lemma in lemmas::all() {
-        let output = sampled("", lemma);
-        let message = stderr(&output);
+        let message = stderr(&sampled("", lemma));
         match lemma.sampled {
             None => assert!(message.ends_with(&format!("{} is not sampled\n", lemma.name))),
             Some(_) => assert!(message.contains("begins so has at least") || message.is_empty()),
         }
     }
-    let Some(lemma) = lemmas::all().find(|lemma| lemma.sampled.is_some()) else { return };
+    let lemma = lemmas::all().find(|lemma| lemma.sampled.is_some()).unwrap();
     let mut choices = Vec::new();
     let text = loop {
         let output = sampled(&choices_text(&choices), lemma);
         if output.status.code() != Some(2) {
             break stdout(&output);
         }
-        assert!(stderr(&output).contains("begins so has at least"), "{}", stderr(&output));
         choices.push(0);
     };
     let again = format!(" again: toposlam proofs --run {} --engine sampled --choices ", lemma.name);
@@ -213,8 +194,10 @@ fn a_sampled_case_has_its_own_bound() {
 
 #[test]
 fn the_case_in_the_help_exists() {
-    let help = stdout_of(["proofs", "--help"]);
+    let scratch = Scratch::new("proofs_help");
+    let help = scratch.out("proofs --help", 0);
     let mut examples = help.lines().filter_map(|line| line.strip_prefix("  toposlam "));
     let case = examples.find(|line| line.contains("--choices")).unwrap();
-    assert!(stdout_of(case.split(' ')).contains("as a file for `toposlam draw`"));
+    let line: Value = scratch.last(case, 0);
+    assert_eq!(line["holds"], true);
 }

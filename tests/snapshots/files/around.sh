@@ -1,0 +1,1 @@
+while read line; do echo '{"door":0}'; done
