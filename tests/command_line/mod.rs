@@ -20,15 +20,14 @@ mod laser;
 mod laser_logs;
 mod lines;
 mod log;
-mod merge;
 mod names;
 mod options;
 mod play;
 mod proofs;
-mod render;
-mod replay;
+mod rerun;
 mod safeguards;
 mod sense;
+mod shards;
 mod simulate;
 mod train;
 
