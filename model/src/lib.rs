@@ -62,7 +62,5 @@ pub mod similar;
 pub mod trace;
 pub mod world;
 
-mod union_find;
-
 #[cfg(test)]
 mod any_graph;

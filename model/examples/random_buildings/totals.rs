@@ -5,6 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use petgraph::unionfind::UnionFind;
 use toposlam_model::{
     check::judge_map,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -32,12 +33,6 @@ impl Random {
     }
 }
 
-/// The representative of a junction's part of the building.
-fn part(parents: &[usize], junction: usize) -> usize {
-    let parent = parents[junction];
-    if parent == junction { junction } else { part(parents, parent) }
-}
-
 /// A building with at most this number of junctions: those that the tree has reached from the first.
 fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> EmbeddedGraph {
     let width = (1..=junctions).find(|width| width * width >= junctions).unwrap();
@@ -49,13 +44,11 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
     for last in (1..hallways.len()).rev() {
         hallways.swap(last, random.below(last + 1));
     }
-    let mut parents: Vec<usize> = (0..junctions).collect();
+    let mut parts = UnionFind::<usize>::new(junctions);
     let mut around = vec![Vec::new(); junctions];
     let mut more = Vec::new();
     for (from, to) in hallways {
-        let parts = [from, to].map(|at| part(&parents, at));
-        if parts[0] != parts[1] && [from, to].iter().all(|&at| around[at].len() < DOORS) {
-            parents[parts[0]] = parts[1];
+        if [from, to].iter().all(|&at| around[at].len() < DOORS) && parts.union(from, to) {
             around[from].push(to);
             around[to].push(from);
         } else {
@@ -70,9 +63,8 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
             left -= 1;
         }
     }
-    let whole = part(&parents, 0);
     let lists: Vec<(String, Vec<String>)> = (0..junctions)
-        .filter(|&at| part(&parents, at) == whole)
+        .filter(|&at| parts.equiv(at, 0))
         .map(|at| {
             // Clockwise: up, right, down, left.
             let side = |to: usize| match to {

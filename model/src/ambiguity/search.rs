@@ -5,6 +5,8 @@
 
 use std::ops::ControlFlow;
 
+use petgraph::unionfind::UnionFind;
+
 use super::{
     AmbiguityCandidate, CandidateSorter, CandidatesInMemory, Findings, KeptPairs, SearchError,
     SizeFindings, Unfinished,
@@ -19,7 +21,6 @@ use crate::{
     },
     isomorphism::{StartCode, canonical, code},
     marker::Marker,
-    union_find::UnionFind,
     world::State,
 };
 
@@ -234,7 +235,7 @@ impl<'m> AmbiguitySearch<'m> {
     /// For each placed world of a graph, the facing darts that place the marker so. Both the darts and
     /// the worlds are in the order of the darts' numbers.
     fn placings(&self, graph: &EmbeddedGraph, automorphisms: u32) -> Vec<Vec<Dart>> {
-        let mut alike = UnionFind::new(graph.dart_count());
+        let mut alike = UnionFind::<u32>::new(graph.dart_count());
         for dart in graph.darts() {
             alike.union(dart.0, self.marker.first_alike(graph, dart).0);
         }
@@ -246,7 +247,7 @@ impl<'m> AmbiguitySearch<'m> {
         let mut places: Vec<Vec<Dart>> = Vec::new();
         let mut place_of = vec![None; graph.dart_count()];
         for dart in graph.darts() {
-            let root = alike.find(dart.0) as usize;
+            let root = alike.find_mut(dart.0) as usize;
             let place = *place_of[root].get_or_insert_with(|| {
                 places.push(Vec::new());
                 places.len() - 1

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use petgraph::visit::{Dfs, VisitMap};
+
 use super::{
     Dart, EmbeddedGraph, GraphError, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
 };
@@ -181,19 +183,9 @@ impl EmbeddedGraph {
 
     /// The first vertex that cannot be reached from the first of all.
     fn unreached_vertex(&self) -> Option<Vertex> {
-        let mut reached = vec![false; self.vertex_count()];
-        let mut open = Vec::with_capacity(self.vertex_count());
-        open.push(Vertex(0));
-        reached[0] = true;
-        while let Some(vertex) = open.pop() {
-            for dart in self.darts_of(vertex) {
-                let neighbour = self.vertex(self.opposite(dart));
-                if !std::mem::replace(&mut reached[neighbour.at()], true) {
-                    open.push(neighbour);
-                }
-            }
-        }
-        self.vertices().find(|vertex| !reached[vertex.at()])
+        let mut search = Dfs::new(self, Vertex(0));
+        while search.next(self).is_some() {}
+        self.vertices().find(|vertex| !search.discovered.is_visited(vertex))
     }
 }
 

@@ -9,11 +9,13 @@ mod cut;
 mod fault;
 mod grow;
 mod list_error;
+mod petgraph_traits;
 mod relabel;
 mod smooth;
 
 pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
 pub use list_error::ListError;
+pub use petgraph_traits::{EdgeView, PetgraphError, VisitedVertices};
 pub use smooth::Smoothed;
 
 use std::hash::{Hash, Hasher};

@@ -3,11 +3,10 @@
 
 use std::cmp::Ordering;
 
+use petgraph::unionfind::UnionFind;
+
 use super::code::{Numbering, StartCode};
-use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
-    union_find::UnionFind,
-};
+use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The canonical form of an embedded graph: equal for isomorphic graphs, with its place in this one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,12 +33,12 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut rival = Numbering::new(graph);
     let mut code = vec![best.begin(graph, Dart(0))];
     code.extend(std::iter::from_fn(|| best.next_word(graph)));
-    let mut orbits = UnionFind::new(graph.dart_count());
+    let mut orbits = UnionFind::<u32>::new(graph.dart_count());
     let mut tried = vec![false; graph.dart_count()];
     tried[0] = true;
     for dart in graph.darts().skip(1) {
         // An automorphism maps it to a dart that has competed already.
-        if std::mem::replace(&mut tried[orbits.find(dart.0) as usize], true) {
+        if std::mem::replace(&mut tried[orbits.find_mut(dart.0) as usize], true) {
             continue;
         }
         let mut place = 0;
@@ -65,19 +64,19 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
             Ordering::Equal => {
                 for (one, other) in best.order.iter().zip(&rival.order) {
                     let trod =
-                        tried[orbits.find(one.0) as usize] || tried[orbits.find(other.0) as usize];
+                        tried[orbits.find_mut(one.0) as usize] || tried[orbits.find_mut(other.0) as usize];
                     orbits.union(one.0, other.0);
-                    tried[orbits.find(one.0) as usize] = trod;
+                    tried[orbits.find_mut(one.0) as usize] = trod;
                 }
             }
         }
     }
-    let root = orbits.find(best.order[0].0);
-    let automorphisms = graph.darts().filter(|dart| orbits.find(dart.0) == root).count();
+    let root = orbits.find_mut(best.order[0].0);
+    let automorphisms = graph.darts().filter(|dart| orbits.find_mut(dart.0) == root).count();
     let mut least = vec![None; graph.dart_count()];
     let orbit = graph
         .darts()
-        .map(|dart| *least[orbits.find(dart.0) as usize].get_or_insert(dart))
+        .map(|dart| *least[orbits.find_mut(dart.0) as usize].get_or_insert(dart))
         .collect();
     Canonical { code: StartCode(code), order: best.order, automorphisms, orbit }
 }
