@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use toposlam_model::{
-    check::{CheckPieces, FinishedUnits, LazyCheck, LazySweep, PieceCounts},
+    check::{CheckPieces, FinishedUnits, LazySweep, PartTally, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -14,7 +14,7 @@ use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
 #[derive(Debug)]
 pub struct ClusterCheck {
     /// The same as that of one process.
-    pub check: LazyCheck,
+    pub check: Tally,
     /// What each thread did; nothing in other processes than the first.
     pub threads: Vec<ThreadUse>,
 }
@@ -25,11 +25,11 @@ struct CheckJob {
 }
 
 impl Job for CheckJob {
-    type Output = PieceCounts;
+    type Output = PartTally;
     type Record = ();
     type Group = ();
 
-    fn work(&self, task: usize) -> (PieceCounts, Vec<()>) {
+    fn work(&self, task: usize) -> (PartTally, Vec<()>) {
         (self.algorithm.check_piece(&self.pieces, task, &()), Vec::new())
     }
 
@@ -59,20 +59,20 @@ impl ClusterProcess {
         watch.go_on().map_err(|_| ClusterError::Interrupted)?;
         let job = Arc::new(CheckJob { algorithm, pieces });
         let pieces = &job.pieces;
-        let mut counts = PieceCounts::default();
+        let mut counts = PartTally::default();
         let mut tasks = Vec::new();
         for piece in (0..pieces.count()).filter(|_| self.is_first()) {
             let finished = Some(piece).filter(|&piece| piece < pieces.unit_count());
             match finished.and_then(|unit| units.finished(unit)) {
-                Some(tally) => counts.tally.merge(tally),
+                Some(tally) => counts.merge(tally),
                 None => tasks.push(piece),
             }
         }
         watch.parts(tasks.len());
-        let mut add = |piece: usize, found: PieceCounts| {
-            watch.part_done(found.tally.starts);
+        let mut add = |piece: usize, found: PartTally| {
+            watch.part_done(found.starts);
             if piece < pieces.unit_count() {
-                units.finish(piece, &found.tally);
+                units.finish(piece, &found);
             }
             counts.merge(found);
         };
@@ -83,7 +83,7 @@ impl ClusterProcess {
         });
         let (counts, threads) = match shared {
             Err(ClusterError::Interrupted) if self.is_first() => {
-                counts.tally.interrupted = true;
+                counts.interrupted = true;
                 (counts, Vec::new())
             }
             shared => shared?,

@@ -40,7 +40,7 @@ fn a_depth_first_explorer_maps_every_start_right() {
         // It runs in steps, so its runs share their beginnings.
         let lazy = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
         let lazily = lazy.run(DepthFirst::default, &());
-        assert_eq!(lazily.tally, tally);
+        assert_eq!(Tally { moves_made: 0, ..lazily.clone() }, tally);
         assert!(edges < 4 || lazily.moves_made < tally.moves_total);
     }
 }

@@ -165,14 +165,14 @@ fn a_dart_of_the_map_is_found_by_its_vertex_and_its_index() {
     assert_eq!(map.dart(Vertex(0), 3), None);
 }
 
-/// The dearest run for its vertices, and the first start that takes the most moves.
+/// The run with the most moves for its vertices, and the first start that takes the most moves.
 #[test]
 fn the_tally_keeps_the_extremes_of_small_worlds() {
     let new = |degree: u32| u32::MAX - degree;
-    for (edges, dearest) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
+    for (edges, most) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
         let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
         let tally = sweep.unwrap().run(Exploration::default, RunChoices::Default, &());
-        assert_eq!(tally.dearest, Some(dearest));
+        assert_eq!(tally.most_moves_per_vertex, Some(most));
         if edges == 3 {
             let worst = tally.worst.clone().unwrap();
             let words = code(&worst.graph, worst.facing).words().to_vec();
@@ -186,7 +186,7 @@ fn the_tally_keeps_the_extremes_of_small_worlds() {
         assert_eq!(both.worst, tally.worst);
         assert_eq!((both.starts, both.runs), (2 * tally.starts, 0));
     }
-    let mut runs = Tally { runs: 3, ..Tally::default() };
+    let mut runs: Tally = Tally { runs: 3, ..Tally::default() };
     runs.merge(Tally { runs: u128::MAX, ..Tally::default() });
     assert_eq!(runs.runs, u128::MAX);
 }

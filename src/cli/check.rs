@@ -15,7 +15,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{FinishedUnits, LazyCheck, LazySweep, Shard, Sweep, Tally, WorstStart},
+    check::{FinishedUnits, LazySweep, Shard, Sweep, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
     enumerate::{Class, Watch},
     format::named_world::NamedWorld,
@@ -324,10 +324,11 @@ impl CheckArguments {
         let watch: &dyn Watch = watched.as_ref().map_or(&progress, |watched| watched);
         let checked = match (work, cluster) {
             (Work::Lazy(sweep), cluster) => {
-                let LazyCheck { tally, moves_made } = match cluster {
+                let tally = match cluster {
                     Some(cluster) => cluster.check(algorithm, sweep, units, watch)?,
                     None => algorithm.lazy_sweep(sweep, units, watch),
                 };
+                let moves_made = tally.moves_made;
                 (tally, Some(moves_made))
             }
             (Work::Worlds(graphs), _) => (algorithm.check_worlds(graphs, choices, &progress), None),

@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 
 use super::{
-    CheckPieces, EveryWay, FinishedUnits, LazyCheck, LazySweep, PieceCounts, Probe, RunChoices,
-    Sweep, Tally, check_worlds, judge_map,
+    CheckPieces, EveryWay, FinishedUnits, LazySweep, PartTally, Probe, RunChoices, Sweep, Tally,
+    check_worlds, judge_map,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -50,7 +50,7 @@ impl MappingAlgorithm {
         sweep: &LazySweep,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> LazyCheck {
+    ) -> Tally {
         with_explorer!(self, E => sweep.resume(E::default, units, watch))
     }
 
@@ -68,13 +68,13 @@ impl MappingAlgorithm {
 
     /// The counts of a piece, as [`CheckPieces::check`].
     #[must_use]
-    pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PieceCounts {
+    pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PartTally {
         with_explorer!(self, E => of.check(piece, E::default(), watch))
     }
 
     /// The result of a lazy sweep, as [`CheckPieces::finished`].
     #[must_use]
-    pub fn finished_pieces(self, counts: PieceCounts) -> LazyCheck {
+    pub fn finished_pieces(self, counts: PartTally) -> Tally {
         with_explorer!(self, E => CheckPieces::finished(counts, E::default))
     }
 

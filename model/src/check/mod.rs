@@ -1,6 +1,7 @@
 //! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
 mod costs;
+mod enumerated_start;
 mod every_way;
 mod guess;
 mod judge;
@@ -12,20 +13,18 @@ mod sweep;
 mod tally;
 
 pub use costs::{ChoicesLimit, Costs, EveryWay};
+pub use enumerated_start::EnumeratedStart;
 pub use every_way::{DEFAULT_STATE_BUDGET, every_way};
 pub use guess::determines_world;
 pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
-pub use lazy::{
-    CheckPieces, EnumeratedStart, FinishedUnits, LazyCheck, LazySweep, LazyTally, LazyWorld,
-    PieceCounts, Probe, WorldCount,
-};
+pub use lazy::{CheckPieces, FinishedUnits, LazySweep, LazyWorld, Probe};
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
     UndetectedMistake,
 };
 pub use run_choices::RunChoices;
 pub use sweep::{Shard, ShardError, Sweep, check_worlds};
-pub use tally::{FailedStart, Tally, WorstStart};
+pub use tally::{FailedStart, KeptStart, PartTally, Tally, WorstStart};
 
 #[cfg(test)]
 mod tests {

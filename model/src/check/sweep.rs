@@ -4,9 +4,9 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{FailedStart, RunChoices, Tally, first_false_step, judge_start, tally::CheckedStart};
+use super::{FailedStart, RunChoices, Tally, WorstStart, first_false_step, judge_start};
 use crate::{
-    embedded_graph::{EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration, SizeError, Watch, in_parts},
     folding::MarkerTree,
     isomorphism::{Candidate, canonical},
@@ -189,10 +189,8 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
                 tree.grow(graph, vertex);
                 measured = Some((vertex, tree.length(graph) as u64));
             }
-            let certificate = measured.map(|(_, length)| length);
-            let start = CheckedStart { graph, facing, certificate };
-            tally.count_start(start);
-            self.check_start(start, tally);
+            tally.starts += 1;
+            self.check_start((graph, facing), measured.map(|(_, length)| length), tally);
             go_on(self.watch)
         };
         if automorphisms == 1 {
@@ -204,12 +202,19 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
         }
     }
 
-    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally) {
-        let CheckedStart { graph, facing, .. } = start;
+    fn check_start(
+        &mut self,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        certificate: Option<u64>,
+        tally: &mut Tally,
+    ) {
+        tally.count_certificate(certificate);
         let (moves, judged) = judge_start(&mut self.explorer, graph, facing, &mut self.candidate);
         let failure = match judged {
             Ok(()) => {
-                tally.count_run(start, moves);
+                let is_worst = tally.worst.as_ref().is_none_or(|worst| moves > worst.moves);
+                let worst = is_worst.then(|| WorstStart { graph: graph.clone(), facing, moves });
+                tally.count_run((moves, graph.vertex_count()), certificate, worst);
                 match self.choices.others(self.new, graph, facing, self.watch) {
                     Ok(ways) => {
                         ways.iter().for_each(|ways| tally.count_every_way(ways));

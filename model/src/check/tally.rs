@@ -1,21 +1,14 @@
-//! The counts of a check.
+//! The counts of a check, or of a part of one.
 
 use std::cmp::Reverse;
 
-use super::{ChoicesLimit, EveryWay, FalseStep};
+use serde::{Deserialize, Serialize};
+
+use super::{ChoicesLimit, EnumeratedStart, EveryWay, FalseStep};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     mapping::{CostOrder, Flaw},
 };
-
-/// A start that is checked.
-#[derive(Clone, Copy)]
-pub(super) struct CheckedStart<'g> {
-    pub(super) graph: &'g EmbeddedGraph,
-    pub(super) facing: Dart,
-    /// The length of its [certificate](crate::folding::certificate_length), if the marker is directional.
-    pub(super) certificate: Option<u64>,
-}
 
 /// The start that took the most moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,17 +36,67 @@ pub struct FailedStart {
     pub false_step: Option<FalseStep>,
 }
 
-/// The result of a check.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+/// A start that a [`Tally`] keeps: of all such starts, one.
+pub trait KeptStart {
+    /// Whether it is kept in place of another one, which was counted before it.
+    fn replaces(&self, other: &Self) -> bool;
+}
+
+/// Of equals the first is kept.
+impl KeptStart for WorstStart {
+    fn replaces(&self, other: &Self) -> bool {
+        self.moves > other.moves
+    }
+}
+
+/// The first is kept.
+impl KeptStart for FailedStart {
+    fn replaces(&self, _: &Self) -> bool {
+        false
+    }
+}
+
+/// The most moves; of equals the start that the enumeration finds first, in whatever order they are counted.
+impl KeptStart for (u64, EnumeratedStart) {
+    fn replaces(&self, other: &Self) -> bool {
+        (Reverse(self.0), &self.1) < (Reverse(other.0), &other.1)
+    }
+}
+
+/// The start that the enumeration finds first, in whatever order they are counted.
+impl KeptStart for EnumeratedStart {
+    fn replaces(&self, other: &Self) -> bool {
+        self < other
+    }
+}
+
+/// Keeps one of two starts.
+fn keep<S: KeptStart>(kept: &mut Option<S>, other: Option<S>) {
+    if let Some(other) = other
+        && kept.as_ref().is_none_or(|kept| other.replaces(kept))
+    {
+        *kept = Some(other);
+    }
+}
+
+/// The counts of a check, or of a part of one: how many starts were mapped correctly, and in how many moves.
+///
+/// `W` and `F` name the start that took the most moves and the first one that failed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, bound(deserialize = "W: Deserialize<'de>, F: Deserialize<'de>"))]
+pub struct Tally<W = WorstStart, F = FailedStart> {
     /// Embedded graphs up to isomorphism.
     pub worlds: u64,
     /// Starts run.
     pub starts: u64,
     /// Starts mapped correctly.
     pub mapped: u64,
-    /// The total of moves of all runs with the default choices.
+    /// Starts on which a limit was reached before the run ended.
+    pub unknown: u64,
+    /// The total of moves of all runs with the default choices that ended with a right map.
     pub moves_total: u64,
+    /// If runs share prefixes: the moves that were made for all of them together.
+    pub moves_made: u64,
     /// The total of the [certificates](crate::folding::certificate_length) of the starts; 0 if the
     /// marker is not directional.
     pub certificate_total: u64,
@@ -62,12 +105,14 @@ pub struct Tally {
     /// Starts that were mapped correctly in fewer moves than their certificate has. The algorithm guessed:
     /// there is another world in which it makes the same walk.
     pub below_certificate: u64,
-    /// The first start that took the most moves with the default choices.
-    pub worst: Option<WorstStart>,
+    /// The first start that took the most moves with the default choices; none in a part of a check if another part
+    /// is known to have a run with more.
+    pub worst: Option<W>,
     /// The moves and the vertices of the run with the most moves per vertex.
-    pub dearest: Option<(u64, u64)>,
+    #[serde(alias = "dearest")]
+    pub most_moves_per_vertex: Option<(u64, u64)>,
     /// The first start on which the algorithm failed.
-    pub failure: Option<FailedStart>,
+    pub failure: Option<F>,
     /// With all choices: distinct states at line 4, summed over the starts.
     pub states: u64,
     /// With all choices: runs, summed over the starts.
@@ -82,7 +127,44 @@ pub struct Tally {
     pub interrupted: bool,
 }
 
-impl Tally {
+/// The counts of a part of a check whose starts are enumerated. They do not depend on the order in which starts are
+/// counted and parts are merged.
+pub type PartTally = Tally<(u64, EnumeratedStart), EnumeratedStart>;
+
+impl<W, F> Default for Tally<W, F> {
+    fn default() -> Self {
+        Self {
+            worlds: 0,
+            starts: 0,
+            mapped: 0,
+            unknown: 0,
+            moves_total: 0,
+            moves_made: 0,
+            certificate_total: 0,
+            certificate_max: 0,
+            below_certificate: 0,
+            worst: None,
+            most_moves_per_vertex: None,
+            failure: None,
+            states: 0,
+            runs: 0,
+            extremes: None,
+            over_budget: 0,
+            over_memory: 0,
+            interrupted: false,
+        }
+    }
+}
+
+impl<F> Tally<WorstStart, F> {
+    /// The most moves of a run with the default choices; 0 if there is none.
+    #[must_use]
+    pub fn moves_max(&self) -> u64 {
+        self.worst.as_ref().map_or(0, |worst| worst.moves)
+    }
+}
+
+impl<W, F> Tally<W, F> {
     /// With all choices: starts with runs that were not tried.
     #[must_use]
     pub fn gave_up(&self) -> u64 {
@@ -92,39 +174,14 @@ impl Tally {
     /// Starts on which the algorithm failed.
     #[must_use]
     pub fn failed(&self) -> u64 {
-        self.starts - self.mapped
-    }
-
-    /// The most moves of a run with the default choices; 0 if there is none.
-    #[must_use]
-    pub fn moves_max(&self) -> u64 {
-        self.worst.as_ref().map_or(0, |worst| worst.moves)
+        self.starts - self.mapped - self.unknown
     }
 
     /// The largest ratio of moves to the order of the cost, for worlds with `edges` edges.
     #[must_use]
     pub fn largest_ratio(&self, edges: usize, order: CostOrder) -> f64 {
-        let (moves, vertices) = self.dearest.unwrap_or((0, 1));
+        let (moves, vertices) = self.most_moves_per_vertex.unwrap_or((0, 1));
         moves as f64 / order.value(edges as f64, vertices as f64)
-    }
-
-    /// Counts a start, and its certificate.
-    pub(super) fn count_start(&mut self, start: CheckedStart) {
-        self.starts += 1;
-        let certificate = start.certificate.unwrap_or_default();
-        self.certificate_total += certificate;
-        self.certificate_max = self.certificate_max.max(certificate);
-    }
-
-    /// Counts a run that ended.
-    pub(super) fn count_run(&mut self, start: CheckedStart, moves: u64) {
-        let CheckedStart { graph, facing, certificate } = start;
-        self.moves_total += moves;
-        self.below_certificate += u64::from(certificate.is_some_and(|least| moves < least));
-        if self.worst.as_ref().is_none_or(|worst| moves > worst.moves) {
-            self.worst = Some(WorstStart { graph: graph.clone(), facing, moves });
-        }
-        self.count_dearest((moves, graph.vertex_count() as u64));
     }
 
     /// Counts all runs of a start.
@@ -148,21 +205,96 @@ impl Tally {
     }
 
     /// Of equal ratios that with the fewest vertices.
-    fn count_dearest(&mut self, (moves, vertices): (u64, u64)) {
-        let dearer = |(most, of): (u64, u64)| {
+    fn count_moves_per_vertex(&mut self, (moves, vertices): (u64, u64)) {
+        let is_more = |(most, of): (u64, u64)| {
             (moves * of, Reverse(vertices)) > (most * vertices, Reverse(of))
         };
-        if self.dearest.is_none_or(dearer) {
-            self.dearest = Some((moves, vertices));
+        if self.most_moves_per_vertex.is_none_or(is_more) {
+            self.most_moves_per_vertex = Some((moves, vertices));
         }
     }
+}
 
-    /// Adds the result of a later part of the same check.
+impl<W, F> Tally<W, F> {
+    /// The same counts, with other starts.
+    pub(super) fn with_starts<V, G>(self, worst: Option<V>, failure: Option<G>) -> Tally<V, G> {
+        let Self {
+            worlds,
+            starts,
+            mapped,
+            unknown,
+            moves_total,
+            moves_made,
+            certificate_total,
+            certificate_max,
+            below_certificate,
+            most_moves_per_vertex,
+            states,
+            runs,
+            extremes,
+            over_budget,
+            over_memory,
+            interrupted,
+            ..
+        } = self;
+        Tally {
+            worlds,
+            starts,
+            mapped,
+            unknown,
+            moves_total,
+            moves_made,
+            certificate_total,
+            certificate_max,
+            below_certificate,
+            worst,
+            most_moves_per_vertex,
+            failure,
+            states,
+            runs,
+            extremes,
+            over_budget,
+            over_memory,
+            interrupted,
+        }
+    }
+}
+
+impl<W: KeptStart, F: KeptStart> Tally<W, F> {
+    /// Counts a certificate.
+    pub fn count_certificate(&mut self, certificate: Option<u64>) {
+        let certificate = certificate.unwrap_or_default();
+        self.certificate_total += certificate;
+        self.certificate_max = self.certificate_max.max(certificate);
+    }
+
+    /// Counts a run in a world with `vertices` vertices that ended with a right map. `worst` is its start, if that may
+    /// be the one with the most moves.
+    pub fn count_run(
+        &mut self,
+        (moves, vertices): (u64, usize),
+        certificate: Option<u64>,
+        worst: Option<W>,
+    ) {
+        self.moves_total += moves;
+        self.below_certificate += u64::from(certificate.is_some_and(|least| moves < least));
+        self.count_moves_per_vertex((moves, vertices as u64));
+        keep(&mut self.worst, worst);
+    }
+
+    /// Notes a start on which the algorithm failed.
+    pub fn count_failure(&mut self, failure: F) {
+        keep(&mut self.failure, Some(failure));
+    }
+
+    /// Adds the counts of another, later part of the same check.
     pub fn merge(&mut self, later: Self) {
         self.worlds += later.worlds;
         self.starts += later.starts;
         self.mapped += later.mapped;
+        self.unknown += later.unknown;
         self.moves_total += later.moves_total;
+        self.moves_made += later.moves_made;
         self.below_certificate += later.below_certificate;
         self.certificate_total += later.certificate_total;
         self.certificate_max = self.certificate_max.max(later.certificate_max);
@@ -172,14 +304,8 @@ impl Tally {
         self.runs = self.runs.saturating_add(later.runs);
         self.interrupted |= later.interrupted;
         self.count_extremes(later.extremes);
-        if later.moves_max() > self.moves_max() || self.worst.is_none() {
-            self.worst = later.worst;
-        }
-        if let Some(dearest) = later.dearest {
-            self.count_dearest(dearest);
-        }
-        if self.failure.is_none() {
-            self.failure = later.failure;
-        }
+        later.most_moves_per_vertex.into_iter().for_each(|most| self.count_moves_per_vertex(most));
+        keep(&mut self.worst, later.worst);
+        keep(&mut self.failure, later.failure);
     }
 }

@@ -360,7 +360,10 @@ mod tests {
         let other = "edge 0 is in the order of node 2, which it does not meet";
         assert_eq!(of([&[0], &[0], &[0]]), other);
         assert_eq!(of([&[], &[], &[]]), "edge 0 is in the order of no node");
-        assert_eq!(of([&[0], &[7], &[]]), "edge 7 is in the order of node 1, which it does not meet");
+        assert_eq!(
+            of([&[0], &[7], &[]]),
+            "edge 7 is in the order of node 1, which it does not meet"
+        );
         assert!(of([&[0], &[0, 0], &[]]).contains("`0`"));
     }
 }

@@ -63,8 +63,8 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
             }
             Ordering::Equal => {
                 for (one, other) in best.order.iter().zip(&rival.order) {
-                    let trod =
-                        tried[orbits.find_mut(one.0) as usize] || tried[orbits.find_mut(other.0) as usize];
+                    let trod = tried[orbits.find_mut(one.0) as usize]
+                        || tried[orbits.find_mut(other.0) as usize];
                     orbits.union(one.0, other.0);
                     tried[orbits.find_mut(one.0) as usize] = trod;
                 }

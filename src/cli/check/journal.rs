@@ -18,7 +18,7 @@ use std::{
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use toposlam_model::{
-    check::{FinishedUnits, LazyTally},
+    check::{FinishedUnits, PartTally},
     enumerate::Watch,
 };
 
@@ -69,13 +69,13 @@ impl JournalHeader {
 #[derive(Serialize, Deserialize)]
 struct FinishedUnit {
     unit: usize,
-    counts: LazyTally,
+    counts: PartTally,
 }
 
 /// An open journal.
 pub(super) struct CheckJournal {
     path: PathBuf,
-    finished: BTreeMap<usize, LazyTally>,
+    finished: BTreeMap<usize, PartTally>,
     file: Mutex<Result<fs::File, io::Error>>,
     /// Whether a line could not be written.
     is_broken: AtomicBool,
@@ -89,7 +89,7 @@ pub(super) struct JournalWatch<'a> {
 
 /// The lines of a journal.
 struct JournalLines {
-    finished: BTreeMap<usize, LazyTally>,
+    finished: BTreeMap<usize, PartTally>,
     /// The number of bytes in whole lines.
     length: usize,
 }
@@ -108,8 +108,8 @@ fn object_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
 
 /// Whether the results of two runs of a unit agree. Which of its starts is noted as the worst one depends on the
 /// other units that have run, and each of the two is right.
-fn have_equal_counts(one: &LazyTally, other: &LazyTally) -> bool {
-    let counts = |tally: &LazyTally| LazyTally { worst: None, ..tally.clone() };
+fn have_equal_counts(one: &PartTally, other: &PartTally) -> bool {
+    let counts = |tally: &PartTally| PartTally { worst: None, ..tally.clone() };
     counts(one) == counts(other)
 }
 
@@ -173,7 +173,7 @@ impl CheckJournal {
         Ok(Self::new(path, finished, file))
     }
 
-    fn new(path: PathBuf, finished: BTreeMap<usize, LazyTally>, file: fs::File) -> Self {
+    fn new(path: PathBuf, finished: BTreeMap<usize, PartTally>, file: fs::File) -> Self {
         Self { path, finished, file: Mutex::new(Ok(file)), is_broken: AtomicBool::new(false) }
     }
 
@@ -204,11 +204,11 @@ impl CheckJournal {
 }
 
 impl FinishedUnits for CheckJournal {
-    fn finished(&self, unit: usize) -> Option<LazyTally> {
+    fn finished(&self, unit: usize) -> Option<PartTally> {
         self.finished.get(&unit).cloned()
     }
 
-    fn finish(&self, unit: usize, tally: &LazyTally) {
+    fn finish(&self, unit: usize, tally: &PartTally) {
         let line = text_of(&FinishedUnit { unit, counts: tally.clone() });
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(open) = file.as_mut()
@@ -247,7 +247,7 @@ mod tests {
             CheckJournal::new(path, BTreeMap::new(), fs::File::open("Cargo.toml").unwrap());
         let watch = journal.watch(&());
         assert!(!watch.stop());
-        journal.finish(0, &LazyTally::default());
+        journal.finish(0, &PartTally::default());
         assert!(watch.stop());
         assert!(journal.close().is_err());
     }

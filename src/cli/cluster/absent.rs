@@ -4,7 +4,7 @@ use std::{io::Write, path::Path};
 
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazyCheck, LazySweep},
+    check::{FinishedUnits, LazySweep, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -38,7 +38,7 @@ impl NoCluster {
         _: &LazySweep,
         _: &dyn FinishedUnits,
         _: &dyn Watch,
-    ) -> Result<LazyCheck, CliError> {
+    ) -> Result<Tally, CliError> {
         match *self {}
     }
 

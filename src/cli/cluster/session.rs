@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_cluster::{ClusterError, ClusterProcess, ConnectError, Hosts, ThreadUse};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazyCheck, LazySweep},
+    check::{FinishedUnits, LazySweep, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -98,7 +98,7 @@ impl ClusterSession {
         sweep: &LazySweep,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> Result<LazyCheck, CliError> {
+    ) -> Result<Tally, CliError> {
         let found = self.cluster.check(algorithm, sweep, units, watch)?;
         self.threads = found.threads;
         Ok(found.check)

@@ -1,10 +1,13 @@
 //! Judges the end of a run: by the explorer's map and the record of what was revealed, and nothing else.
 
-use std::{ops::ControlFlow, sync::atomic::AtomicU64};
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
-use super::{LazyTally, LazyWorld, search::LazyRunEnd, tally::EnumeratedStart, world::FACING};
+use super::{LazyWorld, search::LazyRunEnd, world::FACING};
 use crate::{
-    check::{judge_map, sweep::go_on},
+    check::{EnumeratedStart, PartTally, judge_map, sweep::go_on},
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     folding::MarkerTree,
@@ -15,7 +18,7 @@ use crate::{
 
 /// Judges one end after the other. Memory is kept.
 pub(super) struct LeafJudge<'m> {
-    pub(super) tally: LazyTally,
+    pub(super) tally: PartTally,
     candidate: Candidate,
     /// Measures certificates, if the marker has them.
     certificates: Option<MarkerTree>,
@@ -27,7 +30,7 @@ impl<'m> LeafJudge<'m> {
     pub(super) fn new(marker: &impl Marker, most_moves: &'m AtomicU64) -> Self {
         let directional = marker.name() == Directional.name();
         let certificates = directional.then(MarkerTree::default);
-        let (tally, candidate) = (LazyTally::default(), Candidate::default());
+        let (tally, candidate) = (PartTally::default(), Candidate::default());
         Self { tally, candidate, certificates, most_moves }
     }
 
@@ -74,17 +77,21 @@ impl<'m> LeafJudge<'m> {
     fn count(&mut self, graph: &EmbeddedGraph, moves: u64, is_right: bool) {
         let tally = &mut self.tally;
         tally.starts += 1;
-        let certificate = self.certificates.as_mut().map_or(0, |tree| {
+        let certificate = self.certificates.as_mut().map(|tree| {
             tree.grow(graph, graph.vertex(FACING));
             tree.length(graph) as u64
         });
-        tally.certificate_total += certificate;
-        tally.certificate_max = tally.certificate_max.max(certificate);
-        if is_right {
-            tally.below_certificate += u64::from(moves < certificate);
-            tally.count_run((graph, FACING), moves, self.most_moves);
-        } else {
+        tally.count_certificate(certificate);
+        if !is_right {
             tally.count_failure(EnumeratedStart::new(graph, FACING));
+            return;
         }
+        // A start with fewer moves than another one of the check cannot be the worst one.
+        let worst = (moves >= self.most_moves.load(Ordering::Relaxed)).then(|| {
+            self.most_moves.fetch_max(moves, Ordering::Relaxed);
+            (moves, EnumeratedStart::new(graph, FACING))
+        });
+        tally.mapped += 1;
+        tally.count_run((moves, graph.vertex_count()), certificate, worst);
     }
 }

@@ -21,7 +21,7 @@
 //! * `LeafJudge` judges each end by a bijection between the explorer's map and the record: by the identity if they
 //!   are equal, dart for dart. It does not know the algorithm.
 //! * [`LazySweep`] divides the tree into *units*, subtrees of equal first decisions, and adds up their
-//!   [`LazyTally`]s. Which start is the worst or the first that fails does not depend on the order of the runs:
+//!   [`PartTally`](super::PartTally)s. Which start is the worst or the first that fails does not depend on the order of the runs:
 //!   starts are compared by their place in the [`Enumeration`](crate::enumerate::Enumeration), as in a
 //!   [`Sweep`](super::Sweep).
 //!
@@ -44,11 +44,9 @@
 mod leaf;
 mod search;
 mod sweep;
-mod tally;
 mod units;
 mod world;
 
-pub use sweep::{FinishedUnits, LazyCheck, LazySweep, Probe, WorldCount};
-pub use tally::{EnumeratedStart, LazyTally};
-pub use units::{CheckPieces, PieceCounts};
+pub use sweep::{FinishedUnits, LazySweep, Probe};
+pub use units::CheckPieces;
 pub use world::LazyWorld;

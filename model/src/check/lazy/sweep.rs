@@ -2,16 +2,16 @@
 
 use std::{collections::BTreeMap, sync::atomic::AtomicU64};
 
-use serde::{Deserialize, Serialize};
-
 use super::{
-    LazyTally,
     leaf::LeafJudge,
     search::{RunSearch, beginnings},
     world::Prefix,
 };
 use crate::{
-    check::{FailedStart, Shard, Tally, WorstStart, first_false_step, judge_start, sweep::go_on},
+    check::{
+        EnumeratedStart, FailedStart, PartTally, Shard, Tally, WorstStart, first_false_step,
+        judge_start, sweep::go_on,
+    },
     enumerate::{
         Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
@@ -36,74 +36,53 @@ pub struct LazySweep {
     shard: Shard,
 }
 
-/// The result of a lazy check.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LazyCheck {
-    /// The same as of a [`Sweep`](crate::check::Sweep).
-    pub tally: Tally,
-    /// The moves that were made. `tally.moves_total` would be made by one run for each start.
-    pub moves_made: u64,
-}
-
 /// A random probe of the tree of all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The product of the numbers of answers that were possible where one was drawn.
     pub weight: f64,
     /// The counts of the subtree. The worst start is not looked for.
-    pub tally: LazyTally,
+    pub tally: PartTally,
 }
 
 /// The units that were finished before, and those that are finished now, for checks that can be resumed. A unit
 /// has an index among those of its shard.
 pub trait FinishedUnits: Sync {
     /// The counts of a unit that was finished before.
-    fn finished(&self, unit: usize) -> Option<LazyTally>;
+    fn finished(&self, unit: usize) -> Option<PartTally>;
 
     /// A unit is finished now. Units are finished in any order, and by several threads.
-    fn finish(&self, unit: usize, tally: &LazyTally);
+    fn finish(&self, unit: usize, tally: &PartTally);
 }
 
 /// No unit was finished before.
 impl FinishedUnits for () {
-    fn finished(&self, _: usize) -> Option<LazyTally> {
+    fn finished(&self, _: usize) -> Option<PartTally> {
         None
     }
 
-    fn finish(&self, _: usize, _: &LazyTally) {}
+    fn finish(&self, _: usize, _: &PartTally) {}
 }
 
 /// A part of the tree of all runs: those that begin with the same answers.
 #[derive(Clone, Debug)]
 pub(super) struct Unit(Vec<Answer>);
 
-/// The number of embedded graphs up to isomorphism.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct WorldCount {
-    worlds: u64,
-    interrupted: bool,
+/// The counts of a part of the worlds: their number.
+pub(super) fn count_worlds(part: &EnumerationPart, watch: &dyn Watch) -> PartTally {
+    let mut found = PartTally::default();
+    let ended = part.for_each(&mut |_| {
+        found.worlds += 1;
+        go_on(watch)
+    });
+    found.interrupted = ended.is_break();
+    found
 }
 
-impl WorldCount {
-    /// The number in a part.
-    pub(super) fn of(part: &EnumerationPart, watch: &dyn Watch) -> Self {
-        let mut found = Self::default();
-        let ended = part.for_each(&mut |_| {
-            found.worlds += 1;
-            go_on(watch)
-        });
-        found.interrupted = ended.is_break();
-        found
-    }
-
-    /// The number in this part and another one.
-    #[must_use]
-    pub fn merged(self, other: Self) -> Self {
-        Self {
-            worlds: self.worlds + other.worlds,
-            interrupted: self.interrupted || other.interrupted,
-        }
-    }
+/// The counts of two parts.
+fn merged(mut one: PartTally, other: PartTally) -> PartTally {
+    one.merge(other);
+    one
 }
 
 impl LazySweep {
@@ -123,7 +102,7 @@ impl LazySweep {
     }
 
     /// Checks explorers, each on one unit. The result does not depend on the number of threads.
-    pub fn run<E: Explorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> LazyCheck {
+    pub fn run<E: Explorer>(&self, new: impl Fn() -> E + Sync, watch: &dyn Watch) -> Tally {
         self.resume(new, &(), watch)
     }
 
@@ -133,7 +112,7 @@ impl LazySweep {
         new: impl Fn() -> E + Sync,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> LazyCheck {
+    ) -> Tally {
         let all: Vec<_> = self.units(&new, watch).into_iter().enumerate().collect();
         let most_moves = AtomicU64::new(0);
         let check = |(index, unit): &(usize, Unit)| {
@@ -150,12 +129,12 @@ impl LazySweep {
         let sample: BTreeMap<_, _> = sample.map(|unit| (unit.0, check(unit))).collect();
         let check =
             |unit: &(usize, Unit)| sample.get(&unit.0).cloned().unwrap_or_else(|| check(unit));
-        let merge = |mut sum: LazyTally, other: LazyTally| {
-            sum.merge(other);
-            sum
-        };
-        let found = in_parts(&all, watch, LazyTally::default, check, |tally| tally.starts, merge);
-        Self::finished(found, self.count_worlds(watch), new)
+        let found = in_parts(&all, watch, PartTally::default, check, |tally| tally.starts, merged);
+        // The progress is that of the runs.
+        let count = |part: &EnumerationPart| count_worlds(part, watch);
+        let parts = self.world_parts();
+        let worlds = in_parts(&parts, &(), PartTally::default, count, |found| found.worlds, merged);
+        Self::finished(merged(found, worlds), new)
     }
 
     /// The number of units of the shard.
@@ -190,9 +169,9 @@ impl LazySweep {
         explorer: E,
         most_moves: &AtomicU64,
         watch: &dyn Watch,
-    ) -> LazyTally {
+    ) -> PartTally {
         if watch.stop() {
-            return LazyTally { interrupted: true, ..LazyTally::default() };
+            return PartTally { interrupted: true, ..PartTally::default() };
         }
         self.check_subtree(Prefix::Given(unit.0.clone()), explorer, most_moves, watch).0
     }
@@ -204,54 +183,29 @@ impl LazySweep {
         explorer: E,
         most_moves: &AtomicU64,
         watch: &dyn Watch,
-    ) -> (LazyTally, f64) {
+    ) -> (PartTally, f64) {
         let mut judge = LeafJudge::new(&explorer.marker(), most_moves);
         let mut search = RunSearch::new(explorer, self.draft.clone(), prefix, None, watch);
         let ended = search
             .for_each_end(&mut |world, explorer, end| judge.judge(world, explorer, &end, watch));
         let (moves_made, interrupted) = (search.world.moves_made, ended.is_break());
-        (LazyTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
+        (PartTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
     }
 
     /// The result, from the counts of all units and all worlds.
-    pub(super) fn finished<E: Explorer>(
-        found: LazyTally,
-        WorldCount { worlds, interrupted }: WorldCount,
-        new: impl Fn() -> E,
-    ) -> LazyCheck {
-        let failure = found.failure.and_then(|start| start.start()).and_then(|(graph, facing)| {
+    pub(super) fn finished<E: Explorer>(found: PartTally, new: impl Fn() -> E) -> Tally {
+        let failure = found.failure.as_ref().and_then(EnumeratedStart::start);
+        let failure = failure.and_then(|(graph, facing)| {
             let judged = judge_start(&mut new(), &graph, facing, &mut Candidate::default());
             let (moves, flaw) = (Some(judged.0), judged.1.err()?);
             let false_step = first_false_step(new(), &graph, facing);
             Some(FailedStart { graph, facing, flaw, moves, false_step })
         });
-        let worst = found.worst.and_then(|(moves, start)| {
+        let worst = found.worst.as_ref().and_then(|&(moves, ref start)| {
             let (graph, facing) = start.start()?;
             Some(WorstStart { graph, facing, moves })
         });
-        let tally = Tally {
-            worlds,
-            starts: found.starts,
-            mapped: found.mapped,
-            moves_total: found.moves_total,
-            certificate_total: found.certificate_total,
-            certificate_max: found.certificate_max,
-            below_certificate: found.below_certificate,
-            worst,
-            dearest: found.dearest,
-            failure,
-            interrupted: found.interrupted || interrupted,
-            ..Tally::default()
-        };
-        LazyCheck { tally, moves_made: found.moves_made }
-    }
-
-    /// The embedded graphs of the shard.
-    fn count_worlds(&self, watch: &dyn Watch) -> WorldCount {
-        let parts = self.world_parts();
-        let count = |part: &EnumerationPart| WorldCount::of(part, watch);
-        // The progress is that of the runs.
-        in_parts(&parts, &(), WorldCount::default, count, |found| found.worlds, WorldCount::merged)
+        found.with_starts(worst, failure)
     }
 
     /// The parts of the embedded graphs of the shard.

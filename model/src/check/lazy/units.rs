@@ -2,13 +2,12 @@
 
 use std::sync::atomic::AtomicU64;
 
-use serde::{Deserialize, Serialize};
-
 use super::{
-    LazyCheck, LazySweep, LazyTally,
-    sweep::{Unit, WorldCount},
+    LazySweep,
+    sweep::{Unit, count_worlds},
 };
 use crate::{
+    check::{PartTally, Tally},
     enumerate::{EnumerationPart, Watch},
     mapping::Explorer,
 };
@@ -22,23 +21,6 @@ pub struct CheckPieces {
     world_parts: Vec<EnumerationPart>,
     /// The most moves of a run in a unit that was checked here.
     most_moves: AtomicU64,
-}
-
-/// The counts of some pieces of a check.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct PieceCounts {
-    /// The counts of units.
-    pub tally: LazyTally,
-    /// The number of worlds.
-    pub worlds: WorldCount,
-}
-
-impl PieceCounts {
-    /// Adds the counts of other pieces.
-    pub fn merge(&mut self, other: Self) {
-        self.tally.merge(other.tally);
-        self.worlds = self.worlds.merged(other.worlds);
-    }
 }
 
 impl CheckPieces {
@@ -65,21 +47,16 @@ impl CheckPieces {
     }
 
     /// The counts of a piece; none if there is no such piece.
-    pub fn check<E: Explorer>(&self, piece: usize, explorer: E, watch: &dyn Watch) -> PieceCounts {
-        let mut counts = PieceCounts::default();
+    pub fn check<E: Explorer>(&self, piece: usize, explorer: E, watch: &dyn Watch) -> PartTally {
         if let Some(unit) = self.units.get(piece) {
-            counts.tally = self.sweep.check_unit(unit, explorer, &self.most_moves, watch);
-        } else if let Some(part) = self.world_parts.get(piece - self.units.len()) {
-            counts.worlds = WorldCount::of(part, watch);
+            return self.sweep.check_unit(unit, explorer, &self.most_moves, watch);
         }
-        counts
+        let part = self.world_parts.get(piece - self.units.len());
+        part.map_or_else(PartTally::default, |part| count_worlds(part, watch))
     }
 
     /// The result, from the counts of all pieces. It is that of [`LazySweep::run`].
-    pub fn finished<E: Explorer>(
-        PieceCounts { tally, worlds }: PieceCounts,
-        new: impl Fn() -> E,
-    ) -> LazyCheck {
-        LazySweep::finished(tally, worlds, new)
+    pub fn finished<E: Explorer>(counts: PartTally, new: impl Fn() -> E) -> Tally {
+        LazySweep::finished(counts, new)
     }
 }

@@ -17,7 +17,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::WorstStart,
+    check::{Tally, WorstStart},
     enumerate::{Each, Enumeration},
     format::named_world::NamedWorld,
 };
@@ -125,7 +125,8 @@ impl CheckArguments {
             let size = ExplorerSize { edges, class, from, tally: &tally };
             report.size(&size)?;
             cases.push(size.ci_case());
-            let ExplorerTally { worst: of_size, failure, limit, interrupted, .. } = tally;
+            let ExplorerTally { counts, limit, .. } = tally;
+            let Tally { worst: of_size, failure, interrupted, .. } = counts;
             let all_mapped = failure.is_none() && limit.is_none();
             super::keep_worse(&mut worst, of_size);
             keep_first(&mut unmapped, failure.or(limit));

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, fmt::Write as _, io::Write, path::Path, time::D
 use serde::Serialize;
 use serde_json::Value;
 use toposlam_model::{
+    check::Tally,
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     marker::{Directional, Marker},
@@ -44,11 +45,12 @@ impl ExplorerSize<'_> {
     /// The result for CI systems.
     pub(super) fn ci_case(&self) -> CiCase {
         let tally = self.tally;
-        let (mapped, starts) = (grouped(tally.mapped.into()), grouped(tally.starts.into()));
+        let (mapped, starts) =
+            (grouped(tally.counts.mapped.into()), grouped(tally.counts.starts.into()));
         let mut message = format!("{mapped} of {starts} starts mapped correctly");
-        if let Some(start) = tally.failure.as_ref().or(tally.limit.as_ref()) {
+        if let Some(start) = tally.counts.failure.as_ref().or(tally.limit.as_ref()) {
             let _ = write!(message, "; on the first other one, the explorer {}", start.fault);
-        } else if tally.interrupted {
+        } else if tally.counts.interrupted {
             message += "; interrupted";
         }
         CiCase {
@@ -121,10 +123,11 @@ impl<'o> ExplorerReport<'o> {
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
         }
-        let mean_and_most = |total, most| mean_and_most(total, tally.mapped, most);
+        let mean_and_most = |total, most| mean_and_most(total, tally.counts.mapped, most);
         let certificates = match tally.ratio() {
             Some(ratio) => {
-                let certificate = mean_and_most(tally.certificate_total, tally.certificate_max);
+                let certificate =
+                    mean_and_most(tally.counts.certificate_total, tally.counts.certificate_max);
                 format!("  {certificate:>11}  {ratio:>5.2}")
             }
             None => String::new(),
@@ -132,11 +135,11 @@ impl<'o> ExplorerReport<'o> {
         writeln!(
             self.out,
             "{edges:>5}  {:>8}  {:>10}  {:>6}  {:>7}  {:>14}{certificates}",
-            grouped(tally.worlds.into()),
-            grouped(tally.starts.into()),
-            grouped(tally.failed().into()),
-            grouped(tally.unknown.into()),
-            mean_and_most(tally.moves_total, tally.moves_max()),
+            grouped(tally.counts.worlds.into()),
+            grouped(tally.counts.starts.into()),
+            grouped(tally.counts.failed().into()),
+            grouped(tally.counts.unknown.into()),
+            mean_and_most(tally.counts.moves_total, tally.counts.moves_max()),
         )?;
         if !tally.causes.is_empty() {
             let causes = tally.causes.iter();
@@ -149,10 +152,10 @@ impl<'o> ExplorerReport<'o> {
             let ended = counted(tally.processes_ended as usize, "run");
             writeln!(self.out, "       stopped: {ended} ended their process (--restarts)")?;
         }
-        if tally.interrupted {
+        if tally.counts.interrupted {
             writeln!(self.out, "       interrupted")?;
         }
-        match (&tally.failure, &tally.limit) {
+        match (&tally.counts.failure, &tally.limit) {
             (Some(start), _) => self.unmapped("failed", start),
             (None, Some(start)) => self.unmapped("reached a limit", start),
             (None, None) => Ok(()),
@@ -188,7 +191,7 @@ impl<'o> ExplorerReport<'o> {
     /// Prints the verdict and returns the outcome.
     pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, CliError> {
         let (outcome, verdict) = self.total.verdict();
-        let ExplorerTally { starts, mapped, unknown, .. } = self.total;
+        let Tally { starts, mapped, unknown, .. } = self.total.counts;
         if self.json {
             return Ok(outcome);
         }
@@ -276,22 +279,22 @@ impl<'a> ExplorerLine<'a> {
             from: from.map(|path| path.display().to_string()),
             marker: marker.name(),
             explorer,
-            worlds: tally.worlds,
-            starts: tally.starts,
-            mapped: tally.mapped,
-            failed: tally.failed(),
-            unknown: tally.unknown,
-            moves_total: tally.moves_total,
-            moves_max: tally.moves_max(),
+            worlds: tally.counts.worlds,
+            starts: tally.counts.starts,
+            mapped: tally.counts.mapped,
+            failed: tally.counts.failed(),
+            unknown: tally.counts.unknown,
+            moves_total: tally.counts.moves_total,
+            moves_max: tally.counts.moves_max(),
             certificates: (marker.name() == Directional.name()).then(|| RatioLine {
-                certificate_total: tally.certificate_total,
-                certificate_max: tally.certificate_max,
+                certificate_total: tally.counts.certificate_total,
+                certificate_max: tally.counts.certificate_max,
                 ratio: tally.ratio(),
             }),
             causes: &tally.causes,
             stopped: tally.stopped,
-            interrupted: tally.interrupted,
-            failure: tally.failure.as_ref().map(unmapped),
+            interrupted: tally.counts.interrupted,
+            failure: tally.counts.failure.as_ref().map(unmapped),
             limit: tally.limit.as_ref().map(unmapped),
             verdict: tally.verdict().0.verdict(),
             holds: tally.verdict().0 == Outcome::Holds,

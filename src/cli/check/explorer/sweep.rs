@@ -153,7 +153,7 @@ impl ExplorerSweep<'_> {
             let Ok(batch) = next else { break };
             let result = self.run_batch(&batch, enough);
             let tallies = result.iter().flat_map(|run| &run.tallies);
-            progress.part_done(tallies.map(|tally| tally.starts).sum());
+            progress.part_done(tallies.map(|tally| tally.counts.starts).sum());
             if results.send(result.map(|run| (batch.number, run))).is_err() {
                 break;
             }
@@ -170,12 +170,12 @@ impl ExplorerSweep<'_> {
         let mut candidate = Candidate::default();
         let directional = self.marker.name() == Directional.name();
         for (graph, facing) in &batch.worlds {
-            tally.worlds += 1;
+            tally.counts.worlds += 1;
             for &facing in facing {
                 if must_stop() {
-                    tally.interrupted = true;
+                    tally.counts.interrupted = true;
                 }
-                if tally.interrupted || enough.load(Ordering::Relaxed) {
+                if tally.counts.interrupted || enough.load(Ordering::Relaxed) {
                     tallies.push(tally);
                     return Ok(ended(tallies, left));
                 }
@@ -187,7 +187,7 @@ impl ExplorerSweep<'_> {
                     None => self.command.start()?,
                 };
                 let Ok(run) = start.run(&mut running, self.limits, &mut candidate) else {
-                    tally.interrupted = true;
+                    tally.counts.interrupted = true;
                     continue;
                 };
                 if !run.result.as_ref().is_err_and(ExplorerFault::ends_process) {
@@ -228,7 +228,7 @@ impl ExplorerSweep<'_> {
                     total.merge(tally);
                     if total.processes_ended == self.restarts {
                         enough.store(true, Ordering::Relaxed);
-                        total.stopped = has_more || tallies.any(|later| later.starts > 0);
+                        total.stopped = has_more || tallies.any(|later| later.counts.starts > 0);
                         return Ok(total);
                     }
                 }
@@ -237,7 +237,7 @@ impl ExplorerSweep<'_> {
         // After Ctrl-C, a batch may be missing.
         let unmerged = waiting.into_values().flat_map(|run| run.tallies);
         unmerged.for_each(|tally| total.merge(tally));
-        total.interrupted |= must_stop();
+        total.counts.interrupted |= must_stop();
         Ok(total)
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use toposlam_model::{
-    check::WorstStart,
+    check::{KeptStart, Tally, WorstStart},
     embedded_graph::{Dart, EmbeddedGraph},
     world::Action,
 };
@@ -27,25 +27,19 @@ pub(super) struct UnmappedStart {
     pub(super) stderr: String,
 }
 
+/// The first start of its kind is kept.
+impl KeptStart for UnmappedStart {
+    fn replaces(&self, _: &Self) -> bool {
+        false
+    }
+}
+
 /// The result for some starts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ExplorerTally {
-    /// Embedded graphs up to isomorphism.
-    pub(super) worlds: u64,
-    pub(super) starts: u64,
-    /// Starts mapped correctly.
-    pub(super) mapped: u64,
-    /// Starts on which a limit was reached.
-    pub(super) unknown: u64,
-    /// The moves of the runs that mapped their starts right.
-    pub(super) moves_total: u64,
-    /// The lengths of the certificates of the starts mapped correctly; 0 if the marker is not directional.
-    pub(super) certificate_total: u64,
-    pub(super) certificate_max: u64,
-    /// The first start that took the most moves, of those mapped correctly.
-    pub(super) worst: Option<WorstStart>,
-    /// The first start on which the explorer failed.
-    pub(super) failure: Option<UnmappedStart>,
+    /// The counts. Certificates are those of the starts that were mapped correctly. Of the others, those on which a
+    /// limit was reached are unknown.
+    pub(super) counts: Tally<WorstStart, UnmappedStart>,
     /// The first start on which a limit was reached.
     pub(super) limit: Option<UnmappedStart>,
     /// The number of starts for each name of a fault.
@@ -54,35 +48,25 @@ pub(super) struct ExplorerTally {
     pub(super) processes_ended: u64,
     /// Whether the rest of the starts was left out because too many runs ended their process.
     pub(super) stopped: bool,
-    pub(super) interrupted: bool,
 }
 
 impl ExplorerTally {
-    /// Starts on which the explorer failed.
-    pub(super) fn failed(&self) -> u64 {
-        self.starts - self.mapped - self.unknown
-    }
-
-    /// The most moves of a run that mapped its start right; 0 if there is none.
-    pub(super) fn moves_max(&self) -> u64 {
-        self.worst.as_ref().map_or(0, |worst| worst.moves)
-    }
-
     /// Moves for each move of a certificate; `None` without certificates.
     pub(super) fn ratio(&self) -> Option<f64> {
-        let known = self.certificate_total > 0;
-        known.then(|| self.moves_total as f64 / self.certificate_total as f64)
+        let Tally { moves_total, certificate_total, .. } = self.counts;
+        (certificate_total > 0).then(|| moves_total as f64 / certificate_total as f64)
     }
 
     /// The outcome, and its name.
     pub(super) fn verdict(&self) -> (Outcome, &'static str) {
+        let counts = &self.counts;
         match () {
-            () if self.failed() > 0 => (Outcome::Violated, "violated"),
-            () if self.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if self.starts == 0 => {
+            () if counts.failed() > 0 => (Outcome::Violated, "violated"),
+            () if counts.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
+            () if counts.starts == 0 => {
                 (Outcome::Incomplete, "incomplete: there is nothing to check")
             }
-            () if self.unknown > 0 || self.stopped => (Outcome::Incomplete, "incomplete"),
+            () if counts.unknown > 0 || self.stopped => (Outcome::Incomplete, "incomplete"),
             () => (Outcome::Holds, "holds"),
         }
     }
@@ -91,51 +75,37 @@ impl ExplorerTally {
     pub(super) fn count(&mut self, start: &ExplorerStart, run: EndedRun, stderr: String) {
         let ExplorerStart { graph, facing, certificate, .. } = *start;
         let EndedRun { moves, actions, result } = run;
-        self.starts += 1;
+        let counts = &mut self.counts;
+        counts.starts += 1;
+        let graph = graph.clone();
         let Err(fault) = result else {
-            self.mapped += 1;
-            self.moves_total += moves;
-            self.certificate_total += certificate.unwrap_or_default();
-            self.certificate_max = self.certificate_max.max(certificate.unwrap_or_default());
-            if self.worst.as_ref().is_none_or(|worst| moves > worst.moves) {
-                self.worst = Some(WorstStart { graph: graph.clone(), facing, moves });
-            }
+            counts.mapped += 1;
+            counts.count_certificate(certificate);
+            let vertices = graph.vertex_count();
+            let worst = WorstStart { graph, facing, moves };
+            counts.count_run((moves, vertices), certificate, Some(worst));
             return;
         };
         *self.causes.entry(fault.name()).or_default() += 1;
         self.processes_ended += u64::from(fault.ends_process());
-        let limit = fault.is_limit();
-        self.unknown += u64::from(limit);
-        let first = if limit { &mut self.limit } else { &mut self.failure };
-        first.get_or_insert_with(|| UnmappedStart {
-            graph: graph.clone(),
-            facing,
-            fault,
-            moves,
-            actions,
-            stderr,
-        });
+        let is_limit = fault.is_limit();
+        let unmapped = UnmappedStart { graph, facing, fault, moves, actions, stderr };
+        if is_limit {
+            counts.unknown += 1;
+            self.limit.get_or_insert(unmapped);
+        } else {
+            counts.count_failure(unmapped);
+        }
     }
 
     /// Adds the result of later starts.
-    pub(super) fn merge(&mut self, mut later: Self) {
-        self.worlds += later.worlds;
-        self.starts += later.starts;
-        self.mapped += later.mapped;
-        self.unknown += later.unknown;
-        self.moves_total += later.moves_total;
-        self.certificate_total += later.certificate_total;
-        self.certificate_max = self.certificate_max.max(later.certificate_max);
+    pub(super) fn merge(&mut self, later: Self) {
+        self.counts.merge(later.counts);
         self.processes_ended += later.processes_ended;
         self.stopped |= later.stopped;
-        self.interrupted |= later.interrupted;
-        for (cause, count) in std::mem::take(&mut later.causes) {
+        for (cause, count) in later.causes {
             *self.causes.entry(cause).or_default() += count;
         }
-        if later.moves_max() > self.moves_max() || self.worst.is_none() {
-            self.worst = later.worst;
-        }
-        self.failure = self.failure.take().or(later.failure);
         self.limit = self.limit.take().or(later.limit);
     }
 }
