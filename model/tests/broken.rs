@@ -108,28 +108,7 @@ impl Flaw {
 }
 
 impl Explorer for Broken {
-    type Marker = Directional;
-    type Choice = MappingChoice;
-
-    fn marker(&self) -> Directional {
-        Directional
-    }
-
-    fn limit_darts(&mut self, max_darts: usize) {
-        self.run.limit_darts(max_darts);
-    }
-
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.run.begin(world, observer)
-    }
-
-    fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
-        self.run.choose()
-    }
+    delegate_to_run!(Directional, MappingChoice);
 
     fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
         self.run.choices()
@@ -145,14 +124,6 @@ impl Explorer for Broken {
         step_with(&mut self.run, choice, world, observer, |run, hypothesis, world, observer| {
             flaw.try_path(run, hypothesis, world, observer)
         })
-    }
-
-    fn map_walk(&self) -> Option<&Journey> {
-        self.run.map_walk()
-    }
-
-    fn state_key(&self) -> Option<StateKey> {
-        self.run.state_key()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {

@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::Class,
     mapping::{
         Explorer, InvalidStep, Journey, MappingError, MarkerSearch, Observer, ReachedPlace,
-        ValidationResult, validate_back_link, validate_place,
+        StateKey, ValidationResult, validate_back_link, validate_place,
     },
     marker::Movable,
     world::World,
@@ -139,28 +139,7 @@ impl Flaw {
 }
 
 impl Explorer for Broken {
-    type Marker = Movable;
-    type Choice = Dart;
-
-    fn marker(&self) -> Movable {
-        Movable
-    }
-
-    fn limit_darts(&mut self, max_darts: usize) {
-        self.run.limit_darts(max_darts);
-    }
-
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.run.begin(world, observer)
-    }
-
-    fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
-        self.run.choose()
-    }
+    delegate_to_run!(Movable, Dart);
 
     fn step<W: World>(
         &mut self,
@@ -178,10 +157,6 @@ impl Explorer for Broken {
             ReachedPlace::New => run.add_place(world, observer)?,
         }
         Ok(())
-    }
-
-    fn map_walk(&self) -> Option<&Journey> {
-        self.run.map_walk()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {

@@ -236,24 +236,7 @@ enum Alteration {
 }
 
 impl Explorer for Altered {
-    type Marker = Directional;
-    type Choice = MappingChoice;
-
-    fn marker(&self) -> Directional {
-        Directional
-    }
-
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.run.begin(world, observer)
-    }
-
-    fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
-        self.run.choose()
-    }
+    delegate_to_run!(Directional, MappingChoice);
 
     /// The numbers of hypotheses are off by one, if that is altered.
     fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
@@ -272,14 +255,6 @@ impl Explorer for Altered {
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.run.step(choice, world, observer)
-    }
-
-    fn map_walk(&self) -> Option<&Journey> {
-        self.run.map_walk()
-    }
-
-    fn state_key(&self) -> Option<StateKey> {
-        self.run.state_key()
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {

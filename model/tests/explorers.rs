@@ -15,9 +15,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::Candidate,
-    mapping::{
-        Exploration, ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer, explore,
-    },
+    mapping::{Exploration, ExploredMap, Explorer, Flaw, MappingError, Observer, explore},
     marker::{Directional, Marker, named},
     percept::Door,
     world::{RefusedAction, World},
@@ -106,19 +104,6 @@ impl Explorer for BrokenExplorer {
         }
     }
 
-    fn choose(&mut self) -> Result<Option<()>, InvalidStep> {
-        Ok(None)
-    }
-
-    fn step<W: World>(
-        &mut self,
-        (): (),
-        _: &mut W,
-        _: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        Ok(())
-    }
-
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
         let mut map = self.1.explored()?;
         match self.0 {
@@ -200,19 +185,6 @@ fn the_world_counts_the_moves() {
             _: &mut impl Observer<W>,
         ) -> Result<(), MappingError<W::Error>> {
             (0..self.0).try_for_each(|_| world.traverse(Door::BACK)).map_err(MappingError::World)
-        }
-
-        fn choose(&mut self) -> Result<Option<()>, InvalidStep> {
-            Ok(None)
-        }
-
-        fn step<W: World>(
-            &mut self,
-            (): (),
-            _: &mut W,
-            _: &mut impl Observer<W>,
-        ) -> Result<(), MappingError<W::Error>> {
-            Ok(())
         }
 
         fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {

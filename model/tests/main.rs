@@ -2,6 +2,42 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+/// The items of an [`Explorer`](toposlam_model::mapping::Explorer) that are those of its field `run`.
+macro_rules! delegate_to_run {
+    ($marker:ident, $choice:ty) => {
+        type Marker = $marker;
+        type Choice = $choice;
+
+        fn marker(&self) -> $marker {
+            self.run.marker()
+        }
+
+        fn limit_darts(&mut self, max_darts: usize) {
+            self.run.limit_darts(max_darts);
+        }
+
+        fn begin<W: World>(
+            &mut self,
+            world: &mut W,
+            observer: &mut impl Observer<W>,
+        ) -> Result<(), MappingError<W::Error>> {
+            self.run.begin(world, observer)
+        }
+
+        fn choose(&mut self) -> Result<Option<$choice>, InvalidStep> {
+            self.run.choose()
+        }
+
+        fn map_walk(&self) -> Option<&Journey> {
+            self.run.map_walk()
+        }
+
+        fn state_key(&self) -> Option<StateKey> {
+            self.run.state_key()
+        }
+    };
+}
+
 mod ambiguity;
 mod broken;
 mod broken_folding;

@@ -6,8 +6,10 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingChoice, MappingError,
-    MappingEvent, Observer, PartialMap, journey::NOWHERE, partial_map::START,
+    Choices, Contradiction, InvalidStep, Journey, MappingChoice, MappingError, MappingEvent,
+    Observer, PartialMap,
+    journey::{NOWHERE, has_journey},
+    partial_map::START,
     tree::BreadthFirstTree,
 };
 use crate::{
@@ -42,17 +44,7 @@ struct Here {
     entry: Door,
 }
 
-impl Default for Exploration {
-    fn default() -> Self {
-        Self::new(DEFAULT_DART_BOUND)
-    }
-}
-
-impl From<Exploration> for Journey {
-    fn from(run: Exploration) -> Self {
-        run.journey
-    }
-}
+has_journey!(Exploration);
 
 impl Exploration {
     /// A state ready for a run that may come to know at most `bound` darts.
@@ -65,40 +57,6 @@ impl Exploration {
             trail: Vec::new(),
             to_marker: BreadthFirstTree::default(),
         }
-    }
-
-    /// Sets the bound on known darts for later runs.
-    pub fn set_bound(&mut self, bound: usize) {
-        self.journey.set_bound(bound);
-    }
-
-    /// The robot's journey: its map, its pose in the map and its moves.
-    #[inline]
-    #[must_use]
-    pub fn journey(&self) -> &Journey {
-        &self.journey
-    }
-
-    /// The map S, with the unexplored edges U.
-    #[inline]
-    #[must_use]
-    pub fn map(&self) -> &PartialMap {
-        self.journey.map()
-    }
-
-    /// The robot's pose in the map: the dart by which it came in. At line 8, where its place is not
-    /// known, the last known pose.
-    #[inline]
-    #[must_use]
-    pub fn robot(&self) -> Dart {
-        self.journey.robot()
-    }
-
-    /// The moves made so far.
-    #[inline]
-    #[must_use]
-    pub fn moves(&self) -> u64 {
-        self.journey.moves()
     }
 
     /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would

@@ -55,11 +55,13 @@ pub trait Explorer: Clone {
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>>;
 
-    /// The default choice; `None` if the run has ended, and the map is complete.
+    /// The default choice; `None` if the run has ended, and the map is complete. By default there is none.
     ///
     /// # Errors
     /// Returns an error if the map is not complete, and no choice is open.
-    fn choose(&mut self) -> Result<Option<Self::Choice>, InvalidStep>;
+    fn choose(&mut self) -> Result<Option<Self::Choice>, InvalidStep> {
+        Ok(None)
+    }
 
     /// Every open choice.
     ///
@@ -89,10 +91,12 @@ pub trait Explorer: Clone {
     /// darts. The state then holds what is known so far.
     fn step<W: World>(
         &mut self,
-        choice: Self::Choice,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>>;
+        _choice: Self::Choice,
+        _world: &mut W,
+        _observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        Err(InvalidStep::NoPlan.into())
+    }
 
     /// The robot's map, its pose in the map and its moves, if it keeps them in this form.
     fn map_walk(&self) -> Option<&Journey> {

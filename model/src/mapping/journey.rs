@@ -322,3 +322,58 @@ impl Journey {
         Ok(())
     }
 }
+
+/// What the states of all runs have: the journey, as parts of it and by itself.
+macro_rules! has_journey {
+    ($run:ident) => {
+        impl Default for $run {
+            fn default() -> Self {
+                Self::new($crate::mapping::DEFAULT_DART_BOUND)
+            }
+        }
+
+        impl From<$run> for $crate::mapping::Journey {
+            fn from(run: $run) -> Self {
+                run.journey
+            }
+        }
+
+        impl $run {
+            /// Sets the bound on the darts of the map for later runs.
+            pub fn set_bound(&mut self, bound: usize) {
+                self.journey.set_bound(bound);
+            }
+
+            /// The robot's journey: its map, its pose in the map and its moves.
+            #[inline]
+            #[must_use]
+            pub fn journey(&self) -> &$crate::mapping::Journey {
+                &self.journey
+            }
+
+            /// The map S, with the unexplored edges U.
+            #[inline]
+            #[must_use]
+            pub fn map(&self) -> &$crate::mapping::PartialMap {
+                self.journey.map()
+            }
+
+            /// The robot's pose in the map: the dart by which it came in. Where its place is not known, the last known
+            /// pose.
+            #[inline]
+            #[must_use]
+            pub fn robot(&self) -> $crate::embedded_graph::Dart {
+                self.journey.robot()
+            }
+
+            /// The moves made so far.
+            #[inline]
+            #[must_use]
+            pub fn moves(&self) -> u64 {
+                self.journey.moves()
+            }
+        }
+    };
+}
+
+pub(super) use has_journey;

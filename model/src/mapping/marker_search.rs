@@ -1,8 +1,8 @@
 //! The state of the movable marker algorithm, and the small steps that it consists of. Section 2.3.
 
 use super::{
-    Choices, Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingError, MappingEvent,
-    MovableEvent, Observer, PartialMap, ValidationResult,
+    Choices, Contradiction, InvalidStep, Journey, MappingError, MappingEvent, MovableEvent,
+    Observer, PartialMap, ValidationResult, journey::has_journey,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -39,17 +39,7 @@ fn carrier<W: World>(
     world.carrier().ok_or(InvalidStep::NoMovableMarker)
 }
 
-impl Default for MarkerSearch {
-    fn default() -> Self {
-        Self::new(DEFAULT_DART_BOUND)
-    }
-}
-
-impl From<MarkerSearch> for Journey {
-    fn from(run: MarkerSearch) -> Self {
-        run.journey
-    }
-}
+has_journey!(MarkerSearch);
 
 impl MarkerSearch {
     /// A state for a run with at most `bound` known darts.
@@ -61,36 +51,6 @@ impl MarkerSearch {
             is_candidate: Vec::new(),
             back_links: Vec::new(),
         }
-    }
-
-    /// Sets the bound on known darts for later runs.
-    pub fn set_bound(&mut self, bound: usize) {
-        self.journey.set_bound(bound);
-    }
-
-    /// The robot's journey: its map, its pose in the map and its moves.
-    #[must_use]
-    pub fn journey(&self) -> &Journey {
-        &self.journey
-    }
-
-    /// The map S, with the unexplored edges U.
-    #[must_use]
-    pub fn map(&self) -> &PartialMap {
-        self.journey.map()
-    }
-
-    /// The robot's pose in the map: the dart by which it came in. At the unknown end of an edge, the
-    /// last known pose.
-    #[must_use]
-    pub fn robot(&self) -> Dart {
-        self.journey.robot()
-    }
-
-    /// The moves made so far.
-    #[must_use]
-    pub fn moves(&self) -> u64 {
-        self.journey.moves()
     }
 
     /// The robot picks the marker up at v0, S is v0, and U is its edges.

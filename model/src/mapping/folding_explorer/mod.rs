@@ -26,8 +26,8 @@ mod ways;
 use std::cmp::Reverse;
 
 use super::{
-    Contradiction, CostOrder, DEFAULT_DART_BOUND, Explorer, ExplorerInfo, InvalidStep, Journey,
-    MapDart, MappingError, Observer, PartialMap, StepPurpose, tree::BreadthFirstTree,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart, MappingError,
+    Observer, PartialMap, StepPurpose, journey::has_journey, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -125,17 +125,7 @@ clone_in_place!(FoldingExploration {
     scratch tests, way
 });
 
-impl Default for FoldingExploration {
-    fn default() -> Self {
-        Self::new(DEFAULT_DART_BOUND)
-    }
-}
-
-impl From<FoldingExploration> for Journey {
-    fn from(run: FoldingExploration) -> Self {
-        run.journey
-    }
-}
+has_journey!(FoldingExploration);
 
 impl FoldingExploration {
     /// A state ready for a run whose map may have at most `bound` darts.
@@ -163,31 +153,6 @@ impl FoldingExploration {
     #[must_use]
     pub fn strict() -> Self {
         Self { strict: true, ..Self::default() }
-    }
-
-    /// The robot's journey: its map, its pose in the map and its moves.
-    #[must_use]
-    pub fn journey(&self) -> &Journey {
-        &self.journey
-    }
-
-    /// The map: places that are pairwise distinct, and the edges between them.
-    #[must_use]
-    pub fn map(&self) -> &PartialMap {
-        self.journey.map()
-    }
-
-    /// The robot's pose in the map: the dart by which it came in. If its place is not known, the last
-    /// known pose.
-    #[must_use]
-    pub fn robot(&self) -> Dart {
-        self.journey.robot()
-    }
-
-    /// The moves made so far.
-    #[must_use]
-    pub fn moves(&self) -> u64 {
-        self.journey.moves()
     }
 
     /// The folded trail.
