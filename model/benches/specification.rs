@@ -103,7 +103,7 @@ fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize
 #[divan::bench(args = ["none", "undirected", "movable"], sample_count = 3)]
 fn compare_long_cycles(bencher: Bencher, marker: &str) {
     let marker = named(marker).unwrap();
-    let (one, other) = (cycle(300), cycle(301));
+    let (one, other) = (EmbeddedGraph::cycle(300), EmbeddedGraph::cycle(301));
     bencher.bench(|| {
         let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));
         let poses = [Dart(0), Dart(0)];
@@ -161,8 +161,8 @@ fn recognise_10_000_edges(bencher: Bencher, world: &str) {
     let mut random = Random(2);
     let graph = match world {
         "random" => random_cubic(6_666, &mut random),
-        "chain" => chain(10_000),
-        _ => cycle(10_000),
+        "chain" => EmbeddedGraph::chain(10_000),
+        _ => EmbeddedGraph::cycle(10_000),
     };
     let (one, other) = (relabelled(&graph, &mut random), relabelled(&graph, &mut random));
     bencher.bench(|| {
@@ -203,24 +203,6 @@ fn random_cubic(vertices: u32, random: &mut Random) -> EmbeddedGraph {
             return graph;
         }
     }
-}
-
-fn cycle(edges: u32) -> EmbeddedGraph {
-    let darts = 2 * edges;
-    let opposite: Vec<u32> = (0..darts)
-        .map(|d| if d % 2 == 1 { (d + 1) % darts } else { (d + darts - 1) % darts })
-        .collect();
-    let clockwise: Vec<u32> = (0..darts).map(|d| d ^ 1).collect();
-    EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
-}
-
-fn chain(edges: u32) -> EmbeddedGraph {
-    let darts = 2 * edges;
-    let opposite: Vec<u32> = (0..darts).map(|d| d ^ 1).collect();
-    let last = darts - 1;
-    let clockwise: Vec<u32> =
-        (0..darts).map(|d| if d == 0 || d == last { d } else { ((d - 1) ^ 1) + 1 }).collect();
-    EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
 }
 
 fn relabelled(graph: &EmbeddedGraph, random: &mut Random) -> EmbeddedGraph {

@@ -71,14 +71,14 @@ fn every_way_of_every_start_is_mapped_right() {
 
 #[test]
 fn a_start_with_more_states_than_the_budget_is_given_up() {
-    let graph = cycle(5);
+    let graph = EmbeddedGraph::cycle(5);
     let all = every_way(Exploration::default(), &graph, Dart(0), 1000, &()).unwrap();
     assert_eq!(all.limit, None);
     let some = every_way(Exploration::default(), &graph, Dart(0), all.states - 1, &()).unwrap();
     assert_eq!(some.limit, Some(ChoicesLimit::States(all.states - 1)));
     assert!(some.states < all.states);
     let is_complete = |edges, budget| {
-        every_way(Exploration::default(), &chain(edges), Dart(0), budget, &())
+        every_way(Exploration::default(), &EmbeddedGraph::chain(edges), Dart(0), budget, &())
             .unwrap()
             .limit
             .is_none()
@@ -157,26 +157,6 @@ fn the_shards_are_the_whole() {
     }
 }
 
-fn cycle(edges: usize) -> EmbeddedGraph {
-    let name = |vertex: usize| format!("v{}", vertex % edges);
-    let lists: Vec<_> = (0..edges)
-        .map(|vertex| (name(vertex), vec![name(vertex + 1), name(vertex + edges - 1)]))
-        .collect();
-    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-}
-
-/// Dart 0 is at one of its ends.
-fn chain(edges: usize) -> EmbeddedGraph {
-    let lists: Vec<_> = (0..=edges)
-        .map(|vertex: usize| {
-            let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
-            let right = (vertex < edges).then(|| format!("e{vertex}"));
-            (format!("v{vertex}"), left.into_iter().chain(right).collect())
-        })
-        .collect();
-    EmbeddedGraph::from_edge_lists(&lists).unwrap()
-}
-
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, facing);
@@ -188,7 +168,7 @@ fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
 #[test]
 fn a_cycle_of_m_edges_costs_m_from_every_start() {
     for edges in 3..40 {
-        let graph = cycle(edges);
+        let graph = EmbeddedGraph::cycle(edges);
         assert!(graph.darts().all(|facing| moves(&graph, facing) == edges as u64));
     }
 }
@@ -197,7 +177,7 @@ fn a_cycle_of_m_edges_costs_m_from_every_start() {
 #[test]
 fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
-        let graph = chain(edges);
+        let graph = EmbeddedGraph::chain(edges);
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
         let ways =
             every_way(Exploration::default(), &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();

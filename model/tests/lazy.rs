@@ -138,22 +138,16 @@ impl<M: Marker + Clone> Explorer for Walker<M> {
     }
 }
 
-/// A chain, with dart 0 at its end.
-fn chain(edges: usize) -> EmbeddedGraph {
-    let name = |vertex: usize| format!("v{vertex}");
-    let list = |vertex: usize| {
-        let before = vertex.checked_sub(1).map(name);
-        let after = (vertex < edges).then(|| name(vertex + 1));
-        (name(vertex), before.into_iter().chain(after).collect())
-    };
-    EmbeddedGraph::from_neighbour_lists(&(0..=edges).map(list).collect::<Vec<_>>()).unwrap()
-}
-
 fn compare_walkers<M: Marker + Clone>(marker: &M) {
     for class in Class::ALL {
         for edges in 1..=4 {
             for most in 0..=8 {
-                let new = || Walker { marker: marker.clone(), moves: 0, most, map: chain(edges) };
+                let new = || Walker {
+                    marker: marker.clone(),
+                    moves: 0,
+                    most,
+                    map: EmbeddedGraph::chain(edges),
+                };
                 let one_by_one = one_by_one(class, edges, new);
                 let lazily = LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
                 let lazily = counts(lazily);
@@ -170,7 +164,7 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
 #[test]
 fn an_end_at_which_not_everything_is_revealed_stands_for_all_starts_that_agree() {
     compare_walkers(&Directional);
-    let new = || Walker { marker: Directional, moves: 0, most: 0, map: chain(4) };
+    let new = || Walker { marker: Directional, moves: 0, most: 0, map: EmbeddedGraph::chain(4) };
     let at_once = LazySweep::new(Class::Multigraph, 4, Shard::WHOLE).unwrap().run(new, &());
     assert_eq!((at_once.starts, at_once.mapped, at_once.moves_made), (706, 1, 0));
     assert_eq!(at_once.below_certificate, 1);
@@ -306,7 +300,7 @@ impl Watch for QuestionLimit {
 #[test]
 fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
     let sweep = LazySweep::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();
-    let new = || Walker { marker: Directional, moves: 0, most: 0, map: chain(1) };
+    let new = || Walker { marker: Directional, moves: 0, most: 0, map: EmbeddedGraph::chain(1) };
     let found = sweep.run(new, &QuestionLimit { questions_left: 1000.into() });
     assert!(found.interrupted);
     assert!((1..=2000).contains(&found.starts));
@@ -333,7 +327,7 @@ fn all_probes_together_are_the_whole_tree() {
 
 #[test]
 fn a_start_is_restored_from_its_place_in_the_enumeration() {
-    let graph = chain(3);
+    let graph = EmbeddedGraph::chain(3);
     // From the other end the chain is the same start.
     let places: Vec<_> = graph.darts().map(|facing| EnumeratedStart::new(&graph, facing)).collect();
     let mut distinct = places.clone();

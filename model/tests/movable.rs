@@ -80,30 +80,11 @@ fn at_the_end_the_robot_carries_the_marker() {
     });
 }
 
-fn chain(edges: usize) -> EmbeddedGraph {
-    let lists: Vec<_> = (0..=edges)
-        .map(|vertex| {
-            let neighbours = [vertex.checked_sub(1), (vertex < edges).then_some(vertex + 1)];
-            let names = neighbours.into_iter().flatten().map(|vertex| vertex.to_string());
-            (vertex.to_string(), names.collect())
-        })
-        .collect();
-    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-}
-
-fn cycle(edges: usize) -> EmbeddedGraph {
-    let name = |vertex: usize| (vertex % edges).to_string();
-    let lists: Vec<_> = (0..edges)
-        .map(|vertex| (name(vertex), vec![name(vertex + 1), name(vertex + edges - 1)]))
-        .collect();
-    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-}
-
 /// From an end, no known vertex can ever be the place just reached.
 #[test]
 fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
-        assert_eq!(run(&chain(edges), Dart(0)).0.moves(), edges as u64);
+        assert_eq!(run(&EmbeddedGraph::chain(edges), Dart(0)).0.moves(), edges as u64);
     }
 }
 
@@ -113,7 +94,7 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
 #[test]
 fn a_cycle_of_m_edges_costs_m_squared_plus_m_minus_6() {
     for edges in 3..40_u64 {
-        let graph = cycle(edges as usize);
+        let graph = EmbeddedGraph::cycle(edges as usize);
         let new = (2..edges - 1).map(|known_end| 2 * known_end + 3).sum::<u64>();
         let last = 1 + 1 + (edges - 1);
         assert_eq!(2 + new + last, edges * edges + edges - 6);
@@ -216,7 +197,7 @@ fn the_story_of_the_tetrahedron() {
         ]
     );
     // In a cycle, no place is v0 but that behind the last edge.
-    let story = story(&cycle(7));
+    let story = story(&EmbeddedGraph::cycle(7));
     let not_found = story
         .iter()
         .filter(|(_, event)| matches!(event, MappingEvent::Movable(MovableEvent::NotFound)));
@@ -306,7 +287,7 @@ fn with_loops_or_parallel_edges_one_movable_marker_does_not_suffice() {
     }
     // The only worlds with one edge, which the degree distinguishes.
     let one_loop = EmbeddedGraph::from_edge_lists(&[("v", vec!["a", "a"])]).unwrap();
-    assert!(!indistinguishable(&chain(1), &one_loop));
+    assert!(!indistinguishable(&EmbeddedGraph::chain(1), &one_loop));
     // The marker does distinguish some that are indistinguishable without it.
-    assert!(!indistinguishable(&cycle(3), &cycle(4)));
+    assert!(!indistinguishable(&EmbeddedGraph::cycle(3), &EmbeddedGraph::cycle(4)));
 }

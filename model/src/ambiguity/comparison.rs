@@ -309,12 +309,6 @@ mod tests {
     use super::*;
     use crate::marker::named;
 
-    fn cycle(edges: usize) -> EmbeddedGraph {
-        let name = |edge: usize| (edge % edges).to_string();
-        let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
-        EmbeddedGraph::from_edge_lists(&(0..edges).map(around).collect::<Vec<_>>()).unwrap()
-    }
-
     /// A cycle of junctions, to each of which both ends of a long way are joined; these are of one
     /// length, but for that at the last junction.
     fn cycle_of_ways(junctions: usize, length: usize, last: usize) -> EmbeddedGraph {
@@ -340,7 +334,7 @@ mod tests {
     fn the_partition_is_made_only_where_there_are_many_pairs() {
         let none = named("none").unwrap();
         for (shorter, longer, is_made) in [(3, 4, false), (8, 9, true)] {
-            let (one, other) = (cycle(shorter), cycle(longer));
+            let (one, other) = (EmbeddedGraph::cycle(shorter), EmbeddedGraph::cycle(longer));
             let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
             let pairs = 2 * shorter * longer;
             let states = 2 * (shorter + longer);
@@ -360,7 +354,7 @@ mod tests {
     #[test]
     fn many_pairs_are_replaced_by_the_classes() {
         let none = named("none").unwrap();
-        let (one, other) = (cycle(200), cycle(201));
+        let (one, other) = (EmbeddedGraph::cycle(200), EmbeddedGraph::cycle(201));
         let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
         let starts = comparison.starts([Dart(0); 2]);
         let found = |most| comparison.bisimulation([Dart(0); 2], most, &()).unwrap().unwrap();
@@ -409,7 +403,7 @@ mod tests {
     #[test]
     fn each_search_ends_at_the_question_at_which_it_is_stopped() {
         let none = named("none").unwrap();
-        let (one, other) = (cycle(40), cycle(41));
+        let (one, other) = (EmbeddedGraph::cycle(40), EmbeddedGraph::cycle(41));
         let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
         let searches: [Search; 3] = [
             |comparison, watch| comparison.partition(watch) == Err(Interrupted),

@@ -82,19 +82,10 @@ mod tests {
         marker::named,
     };
 
-    fn chain(edges: usize) -> EmbeddedGraph {
-        let on_edges = |vertex: usize| {
-            let ends = [vertex.checked_sub(1), Some(vertex).filter(|&edge| edge < edges)];
-            (vertex.to_string(), ends.into_iter().flatten().map(|edge| edge.to_string()).collect())
-        };
-        let lists: Vec<(String, Vec<String>)> = (0..=edges).map(on_edges).collect();
-        EmbeddedGraph::from_edge_lists(&lists).unwrap()
-    }
-
     #[test]
     fn classes_are_verified_only_if_their_states_are_indistinguishable() {
         for kind in ["none", "directional", "movable"] {
-            let (one, other) = (chain(3), chain(3));
+            let (one, other) = (EmbeddedGraph::chain(3), EmbeddedGraph::chain(3));
             let marker = named(kind).unwrap();
             let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));
             let poses = [Dart(0); 2];

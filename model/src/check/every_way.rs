@@ -302,12 +302,6 @@ mod tests {
     use super::*;
     use crate::mapping::Exploration;
 
-    fn cycle(edges: usize) -> EmbeddedGraph {
-        let name = |vertex: usize| format!("v{}", vertex % edges);
-        let list = |vertex| (name(vertex), vec![name(vertex + edges - 1), name(vertex + 1)]);
-        EmbeddedGraph::from_neighbour_lists(&(0..edges).map(list).collect::<Vec<_>>()).unwrap()
-    }
-
     /// Stops at once.
     struct Stopped;
 
@@ -321,7 +315,8 @@ mod tests {
     fn the_limit_that_was_reached_is_named() {
         let limit = |budget, watch: &dyn Watch| {
             let ways =
-                every_way(Exploration::default(), &cycle(5), Dart(0), budget, watch).unwrap();
+                every_way(Exploration::default(), &EmbeddedGraph::cycle(5), Dart(0), budget, watch)
+                    .unwrap();
             (ways.limit, ways.states + ways.within_rounds <= budget)
         };
         assert_eq!(limit(1000, &()), (None, true));

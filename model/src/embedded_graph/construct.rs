@@ -149,6 +149,24 @@ impl EmbeddedGraph {
         Self::from_lists(lists, opposite)
     }
 
+    /// A chain of this number of edges, at least one. Dart 0 is at one of its ends.
+    #[must_use]
+    pub fn chain(edges: usize) -> Self {
+        let edges = edges.max(1);
+        let degrees: Vec<u32> = (0..=edges).map(|at| 1 + u32::from(at % edges > 0)).collect();
+        Self::from_degrees(&degrees, (0..2 * edges as u32).map(|dart| Dart(dart ^ 1)).collect())
+    }
+
+    /// A cycle of this number of edges, at least one.
+    #[must_use]
+    pub fn cycle(edges: usize) -> Self {
+        let edges = edges.max(1);
+        let darts = 2 * edges as u32;
+        let by = |dart: u32| if dart % 2 == 1 { 1 } else { darts - 1 };
+        let opposite = (0..darts).map(|dart| Dart((dart + by(dart)) % darts));
+        Self::from_degrees(&vec![2; edges], opposite.collect())
+    }
+
     /// The graph with the lists' lengths as degrees. Its size and connection are checked.
     fn from_lists<N: AsRef<str>>(
         lists: &[(N, Vec<N>)],
@@ -213,6 +231,19 @@ mod tests {
     fn edges(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
         let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
         EmbeddedGraph::from_edge_lists(&owned)
+    }
+
+    #[test]
+    fn a_chain_has_two_ends_and_a_cycle_has_none() {
+        for edges in 1..6 {
+            let (chain, cycle) = (EmbeddedGraph::chain(edges), EmbeddedGraph::cycle(edges));
+            assert_eq!((chain.vertex_count(), chain.edge_count()), (edges + 1, edges));
+            assert_eq!((cycle.vertex_count(), cycle.edge_count()), (edges, edges));
+            assert_eq!((chain.degree_around(Dart(0)), chain.face_count()), (1, 1));
+            assert!(cycle.vertices().all(|vertex| cycle.degree(vertex) == 2));
+            assert_eq!((cycle.face_count(), cycle.unreached_vertex()), (2, None));
+            assert_eq!(chain.unreached_vertex(), None);
+        }
     }
 
     #[test]

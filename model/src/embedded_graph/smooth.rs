@@ -51,19 +51,10 @@ mod tests {
         isomorphism::{code, isomorphism},
     };
 
-    /// A cycle, by its number of edges.
-    fn cycle(edges: u32) -> EmbeddedGraph {
-        let opposite: Vec<u32> = (0..edges)
-            .flat_map(|v| [2 * ((v + edges - 1) % edges) + 1, 2 * ((v + 1) % edges)])
-            .collect();
-        let clockwise: Vec<u32> = (0..2 * edges).map(|dart| dart ^ 1).collect();
-        EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
-    }
-
     #[test]
     fn a_cycle_becomes_a_loop_and_a_chain_an_edge() {
-        for edges in 1..6 {
-            let smooth = cycle(edges).smoothed().graph;
+        for edges in 1..6_usize {
+            let smooth = EmbeddedGraph::cycle(edges).smoothed().graph;
             assert_eq!((smooth.vertex_count(), smooth.edge_count(), smooth.genus()), (1, 1, 0));
         }
         let chain = EmbeddedGraph::from_neighbour_lists(&[

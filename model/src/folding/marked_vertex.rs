@@ -86,18 +86,11 @@ mod tests {
         fold(&percepts, &doors).unwrap()
     }
 
-    fn cycle(length: usize) -> EmbeddedGraph {
-        let name = |number: usize| (number % length).to_string();
-        let list =
-            |number: usize| (name(number), vec![name(number + 1), name(number + length - 1)]);
-        EmbeddedGraph::from_neighbour_lists(&(0..length).map(list).collect::<Vec<_>>()).unwrap()
-    }
-
     /// A robot that comes back to the marker of a cycle has come in by the other door: by its own it would have
     /// left an edge with one end.
     #[test]
     fn once_around_a_cycle_determines_it() {
-        let cycle = cycle(3);
+        let cycle = EmbeddedGraph::cycle(3);
         for (doors, trails, open) in [(&[1, 1][..], 1, 2), (&[1, 1, 1], 1, 0)] {
             let trail = walked(&cycle, Dart(0), doors);
             let found = trail.with_one_marked_vertex(&());
