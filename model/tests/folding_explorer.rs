@@ -10,8 +10,8 @@ use toposlam_model::{
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::ContradictionReason,
     mapping::{
-        Contradiction, FoldingEvent, FoldingExploration, Journey, MappingError, MappingEvent,
-        explore,
+        Contradiction, Explorer, FoldingEvent, FoldingExploration, Journey, MappingError,
+        MappingEvent, explore,
     },
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, World},
@@ -143,6 +143,22 @@ fn the_story_of_a_loop_with_a_tail() {
             MappingEvent::LoopClosed { edge: hypothesis, other: edge },
         ]
     );
+}
+
+#[test]
+fn the_default_choice_is_the_first_of_all() {
+    let starts = Enumeration::new(Each::Start, Class::Multigraph, 4).unwrap();
+    let mut visit = |found: EnumeratedGraph| {
+        let mut world = GraphWorld::new(found.graph, Dart(0));
+        let mut at = FoldingExploration::default();
+        at.begin(&mut world, &mut ()).unwrap();
+        while let Some(choice) = at.choose().unwrap() {
+            assert_eq!(at.choices().unwrap().first(), Some(&choice));
+            at.step(choice, &mut world, &mut ()).unwrap();
+        }
+        ControlFlow::Continue(())
+    };
+    let _: ControlFlow<()> = starts.for_each(&mut visit);
 }
 
 #[test]
