@@ -376,7 +376,7 @@ mod tests {
                 let view = |doors: &[f64]| {
                     let line = |&direction: &f64| CentreLine { through: [0.0; 2], direction };
                     let doors = doors.iter().map(line).collect();
-                    JunctionShape::of(&JunctionView {
+                    JunctionShape::from_view(&JunctionView {
                         doors,
                         turning_point: [0.0; 2],
                         confidence: 1.0,

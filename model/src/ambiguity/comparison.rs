@@ -33,7 +33,10 @@ impl<'a> Comparison<'a> {
         (one, facing): (&'a EmbeddedGraph, Dart),
         (other, other_facing): (&'a EmbeddedGraph, Dart),
     ) -> Self {
-        let states = [States::of(one, marker, facing), States::of(other, marker, other_facing)];
+        let states = [
+            States::from_start(one, marker, facing),
+            States::from_start(other, marker, other_facing),
+        ];
         let worlds = [
             GraphWorld::with_marker(one, marker, facing),
             GraphWorld::with_marker(other, marker, other_facing),
@@ -55,7 +58,8 @@ impl<'a> Comparison<'a> {
         if let Some(class) = self.class.get() {
             return Ok(class);
         }
-        let space = |at: usize| Space::of(self.worlds[at].graph(), self.marker, &self.states[at]);
+        let space =
+            |at: usize| Space::from_states(self.worlds[at].graph(), self.marker, &self.states[at]);
         let [one, other] = [space(0), space(1)];
         let beyond = one.labels.len() as u32;
         let both = |(one, other): (Vec<u32>, Vec<u32>)| -> Vec<u32> {
@@ -218,15 +222,15 @@ const BETWEEN_QUESTIONS: usize = 256;
 struct Pairs<'c, 'a> {
     worlds: [PlacedRobot<'a>; 2],
     states: &'c [States; 2],
-    found: Vec<Found>,
+    found: Vec<ReachedPair>,
     /// The place of the pair to look further from.
     next: usize,
     /// The numbers of the states of each pair found.
     known: HashSet<[u32; 2]>,
 }
 
-/// A pair of states, and from which earlier one by which action it was reached.
-struct Found {
+/// A pair of states, with the earlier pair and the action by which it was reached.
+struct ReachedPair {
     pair: (State, State),
     from: Option<(usize, Action)>,
 }
@@ -246,7 +250,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
         let [one, other] = self.states;
         let new = self.known.insert([one.number(pair.0), other.number(pair.1)]);
         if new {
-            self.found.push(Found { pair, from });
+            self.found.push(ReachedPair { pair, from });
         }
         new
     }
@@ -257,7 +261,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
 
     /// Finds pairs until one of them shows a difference, or there are no more, or as many as these.
     fn reach(&mut self, most: usize, watch: &dyn Watch) -> Result<Look, Interrupted> {
-        while let Some(&Found { pair, .. }) = self.found.get(self.next) {
+        while let Some(&ReachedPair { pair, .. }) = self.found.get(self.next) {
             if self.next.is_multiple_of(BETWEEN_QUESTIONS) {
                 watch.go_on()?;
             }

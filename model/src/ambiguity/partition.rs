@@ -22,7 +22,7 @@ pub(super) fn coarsest_watched<L: Ord>(
     watch: &dyn Watch,
 ) -> Result<Vec<u32>, Interrupted> {
     let mut partition = Partition::by_label(labels);
-    let preimages: Vec<_> = maps.iter().map(|map| Preimages::of(map)).collect();
+    let preimages: Vec<_> = maps.iter().map(|map| Preimages::from_map(map)).collect();
     let mut splitters: Vec<u32> = (0..partition.first.len() as u32).collect();
     let mut queued = vec![true; splitters.len()];
     let mut splitter = Vec::new();
@@ -57,7 +57,7 @@ struct Preimages {
 }
 
 impl Preimages {
-    fn of(map: &[u32]) -> Self {
+    fn from_map(map: &[u32]) -> Self {
         let mut end = vec![0; map.len()];
         for &to in map {
             end[to as usize] += 1;

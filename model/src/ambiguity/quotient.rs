@@ -16,13 +16,13 @@ pub(super) struct Quotient {
     class: Vec<u32>,
 }
 
-/// A quotient as met from one of its classes: for each class, in the order in which it is met, its
-/// label and the numbers of the classes to which the maps lead. Two states, of whatever worlds, have
-/// the same code exactly when they are indistinguishable.
+/// The code of a class of a quotient. A search from that class numbers the classes. The code lists the label of
+/// each class, and the numbers of the classes to which the maps lead. Two states, of any worlds, have the same code
+/// exactly when they are indistinguishable.
 pub(super) type QuotientCode = Vec<(StateLabel, [u32; 3])>;
 
 impl Quotient {
-    pub(super) fn of(space: &Space) -> Self {
+    pub(super) fn from_space(space: &Space) -> Self {
         let class = coarsest(&space.labels, &space.maps);
         let count = class.iter().max().map_or(0, |&last| last as usize + 1);
         let mut representative = vec![0; count];

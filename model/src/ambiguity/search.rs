@@ -212,8 +212,9 @@ impl<'m> AmbiguitySearch<'m> {
             // The states of a world do not depend on where a movable marker lies at first.
             let known = refined.take().filter(|_| self.marker.is_movable());
             let (states, quotient) = known.unwrap_or_else(|| {
-                let states = States::of(graph, self.marker, facing);
-                let quotient = Quotient::of(&Space::of(graph, self.marker, &states));
+                let states = States::from_start(graph, self.marker, facing);
+                let quotient =
+                    Quotient::from_space(&Space::from_states(graph, self.marker, &states));
                 (states, quotient)
             });
             // A world without two indistinguishable states shares its percepts only with its covers,

@@ -17,7 +17,7 @@ pub(super) type StateLabel = (Percept, bool);
 /// a marker that can be moved, where this lies or that it is carried.
 #[must_use]
 pub fn state_count(graph: &EmbeddedGraph, marker: &dyn Marker) -> usize {
-    States::of(graph, marker, Dart(0)).len()
+    States::from_start(graph, marker, Dart(0)).len()
 }
 
 /// The states of a placed world, numbered.
@@ -32,7 +32,7 @@ pub(super) struct States {
 
 impl States {
     /// The states of a world whose marker was placed by the facing dart.
-    pub(super) fn of(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
+    pub(super) fn from_start(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
         let can_carry = marker.is_movable();
         let places = if can_carry {
             graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart).collect()
@@ -78,7 +78,7 @@ pub(super) struct Space {
 
 impl Space {
     /// The space of a world with a marker.
-    pub(super) fn of(graph: &EmbeddedGraph, marker: &dyn Marker, states: &States) -> Self {
+    pub(super) fn from_states(graph: &EmbeddedGraph, marker: &dyn Marker, states: &States) -> Self {
         let count = states.len();
         let mut labels = Vec::with_capacity(count);
         let (mut turn, mut cross, mut handle) =
@@ -117,8 +117,8 @@ mod tests {
         #[test]
         fn every_action_is_made_of_the_maps(graph in any_graph(Class::Multigraph, 6)) {
             for marker in MARKERS {
-                let states = States::of(&graph, marker, Dart(0));
-                let space = Space::of(&graph, marker, &states);
+                let states = States::from_start(&graph, marker, Dart(0));
+                let space = Space::from_states(&graph, marker, &states);
                 for number in 0..states.len() as u32 {
                     let state = states.state(number);
                     prop_assert_eq!(states.number(state), number);

@@ -53,9 +53,9 @@ impl StateClasses {
         for robot in [one, other] {
             let marker = *robot.marker();
             let placed = robot.state().placed.unwrap_or(Dart(0));
-            let states = States::of(robot.graph(), marker, placed);
+            let states = States::from_start(robot.graph(), marker, placed);
             let Some(class) = self.class.get(first..first + states.len()) else { return false };
-            let space = Space::of(robot.graph(), marker, &states);
+            let space = Space::from_states(robot.graph(), marker, &states);
             for (number, &label) in space.labels.iter().enumerate() {
                 let mut leads_to = [None; 3];
                 for (map, to) in space.maps.iter().zip(&mut leads_to) {

@@ -65,8 +65,8 @@ pub fn twins(
     if marker.is_movable() || graph.dart_count() > MOST_DARTS {
         return Twins { worlds: Vec::new(), may_be_more: true };
     }
-    let states = States::of(graph, marker, facing);
-    let quotient = Quotient::of(&Space::of(graph, marker, &states));
+    let states = States::from_start(graph, marker, facing);
+    let quotient = Quotient::from_space(&Space::from_states(graph, marker, &states));
     if quotient.is_discrete() {
         return Twins::default();
     }
@@ -272,8 +272,9 @@ mod tests {
                 let mut visit = |world: EnumeratedGraph| {
                     let graph = world.graph;
                     for facing in graph.darts() {
-                        let states = States::of(graph, marker, facing);
-                        let quotient = Quotient::of(&Space::of(graph, marker, &states));
+                        let states = States::from_start(graph, marker, facing);
+                        let quotient =
+                            Quotient::from_space(&Space::from_states(graph, marker, &states));
                         let starts = marker.starts(graph, facing).into_iter();
                         let least = starts.map(|start| quotient.code(start.0)).min().unwrap();
                         let code = placed_code(graph, marker, facing);

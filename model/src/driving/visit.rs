@@ -61,7 +61,7 @@ impl JunctionShape {
     /// The form of a junction as one image shows it; `None` where its doors are not at right angles
     /// to each other.
     #[must_use]
-    pub fn of(junction: &JunctionView) -> Option<Self> {
+    pub fn from_view(junction: &JunctionView) -> Option<Self> {
         let entry = junction.doors.first()?.direction;
         let mut doors = [false; 4];
         for door in &junction.doors {
@@ -131,7 +131,7 @@ impl JunctionEstimate {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),
             Place::Junction(junction) => {
-                if let Some(form) = JunctionShape::of(junction) {
+                if let Some(form) = JunctionShape::from_view(junction) {
                     self.forms[form.code()] += 1;
                 }
                 self.looked |= APPROACH.contains(&junction.distance());
@@ -217,7 +217,11 @@ mod tests {
             for turned in [0.0, 0.4, -0.4] {
                 let doors: Vec<f64> = doors.iter().map(|door| wrapped(door + turned)).collect();
                 let Place::Junction(view) = junction(&doors, 0.3) else { unreachable!() };
-                assert_eq!(JunctionShape::of(&view), Some(JunctionShape(expected)), "{doors:?}");
+                assert_eq!(
+                    JunctionShape::from_view(&view),
+                    Some(JunctionShape(expected)),
+                    "{doors:?}"
+                );
             }
         }
     }

@@ -130,7 +130,7 @@ pub fn validate_back_link<W: World>(
     search.travel_to(marked, world, observer)?;
     search.drop_marker(world, observer)?;
     search.travel_to(vertex, world, observer)?;
-    // Try one unexplored dart after the other: that behind which the marker lies is it.
+    // Try the unexplored darts one by one, until the marker lies behind one.
     while let Some(dart) = search.next_back_link() {
         if search.try_back_link(dart, world, observer)? == ValidationResult::Confirmed {
             search.pick_up(world, observer)?;

@@ -33,7 +33,7 @@ impl SceneClass {
         match &scene.place {
             Place::Hallway(_) => Self::Hallway,
             Place::Unknown(_) => Self::Unknown,
-            Place::Junction(junction) => JunctionShape::of(junction)
+            Place::Junction(junction) => JunctionShape::from_view(junction)
                 .filter(|shape| shape.name().is_some())
                 .map_or(Self::Other, Self::Junction),
         }

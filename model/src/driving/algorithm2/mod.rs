@@ -259,7 +259,8 @@ impl<'a> PathExecution<'a> {
     fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, LostReason> {
         // Two images decide an estimate, and doors are counted in an image that agrees with them. If
         // this one does not, take another from the same place.
-        let agreed = |standing: &Standing| JunctionShape::of(junction) == Some(standing.form);
+        let agreed =
+            |standing: &Standing| JunctionShape::from_view(junction) == Some(standing.form);
         let Some(standing) = self.standing().filter(agreed) else {
             return Ok(Step::Go(Command::default()));
         };
@@ -324,7 +325,7 @@ impl<'a> PathExecution<'a> {
     fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
         let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
-        let form = JunctionShape::of(&junction);
+        let form = JunctionShape::from_view(&junction);
         let decided = self.reckoning.is_at_junction().then(|| self.standing()).flatten();
         match decided {
             Some(standing) if form != Some(standing.form) => return Seen::Unknown,

@@ -21,7 +21,7 @@ struct Robot<'a> {
 impl<'a> Robot<'a> {
     /// At the turning point of a junction, its back to the entry door.
     fn at(doors: &[f64], queue: &'a [Door]) -> Self {
-        let form = JunctionShape::of(&view(doors, 0.0, 0.0)).unwrap();
+        let form = JunctionShape::from_view(&view(doors, 0.0, 0.0)).unwrap();
         let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
         let from = Standing { form, percept, entry: PI };
         Self { path: PathExecution::new(queue, &from), odometry: Odometry::default() }
@@ -239,7 +239,7 @@ fn at_the_turning_point_with_no_door_left_the_path_is_done() {
         for distance in [0.05, 0.0, -0.2] {
             let standing =
                 Robot::come_to(doors, &[Door(2)]).arrives(&junction(doors, distance, 0.0));
-            assert_eq!(Some(standing.form), JunctionShape::of(&view(doors, 0.0, 0.0)));
+            assert_eq!(Some(standing.form), JunctionShape::from_view(&view(doors, 0.0, 0.0)));
             assert_eq!(standing.percept, Percept { degree, sighting: Sighting::Nothing });
             assert_near(standing.entry.abs(), PI);
         }

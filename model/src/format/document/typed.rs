@@ -74,7 +74,7 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
 
     fn deserialize_any<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
         self.located(match &self.node.content {
-            Content::Table(_) => visitor.visit_map(Entries::of(self.any_table()?)),
+            Content::Table(_) => visitor.visit_map(Entries::from_table(self.any_table()?)),
             Content::List(_) => visitor.visit_seq(Items(self.list("a list")?)),
             Content::Text(text) => visitor.visit_borrowed_str(text),
             Content::Whole(number) => visitor.visit_i64(*number),
@@ -129,7 +129,7 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
     }
 
     fn deserialize_map<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_map(Entries::of(self.any_table()?)))
+        self.located(visitor.visit_map(Entries::from_table(self.any_table()?)))
     }
 
     fn deserialize_struct<V: Visitor<'d>>(
@@ -164,7 +164,9 @@ struct Entries<'d, I> {
 }
 
 impl<'d> Entries<'d, ()> {
-    fn of(table: DocumentTable<'d>) -> Entries<'d, impl Iterator<Item = DocumentEntry<'d>>> {
+    fn from_table(
+        table: DocumentTable<'d>,
+    ) -> Entries<'d, impl Iterator<Item = DocumentEntry<'d>>> {
         Entries { left: table.entries(), read: None }
     }
 }
