@@ -294,7 +294,7 @@ mod tests {
         fn an_edge_is_yielded_once_for_each_of_its_ends(
             graph in any_graph(Class::Multigraph, 30),
         ) {
-            prop_assert_eq!((&graph).edge_references().count(), graph.edge_count());
+            prop_assert_eq!(graph.edge_references().count(), graph.edge_count());
             let ends = graph.vertices().flat_map(|vertex| IntoEdges::edges(&graph, vertex));
             let mut times = vec![0; graph.dart_count()];
             for edge in ends {
@@ -315,10 +315,10 @@ mod tests {
             let moves = dijkstra(&graph, Vertex(0), None, |_| 1_u32);
             prop_assert_eq!(moves.len(), graph.vertex_count());
             for vertex in graph.vertices() {
-                let nearest = (&graph).neighbors(vertex).map(|next| moves[&next]).min();
+                let nearest = graph.neighbors(vertex).map(|next| moves[&next]).min();
                 let own = moves[&vertex];
                 prop_assert!(vertex == Vertex(0) || nearest == Some(own - 1));
-                prop_assert!((&graph).neighbors(vertex).all(|next| moves[&next].abs_diff(own) <= 1));
+                prop_assert!(graph.neighbors(vertex).all(|next| moves[&next].abs_diff(own) <= 1));
             }
         }
 
@@ -335,11 +335,11 @@ mod tests {
         #[test]
         fn the_rotation_is_kept(graph in any_graph(Class::Multigraph, 30)) {
             let there = graph.to_petgraph();
-            let neighbours = |vertex: Vertex| {
+            let neighbours = |vertex: Vertex| -> BTreeSet<usize> {
                 there.neighbors(NodeIndex::new(vertex.at())).map(NodeIndex::index).collect()
             };
             for vertex in graph.vertices() {
-                let here: BTreeSet<_> = (&graph).neighbors(vertex).map(Vertex::at).collect();
+                let here: BTreeSet<_> = graph.neighbors(vertex).map(Vertex::at).collect();
                 prop_assert_eq!(here, neighbours(vertex));
             }
             prop_assert_eq!(EmbeddedGraph::from_petgraph(&there), Ok(graph));
