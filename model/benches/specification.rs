@@ -56,7 +56,7 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
 fn check_lazily(bencher: Bencher, (edges, starts): (usize, u64)) {
     let sweep = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
-        assert_eq!(sweep.run(Exploration::default, &()).tally.mapped, starts);
+        assert_eq!(sweep.run(Exploration::default, &()).mapped, starts);
     });
 }
 

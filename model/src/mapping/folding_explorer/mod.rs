@@ -27,7 +27,7 @@ use std::cmp::Reverse;
 
 use super::{
     Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart, MappingError,
-    Observer, PartialMap, StepPurpose, journey::has_journey, tree::BreadthFirstTree,
+    Observer, StepPurpose, journey::has_journey, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
