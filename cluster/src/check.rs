@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use toposlam_model::{
-    check::{CheckPieces, FinishedUnits, LazySweep, PartTally, Tally},
+    check::{CheckPieces, FinishedUnits, PartTally, SharedPrefixCheck, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -41,7 +41,7 @@ impl Job for CheckJob {
 }
 
 impl ClusterProcess {
-    /// Checks an algorithm, as [`LazySweep::resume`]. In process 0, `units` has those
+    /// Checks an algorithm, as [`SharedPrefixCheck::resume`]. In process 0, `units` has those
     /// that were finished before, and records others. If the watch stops process 0, its result has what is
     /// known by then.
     ///
@@ -50,13 +50,13 @@ impl ClusterProcess {
     pub fn check(
         &self,
         algorithm: MappingAlgorithm,
-        sweep: &LazySweep,
+        sweep: &SharedPrefixCheck,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Result<ClusterCheck, ClusterError> {
         let pieces = algorithm.pieces(sweep, watch);
         // The pieces of a watch that stops are not all.
-        watch.go_on().map_err(|_| ClusterError::Interrupted)?;
+        watch.check_stop().map_err(|_| ClusterError::Interrupted)?;
         let job = Arc::new(CheckJob { algorithm, pieces });
         let pieces = &job.pieces;
         let mut counts = PartTally::default();

@@ -21,7 +21,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::{WorldSearch, fold, smallest_world},
-    mapping::{Exploration, Journey, MappingAlgorithm, MappingEvent, Nearest, map_world},
+    mapping::{Algorithm1Run, MapWalk, MappingAlgorithm, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
     trace::{Trace, TraceEvent, TraceEventKind, anywhere},
@@ -44,12 +44,12 @@ fn main() {
 fn trace(plan: &FloorPlan) -> Trace {
     let graph = plan.graph();
     let mut events = vec![TraceEventKind::Percept(GraphWorld::new(graph, Dart(0)).sensed())];
-    let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
+    let mut listen = |_: &mut _, _: &MapWalk, event: MappingEvent| {
         if let MappingEvent::Moved { door, percept } = event {
             events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(percept)]);
         }
     };
-    let mut exploration = Exploration::new(graph.dart_count());
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, Dart(0));
     map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
     Trace::new(events).unwrap()

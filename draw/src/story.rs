@@ -13,7 +13,7 @@ use std::{
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingEvent, Observer, PartialMap},
+    mapping::{MapWalk, MappingEvent, Observer, PartialMap},
     percept::{Percept, Sighting},
     world::Action,
 };
@@ -103,7 +103,7 @@ impl Story {
         self.lines.push(StoryLine { text, ..StoryLine::default() });
     }
 
-    fn add_event(&mut self, journey: &Journey, event: MappingEvent) {
+    fn add_event(&mut self, journey: &MapWalk, event: MappingEvent) {
         let map = journey.map();
         if self.detail.doors {
             self.actions.extend(event.action());
@@ -156,7 +156,7 @@ impl Story {
     }
 
     /// A round begins: the robot has followed an unexplored dart.
-    fn add_round(&mut self, journey: &Journey, edge: Dart, with: &str, percept: Percept) {
+    fn add_round(&mut self, journey: &MapWalk, edge: Dart, with: &str, percept: Percept) {
         self.round += 1;
         let (round, edge) = (grouped(self.round.into()), dart(journey.map(), edge));
         let moves = self.take_moves(journey);
@@ -185,7 +185,7 @@ impl Story {
     }
 
     /// A candidate is rejected.
-    fn add_rejected(&mut self, journey: &Journey, what: &str, why: &str) {
+    fn add_rejected(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.rejected += 1;
         if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
             self.moves_not_printed += journey.moves() - self.moves;
@@ -197,7 +197,7 @@ impl Story {
     }
 
     /// A candidate is confirmed.
-    fn add_confirmed(&mut self, journey: &Journey, what: &str, why: &str) {
+    fn add_confirmed(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.add_omitted();
         let moves = self.take_moves(journey);
         self.add_line(format!("Candidate {what}: confirmed, {why}{moves}."));
@@ -236,7 +236,7 @@ impl Story {
     }
 
     /// The moves since the last line, in parentheses.
-    fn take_moves(&mut self, journey: &Journey) -> String {
+    fn take_moves(&mut self, journey: &MapWalk) -> String {
         in_moves(journey.moves() - mem::replace(&mut self.moves, journey.moves()))
     }
 }
@@ -265,7 +265,7 @@ impl<W: Write> PrintedStory<W> {
     }
 
     /// Puts an event into words and prints them. Returns the new lines.
-    pub fn add(&mut self, journey: &Journey, event: MappingEvent) -> Vec<StoryLine> {
+    pub fn add(&mut self, journey: &MapWalk, event: MappingEvent) -> Vec<StoryLine> {
         self.story.add_event(journey, event);
         self.print()
     }
@@ -281,7 +281,7 @@ impl<W: Write> PrintedStory<W> {
 }
 
 impl<W: ?Sized, O: Write> Observer<W> for PrintedStory<O> {
-    fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, journey: &MapWalk, event: MappingEvent) {
         self.add(journey, event);
     }
 }

@@ -8,12 +8,12 @@ use std::ops::ControlFlow;
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Comparison},
-    check::{DEFAULT_STATE_BUDGET, LazySweep, RunChoices, Shard, Sweep, judge},
+    check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, SharedPrefixCheck, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     folding::fold,
     isomorphism::{Candidate, isomorphism},
-    mapping::{Exploration, MarkerSearch, Nearest, map_world},
+    mapping::{Algorithm1Run, MovableMarkerRun, Nearest, map_world},
     marker::{MARKERS, Marker, named},
     percept::Door,
     world::{GraphWorld, World},
@@ -45,37 +45,37 @@ fn enumerate(bencher: Bencher, (class, edges, worlds): (&str, usize, u64)) {
 /// Algorithm 1 on every start, each map verified.
 #[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
 fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
-    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
-        assert_eq!(sweep.run(Exploration::default, RunChoices::Default, &()).mapped, starts);
+        assert_eq!(sweep.run(Algorithm1Run::default, RunChoices::Default, &()).mapped, starts);
     });
 }
 
 /// The same with runs that share their beginnings.
 #[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
 fn check_lazily(bencher: Bencher, (edges, starts): (usize, u64)) {
-    let sweep = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    let sweep = SharedPrefixCheck::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
-        assert_eq!(sweep.run(Exploration::default, &()).mapped, starts);
+        assert_eq!(sweep.run(Algorithm1Run::default, &()).mapped, starts);
     });
 }
 
 /// Algorithm 1 with all choices on every start; the items are states.
 #[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
 fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
-    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     let all = RunChoices::All { budget: DEFAULT_STATE_BUDGET };
     bencher.counter(ItemsCount::new(states)).bench(|| {
-        assert_eq!(sweep.run(Exploration::default, all, &()).states, states);
+        assert_eq!(sweep.run(Algorithm1Run::default, all, &()).states, states);
     });
 }
 
 /// With a movable marker, every start of every simple world with 8 edges.
 #[divan::bench(sample_count = 5)]
 fn check_movable(bencher: Bencher) {
-    let sweep = Sweep::new(Class::Simple, 8, Shard::WHOLE).unwrap();
+    let sweep = Check::new(Class::Simple, 8, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(27_339_u64)).bench(|| {
-        assert_eq!(sweep.run(MarkerSearch::default, RunChoices::Default, &()).mapped, 27_339);
+        assert_eq!(sweep.run(MovableMarkerRun::default, RunChoices::Default, &()).mapped, 27_339);
     });
 }
 
@@ -145,7 +145,7 @@ fn suppose(bencher: Bencher, way: &str) {
 fn map_large_world(bencher: Bencher) {
     let graph = random_cubic(2000, &mut Random(1));
     let run = || {
-        let mut exploration = Exploration::new(graph.dart_count());
+        let mut exploration = Algorithm1Run::new(graph.dart_count());
         let mut world = GraphWorld::new(&graph, Dart(0));
         map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
         judge(&exploration, Dart(0), &world, &mut Candidate::default()).unwrap();

@@ -7,7 +7,7 @@
 use std::error::Error;
 
 use toposlam_model::{
-    check::{RunChoices, Shard, Sweep},
+    check::{Check, RunChoices, Shard},
     enumerate::Class,
     mapping::{ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer},
     marker::Directional,
@@ -147,7 +147,7 @@ impl Explorer for DepthFirst {
 #[allow(dead_code, reason = "a test has the explorer without the program")]
 fn main() -> Result<(), Box<dyn Error>> {
     for edges in 1..=6 {
-        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE)?;
+        let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE)?;
         let tally = sweep.run(DepthFirst::default, RunChoices::Default, &());
         println!(
             "{edges} edges: {} of {} starts mapped correctly, with up to {} moves",

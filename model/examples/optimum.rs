@@ -17,7 +17,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{RunChoices, Shard, Sweep},
+    check::{Check, RunChoices, Shard},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::FoldedTrail,
@@ -322,7 +322,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for edges in 1..=most {
         let mut search = OptimumSearch::new(class, edges)?;
         let best = search.least_total()?;
-        let sweep = Sweep::new(class, edges, Shard::WHOLE)?;
+        let sweep = Check::new(class, edges, Shard::WHOLE)?;
         let folding = MappingAlgorithm::Folding.sweep(&sweep, RunChoices::Default, &());
         let mean = |total: u64| total as f64 / search.start_count() as f64;
         let means = [best, folding.certificate_total, folding.moves_total].map(mean);

@@ -9,7 +9,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
     mapping::{
-        self, Exploration, Explorer, InvalidStep, Journey, MappingChoice, MappingError, Observer,
+        self, Algorithm1Run, Explorer, InvalidStep, MapWalk, MappingChoice, MappingError, Observer,
         StateKey, ValidationResult, step_with,
     },
     marker::Directional,
@@ -23,12 +23,12 @@ use crate::smallest_failure::{more_darts_than, new, smallest_failure};
 #[derive(Clone)]
 struct Broken {
     flaw: Flaw,
-    run: Exploration,
+    run: Algorithm1Run,
 }
 
 impl Broken {
     fn new(flaw: Flaw) -> Self {
-        Self { flaw, run: Exploration::default() }
+        Self { flaw, run: Algorithm1Run::default() }
     }
 }
 
@@ -74,12 +74,12 @@ impl Flaw {
 impl Flaw {
     fn try_path<W: World>(
         self,
-        exploration: &mut Exploration,
+        exploration: &mut Algorithm1Run,
         hypothesis: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<ValidationResult, MappingError<W::Error>> {
-        exploration.set_out();
+        exploration.clear_trail();
         let mut pose = hypothesis;
         if matches!(self, Self::FirstPerceptSuffices) {
             exploration.arrive_at_marker(pose);
@@ -87,7 +87,7 @@ impl Flaw {
         }
         while let Some((door, next)) = exploration.toward_marker(pose) {
             let expected = exploration.map().expected(next);
-            let perceived = exploration.take(door, world, observer)?;
+            let perceived = exploration.go_through(door, world, observer)?;
             if !self.matches(expected, perceived) {
                 match self {
                     Self::NoRetrace => {}

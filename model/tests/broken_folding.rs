@@ -8,7 +8,7 @@
 use std::{borrow::Cow, collections::VecDeque};
 
 use toposlam_model::{
-    check::{RunChoices, Shard, Sweep},
+    check::{Check, RunChoices, Shard},
     embedded_graph::Dart,
     enumerate::Class,
     folding::FoldedTrail,
@@ -247,7 +247,7 @@ impl Explorer for Folding {
 #[test]
 fn without_a_flaw_every_start_is_mapped_right() {
     for edges in 1..=5 {
-        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+        let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
         let tally = sweep.run(Folding::default, RunChoices::Default, &());
         assert_eq!((tally.failure, tally.mapped), (None, tally.starts));
         assert_eq!(tally.below_certificate, 0);

@@ -6,7 +6,7 @@ use toposlam_model::{
     embedded_graph::{Dart, Vertex},
     enumerate::Class,
     mapping::{
-        Explorer, InvalidStep, Journey, MappingError, MarkerSearch, Observer, ReachedPlace,
+        Explorer, InvalidStep, MapWalk, MappingError, MovableMarkerRun, Observer, ReachedPlace,
         StateKey, ValidationResult, validate_back_link, validate_place,
     },
     marker::Movable,
@@ -19,7 +19,7 @@ use crate::smallest_failure::{more_darts_than, new, smallest_failure};
 #[derive(Clone)]
 struct Broken {
     flaw: Flaw,
-    run: MarkerSearch,
+    run: MovableMarkerRun,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +59,7 @@ const FLAWS: [Flaw; 9] = [
 impl Flaw {
     fn validate_place<W: World>(
         self,
-        search: &mut MarkerSearch,
+        search: &mut MovableMarkerRun,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<ReachedPlace, MappingError<W::Error>> {
@@ -104,7 +104,7 @@ impl Flaw {
         self,
         edge: Dart,
         vertex: Vertex,
-        search: &mut MarkerSearch,
+        search: &mut MovableMarkerRun,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Dart, MappingError<W::Error>> {
@@ -168,7 +168,7 @@ impl Explorer for Broken {
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
     let caught = FLAWS.map(|flaw| {
-        smallest_failure(|| Broken { flaw, run: MarkerSearch::default() }, Class::Simple, 7)
+        smallest_failure(|| Broken { flaw, run: MovableMarkerRun::default() }, Class::Simple, 7)
     });
     let cycle = |edges: u32| {
         let last = edges as usize;

@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        ChoicesLimit, DEFAULT_STATE_BUDGET, RunChoices, Shard, Sweep, Tally, check_worlds,
+        Check, ChoicesLimit, DEFAULT_STATE_BUDGET, RunChoices, Shard, Tally, check_worlds,
         every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
     mapping::{
-        Exploration, Explorer, Flaw, InvalidStep, Journey, MappingAlgorithm, MappingChoice,
+        Algorithm1Run, Explorer, Flaw, InvalidStep, MapWalk, MappingAlgorithm, MappingChoice,
         MappingError, Observer, StateKey, explore,
     },
     marker::Directional,
@@ -22,12 +22,12 @@ use toposlam_model::{
 
 const ALL_CHOICES: RunChoices = RunChoices::All { budget: DEFAULT_STATE_BUDGET };
 
-fn shards(class: Class, edges: usize) -> Sweep {
-    Sweep::new(class, edges, Shard::WHOLE).unwrap()
+fn shards(class: Class, edges: usize) -> Check {
+    Check::new(class, edges, Shard::WHOLE).unwrap()
 }
 
 fn sweep(class: Class, edges: usize, choices: RunChoices) -> Tally {
-    shards(class, edges).run(Exploration::default, choices, &())
+    shards(class, edges).run(Algorithm1Run::default, choices, &())
 }
 
 /// Starts: A000698. Moves: by the independent implementation in `tests/oracle` of the workspace.
@@ -72,13 +72,13 @@ fn every_way_of_every_start_is_mapped_right() {
 #[test]
 fn a_start_with_more_states_than_the_budget_is_given_up() {
     let graph = EmbeddedGraph::cycle(5);
-    let all = every_way(Exploration::default(), &graph, Dart(0), 1000, &()).unwrap();
+    let all = every_way(Algorithm1Run::default(), &graph, Dart(0), 1000, &()).unwrap();
     assert_eq!(all.limit, None);
-    let some = every_way(Exploration::default(), &graph, Dart(0), all.states - 1, &()).unwrap();
+    let some = every_way(Algorithm1Run::default(), &graph, Dart(0), all.states - 1, &()).unwrap();
     assert_eq!(some.limit, Some(ChoicesLimit::States(all.states - 1)));
     assert!(some.states < all.states);
     let is_complete = |edges, budget| {
-        every_way(Exploration::default(), &EmbeddedGraph::chain(edges), Dart(0), budget, &())
+        every_way(Algorithm1Run::default(), &EmbeddedGraph::chain(edges), Dart(0), budget, &())
             .unwrap()
             .limit
             .is_none()
@@ -88,7 +88,7 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     // A chain of one edge: line 4, line 8 without a hypothesis, line 4 again.
     assert!(is_complete(1, 3));
     assert!(!is_complete(1, 2));
-    let tally = check_worlds(&[graph], Exploration::default, RunChoices::All { budget: 3 }, &());
+    let tally = check_worlds(&[graph], Algorithm1Run::default, RunChoices::All { budget: 3 }, &());
     assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 
@@ -104,7 +104,7 @@ fn an_interrupted_check_says_so() {
             self.0.load(Ordering::Relaxed) > 2
         }
     }
-    let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
+    let sweep = Check::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
     let tally = MappingAlgorithm::Algorithm1.sweep(
         &sweep,
         RunChoices::Default,
@@ -120,11 +120,11 @@ fn the_default_run_is_among_all_runs() {
     let enumeration = Enumeration::new(Each::Start, Class::Multigraph, 4).unwrap();
     let mut starts = 0;
     let _ = enumeration.for_each(&mut |found| {
-        let mut exploration = Exploration::new(8);
+        let mut exploration = Algorithm1Run::new(8);
         let mut world = GraphWorld::new(found.graph, Dart(0));
         explore(&mut exploration, &mut world, &mut ()).unwrap();
         let ways =
-            every_way(Exploration::default(), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+            every_way(Algorithm1Run::default(), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
                 .unwrap();
         assert!(ways.costs.contains(exploration.moves()));
         starts += 1;
@@ -137,8 +137,8 @@ fn the_default_run_is_among_all_runs() {
 fn the_shards_are_the_whole() {
     for class in Class::ALL {
         let of = |shard: &str| {
-            let sweep = Sweep::new(class, 6, shard.parse().unwrap());
-            sweep.unwrap().run(Exploration::default, RunChoices::Default, &())
+            let sweep = Check::new(class, 6, shard.parse().unwrap());
+            sweep.unwrap().run(Algorithm1Run::default, RunChoices::Default, &())
         };
         let whole = of("1/1");
         let mut shares = Tally::default();
@@ -158,7 +158,7 @@ fn the_shards_are_the_whole() {
 }
 
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
-    let mut exploration = Exploration::new(graph.dart_count());
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, facing);
     explore(&mut exploration, &mut world, &mut ()).unwrap();
     exploration.moves()
@@ -179,8 +179,8 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
         let graph = EmbeddedGraph::chain(edges);
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
-        let ways =
-            every_way(Exploration::default(), &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+        let ways = every_way(Algorithm1Run::default(), &graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+            .unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
     }
 }
@@ -198,12 +198,12 @@ fn no_run_takes_fewer_moves_than_there_are_edges() {
 #[derive(Clone)]
 struct Altered {
     altered: Alteration,
-    run: Exploration,
+    run: Algorithm1Run,
 }
 
 impl Altered {
     fn new(altered: Alteration) -> Self {
-        Self { altered, run: Exploration::default() }
+        Self { altered, run: Algorithm1Run::default() }
     }
 }
 

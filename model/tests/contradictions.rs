@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
     mapping::{
-        Contradiction, Exploration, Explorer, Journey, MappingError, MappingEvent, Nearest,
+        Algorithm1Run, Contradiction, Explorer, MapWalk, MappingError, MappingEvent, Nearest,
         map_world,
     },
     percept::{Door, Percept},
@@ -18,7 +18,7 @@ use crate::scripted_world::{ScriptedWorld, marked, plain};
 const BOUND: usize = 60;
 
 fn map(world: &mut impl World<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
-    let mut exploration = Exploration::new(BOUND);
+    let mut exploration = Algorithm1Run::new(BOUND);
     map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
 }
 
@@ -36,12 +36,12 @@ fn a_world_without_end_runs_into_the_bound() {
 
 #[test]
 fn the_bound_is_never_more_than_the_darts_that_can_be_numbered() {
-    let begin = |mut exploration: Exploration| {
+    let begin = |mut exploration: Algorithm1Run| {
         exploration.begin(&mut ScriptedWorld::new(&[marked(u32::MAX, 0)]), &mut ())
     };
-    let exploration = Exploration::new(usize::MAX);
+    let exploration = Algorithm1Run::new(usize::MAX);
     assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
-    let mut exploration = Exploration::new(BOUND);
+    let mut exploration = Algorithm1Run::new(BOUND);
     exploration.set_bound(usize::MAX);
     assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
 }
@@ -147,8 +147,8 @@ fn the_story_of_a_triangle_with_a_tail() {
     ])
     .unwrap();
     let mut story = Vec::new();
-    let mut exploration = Exploration::new(graph.dart_count());
-    let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
+    let mut listen = |_: &mut _, _: &MapWalk, event: MappingEvent| {
         if !matches!(event, MappingEvent::Moved { .. }) {
             story.push(event);
         }

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, Vertex},
     mapping::{
-        Contradiction, Explorer, InvalidStep, MappingError, MarkerSearch, Nearest, explore_edge,
-        map_with_movable_marker,
+        Contradiction, Explorer, InvalidStep, MappingError, MovableMarkerRun, Nearest,
+        explore_edge, map_with_movable_marker,
     },
     percept::{Door, Percept, Sighting},
     world::{MarkerCarrier, RefusedAction, World},
@@ -18,7 +18,7 @@ use crate::scripted_world::{ScriptedWorld, plain};
 const BOUND: usize = 60;
 
 fn map(world: &mut impl World<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
-    let mut search = MarkerSearch::new(BOUND);
+    let mut search = MovableMarkerRun::new(BOUND);
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
 
@@ -199,7 +199,7 @@ fn a_step_out_of_order_is_an_error() {
     let error = |step| Err(MappingError::InvalidStep(step));
     let percepts = [lying(2), plain(1)];
     let mut world = ScriptedWorld::new(&percepts);
-    let mut search = MarkerSearch::new(BOUND);
+    let mut search = MovableMarkerRun::new(BOUND);
     assert_eq!(search.choose().unwrap(), None);
     assert_eq!((search.next_candidate(), search.next_back_link()), (None, None));
     let unexplored = InvalidStep::NotUnexplored(Dart(0));

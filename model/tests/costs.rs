@@ -6,12 +6,12 @@
 use std::{fs, ops::RangeInclusive, path::Path};
 
 use toposlam_model::{
-    check::{DEFAULT_STATE_BUDGET, RunChoices, Shard, Sweep, Tally, every_way},
+    check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, Tally, every_way},
     embedded_graph::Dart,
     enumerate::Class,
     folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
-    mapping::{Exploration, MappingAlgorithm},
+    mapping::{Algorithm1Run, MappingAlgorithm},
     world::GraphWorld,
 };
 
@@ -49,9 +49,14 @@ fn rows(name: &str, paper: u64) -> Vec<String> {
         .graph
         .darts()
         .map(|facing| {
-            let ways =
-                every_way(Exploration::default(), &world.graph, facing, DEFAULT_STATE_BUDGET, &())
-                    .unwrap();
+            let ways = every_way(
+                Algorithm1Run::default(),
+                &world.graph,
+                facing,
+                DEFAULT_STATE_BUDGET,
+                &(),
+            )
+            .unwrap();
             let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
             let among = if ways.costs.contains(paper) { "yes" } else { "no" };
             let (start, moves) =
@@ -108,7 +113,7 @@ fn the_table_of_both_costs_is_true() {
 }
 
 fn tally(class: Class, edges: usize, algorithm: MappingAlgorithm) -> Tally {
-    let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+    let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
     let tally = algorithm.sweep(&sweep, RunChoices::Default, &());
     assert_eq!(tally.failure, None);
     assert_eq!((tally.mapped, tally.below_certificate), (tally.starts, 0));

@@ -11,18 +11,18 @@ use depth_first::DepthFirst;
 use own_marker::Beacon;
 use toposlam_model::{
     ambiguity::AmbiguitySearch,
-    check::{LazySweep, RunChoices, Shard, Sweep, Tally, judge_start},
+    check::{Check, RunChoices, Shard, SharedPrefixCheck, Tally, judge_start},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::Candidate,
-    mapping::{Exploration, ExploredMap, Explorer, Flaw, MappingError, Observer, explore},
+    mapping::{Algorithm1Run, ExploredMap, Explorer, Flaw, MappingError, Observer, explore},
     marker::{Directional, Marker, named},
     percept::Door,
     world::{RefusedAction, World},
 };
 
 fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
-    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     sweep.run(new, RunChoices::Default, &())
 }
 
@@ -32,11 +32,11 @@ fn a_depth_first_explorer_maps_every_start_right() {
         let tally = sweep(edges, DepthFirst::default);
         assert_eq!(tally.failure, None);
         assert_eq!((tally.starts, tally.mapped), (starts, starts));
-        let algorithm = sweep(edges, Exploration::default);
+        let algorithm = sweep(edges, Algorithm1Run::default);
         assert_eq!(tally.worlds, algorithm.worlds);
         assert!(tally.moves_total >= algorithm.moves_total, "it is wasteful");
         // It runs in steps, so its runs share their beginnings.
-        let lazy = LazySweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+        let lazy = SharedPrefixCheck::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
         let lazily = lazy.run(DepthFirst::default, &());
         assert_eq!(Tally { moves_made: 0, ..lazily.clone() }, tally);
         assert!(edges < 4 || lazily.moves_made < tally.moves_total);

@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use toposlam_model::{
-    check::{RunChoices, Shard, Sweep, judge_start},
+    check::{Check, RunChoices, Shard, judge_start},
     embedded_graph::Dart,
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::certificate_length,
     isomorphism::Candidate,
-    mapping::FoldingExploration,
+    mapping::FoldingRun,
 };
 
 /// A number of edges, the starts, their moves, and the most moves of one.
@@ -24,8 +24,8 @@ const MOVES: [(Class, &[Moves]); 3] = [
 fn the_folding_explorer_maps_every_start_in_few_moves() {
     for (class, sizes) in MOVES {
         for &(edges, starts, total, most) in sizes {
-            let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-            let tally = sweep.run(FoldingExploration::default, RunChoices::Default, &());
+            let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
+            let tally = sweep.run(FoldingRun::default, RunChoices::Default, &());
             assert_eq!(tally.failure, None, "{class} {edges}");
             assert_eq!((tally.starts, tally.mapped), (starts, starts), "{class} {edges}");
             assert_eq!((tally.moves_total, tally.moves_max()), (total, most), "{class} {edges}");
@@ -35,16 +35,16 @@ fn the_folding_explorer_maps_every_start_in_few_moves() {
 
 #[test]
 fn strict_tests_map_every_start_in_more_moves() {
-    let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
-    let strict = sweep.run(FoldingExploration::strict, RunChoices::Default, &());
+    let sweep = Check::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
+    let strict = sweep.run(FoldingRun::strict, RunChoices::Default, &());
     assert_eq!((strict.failure, strict.mapped), (None, 8162));
-    let cheapest = sweep.run(FoldingExploration::default, RunChoices::Default, &());
+    let cheapest = sweep.run(FoldingRun::default, RunChoices::Default, &());
     assert!(strict.moves_total > cheapest.moves_total);
 }
 
 #[test]
 fn no_run_is_shorter_than_the_certificate() {
-    let mut explorer = FoldingExploration::default();
+    let mut explorer = FoldingRun::default();
     let mut candidate = Candidate::default();
     for (class, edges) in [(Class::Multigraph, 5), (Class::Simple, 7), (Class::Planar, 6)] {
         let starts = Enumeration::new(Each::Start, class, edges).unwrap();

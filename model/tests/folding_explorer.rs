@@ -10,8 +10,8 @@ use toposlam_model::{
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::ContradictionReason,
     mapping::{
-        Contradiction, Explorer, FoldingEvent, FoldingExploration, Journey, MappingError,
-        MappingEvent, explore,
+        Contradiction, Explorer, FoldingEvent, FoldingRun, MapWalk, MappingError, MappingEvent,
+        explore,
     },
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, World},
@@ -22,7 +22,7 @@ use crate::scripted_world::{ScriptedWorld, marked, plain};
 const BOUND: usize = 60;
 
 fn scripted(percepts: &[Percept]) -> Result<(), MappingError<RefusedAction>> {
-    let mut exploration = FoldingExploration::new(BOUND);
+    let mut exploration = FoldingRun::new(BOUND);
     explore(&mut exploration, &mut ScriptedWorld::new(percepts), &mut ())
 }
 
@@ -83,7 +83,7 @@ fn a_map_always_embeds_in_its_world() {
     for (class, edges) in [(Class::Multigraph, 4), (Class::Simple, 6), (Class::Corridor, 7)] {
         let starts = Enumeration::new(Each::Start, class, edges).unwrap();
         let mut visit = |found: EnumeratedGraph| {
-            let step = first_false_step(FoldingExploration::default(), found.graph, Dart(0));
+            let step = first_false_step(FoldingRun::default(), found.graph, Dart(0));
             assert_eq!(step, None, "{:?}", found.graph);
             ControlFlow::Continue(())
         };
@@ -108,13 +108,13 @@ fn the_story_of_a_loop_with_a_tail() {
     let graph = loop_with_a_tail();
     let mut story = Vec::new();
     let mut moves = 0;
-    let mut listen = |_: &mut _, journey: &Journey, event: MappingEvent| {
+    let mut listen = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
         moves = journey.moves();
         if !matches!(event, MappingEvent::Moved { .. }) {
             story.push(event);
         }
     };
-    let mut exploration = FoldingExploration::default();
+    let mut exploration = FoldingRun::default();
     let mut world = GraphWorld::new(&graph, Dart(0));
     explore(&mut exploration, &mut world, &mut listen).unwrap();
     assert_eq!((moves, exploration.moves()), (6, 6));
@@ -150,7 +150,7 @@ fn the_default_choice_is_the_first_of_all() {
     let starts = Enumeration::new(Each::Start, Class::Multigraph, 4).unwrap();
     let mut visit = |found: EnumeratedGraph| {
         let mut world = GraphWorld::new(found.graph, Dart(0));
-        let mut at = FoldingExploration::default();
+        let mut at = FoldingRun::default();
         at.begin(&mut world, &mut ()).unwrap();
         while let Some(choice) = at.choose().unwrap() {
             assert_eq!(at.choices().unwrap().first(), Some(&choice));
@@ -167,7 +167,7 @@ fn every_start_with_up_to_four_edges_is_mapped_however_ties_are_broken() {
         let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
         let mut runs = 0;
         let mut visit = |found: EnumeratedGraph| {
-            let explorer = FoldingExploration::default();
+            let explorer = FoldingRun::default();
             // The end of each run is judged.
             runs += every_way(explorer, found.graph, Dart(0), u64::MAX, &()).unwrap().runs;
             ControlFlow::Continue(())
@@ -216,7 +216,7 @@ proptest! {
         let graph = loop_with_a_tail();
         let lie = if lie.1 < lie.0 { marked(lie.0, lie.1) } else { plain(lie.0) };
         let mut world = Lying { world: GraphWorld::new(&graph, Dart(0)), at: moves as u64, lie };
-        let mut exploration = FoldingExploration::new(BOUND);
+        let mut exploration = FoldingRun::new(BOUND);
         match explore(&mut exploration, &mut world, &mut ()) {
             Ok(()) => prop_assert!(exploration.is_complete()),
             Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => {}

@@ -13,13 +13,14 @@ use std::{
 
 use toposlam_model::{
     check::{
-        EnumeratedStart, FinishedUnits, LazySweep, PartTally, RunChoices, Shard, Sweep, Tally,
+        Check, EnumeratedStart, FinishedUnits, PartTally, RunChoices, Shard, SharedPrefixCheck,
+        Tally,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
     mapping::{
-        Exploration, ExploredMap, Explorer, Flaw, FoldingExploration, InvalidStep,
-        MappingAlgorithm, MappingError, MarkerSearch, Observer,
+        Algorithm1Run, ExploredMap, Explorer, Flaw, FoldingRun, InvalidStep, MappingAlgorithm,
+        MappingError, MovableMarkerRun, Observer,
     },
     marker::{DirectedEdge, Directional, Marker, TwoIdentical},
     percept::Door,
@@ -27,11 +28,11 @@ use toposlam_model::{
 };
 
 fn lazy<E: Explorer + Default>(class: Class, edges: usize) -> Tally {
-    LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(E::default, &())
+    SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap().run(E::default, &())
 }
 
 fn one_by_one<E: Explorer>(class: Class, edges: usize, new: impl Fn() -> E + Sync) -> Tally {
-    let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+    let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
     sweep.run(new, RunChoices::Default, &())
 }
 
@@ -43,7 +44,7 @@ fn counts(tally: Tally) -> Tally {
 /// A000698.
 #[test]
 fn the_tree_has_a_leaf_for_each_start() {
-    let leaves = |edges| lazy::<Exploration>(Class::Multigraph, edges).starts;
+    let leaves = |edges| lazy::<Algorithm1Run>(Class::Multigraph, edges).starts;
     assert_eq!([1, 2, 3, 4, 5, 6, 7].map(leaves), [2, 10, 74, 706, 8162, 110_410, 1_708_394]);
 }
 
@@ -52,22 +53,18 @@ fn both_checks_have_the_same_result() {
     for class in Class::ALL {
         let most = if class == Class::Multigraph { 6 } else { 8 };
         for edges in 1..=most {
-            let lazily = counts(lazy::<Exploration>(class, edges));
-            assert_eq!(lazily, one_by_one(class, edges, Exploration::default), "{class} {edges}");
+            let lazily = counts(lazy::<Algorithm1Run>(class, edges));
+            assert_eq!(lazily, one_by_one(class, edges, Algorithm1Run::default), "{class} {edges}");
             if class == Class::Multigraph && edges == 6 {
                 continue;
             }
-            let lazily = counts(lazy::<FoldingExploration>(class, edges));
-            assert_eq!(
-                lazily,
-                one_by_one(class, edges, FoldingExploration::default),
-                "{class} {edges}"
-            );
+            let lazily = counts(lazy::<FoldingRun>(class, edges));
+            assert_eq!(lazily, one_by_one(class, edges, FoldingRun::default), "{class} {edges}");
             if class.is_simple() {
-                let lazily = counts(lazy::<MarkerSearch>(class, edges));
+                let lazily = counts(lazy::<MovableMarkerRun>(class, edges));
                 assert_eq!(
                     lazily,
-                    one_by_one(class, edges, MarkerSearch::default),
+                    one_by_one(class, edges, MovableMarkerRun::default),
                     "{class} {edges}"
                 );
             }
@@ -79,9 +76,9 @@ fn both_checks_have_the_same_result() {
 #[test]
 fn both_checks_find_the_same_failures() {
     for edges in 1..=5 {
-        let lazily = counts(lazy::<MarkerSearch>(Class::Multigraph, edges));
+        let lazily = counts(lazy::<MovableMarkerRun>(Class::Multigraph, edges));
         assert!(edges == 1 || lazily.failed() > 0);
-        assert_eq!(lazily, one_by_one(Class::Multigraph, edges, MarkerSearch::default));
+        assert_eq!(lazily, one_by_one(Class::Multigraph, edges, MovableMarkerRun::default));
     }
 }
 
@@ -149,7 +146,8 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
                     map: EmbeddedGraph::chain(edges),
                 };
                 let one_by_one = one_by_one(class, edges, new);
-                let lazily = LazySweep::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
+                let lazily =
+                    SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
                 let lazily = counts(lazily);
                 assert_eq!(lazily, one_by_one, "{class} {edges} {most}");
                 // At most the one start that it guesses.
@@ -165,7 +163,7 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
 fn an_end_at_which_not_everything_is_revealed_stands_for_all_starts_that_agree() {
     compare_walkers(&Directional);
     let new = || Walker { marker: Directional, moves: 0, most: 0, map: EmbeddedGraph::chain(4) };
-    let at_once = LazySweep::new(Class::Multigraph, 4, Shard::WHOLE).unwrap().run(new, &());
+    let at_once = SharedPrefixCheck::new(Class::Multigraph, 4, Shard::WHOLE).unwrap().run(new, &());
     assert_eq!((at_once.starts, at_once.mapped, at_once.moves_made), (706, 1, 0));
     assert_eq!(at_once.below_certificate, 1);
 }
@@ -181,22 +179,22 @@ fn with_a_marker_on_an_edge_both_checks_have_the_same_result() {
 #[test]
 fn runs_share_their_beginnings() {
     let moves = |class, edges| {
-        let tally = lazy::<Exploration>(class, edges);
+        let tally = lazy::<Algorithm1Run>(class, edges);
         (tally.moves_total, tally.moves_made)
     };
     assert_eq!(moves(Class::Multigraph, 7), (25_375_585, 13_166_198));
 }
 
-fn shard(text: &str) -> LazySweep {
-    LazySweep::new(Class::Multigraph, 5, text.parse().unwrap()).unwrap()
+fn shard(text: &str) -> SharedPrefixCheck {
+    SharedPrefixCheck::new(Class::Multigraph, 5, text.parse().unwrap()).unwrap()
 }
 
 #[test]
 fn the_shards_are_the_whole() {
-    let whole = shard("1/1").run(Exploration::default, &());
+    let whole = shard("1/1").run(Algorithm1Run::default, &());
     let mut sum = Tally::default();
     for part in ["1/3", "2/3", "3/3"] {
-        let found = shard(part).run(Exploration::default, &());
+        let found = shard(part).run(Algorithm1Run::default, &());
         assert!(found.starts < 5000 && found.worlds < 500, "{found:?}");
         sum.merge(found);
     }
@@ -243,7 +241,7 @@ fn the_pieces_in_any_order_are_the_whole() {
         (MappingAlgorithm::MovableMarker, Class::Corridor, 7),
     ];
     for (algorithm, class, edges) in cases {
-        let sweep = LazySweep::new(class, edges, Shard::WHOLE).unwrap();
+        let sweep = SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap();
         let machines = [(); 3].map(|()| algorithm.pieces(&sweep, &()));
         let mut counts = [(); 3].map(|()| PartTally::default());
         let count = machines[0].count();
@@ -263,12 +261,12 @@ fn the_pieces_in_any_order_are_the_whole() {
 #[test]
 fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
     let sweep = shard("1/1");
-    let whole = sweep.run(FoldingExploration::default, &());
+    let whole = sweep.run(FoldingRun::default, &());
     let mut known = BTreeMap::new();
     let mut rounds = 0;
     loop {
         let some = SomeUnits { known: known.clone(), left: 200.into(), ..SomeUnits::default() };
-        let found = sweep.resume(FoldingExploration::default, &some, &some);
+        let found = sweep.resume(FoldingRun::default, &some, &some);
         let new = some.new.into_inner().unwrap();
         assert!(new.keys().all(|unit| !known.contains_key(unit)));
         known.extend(new);
@@ -280,7 +278,7 @@ fn a_check_that_was_stopped_goes_on_and_has_the_same_result() {
         assert!(rounds < 100);
     }
     assert!(rounds > 1);
-    assert_eq!(known.len(), sweep.unit_count(FoldingExploration::default));
+    assert_eq!(known.len(), sweep.unit_count(FoldingRun::default));
 }
 
 /// Stops when it has been asked a number of times.
@@ -299,7 +297,7 @@ impl Watch for QuestionLimit {
 /// Such a run ends in the same way in all 12 billion starts, and each of them is judged.
 #[test]
 fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
-    let sweep = LazySweep::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();
+    let sweep = SharedPrefixCheck::new(Class::Multigraph, 10, Shard::WHOLE).unwrap();
     let new = || Walker { marker: Directional, moves: 0, most: 0, map: EmbeddedGraph::chain(1) };
     let found = sweep.run(new, &QuestionLimit { questions_left: 1000.into() });
     assert!(found.interrupted);
@@ -310,7 +308,7 @@ fn a_check_of_an_explorer_that_does_not_move_can_be_stopped() {
 /// All probes together, each branch once, are the whole tree.
 #[test]
 fn all_probes_together_are_the_whole_tree() {
-    let sweep = LazySweep::new(Class::Multigraph, 4, Shard::WHOLE).unwrap();
+    let sweep = SharedPrefixCheck::new(Class::Multigraph, 4, Shard::WHOLE).unwrap();
     let algorithm = MappingAlgorithm::Algorithm1;
     // The degree of the start vertex is drawn: 1 to 8.
     let mut found = (0, 0);

@@ -28,7 +28,7 @@ macro_rules! delegate_to_run {
             self.run.choose()
         }
 
-        fn map_walk(&self) -> Option<&Journey> {
+        fn map_walk(&self) -> Option<&MapWalk> {
             self.run.map_walk()
         }
 

@@ -7,12 +7,12 @@ use std::ops::ControlFlow;
 
 use toposlam_model::{
     ambiguity::Comparison,
-    check::{RunChoices, Shard, Sweep, judge},
+    check::{Check, RunChoices, Shard, judge},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, code, isomorphism},
     mapping::{
-        Flaw, Journey, MappingAlgorithm, MappingEvent, MarkerSearch, MovableEvent, Nearest,
+        Flaw, MapWalk, MappingAlgorithm, MappingEvent, MovableEvent, MovableMarkerRun, Nearest,
         explore, map_with_movable_marker,
     },
     marker::Movable,
@@ -23,8 +23,8 @@ use toposlam_model::{
 /// For each number of edges: starts, the sum of the moves, the most moves.
 fn rows(class: Class, up_to: usize) -> Vec<(u64, u64, u64)> {
     let rows = (1..=up_to).map(|edges| {
-        let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
-        let tally = sweep.run(MarkerSearch::default, RunChoices::Default, &());
+        let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
+        let tally = sweep.run(MovableMarkerRun::default, RunChoices::Default, &());
         assert_eq!(tally.failure, None);
         assert_eq!(tally.mapped, tally.starts);
         (tally.starts, tally.moves_total, tally.moves_max())
@@ -63,8 +63,8 @@ fn every_start_of_every_planar_world_with_up_to_eight_edges_is_mapped_right() {
     assert_eq!(rows.last(), Some(&(15_485, 371_598, 66)));
 }
 
-fn run(graph: &EmbeddedGraph, facing: Dart) -> (MarkerSearch, GraphWorld<'_, Movable>) {
-    let mut search = MarkerSearch::new(graph.dart_count());
+fn run(graph: &EmbeddedGraph, facing: Dart) -> (MovableMarkerRun, GraphWorld<'_, Movable>) {
+    let mut search = MovableMarkerRun::new(graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
     explore(&mut search, &mut world, &mut ()).unwrap();
     (search, world)
@@ -133,12 +133,12 @@ fn k4() -> EmbeddedGraph {
 /// What happens on the way, but for the moves, each with the moves made by then.
 fn story(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent)> {
     let mut story = Vec::new();
-    let mut listen = |_: &mut _, journey: &Journey, event: MappingEvent| {
+    let mut listen = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
         if !matches!(event, MappingEvent::Moved { .. }) {
             story.push((journey.moves(), event));
         }
     };
-    let mut search = MarkerSearch::new(graph.dart_count());
+    let mut search = MovableMarkerRun::new(graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, Dart(0));
     map_with_movable_marker(&mut world, &mut Nearest, &mut search, &mut listen).unwrap();
     story
@@ -213,7 +213,7 @@ enum End {
 }
 
 fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
-    let mut search = MarkerSearch::new(10 * graph.dart_count());
+    let mut search = MovableMarkerRun::new(10 * graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
     let mut candidate = Candidate::default();
     let run = explore(&mut search, &mut world, &mut ());

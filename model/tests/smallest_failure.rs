@@ -1,7 +1,7 @@
 //! The smallest start on which a broken variant of an algorithm fails.
 
 use toposlam_model::{
-    check::{FailedStart, RunChoices, Shard, Sweep},
+    check::{Check, FailedStart, RunChoices, Shard},
     enumerate::Class,
     isomorphism::code,
     mapping::Explorer,
@@ -17,7 +17,7 @@ pub(super) fn smallest_failure<E: Explorer>(
     most: usize,
 ) -> Failure {
     let failure = (1..=most).find_map(|edges| {
-        let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+        let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
         let tally = sweep.run(&new, RunChoices::Default, &());
         assert_eq!(tally.failed() > 0, tally.failure.is_some());
         let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{RunChoices, Shard, Sweep, Tally, judge},
+    check::{Check, RunChoices, Shard, Tally, judge},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     isomorphism::{Candidate, code},
     mapping::{
-        DEFAULT_DART_BOUND, Exploration, Explorer, Flaw, InvalidStep, MappingChoice, MappingError,
-        Nearest, map_world, step,
+        Algorithm1Run, DEFAULT_DART_BOUND, Explorer, Flaw, InvalidStep, MappingChoice,
+        MappingError, Nearest, map_world, step,
     },
     percept::Door,
     world::{GraphWorld, World},
@@ -19,14 +19,14 @@ fn theta(far: [&'static str; 3]) -> EmbeddedGraph {
     EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
 }
 
-fn mapped(graph: &EmbeddedGraph) -> (Exploration, GraphWorld<'_>) {
-    let mut exploration = Exploration::new(graph.dart_count());
+fn mapped(graph: &EmbeddedGraph) -> (Algorithm1Run, GraphWorld<'_>) {
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, Dart(0));
     map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
     (exploration, world)
 }
 
-fn verdict(exploration: &Exploration, world: &GraphWorld) -> Option<Flaw> {
+fn verdict(exploration: &Algorithm1Run, world: &GraphWorld) -> Option<Flaw> {
     judge(exploration, Dart(0), world, &mut Candidate::default()).err()
 }
 
@@ -47,7 +47,7 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
     while exploration.moves() <= bound {
         assert_eq!(verdict(&exploration, &world), None);
         for _ in 0..2 {
-            exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
+            exploration.go_through(Door::BACK, &mut world, &mut ()).unwrap();
         }
     }
     let moves = exploration.moves();
@@ -63,7 +63,7 @@ fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
     let graph = EmbeddedGraph::from_edge_lists(&[("u", vec!["a"]), ("v", vec!["a"])]).unwrap();
     let map = |bound| {
         let mut world = GraphWorld::new(&graph, Dart(0));
-        map_world(&mut world, &mut Nearest, &mut Exploration::new(bound), &mut ())
+        map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(bound), &mut ())
     };
     assert_eq!(map(2), Ok(()));
     assert_eq!(map(1), Err(MappingError::Bound { bound: 1 }));
@@ -78,7 +78,7 @@ fn a_step_out_of_order_is_an_error() {
     let no_hypothesis = InvalidStep::NoHypothesis { index: 0, left: 0 };
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut fresh = Exploration::new(6);
+    let mut fresh = Algorithm1Run::new(6);
     assert_eq!(fresh.choose().unwrap(), None);
     let unexplored = InvalidStep::NotUnexplored(Dart(0));
     assert_eq!(step(&mut fresh, edge, &mut world, &mut ()), error(unexplored));
@@ -107,7 +107,7 @@ fn a_step_out_of_order_is_an_error() {
 fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut exploration = Exploration::new(6);
+    let mut exploration = Algorithm1Run::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
     step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
     let map = exploration.map().clone();
@@ -143,11 +143,11 @@ fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
 fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut exploration = Exploration::new(6);
+    let mut exploration = Algorithm1Run::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
     step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
-    exploration.set_out();
-    exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
+    exploration.clear_trail();
+    exploration.go_through(Door::BACK, &mut world, &mut ()).unwrap();
     exploration.arrive_at_marker(Dart(0));
     // Out, back, out again and over the edge.
     exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
@@ -170,8 +170,8 @@ fn a_dart_of_the_map_is_found_by_its_vertex_and_its_index() {
 fn the_tally_keeps_the_extremes_of_small_worlds() {
     let new = |degree: u32| u32::MAX - degree;
     for (edges, most) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
-        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
-        let tally = sweep.unwrap().run(Exploration::default, RunChoices::Default, &());
+        let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE);
+        let tally = sweep.unwrap().run(Algorithm1Run::default, RunChoices::Default, &());
         assert_eq!(tally.most_moves_per_vertex, Some(most));
         if edges == 3 {
             let worst = tally.worst.clone().unwrap();

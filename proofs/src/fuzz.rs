@@ -14,7 +14,7 @@ use toposlam_model::{
         world_file,
     },
     isomorphism::Candidate,
-    mapping::{Exploration, Explorer, Journey, MappingEvent, map_world},
+    mapping::{Algorithm1Run, Explorer, MapWalk, MappingEvent, map_world},
     world::GraphWorld,
 };
 
@@ -99,10 +99,10 @@ pub fn mapping(bytes: &[u8]) {
     };
     let facing = Dart(0);
     let mut world = GraphWorld::new(&graph, facing);
-    let mut exploration = Exploration::new(graph.dart_count());
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let bound = exploration.move_bound(graph.edge_count(), graph.vertex_count());
     // A run that would not end fails too.
-    let mut watch = |_: &mut _, journey: &Journey, _: MappingEvent| {
+    let mut watch = |_: &mut _, journey: &MapWalk, _: MappingEvent| {
         assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
     };
     let mut open = DrawnChoices(&mut choose);

@@ -19,7 +19,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     isomorphism::Bijection,
-    mapping::Exploration,
+    mapping::Algorithm1Run,
     percept::{Door, Percept, Sighting},
 };
 
@@ -356,7 +356,7 @@ fn stateright_finds_the_states_of_every_way_and_no_wrong_map() {
         for world in starts {
             let facing = Dart(0);
             let every_way =
-                every_way(Exploration::default(), &world, facing, DEFAULT_STATE_BUDGET, &());
+                every_way(Algorithm1Run::default(), &world, facing, DEFAULT_STATE_BUDGET, &());
             let mapping = Mapping { world, facing, validation: Validation::Path };
             let checker = mapping.checker().threads(1).spawn_dfs().join();
             checker.assert_properties();

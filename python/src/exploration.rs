@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use thiserror::Error;
 use toposlam_draw::story::{PrintedStory, Story, StoryDetail};
-use toposlam_model::{enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, Journey, MappingAlgorithm, MappingError, MappingEvent, Observer}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World}};
+use toposlam_model::{enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observer}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World}};
 
 use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, world::CoreWorld};
 
@@ -71,7 +71,7 @@ struct Recorder {
 }
 
 impl<W> Observer<W> for Recorder {
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent) {
         self.actions.extend(event.action());
         self.story.event(world, journey, event);
     }

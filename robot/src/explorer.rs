@@ -15,7 +15,7 @@ use toposlam_model::{
         algorithm2::{Command, Lost, LostReason, PathExecution, PathState, Standing, Step},
         scene::Scene,
     },
-    mapping::{ArrivalMeasurement, Journey, MappedWorld, MappingError, MappingEvent},
+    mapping::{ArrivalMeasurement, MapWalk, MappedWorld, MappingError, MappingEvent},
     percept::{Door, Percept},
     world::World,
 };
@@ -156,14 +156,14 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     pub fn map(
         &mut self,
         settings: &RunSettings,
-    ) -> (Journey, Result<MappedWorld, MappingError<ExplorerError>>) {
+    ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         let RunSettings { method, dart_bound, budget, ref earlier } = *settings;
         self.allowance = Allowance::new(budget);
         if method.recovers() {
             self.obstacles = Obstacles::DeadEnds;
         }
         self.begins_anywhere = !earlier.is_empty();
-        let mut observer = |explorer: &mut Self, journey: &Journey, event: MappingEvent| {
+        let mut observer = |explorer: &mut Self, journey: &MapWalk, event: MappingEvent| {
             explorer.mapping_event(journey, event);
         };
         let (run, mut mapped) = method.map_world(self, dart_bound, earlier, &mut observer);
@@ -203,7 +203,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         Spent { moves: self.last_move, seconds, metres: self.metres }
     }
 
-    fn mapping_event(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping_event(&mut self, journey: &MapWalk, event: MappingEvent) {
         self.observer.mapping(journey, event);
         if matches!(event, MappingEvent::Moved { .. }) {
             return;

@@ -13,7 +13,7 @@ use toposlam_logs::{
 };
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
-    mapping::{Journey, MappingError},
+    mapping::{MapWalk, MappingError},
     percept::{Door, Percept},
 };
 use toposlam_vision::sensing::{Sensor, WrongSize};
@@ -56,7 +56,7 @@ impl fmt::Display for Agreement {
 #[derive(Debug)]
 pub struct Replay {
     /// The map, and the robot's pose in it.
-    pub mapping: Journey,
+    pub mapping: MapWalk,
     /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// How it compares with the recorded run.

@@ -53,12 +53,12 @@ pub fn learned(
 ) -> Result<ColourModel, LearningError> {
     let mut training = Training::new(look.stripe);
     for number in 0..IMAGES {
-        watch.go_on()?;
+        watch.check_stop()?;
         let view = views.to_learn_from(look, camera.image, number)?;
         let building = view.building();
         let classes = labels(rig, &building, view.pose, &view.effects);
         let mask = label_mask(rig, &classes);
-        watch.go_on()?;
+        watch.check_stop()?;
         match training.add(camera, &view.render(rig, &building), &mask) {
             // Skip images that are too dark to measure their light.
             Ok(()) | Err(ExampleError::Light(_)) => {}

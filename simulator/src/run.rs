@@ -7,7 +7,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     isomorphism::Candidate,
-    mapping::{Flaw, Journey, MappedWorld, MappingAlgorithm, MappingError, MappingMethod},
+    mapping::{Flaw, MapWalk, MappedWorld, MappingAlgorithm, MappingError, MappingMethod},
     world::GraphWorld,
 };
 use toposlam_robot::{
@@ -31,7 +31,7 @@ pub struct Run<'p> {
     /// How the robot mapped.
     pub method: MappingMethod,
     /// The state of the algorithm: its map, and the robot's pose in it.
-    pub mapping: Journey,
+    pub mapping: MapWalk,
     /// What the complete map took; `None` if the run ended early.
     pub mapped: Option<MappedWorld>,
     /// Why it ended early, if it did.
@@ -196,7 +196,7 @@ pub fn offline(
     sensor: impl FrameSensor,
     observer: impl RunObserver,
     settings: &RunSettings,
-) -> Result<Journey, MappingError<ExplorerError>> {
+) -> Result<MapWalk, MappingError<ExplorerError>> {
     let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
     let (mapping, mapped) = explorer.map(settings);
     mapped.map(|_| mapping)

@@ -7,18 +7,18 @@ use toposlam_logs::{
     recorder::Recorder,
     topic_map::{Role, TopicMap},
 };
-use toposlam_model::mapping::{Journey, MappingAlgorithm, MappingError};
+use toposlam_model::mapping::{MapWalk, MappingAlgorithm, MappingError};
 use toposlam_robot::{
     replay::{Agreement, ReplayError, replay},
     run_settings::RunSettings,
 };
 use toposlam_simulator::{SimulationConfig, plans, run::run, starts_of};
 
-fn recorded(seed: u64, algorithm: MappingAlgorithm) -> (Log, Journey) {
+fn recorded(seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
     recorded_in("shape-6", seed, algorithm)
 }
 
-fn recorded_in(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, Journey) {
+fn recorded_in(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
     let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == world).unwrap();
     let facing = starts_of(&plan)[0];
     let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);

@@ -15,7 +15,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{FinishedUnits, LazySweep, Shard, Sweep, Tally, WorstStart},
+    check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
     enumerate::{Class, Watch},
     format::named_world::NamedWorld,
@@ -179,9 +179,9 @@ fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
 /// What is checked for one number of edges.
 enum Work {
     /// Runs share their beginnings.
-    Lazy(Box<LazySweep>),
+    Lazy(Box<SharedPrefixCheck>),
     /// All choices.
-    Sweep(Sweep),
+    Check(Check),
     Worlds(Vec<EmbeddedGraph>),
 }
 
@@ -332,7 +332,7 @@ impl CheckArguments {
                 (tally, Some(moves_made))
             }
             (Work::Worlds(graphs), _) => (algorithm.check_worlds(graphs, choices, &progress), None),
-            (Work::Sweep(sweep), _) => (algorithm.sweep(sweep, choices, &progress), None),
+            (Work::Check(sweep), _) => (algorithm.sweep(sweep, choices, &progress), None),
         };
         progress.finish();
         if let Some(journal) = journal {
@@ -344,7 +344,7 @@ impl CheckArguments {
     fn journal_header(
         &self,
         edges: usize,
-        sweep: &LazySweep,
+        sweep: &SharedPrefixCheck,
         algorithm: MappingAlgorithm,
     ) -> JournalHeader {
         JournalHeader {
@@ -400,10 +400,9 @@ impl CheckArguments {
         }
         let sweep = |edges| {
             let work = match self.choices {
-                ChoicesOption::Default => {
-                    LazySweep::new(class, edges, self.shard).map(|lazy| Work::Lazy(Box::new(lazy)))
-                }
-                ChoicesOption::All => Sweep::new(class, edges, self.shard).map(Work::Sweep),
+                ChoicesOption::Default => SharedPrefixCheck::new(class, edges, self.shard)
+                    .map(|lazy| Work::Lazy(Box::new(lazy))),
+                ChoicesOption::All => Check::new(class, edges, self.shard).map(Work::Check),
             };
             Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
         };
@@ -427,7 +426,7 @@ impl Work {
     fn is_simple(&self) -> bool {
         match self {
             Self::Lazy(sweep) => sweep.class().is_simple(),
-            Self::Sweep(sweep) => sweep.class().is_simple(),
+            Self::Check(sweep) => sweep.class().is_simple(),
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }

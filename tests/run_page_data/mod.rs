@@ -9,7 +9,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
-    mapping::{DEFAULT_DART_BOUND, Journey, MappingAlgorithm, MappingEvent},
+    mapping::{DEFAULT_DART_BOUND, MapWalk, MappingAlgorithm, MappingEvent},
     percept::Door,
 };
 use toposlam_robot::run_settings::RunSettings;
@@ -61,7 +61,7 @@ impl RunObserver for Keeper {
         }
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         self.run_data.story.push(format!("{event:?}"));
         if event.grows_map() {
             self.run_data.maps.push(journey.map().clone());

@@ -11,7 +11,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     mapping::{
-        Choices, Exploration, Journey, MappingAlgorithm, MappingError, MappingEvent, PartialMap,
+        Algorithm1Run, Choices, MapWalk, MappingAlgorithm, MappingError, MappingEvent, PartialMap,
         map_world,
     },
     percept::{Door, Percept, Sighting},
@@ -327,10 +327,10 @@ pub(super) fn takes_doors(algorithm: MappingAlgorithm, trace: &Trace) -> Option<
     let mut script = Script::default();
     for _ in 0..RUNS {
         let mut world = DoorsOf { world: GraphWorld::new(&graph, pose), doors: trace.doors() };
-        let mut nobody = |_: &mut DoorsOf, _: &Journey, _: MappingEvent| {};
+        let mut nobody = |_: &mut DoorsOf, _: &MapWalk, _: MappingEvent| {};
         let end = match algorithm {
             MappingAlgorithm::Algorithm1 => {
-                let mut exploration = Exploration::new(usize::MAX);
+                let mut exploration = Algorithm1Run::new(usize::MAX);
                 map_world(&mut world, &mut script, &mut exploration, &mut nobody)
             }
             _ => algorithm.map_world(&mut world, usize::MAX, &mut nobody).1,

@@ -7,7 +7,7 @@ use toposlam_model::{
     enumerate::{Each, EnumeratedGraph, Enumeration},
     folding::{SearchLimit, SmallestWorld},
     format::world_file,
-    mapping::{Journey, MappingEvent},
+    mapping::{MapWalk, MappingEvent},
     marker::{Marker, NoMarker, Undirected},
     percept::Sighting,
     trace::{Trace, TraceEventKind},
@@ -545,7 +545,7 @@ fn the_first_event_that_no_planar_world_explains_is_exact() {
     let wheel = world_file::read(&std::fs::read(file).unwrap()).unwrap();
     let mut robot = GraphWorld::new(&wheel.graph, wheel.start.unwrap());
     let mut kinds = vec![(robot.sensed(), None)];
-    let mut listen = |robot: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+    let mut listen = |robot: &mut GraphWorld, _: &MapWalk, event: MappingEvent| {
         if let MappingEvent::Moved { door, .. } = event {
             kinds.push((robot.sensed(), Some(door)));
         }

@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     embedded_graph::Dart,
-    mapping::{FoldingEvent, Journey, PartialMap},
+    mapping::{FoldingEvent, MapWalk, PartialMap},
 };
 
 use super::{Story, StoryLine, dart, percept_text};
@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl Story {
-    pub(super) fn add_folding(&mut self, journey: &Journey, event: FoldingEvent) {
+    pub(super) fn add_folding(&mut self, journey: &MapWalk, event: FoldingEvent) {
         let map = journey.map();
         match event {
             FoldingEvent::Explored { edge, percept } => {

@@ -1,12 +1,12 @@
 //! The story of a movable marker: where it is dropped, searched for and found.
 
-use toposlam_model::mapping::{Journey, MovableEvent};
+use toposlam_model::mapping::{MapWalk, MovableEvent};
 
 use super::{Story, dart};
 use crate::{moment::grouped, text::counted};
 
 impl Story {
-    pub(super) fn add_movable(&mut self, journey: &Journey, event: MovableEvent) {
+    pub(super) fn add_movable(&mut self, journey: &MapWalk, event: MovableEvent) {
         let map = journey.map();
         match event {
             MovableEvent::Arrived { edge, percept, candidates } => {

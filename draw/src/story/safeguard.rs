@@ -1,12 +1,12 @@
 //! The story of audits and recoveries.
 
-use toposlam_model::mapping::{Journey, SafeguardEvent};
+use toposlam_model::mapping::{MapWalk, SafeguardEvent};
 
 use super::Story;
 use crate::{moment::grouped, text::counted};
 
 impl Story {
-    pub(super) fn add_safeguard(&mut self, journey: &Journey, event: SafeguardEvent) {
+    pub(super) fn add_safeguard(&mut self, journey: &MapWalk, event: SafeguardEvent) {
         let moves = match event {
             // An audit has its own moves.
             SafeguardEvent::AuditBegun | SafeguardEvent::AuditPassed { .. } => String::new(),

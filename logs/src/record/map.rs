@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{Journey, PartialMap},
+    mapping::{MapWalk, PartialMap},
 };
 
 /// A map in numbers. Darts are numbered from 0 vertex by vertex, clockwise.
@@ -21,7 +21,7 @@ pub struct MapRecord {
 impl MapRecord {
     /// The present map of a journey.
     #[must_use]
-    pub fn of(journey: &Journey) -> Self {
+    pub fn of(journey: &MapWalk) -> Self {
         Self::new(journey.moves(), journey.map(), journey.robot())
     }
 

@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     enumerate::Watch,
-    mapping::{Journey, MappingEvent},
+    mapping::{MapWalk, MappingEvent},
 };
 
 use super::Event;
@@ -14,7 +14,7 @@ pub trait RunObserver {
 
     /// The mapping algorithm made a step. The events [`Hypothesis`](super::EventKind::Hypothesis) and
     /// [`Map`](super::EventKind::Map) follow; a story needs the whole journey.
-    fn mapping(&mut self, _journey: &Journey, _event: MappingEvent) {}
+    fn mapping(&mut self, _journey: &MapWalk, _event: MappingEvent) {}
 
     /// Whether the run is to stop.
     fn stop(&self) -> bool {
@@ -31,7 +31,7 @@ impl<O: RunObserver> RunObserver for Option<O> {
         }
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         if let Some(observer) = self {
             observer.mapping(journey, event);
         }
@@ -47,7 +47,7 @@ impl<O: RunObserver + ?Sized> RunObserver for &mut O {
         (**self).event(event);
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         (**self).mapping(journey, event);
     }
 
@@ -73,7 +73,7 @@ impl<A: RunObserver, B: RunObserver> RunObserver for (A, B) {
         self.1.event(event);
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         self.0.mapping(journey, event);
         self.1.mapping(journey, event);
     }

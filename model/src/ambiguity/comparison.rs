@@ -263,7 +263,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
     fn reach(&mut self, most: usize, watch: &dyn Watch) -> Result<Look, Interrupted> {
         while let Some(&ReachedPair { pair, .. }) = self.found.get(self.next) {
             if self.next.is_multiple_of(BETWEEN_QUESTIONS) {
-                watch.go_on()?;
+                watch.check_stop()?;
             }
             let [one, other] = self.at(pair);
             if self.next == 0 && one.sensed() != other.sensed() {

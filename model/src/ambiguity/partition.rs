@@ -27,7 +27,7 @@ pub(super) fn coarsest_watched<L: Ord>(
     let mut queued = vec![true; splitters.len()];
     let mut splitter = Vec::new();
     while let Some(class) = splitters.pop() {
-        watch.go_on()?;
+        watch.check_stop()?;
         queued[class as usize] = false;
         splitter.clear();
         splitter.extend_from_slice(partition.states_of(class));

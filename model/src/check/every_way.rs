@@ -8,7 +8,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Explorer, FACING, Flaw, Journey, PartialMap, StateKey},
+    mapping::{Explorer, FACING, Flaw, MapWalk, PartialMap, StateKey},
     world::GraphWorld,
 };
 
@@ -206,7 +206,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
                 if let Some((futures, truly)) = self.known.get(&state) {
                     // One state, one place in the world; it may have been entered by another dart.
                     if world.graph().vertex(*truly) != world.graph().vertex(world.pose()) {
-                        let believed = explorer.map_walk().map_or(FACING, Journey::robot);
+                        let believed = explorer.map_walk().map_or(FACING, MapWalk::robot);
                         return Err(Flaw::WrongPose {
                             believed,
                             image: *truly,
@@ -300,7 +300,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mapping::Exploration;
+    use crate::mapping::Algorithm1Run;
 
     /// Stops at once.
     struct Stopped;
@@ -314,9 +314,14 @@ mod tests {
     #[test]
     fn the_limit_that_was_reached_is_named() {
         let limit = |budget, watch: &dyn Watch| {
-            let ways =
-                every_way(Exploration::default(), &EmbeddedGraph::cycle(5), Dart(0), budget, watch)
-                    .unwrap();
+            let ways = every_way(
+                Algorithm1Run::default(),
+                &EmbeddedGraph::cycle(5),
+                Dart(0),
+                budget,
+                watch,
+            )
+            .unwrap();
             (ways.limit, ways.states + ways.within_rounds <= budget)
         };
         assert_eq!(limit(1000, &()), (None, true));

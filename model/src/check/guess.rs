@@ -39,7 +39,7 @@ mod tests {
     use super::*;
     use crate::{
         folding::certificate,
-        mapping::{Exploration, Journey, MappingEvent, explore},
+        mapping::{Algorithm1Run, MapWalk, MappingEvent, explore},
         marker::Undirected,
     };
 
@@ -92,12 +92,12 @@ mod tests {
         let graph = edge_and_loop();
         for facing in graph.darts() {
             let mut taken = Vec::new();
-            let mut watch = |_: &mut GraphWorld<'_>, _: &Journey, event: MappingEvent| {
+            let mut watch = |_: &mut GraphWorld<'_>, _: &MapWalk, event: MappingEvent| {
                 if let MappingEvent::Moved { door, .. } = event {
                     taken.push(door);
                 }
             };
-            let mut run = Exploration::new(graph.dart_count());
+            let mut run = Algorithm1Run::new(graph.dart_count());
             explore(&mut run, &mut GraphWorld::new(&graph, facing), &mut watch).unwrap();
             assert_eq!(determines_world((&graph, facing), &Directional, &taken), Some(true));
         }

@@ -6,7 +6,7 @@ use crate::{
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{ExploredMap, Explorer, FACING, Flaw, Journey, MappingEvent, PartialMap, explore},
+    mapping::{ExploredMap, Explorer, FACING, Flaw, MapWalk, MappingEvent, PartialMap, explore},
     world::GraphWorld,
 };
 
@@ -114,7 +114,7 @@ pub fn first_false_step<E: Explorer>(
     facing: Dart,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |_: &mut GraphWorld<E::Marker>, journey: &Journey, added: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<E::Marker>, journey: &MapWalk, added: MappingEvent| {
         let adds =
             matches!(added, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. });
         if adds && first.is_none() && !embeds(journey.map(), graph, facing) {

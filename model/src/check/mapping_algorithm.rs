@@ -5,14 +5,14 @@
 use std::borrow::Cow;
 
 use super::{
-    CheckPieces, EveryWay, FinishedUnits, LazySweep, PartTally, Probe, RunChoices, Sweep, Tally,
-    check_worlds, judge_map,
+    Check, CheckPieces, EveryWay, FinishedUnits, PartTally, Probe, RunChoices, SharedPrefixCheck,
+    Tally, check_worlds, judge_map,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::{Bijection, Candidate},
-    mapping::{ExploredMap, FACING, Flaw, Journey, MappingAlgorithm, with_explorer},
+    mapping::{ExploredMap, FACING, Flaw, MapWalk, MappingAlgorithm, with_explorer},
 };
 
 impl MappingAlgorithm {
@@ -23,7 +23,7 @@ impl MappingAlgorithm {
     /// Returns the first [`Flaw`].
     pub fn judge<'c>(
         self,
-        (journey, pose): (&Journey, Dart),
+        (journey, pose): (&MapWalk, Dart),
         (graph, facing): (&EmbeddedGraph, Dart),
         truly: Dart,
         candidate: &'c mut Candidate,
@@ -37,17 +37,17 @@ impl MappingAlgorithm {
         if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(bijection) }
     }
 
-    /// Checks every start of a sweep, as [`Sweep::run`].
+    /// Checks every start of a sweep, as [`Check::run`].
     #[must_use]
-    pub fn sweep(self, sweep: &Sweep, choices: RunChoices, watch: &dyn Watch) -> Tally {
+    pub fn sweep(self, sweep: &Check, choices: RunChoices, watch: &dyn Watch) -> Tally {
         with_explorer!(self, E => sweep.run(E::default, choices, watch))
     }
 
-    /// Checks every start of a lazy sweep, as [`LazySweep::resume`].
+    /// Checks every start of a lazy sweep, as [`SharedPrefixCheck::resume`].
     #[must_use]
     pub fn lazy_sweep(
         self,
-        sweep: &LazySweep,
+        sweep: &SharedPrefixCheck,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Tally {
@@ -56,13 +56,13 @@ impl MappingAlgorithm {
 
     /// The number of units of a lazy sweep.
     #[must_use]
-    pub fn unit_count(self, sweep: &LazySweep) -> usize {
+    pub fn unit_count(self, sweep: &SharedPrefixCheck) -> usize {
         with_explorer!(self, E => sweep.unit_count(E::default))
     }
 
     /// The pieces of a lazy sweep, as [`CheckPieces::new`].
     #[must_use]
-    pub fn pieces(self, sweep: &LazySweep, watch: &dyn Watch) -> CheckPieces {
+    pub fn pieces(self, sweep: &SharedPrefixCheck, watch: &dyn Watch) -> CheckPieces {
         with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
     }
 
@@ -78,9 +78,9 @@ impl MappingAlgorithm {
         with_explorer!(self, E => CheckPieces::finished(counts, E::default))
     }
 
-    /// A random probe, as [`LazySweep::probe`].
+    /// A random probe, as [`SharedPrefixCheck::probe`].
     #[must_use]
-    pub fn probe(self, sweep: &LazySweep, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
+    pub fn probe(self, sweep: &SharedPrefixCheck, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         with_explorer!(self, E => sweep.probe(E::default(), numbers, watch))
     }
 

@@ -5,11 +5,11 @@ mod enumerated_start;
 mod every_way;
 mod guess;
 mod judge;
-mod lazy;
 mod mapping_algorithm;
 mod mistakes;
+mod one_by_one;
 mod run_choices;
-mod sweep;
+mod shared_prefix;
 mod tally;
 
 pub use costs::{ChoicesLimit, Costs, EveryWay};
@@ -17,13 +17,13 @@ pub use enumerated_start::EnumeratedStart;
 pub use every_way::{DEFAULT_STATE_BUDGET, every_way};
 pub use guess::determines_world;
 pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
-pub use lazy::{CheckPieces, FinishedUnits, LazySweep, LazyWorld, Probe};
 pub use mistakes::{
     MISTAKE_KINDS, Mistake, MistakeCheck, MistakeCounts, MistakeEffect, MistakeKind, MistakeTally,
     UndetectedMistake,
 };
+pub use one_by_one::{Check, Shard, ShardError, check_worlds};
 pub use run_choices::RunChoices;
-pub use sweep::{Shard, ShardError, Sweep, check_worlds};
+pub use shared_prefix::{CheckPieces, FinishedUnits, LazyWorld, Probe, SharedPrefixCheck};
 pub use tally::{FailedStart, KeptStart, PartTally, Tally, WorstStart};
 
 #[cfg(test)]
@@ -36,7 +36,7 @@ mod tests {
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Candidate,
         mapping::{
-            Choices, Exploration, Flaw, MarkerSearch, Nearest, PartialMap, explore,
+            Algorithm1Run, Choices, Flaw, MovableMarkerRun, Nearest, PartialMap, explore,
             map_with_movable_marker, map_world,
         },
         marker::Movable,
@@ -73,7 +73,7 @@ mod tests {
         mut choices: impl Choices,
     ) -> Option<Flaw> {
         let mut world = GraphWorld::with_marker(graph, Movable, facing);
-        let mut search = MarkerSearch::new(graph.dart_count());
+        let mut search = MovableMarkerRun::new(graph.dart_count());
         let mut candidate = Candidate::default();
         map_with_movable_marker(&mut world, &mut choices, &mut search, &mut ())
             .map_err(Flaw::from)
@@ -91,7 +91,7 @@ mod tests {
         ) {
             let facing = Dart(facing % graph.dart_count() as u32);
             let mut world = GraphWorld::new(&graph, facing);
-            let mut exploration = Exploration::new(graph.dart_count());
+            let mut exploration = Algorithm1Run::new(graph.dart_count());
             let mut choices = Drawn { numbers: &numbers, next: 0 };
             map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
             let mut candidate = Candidate::default();
@@ -121,7 +121,7 @@ mod tests {
             let facing = Dart(facing % graph.dart_count() as u32);
             let copy = crate::isomorphism::as_discovered(&graph, facing);
             let moves = |graph, facing| {
-                let mut exploration = Exploration::new(60);
+                let mut exploration = Algorithm1Run::new(60);
                 let mut world = GraphWorld::new(graph, facing);
                 explore(&mut exploration, &mut world, &mut ()).unwrap();
                 exploration.moves()

@@ -15,14 +15,14 @@ pub(super) const DARTS: usize = 2 * MAX_EDGES;
 pub(super) const FREE: u8 = u8::MAX;
 
 /// The number of edges in the beginnings that divide an enumeration into parts.
-pub(super) const BEGINNING: usize = 4;
+pub(super) const PREFIX_EDGES: usize = 4;
 
 /// The first steps of a history of growth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Beginning {
+pub(super) struct Prefix {
     /// The degree of the start vertex.
     degree: u8,
-    words: [u8; BEGINNING],
+    words: [u8; PREFIX_EDGES],
     edges: u8,
 }
 
@@ -103,18 +103,18 @@ impl Growth {
         }
     }
 
-    /// The first steps of the history, at most [`BEGINNING`].
-    pub(super) fn beginning(&self) -> Beginning {
-        let mut words = [0; BEGINNING];
+    /// The first steps of the history, at most [`PREFIX_EDGES`].
+    pub(super) fn prefix(&self) -> Prefix {
+        let mut words = [0; PREFIX_EDGES];
         words[..self.edges].copy_from_slice(&self.words[..self.edges]);
-        Beginning { degree: self.degree[0], words, edges: self.edges as u8 }
+        Prefix { degree: self.degree[0], words, edges: self.edges as u8 }
     }
 
     /// Repeats the first steps of a history.
-    pub(super) fn resume(&mut self, beginning: Beginning) {
+    pub(super) fn resume(&mut self, prefix: Prefix) {
         self.add_vertex(beginning.degree as usize);
         self.graph.add_vertex(beginning.degree.into());
-        for &word in &beginning.words[..beginning.edges as usize] {
+        for &word in &prefix.words[..beginning.edges as usize] {
             let dart = self.free.trailing_zeros() as usize;
             let other = if (word as usize) < self.darts {
                 word as usize

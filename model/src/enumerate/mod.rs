@@ -21,7 +21,7 @@ pub(crate) use watch::in_parts;
 pub use watch::{Interrupted, Watch};
 
 use crate::embedded_graph::EmbeddedGraph;
-use growth::{BEGINNING, Beginning, Growth, MAX_EDGES};
+use growth::{Growth, MAX_EDGES, PREFIX_EDGES, Prefix};
 
 /// The objects that are enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,7 +65,7 @@ pub struct EnumeratedGraph<'g> {
 #[derive(Clone, Copy, Debug)]
 pub struct EnumerationPart {
     whole: Enumeration,
-    beginning: Beginning,
+    prefix: Prefix,
 }
 
 impl Enumeration {
@@ -91,9 +91,9 @@ impl Enumeration {
     #[must_use]
     pub fn parts(&self) -> Vec<EnumerationPart> {
         let mut parts = Vec::new();
-        let beginning = BEGINNING.min(self.edges);
+        let prefix = PREFIX_EDGES.min(self.edges);
         let _ = Growth::new(self.class, self.edges, self.each).grow_to(beginning, &mut |growth| {
-            parts.push(EnumerationPart { whole: *self, beginning: growth.beginning() });
+            parts.push(EnumerationPart { whole: *self, prefix: growth.prefix() });
             ControlFlow::Continue(())
         });
         parts
@@ -117,7 +117,7 @@ impl EnumerationPart {
     ) -> ControlFlow<()> {
         let Enumeration { class, edges, each } = self.whole;
         let mut growth = Growth::new(class, edges, each);
-        growth.resume(self.beginning);
+        growth.resume(self.prefix);
         growth.grow_to(edges, &mut |growth| growth.show(visit))
     }
 }

@@ -24,7 +24,7 @@ pub trait Watch: Sync {
     ///
     /// # Errors
     /// Returns an error if the work is to stop.
-    fn go_on(&self) -> Result<(), Interrupted> {
+    fn check_stop(&self) -> Result<(), Interrupted> {
         if self.stop() { Err(Interrupted) } else { Ok(()) }
     }
 }

@@ -1,10 +1,10 @@
 //! Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
 //!
 //! The numbers are those of the printed lines. The state and the small steps are those of
-//! [`Exploration`].
+//! [`Algorithm1Run`].
 
 use super::{
-    Choices, CostOrder, Exploration, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart,
+    Algorithm1Run, Choices, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk,
     MappingChoice, MappingError, MappingEvent, Nearest, Observer, StateKey, StepPurpose,
 };
 use crate::{embedded_graph::Dart, marker::Directional, world::World};
@@ -20,7 +20,7 @@ pub enum ValidationResult {
 
 /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing
 /// door. Afterwards `exploration` holds the map, the robot's pose in it and the number of moves;
-/// [`Exploration::map`] is then [complete](super::PartialMap::complete).
+/// [`Algorithm1Run::map`] is then [complete](super::PartialMap::complete).
 ///
 /// # Errors
 /// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
@@ -29,7 +29,7 @@ pub enum ValidationResult {
 pub fn map_world<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
-    exploration: &mut Exploration,
+    exploration: &mut Algorithm1Run,
     observer: &mut impl Observer<W>,
 ) -> Result<(), MappingError<W::Error>> {
     // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
@@ -48,7 +48,7 @@ pub fn map_world<W: World>(
 /// # Errors
 /// See [`map_world`].
 pub fn step<W: World>(
-    exploration: &mut Exploration,
+    exploration: &mut Algorithm1Run,
     choice: MappingChoice,
     world: &mut W,
     observer: &mut impl Observer<W>,
@@ -63,12 +63,12 @@ pub fn step<W: World>(
 // paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21
 #[inline]
 pub fn step_with<W: World, O: Observer<W>>(
-    exploration: &mut Exploration,
+    exploration: &mut Algorithm1Run,
     choice: MappingChoice,
     world: &mut W,
     observer: &mut O,
     try_path: impl FnOnce(
-        &mut Exploration,
+        &mut Algorithm1Run,
         Dart,
         &mut W,
         &mut O,
@@ -104,38 +104,38 @@ pub fn step_with<W: World, O: Observer<W>>(
 /// Returns an error if the world does, or if it contradicts itself on the way back.
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17, alg1.validation
 pub fn try_path<W: World>(
-    exploration: &mut Exploration,
+    exploration: &mut Algorithm1Run,
     hypothesis: Dart,
     world: &mut W,
     observer: &mut impl Observer<W>,
 ) -> Result<ValidationResult, MappingError<W::Error>> {
-    exploration.set_out();
+    exploration.clear_trail();
     let mut pose = hypothesis;
     let mut followed = 0;
     // 10: the motions of the path to v0, and the percepts expected along it.
     while let Some((door, next)) = exploration.toward_marker(pose) {
         let expected = exploration.map().expected(next);
         // 11: try to traverse it.
-        let perceived = exploration.take(door, world, observer)?;
+        let perceived = exploration.go_through(door, world, observer)?;
         followed += 1;
         // 12, 13: the percepts do not match.
         if perceived != expected {
             // 14, 15: reject the hypothesis, and retrace the path back to vu.
             exploration.retrace(world, observer)?;
             let event = MappingEvent::Rejected { hypothesis, followed, expected, perceived };
-            observer.event(world, exploration.journey(), event);
+            observer.event(world, exploration.walk(), event);
             return Ok(ValidationResult::Rejected);
         }
         pose = next;
     }
     // 16, 17: the percepts match throughout; confirm the hypothesis.
     exploration.arrive_at_marker(pose);
-    observer.event(world, exploration.journey(), MappingEvent::Confirmed { hypothesis, followed });
+    observer.event(world, exploration.walk(), MappingEvent::Confirmed { hypothesis, followed });
     Ok(ValidationResult::Confirmed)
 }
 
 /// Algorithm 1. The default choices are those of [`Nearest`].
-impl Explorer for Exploration {
+impl Explorer for Algorithm1Run {
     type Marker = Directional;
     type Choice = MappingChoice;
 
@@ -196,8 +196,8 @@ impl Explorer for Exploration {
         step(self, choice, world, observer)
     }
 
-    fn map_walk(&self) -> Option<&Journey> {
-        Some(self.journey())
+    fn map_walk(&self) -> Option<&MapWalk> {
+        Some(self.walk())
     }
 
     fn state_key(&self) -> Option<StateKey> {

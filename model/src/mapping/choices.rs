@@ -49,7 +49,7 @@ mod tests {
     use crate::{
         any_graph::{Class, any_graph},
         embedded_graph::{EmbeddedGraph, Vertex},
-        mapping::{Exploration, InvalidStep, Journey, MappingError, MappingEvent, map_world},
+        mapping::{Algorithm1Run, InvalidStep, MapWalk, MappingError, MappingEvent, map_world},
         world::GraphWorld,
     };
 
@@ -91,8 +91,8 @@ mod tests {
 
     fn story(graph: &EmbeddedGraph, choices: &mut impl Choices) -> Vec<MappingEvent> {
         let mut story = Vec::new();
-        let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| story.push(event);
-        let mut exploration = Exploration::new(graph.dart_count());
+        let mut listen = |_: &mut GraphWorld, _: &MapWalk, event: MappingEvent| story.push(event);
+        let mut exploration = Algorithm1Run::new(graph.dart_count());
         let mut world = GraphWorld::new(graph, Dart(0));
         map_world(&mut world, choices, &mut exploration, &mut listen).unwrap();
         story
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_default_hypothesis_is_the_last() {
-        let exploration = Exploration::new(0);
+        let exploration = Algorithm1Run::new(0);
         let hypotheses = [Dart(5), Dart(3), Dart(1)];
         assert_eq!(Nearest.next_hypothesis(exploration.map(), &hypotheses), 2);
     }
@@ -127,8 +127,8 @@ mod tests {
     proptest! {
         #[test]
         fn a_choice_that_is_not_open_is_an_error(graph in any_graph(Class::Multigraph, 40)) {
-            let error = |choices: &mut dyn FnMut(&mut Exploration, &mut GraphWorld) -> _| {
-                let mut exploration = Exploration::new(graph.dart_count());
+            let error = |choices: &mut dyn FnMut(&mut Algorithm1Run, &mut GraphWorld) -> _| {
+                let mut exploration = Algorithm1Run::new(graph.dart_count());
                 choices(&mut exploration, &mut GraphWorld::new(&graph, Dart(0)))
             };
             let degree = graph.degree_around(Dart(0));

@@ -12,7 +12,7 @@
 use std::{borrow::Cow, fmt};
 
 use super::{
-    ExploredMap, FACING, Flaw, InvalidStep, Journey, MappingError, Observer, PartialMap,
+    ExploredMap, FACING, Flaw, InvalidStep, MapWalk, MappingError, Observer, PartialMap,
     StepPurpose,
 };
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
 ///
 /// What it does must depend on its state, the percepts and the refusals alone. An explorer that makes its whole
 /// run in [`begin`](Self::begin) has no steps. Short steps share more in a check of
-/// [shared prefixes](crate::check::LazySweep): at best, a step takes one door whose other end is not known, as its
+/// [shared prefixes](crate::check::SharedPrefixCheck): at best, a step takes one door whose other end is not known, as its
 /// first move after [`approach`](Self::approach). `clone_from` is called for each run there; an implementation that
 /// reuses memory is faster.
 pub trait Explorer: Clone {
@@ -99,7 +99,7 @@ pub trait Explorer: Clone {
     }
 
     /// The robot's map, its pose in the map and its moves, if it keeps them in this form.
-    fn map_walk(&self) -> Option<&Journey> {
+    fn map_walk(&self) -> Option<&MapWalk> {
         None
     }
 

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{Explorer, ExplorerInfo, Journey, MappingError, Observer, explore};
+use super::{Explorer, ExplorerInfo, MapWalk, MappingError, Observer, explore};
 use crate::{
     marker::{self, Directional, Marker},
     world::World,
@@ -39,11 +39,11 @@ macro_rules! algorithms {
 algorithms! { $
     /// The paper's Algorithm 1. It is that of a log that names none.
     #[default]
-    Algorithm1: Exploration,
+    Algorithm1: Algorithm1Run,
     /// The movable marker algorithm, for worlds without loops and parallel edges.
-    MovableMarker: MarkerSearch,
+    MovableMarker: MovableMarkerRun,
     /// The folding explorer.
-    Folding: FoldingExploration,
+    Folding: FoldingRun,
 }
 
 pub(crate) use with_explorer;
@@ -94,7 +94,7 @@ impl MappingAlgorithm {
         world: &mut W,
         max_darts: usize,
         observer: &mut impl Observer<W>,
-    ) -> (Journey, Result<(), MappingError<W::Error>>) {
+    ) -> (MapWalk, Result<(), MappingError<W::Error>>) {
         with_explorer!(self, E => {
             let mut explorer = E::default();
             explorer.limit_darts(max_darts);

@@ -3,7 +3,7 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    AuditMove, EarlierWalk, FACING, FoldingExploration, InvalidStep, Journey, MappedWorld,
+    AuditMove, EarlierWalk, FACING, FoldingRun, InvalidStep, MapWalk, MappedWorld,
     MappingAlgorithm, MappingError, MappingEvent, Observer, RecoveryConfig, Relocate,
     SafeguardEvent, audit, map_with_recovery,
 };
@@ -78,7 +78,7 @@ impl MappingMethod {
         bound: usize,
         earlier: &[EarlierWalk],
         observer: &mut impl Observer<W>,
-    ) -> (Journey, Result<MappedWorld, MappingError<W::Error>>) {
+    ) -> (MapWalk, Result<MappedWorld, MappingError<W::Error>>) {
         match self {
             Self::By { algorithm, audits } => {
                 let (journey, mapped) = algorithm.map_world(world, bound, observer);
@@ -86,7 +86,7 @@ impl MappingMethod {
                 (journey, mapped)
             }
             Self::Recovering(config) => {
-                let mut exploration = FoldingExploration::new(bound);
+                let mut exploration = FoldingRun::new(bound);
                 let mapped = map_with_recovery(world, &mut exploration, config, earlier, observer);
                 (exploration.into(), mapped)
             }
@@ -96,7 +96,7 @@ impl MappingMethod {
 
 /// Audits a complete map.
 fn audited<W: Relocate>(
-    journey: &Journey,
+    journey: &MapWalk,
     audits: u32,
     world: &mut W,
     observer: &mut impl Observer<W>,
@@ -255,7 +255,7 @@ mod tests {
             &mut world,
             100,
             &[],
-            &mut |_: &mut GraphWorld, _: &Journey, event| match event {
+            &mut |_: &mut GraphWorld, _: &MapWalk, event| match event {
                 MappingEvent::Started { percept } => first = Some(percept),
                 MappingEvent::Moved { door, percept } => moves.push((door, percept)),
                 _ => {}

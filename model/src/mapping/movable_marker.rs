@@ -4,11 +4,11 @@
 //!
 //! Place validation finds out whether the place just reached is new. If it is not, back-link
 //! validation finds the edge by which it was entered. The state and the small steps are those of
-//! [`MarkerSearch`].
+//! [`MovableMarkerRun`].
 
 use super::{
-    Choices, Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart,
-    MappingError, MarkerSearch, Nearest, Observer, StepPurpose, ValidationResult,
+    Choices, Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk,
+    MappingError, MovableMarkerRun, Nearest, Observer, StepPurpose, ValidationResult,
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
@@ -27,7 +27,7 @@ pub enum ReachedPlace {
 
 /// Maps a world without loops and parallel edges. At its start the robot stands where the marker
 /// lies, with its back to the facing door. Afterwards `search` holds the map, the robot's pose in it
-/// and the number of moves, and the robot carries the marker; [`MarkerSearch::map`] is then
+/// and the number of moves, and the robot carries the marker; [`MovableMarkerRun::map`] is then
 /// [complete](super::PartialMap::complete).
 ///
 /// With loops or parallel edges one movable marker does not suffice: the map is then wrong, or the
@@ -39,7 +39,7 @@ pub enum ReachedPlace {
 pub fn map_with_movable_marker<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
-    search: &mut MarkerSearch,
+    search: &mut MovableMarkerRun,
     observer: &mut impl Observer<W>,
 ) -> Result<(), MappingError<W::Error>> {
     // The robot picks the marker up at v0; S is v0; U is its edges.
@@ -59,7 +59,7 @@ pub fn map_with_movable_marker<W: World>(
 /// See [`map_with_movable_marker`].
 pub fn explore_edge<W: World>(
     edge: Dart,
-    search: &mut MarkerSearch,
+    search: &mut MovableMarkerRun,
     world: &mut W,
     observer: &mut impl Observer<W>,
 ) -> Result<(), MappingError<W::Error>> {
@@ -83,7 +83,7 @@ pub fn explore_edge<W: World>(
 /// Returns an error if the world does, or if it contradicts itself.
 // paper: movable.place, movable.new, movable.known
 pub fn validate_place<W: World>(
-    search: &mut MarkerSearch,
+    search: &mut MovableMarkerRun,
     world: &mut W,
     observer: &mut impl Observer<W>,
 ) -> Result<ReachedPlace, MappingError<W::Error>> {
@@ -116,7 +116,7 @@ pub fn validate_place<W: World>(
 pub fn validate_back_link<W: World>(
     edge: Dart,
     vertex: Vertex,
-    search: &mut MarkerSearch,
+    search: &mut MovableMarkerRun,
     world: &mut W,
     observer: &mut impl Observer<W>,
 ) -> Result<Dart, MappingError<W::Error>> {
@@ -142,7 +142,7 @@ pub fn validate_back_link<W: World>(
 
 /// The movable marker algorithm, for worlds without loops and parallel edges. The default choices are those of
 /// [`Nearest`].
-impl Explorer for MarkerSearch {
+impl Explorer for MovableMarkerRun {
     type Marker = Movable;
     type Choice = Dart;
 
@@ -195,8 +195,8 @@ impl Explorer for MarkerSearch {
         explore_edge(edge, self, world, observer)
     }
 
-    fn map_walk(&self) -> Option<&Journey> {
-        Some(self.journey())
+    fn map_walk(&self) -> Option<&MapWalk> {
+        Some(self.walk())
     }
 
     fn purpose(&self, edge: Option<Dart>) -> StepPurpose {

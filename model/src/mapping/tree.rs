@@ -35,7 +35,7 @@ const UNREACHED: u32 = u32::MAX;
 
 impl BreadthFirstTree {
     /// Begins a new tree at its root.
-    pub(super) fn plant(&mut self, map: &PartialMap, root: Vertex) {
+    pub(super) fn grow_from(&mut self, map: &PartialMap, root: Vertex) {
         self.vertices.clear();
         self.vertices.resize(map.vertex_count(), TreeVertex { hops: UNREACHED, up: Dart(0) });
         self.reached.clear();
@@ -53,14 +53,14 @@ impl BreadthFirstTree {
 
     /// Whether there is a tree.
     #[inline]
-    pub(super) fn is_planted(&self) -> bool {
+    pub(super) fn is_grown(&self) -> bool {
         !self.reached.is_empty()
     }
 
     /// Begins a new tree, unless this is one of the map, from that root.
-    pub(super) fn plant_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
+    pub(super) fn grow_from_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
         if self.reached.first() != Some(&root) || self.vertices.len() != map.vertex_count() {
-            self.plant(map, root);
+            self.grow_from(map, root);
         }
     }
 

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     mapping::{
-        Exploration, Explorer, Journey, MappingAlgorithm, MappingChoice, MappingError,
+        Algorithm1Run, Explorer, MapWalk, MappingAlgorithm, MappingChoice, MappingError,
         with_explorer,
     },
     percept::{Percept, WalkEvent},
@@ -26,7 +26,7 @@ pub struct AlgorithmMatch {
     /// How far it follows the trace.
     pub reached: MatchEnd,
     /// Its map, the robot's pose in the map and its moves at that point.
-    pub run: Journey,
+    pub run: MapWalk,
     /// The cases of Algorithm 1 that it covers.
     pub coverage: AlgorithmCoverage,
 }
@@ -107,7 +107,7 @@ fn match_default(
 /// The run with the default choices.
 #[derive(Clone)]
 struct DefaultRun {
-    exploration: Exploration,
+    exploration: Algorithm1Run,
     coverage: AlgorithmCoverage,
     moves: usize,
     has_begun: bool,
@@ -155,7 +155,7 @@ fn match_choices(
     let algorithm = MappingAlgorithm::Algorithm1;
     let mut trace = Cow::Borrowed(trace);
     let mut default = DefaultRun {
-        exploration: Exploration::new(bound),
+        exploration: Algorithm1Run::new(bound),
         coverage: AlgorithmCoverage::default(),
         moves: 0,
         has_begun: false,
@@ -228,8 +228,8 @@ fn with_choices(
     script: &[MappingChoice],
     trace: &Trace,
     bound: usize,
-) -> (Exploration, AlgorithmCoverage) {
-    let mut exploration = Exploration::new(bound);
+) -> (Algorithm1Run, AlgorithmCoverage) {
+    let mut exploration = Algorithm1Run::new(bound);
     let mut coverage = AlgorithmCoverage::default();
     let mut world = TraceWorld::after(trace, 0);
     // The result is known.

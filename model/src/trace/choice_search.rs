@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     embedded_graph::Dart,
-    mapping::{Exploration, Explorer, MappingAlgorithm, MappingChoice, PartialMap, StepPurpose},
+    mapping::{Algorithm1Run, Explorer, MappingAlgorithm, MappingChoice, PartialMap, StepPurpose},
     percept::WalkEvent,
 };
 
@@ -24,7 +24,7 @@ pub enum TraceClaim {
 /// A run that matches the trace so far.
 #[derive(Clone)]
 struct Way {
-    exploration: Exploration,
+    exploration: Algorithm1Run,
     moves: usize,
     /// The choices made so far.
     script: Vec<MappingChoice>,
@@ -89,7 +89,7 @@ impl Search {
             ways.reverse();
             return self.search(trace, ways);
         }
-        let mut exploration = Exploration::new(self.dart_bound);
+        let mut exploration = Algorithm1Run::new(self.dart_bound);
         let begun = exploration.begin(&mut TraceWorld::after(trace, 0), &mut ());
         let way = Way { exploration, moves: 0, script: Vec::new() };
         if let Err(error) = begun {

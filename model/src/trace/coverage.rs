@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt};
 use crate::{
     embedded_graph::EmbeddedGraph,
     mapping::{
-        DEFAULT_DART_BOUND, Exploration, Journey, MappingEvent, Nearest, Observer, map_world,
+        Algorithm1Run, DEFAULT_DART_BOUND, MapWalk, MappingEvent, Nearest, Observer, map_world,
     },
     percept::Sighting,
     world::GraphWorld,
@@ -91,7 +91,7 @@ impl AlgorithmCoverage {
 }
 
 impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
-    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
         match event {
             MappingEvent::Moved { percept, .. } => {
                 self.add(
@@ -130,7 +130,7 @@ impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
 #[must_use]
 pub fn reachable(graph: &EmbeddedGraph) -> AlgorithmCoverage {
     let mut coverage = AlgorithmCoverage::default();
-    let mut exploration = Exploration::new(DEFAULT_DART_BOUND);
+    let mut exploration = Algorithm1Run::new(DEFAULT_DART_BOUND);
     for facing in graph.darts() {
         // A world beyond the bound has been covered as far as a run goes.
         let mut world = GraphWorld::new(graph, facing);
@@ -152,7 +152,7 @@ mod tests {
     fn cases_are_counted() {
         let graph = lollipop();
         let mut coverage = AlgorithmCoverage::default();
-        let mut exploration = Exploration::new(8);
+        let mut exploration = Algorithm1Run::new(8);
         let mut world = GraphWorld::new(&graph, Dart(0));
         map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage).unwrap();
         // The tail leads to the fork, one way round to two corners; the last edge closes the loop, which
@@ -189,7 +189,7 @@ mod tests {
         let percept = Percept { degree: 2, sighting: Sighting::Nothing };
         let event =
             MappingEvent::Arrived { edge: Dart(1), percept, contradicted: 0, hypotheses: 1 };
-        coverage.event(&mut (), Exploration::new(0).journey(), event);
+        coverage.event(&mut (), Algorithm1Run::new(0).walk(), event);
         assert_eq!(coverage, AlgorithmCoverage::default());
     }
 
@@ -206,7 +206,7 @@ mod tests {
             let mut coverage = AlgorithmCoverage::default();
             let event =
                 MappingEvent::Rejected { hypothesis: Dart(1), followed: 1, expected, perceived };
-            coverage.event(&mut (), Exploration::new(0).journey(), event);
+            coverage.event(&mut (), Algorithm1Run::new(0).walk(), event);
             let cases = [
                 AlgorithmCase::RejectedOnTheWay,
                 AlgorithmCase::RejectedAtTheEnd,

@@ -5,16 +5,16 @@ use super::{
     match_end::{AllowedStep, MatchEnd, RunStop},
 };
 use crate::{
-    mapping::{Explorer, Journey, MappingAlgorithm, MappingError, StepPurpose},
+    mapping::{Explorer, MapWalk, MappingAlgorithm, MappingError, StepPurpose},
     percept::WalkEvent,
 };
 
 /// How far an explorer follows a trace, after how many moves it ends, and its journey until then.
-pub(super) fn follow<E: Explorer + Default + Into<Journey>>(
+pub(super) fn follow<E: Explorer + Default + Into<MapWalk>>(
     algorithm: MappingAlgorithm,
     trace: &Trace,
     bound: usize,
-) -> (MatchEnd, usize, Journey) {
+) -> (MatchEnd, usize, MapWalk) {
     let mut explorer = E::default();
     explorer.limit_darts(bound);
     let mut world = TraceWorld::after(trace, 0);

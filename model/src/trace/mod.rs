@@ -249,7 +249,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
-        mapping::{Journey, MappingAlgorithm, MappingEvent},
+        mapping::{MapWalk, MappingAlgorithm, MappingEvent},
         percept::Sighting,
         world::{GraphWorld, World},
     };
@@ -285,7 +285,7 @@ pub(crate) mod tests {
         facing: Dart,
     ) -> Trace {
         let mut doors = Vec::new();
-        let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+        let mut listen = |_: &mut GraphWorld, _: &MapWalk, event: MappingEvent| {
             if let MappingEvent::Moved { door, .. } = event {
                 doors.push(door);
             }

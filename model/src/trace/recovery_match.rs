@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     mapping::{
-        ArrivalMeasurement, FoldingEvent, FoldingExploration, Journey, MapDart, MappingAlgorithm,
+        ArrivalMeasurement, FoldingEvent, FoldingRun, MapDart, MapWalk, MappingAlgorithm,
         MappingError, MappingEvent, Observer, RecoveryConfig, Relocate, SafeguardEvent,
         StepPurpose, map_with_recovery,
     },
@@ -35,7 +35,7 @@ pub fn match_recovering(
     bound: usize,
 ) -> AlgorithmMatch {
     let algorithm = MappingAlgorithm::Folding;
-    let mut exploration = FoldingExploration::new(bound);
+    let mut exploration = FoldingRun::new(bound);
     let mut world = RecordedWorld { world: TraceWorld::after(trace, 0), visits };
     let mut observer = StepObserver::default();
     let mapped = map_with_recovery(&mut world, &mut exploration, config, &[], &mut observer);
@@ -120,7 +120,7 @@ impl Default for StepObserver {
 }
 
 impl Observer<RecordedWorld<'_>> for StepObserver {
-    fn event(&mut self, world: &mut RecordedWorld, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, world: &mut RecordedWorld, journey: &MapWalk, event: MappingEvent) {
         use SafeguardEvent::{
             AuditBegun, AuditPassed, BlockedRetried, Contradicted, MarkerFound, Relocated, TooLarge,
         };

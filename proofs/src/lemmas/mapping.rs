@@ -10,7 +10,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
     mapping::{
-        Choices, Exploration, Explorer, FACING, Journey, MappingAlgorithm, MappingEvent,
+        Algorithm1Run, Choices, Explorer, FACING, MapWalk, MappingAlgorithm, MappingEvent,
         PartialMap, map_world,
     },
     percept::Door,
@@ -101,7 +101,7 @@ struct Truth<'g> {
 
 impl Truth<'_> {
     /// Follows an event.
-    fn event(&mut self, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, journey: &MapWalk, event: MappingEvent) {
         match event {
             MappingEvent::Started { percept } => self.meet(FACING, percept.degree),
             MappingEvent::Moved { door, percept: _ } => {
@@ -160,8 +160,8 @@ impl<C: Choose> Choices for Noted<'_, C> {
 fn run<'g, C: Choose>(
     choose: &mut C,
     graph: &'g EmbeddedGraph,
-    mut judge: impl FnMut(&Truth, &Journey, MappingEvent) -> CaseResult,
-) -> Result<(Exploration, Truth<'g>), Stop> {
+    mut judge: impl FnMut(&Truth, &MapWalk, MappingEvent) -> CaseResult,
+) -> Result<(Algorithm1Run, Truth<'g>), Stop> {
     let latest = Cell::new(FACING);
     let heeded = |event| match event {
         MappingEvent::Arrived { edge: chosen, .. }
@@ -173,14 +173,14 @@ fn run<'g, C: Choose>(
     };
     let mut truth = Truth { graph, pose: FACING, image: Vec::new(), doors: Vec::new() };
     let mut verdict = Ok(());
-    let mut watch = |_: &mut _, journey: &Journey, event: MappingEvent| {
+    let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
         truth.event(journey, event);
         if verdict.is_ok() {
             verdict = heeded(event).and_then(|()| judge(&truth, journey, event));
         }
     };
     // The map never needs more darts than the world has.
-    let mut exploration = Exploration::new(graph.dart_count());
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let mut choices = Noted { choices: DrawnChoices(choose), latest: &latest };
     let ended = map_world(&mut world, &mut choices, &mut exploration, &mut watch);
@@ -211,7 +211,7 @@ fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut
     Ok(())
 }
 
-fn embeds(truth: &Truth, journey: &Journey) -> CaseResult {
+fn embeds(truth: &Truth, journey: &MapWalk) -> CaseResult {
     let Truth { graph, pose, image, .. } = truth;
     let map = journey.map();
     claim("each dart of the map is one of the world", image.len() == map.dart_count())?;

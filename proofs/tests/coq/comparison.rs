@@ -20,8 +20,8 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration},
     format::{named_world::NamedWorld, world_file},
     mapping::{
-        Choices, Exploration, Journey, MappingEvent, MarkerSearch, Nearest, Observer, PartialMap,
-        map_with_movable_marker, map_world,
+        Algorithm1Run, Choices, MapWalk, MappingEvent, MovableMarkerRun, Nearest, Observer,
+        PartialMap, map_with_movable_marker, map_world,
     },
     marker::Movable,
     world::GraphWorld,
@@ -71,13 +71,13 @@ impl Mapping {
         let known = match self {
             Self::Directional => {
                 let mut world = GraphWorld::new(start, Dart(0));
-                let mut exploration = Exploration::new(bound);
+                let mut exploration = Algorithm1Run::new(bound);
                 map_world(&mut world, choices, &mut exploration, &mut did)
                     .map(|()| known(exploration.map(), exploration.robot()))
             }
             Self::Movable => {
                 let mut world = GraphWorld::with_marker(start, Movable, Dart(0));
-                let mut search = MarkerSearch::new(bound);
+                let mut search = MovableMarkerRun::new(bound);
                 map_with_movable_marker(&mut world, choices, &mut search, &mut did)
                     .map(|()| known(search.map(), search.robot()))
             }
@@ -92,7 +92,7 @@ impl Mapping {
 struct Actions(Vec<String>);
 
 impl<W: ?Sized> Observer<W> for Actions {
-    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
         self.0.extend(event.action().map(|action| action.to_string()));
     }
 }

@@ -7,7 +7,7 @@ use std::{fs, iter, mem};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
-    mapping::{FoldingEvent, FoldingExploration, Journey, MappingEvent, Observer, explore},
+    mapping::{FoldingEvent, FoldingRun, MapWalk, MappingEvent, Observer, explore},
     world::GraphWorld,
 };
 
@@ -56,7 +56,7 @@ struct Recorded {
 }
 
 impl<W: ?Sized> Observer<W> for Recorded {
-    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
         match event {
             MappingEvent::Moved { door, .. } => {
                 self.did.push(door.0);
@@ -98,7 +98,7 @@ struct Run {
 impl Run {
     fn new(start: EmbeddedGraph) -> Self {
         let mut world = GraphWorld::new(&start, Dart(0));
-        let mut exploration = FoldingExploration::new(start.dart_count());
+        let mut exploration = FoldingRun::new(start.dart_count());
         let mut recorded = Recorded::default();
         let known = explore(&mut exploration, &mut world, &mut recorded).map_or_else(
             |error| error.to_string(),

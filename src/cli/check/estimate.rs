@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::Serialize;
 use toposlam_model::{
-    check::{LazySweep, Shard},
+    check::{Shard, SharedPrefixCheck},
     enumerate::{Class, Watch},
     mapping::MappingAlgorithm,
 };
@@ -122,7 +122,7 @@ fn seconds_a_move(
 ) -> Option<Interval> {
     let mut times = Vec::new();
     for size in 1..=edges {
-        let sweep = LazySweep::new(class, size, Shard::WHOLE).ok()?;
+        let sweep = SharedPrefixCheck::new(class, size, Shard::WHOLE).ok()?;
         let begun = Instant::now();
         let check = algorithm.lazy_sweep(&sweep, &(), &OnlyStop(watch));
         let elapsed = begun.elapsed().as_secs_f64();
@@ -166,7 +166,7 @@ impl EstimateOptions {
     /// Returns an error if it was interrupted, or cannot be printed.
     pub(super) fn print(
         &self,
-        (edges, sweep): (usize, &LazySweep),
+        (edges, sweep): (usize, &SharedPrefixCheck),
         algorithm: MappingAlgorithm,
         json: bool,
         watch: &dyn Watch,

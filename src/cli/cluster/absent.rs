@@ -4,7 +4,7 @@ use std::{io::Write, path::Path};
 
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazySweep, Tally},
+    check::{FinishedUnits, SharedPrefixCheck, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -35,7 +35,7 @@ impl NoCluster {
     pub(in crate::cli) fn check(
         &mut self,
         _: MappingAlgorithm,
-        _: &LazySweep,
+        _: &SharedPrefixCheck,
         _: &dyn FinishedUnits,
         _: &dyn Watch,
     ) -> Result<Tally, CliError> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_cluster::{ClusterError, ClusterProcess, ConnectError, Hosts, ThreadUse};
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, Findings, KeptPairs, Unfinished},
-    check::{FinishedUnits, LazySweep, Tally},
+    check::{FinishedUnits, SharedPrefixCheck, Tally},
     enumerate::Watch,
     mapping::MappingAlgorithm,
 };
@@ -95,7 +95,7 @@ impl ClusterSession {
     pub(in crate::cli) fn check(
         &mut self,
         algorithm: MappingAlgorithm,
-        sweep: &LazySweep,
+        sweep: &SharedPrefixCheck,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Result<Tally, CliError> {

@@ -81,7 +81,7 @@ impl<'w> RobotComparison<'w> {
             comparison.partition(watch)?;
         }
         let with_walk = |pose| {
-            watch.go_on()?;
+            watch.check_stop()?;
             let walk = comparison.walk_watched([start, pose], watch)?;
             watch.part_done(1);
             Ok((pose, walk))

@@ -18,7 +18,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingEvent},
+    mapping::{MapWalk, MappingEvent},
 };
 use toposlam_robot::{
     explorer::RobotExplorer,
@@ -259,7 +259,7 @@ impl RunObserver for Narrator<'_, '_> {
         }
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         self.story.add(journey, event);
     }
 

@@ -5,7 +5,7 @@ use std::io::Write;
 use serde::Serialize;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{FACING, Journey, MappedWorld, MappingError, MappingMethod},
+    mapping::{FACING, MapWalk, MappedWorld, MappingError, MappingMethod},
 };
 use toposlam_robot::{explorer::ExplorerError, false_percepts::FalsePercepts};
 
@@ -22,7 +22,7 @@ pub(super) struct DriveResult<'a> {
     /// The name of the world, or an empty string.
     pub(super) world: &'a str,
     pub(super) method: MappingMethod,
-    pub(super) mapping: &'a Journey,
+    pub(super) mapping: &'a MapWalk,
     pub(super) mapped: Result<&'a MappedWorld, &'a MappingError<ExplorerError>>,
     /// The moves, with those of recoveries and audits.
     pub(super) moves: u64,

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Journey, MappingEvent, Observer};
+use toposlam_model::mapping::{MapWalk, MappingEvent, Observer};
 
 use crate::cli::json::{action_json, begin_line};
 
@@ -27,7 +27,7 @@ impl<'o, W: Write> DoorsWriter<'o, W> {
 }
 
 impl<W: ?Sized, O: Write> Observer<W> for DoorsWriter<'_, O> {
-    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
         if let (Ok(()), Some(action)) = (&self.result, event.action()) {
             let comma = if self.taken == 0 { "" } else { "," };
             self.taken += 1;

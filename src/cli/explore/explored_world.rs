@@ -3,7 +3,7 @@
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{Flaw, Journey, MappedWorld, MappingMethod, Observer},
+    mapping::{Flaw, MapWalk, MappedWorld, MappingMethod, Observer},
     marker::Marker,
     world::GraphWorld,
 };
@@ -11,7 +11,7 @@ use toposlam_model::{
 /// A run in a world.
 pub(super) struct ExploredWorld {
     /// The robot's journey without audits.
-    pub(super) journey: Journey,
+    pub(super) journey: MapWalk,
     /// What the map took with its audits; `None` if the run ended early.
     mapped: Option<MappedWorld>,
     /// The most moves that the algorithm may make in this world, without audits.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Journey, MappingEvent, Observer};
+use toposlam_model::mapping::{MapWalk, MappingEvent, Observer};
 
 use super::{doors_writer::DoorsWriter, summary::Summary};
 use crate::story::PrintedStory;
@@ -29,7 +29,7 @@ impl<W: Write> RunPrinter<'_, W> {
 }
 
 impl<W: ?Sized, O: Write> Observer<W> for RunPrinter<'_, O> {
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent) {
         match self {
             Self::Doors(doors) => doors.event(world, journey, event),
             Self::Summary(summary, _) => summary.event(world, journey, event),

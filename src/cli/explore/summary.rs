@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use toposlam_model::mapping::{
-    FoldingEvent, Journey, MappingEvent, MovableEvent, Observer, SafeguardEvent,
+    FoldingEvent, MapWalk, MappingEvent, MovableEvent, Observer, SafeguardEvent,
 };
 
 use crate::cli::text::grouped;
@@ -51,7 +51,7 @@ impl Summary {
 }
 
 impl<W: ?Sized> Observer<W> for Summary {
-    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
         match event {
             MappingEvent::Arrived { contradicted, .. } => {
                 self.rounds += 1;

@@ -92,7 +92,7 @@ impl SenseArguments {
         let mut sensor = LaserSensor::new(self.laser.params()?);
         let mut number = 0;
         for entry in log.entries(&bound) {
-            StopSignal.go_on()?;
+            StopSignal.check_stop()?;
             let entry = entry.map_err(|error| wrong(&error))?;
             let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
                 entry.content

@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{FACING, Journey, MappingError},
+    mapping::{FACING, MapWalk, MappingError},
 };
 use toposlam_robot::{explorer::ExplorerError, false_percepts::FalsePercepts};
 use toposlam_simulator::{
@@ -37,7 +37,7 @@ pub(super) struct SimulationResult<'a> {
     /// The faults that did not happen: the run ended before their images.
     pub(super) missed: Vec<&'a RobotFault>,
     /// The result of the off-line version on the same images, if it is complete.
-    pub(super) replayed: Option<Journey>,
+    pub(super) replayed: Option<MapWalk>,
     /// How long the off-line version took, in seconds.
     pub(super) compute_seconds: f64,
     /// How long all of it took, in seconds.

@@ -12,7 +12,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
-    mapping::{Journey, MappingEvent, PartialMap},
+    mapping::{MapWalk, MappingEvent, PartialMap},
     percept::Door,
 };
 use toposlam_simulator::run::Run;
@@ -179,7 +179,7 @@ impl RunObserver for RunCapture<'_> {
         }
     }
 
-    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+    fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
         let lines = self.story.add(journey, event);
         self.lines.extend(lines.iter().map(StoryLine::to_string));
         if event.grows_map() {

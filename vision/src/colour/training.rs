@@ -301,7 +301,7 @@ impl Training {
         let mut confusion = Confusion::default();
         watch.parts(folds);
         for fold in 0..folds {
-            watch.go_on()?;
+            watch.check_stop()?;
             let examples = self.examples.iter().enumerate();
             let (left_out, others): (Vec<_>, Vec<_>) =
                 examples.partition(|(nth, _)| nth % folds == fold);
@@ -312,7 +312,7 @@ impl Training {
             })?;
             let table = model.table();
             for (_, example) in left_out {
-                watch.go_on()?;
+                watch.check_stop()?;
                 let lit = table.lit(light::gain(example.floor, model.floor));
                 for alike in &example.colours {
                     confusion.count(alike.class, lit.class(alike.colour), alike.pixels());

@@ -5,7 +5,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     folding,
     format::named_world::NamedWorld,
-    mapping::{Journey, MappingAlgorithm, MappingEvent},
+    mapping::{MapWalk, MappingAlgorithm, MappingEvent},
     percept::Door,
     world::GraphWorld,
 };
@@ -41,7 +41,7 @@ pub(super) fn json(world: &NamedWorld, facing: Dart) -> String {
 /// The doors that an algorithm takes until its map is complete.
 fn doors_of(algorithm: MappingAlgorithm, graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
     let mut doors = Vec::new();
-    let mut watch = |_: &mut GraphWorld<'_>, _: &Journey, event: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<'_>, _: &MapWalk, event: MappingEvent| {
         if let MappingEvent::Moved { door, .. } = event {
             doors.push(door);
         }

@@ -174,7 +174,7 @@ impl Stage {
 mod tests {
     use toposlam_model::{
         format::world_file,
-        mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
+        mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, map_world},
         world::GraphWorld,
     };
 
@@ -187,13 +187,13 @@ mod tests {
         let world = world_file::read(&std::fs::read(path).unwrap()).unwrap();
         let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
         let (mut percepts, mut doors) = (vec![robot.sensed()], Vec::new());
-        let mut watch = |_: &mut _, _: &Journey, event: MappingEvent| {
+        let mut watch = |_: &mut _, _: &MapWalk, event: MappingEvent| {
             if let MappingEvent::Moved { door, percept } = event {
                 doors.push(door);
                 percepts.push(percept);
             }
         };
-        let mut exploration = Exploration::new(1000);
+        let mut exploration = Algorithm1Run::new(1000);
         map_world(&mut robot, &mut Nearest, &mut exploration, &mut watch).unwrap();
         (percepts, doors)
     }

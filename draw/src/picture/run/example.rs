@@ -10,7 +10,7 @@ use toposlam_model::{
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
-    mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
+    mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, PartialMap, map_world},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
 };
@@ -61,7 +61,7 @@ pub(crate) fn run_page_data() -> RunPageData {
 /// The map of a plan whenever Algorithm 1 adds to it.
 pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
     let mut maps = Vec::new();
-    let mut watch = |_: &mut _, journey: &Journey, event: MappingEvent| match event {
+    let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| match event {
         MappingEvent::Started { .. }
         | MappingEvent::LoopClosed { .. }
         | MappingEvent::VertexAdded { .. } => {
@@ -70,6 +70,6 @@ pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
         _ => {}
     };
     let mut world = GraphWorld::new(plan.graph(), facing);
-    map_world(&mut world, &mut Nearest, &mut Exploration::new(1000), &mut watch).unwrap();
+    map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(1000), &mut watch).unwrap();
     maps
 }

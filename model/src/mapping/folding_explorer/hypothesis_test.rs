@@ -2,13 +2,13 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
 
-use super::{FoldingExploration, HypothesisTest, Pending};
+use super::{FoldingRun, HypothesisTest, Pending};
 use crate::{
     embedded_graph::Dart, folding::FoldedTrail, injected_flaw::InjectedFlaw,
     mapping::partial_map::START,
 };
 
-impl FoldingExploration {
+impl FoldingRun {
     /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
     /// marker. Of walks of one cost it is that of the hypothesis nearest to the marker, then with the nearest
     /// open dart, then of the first hypothesis, and with the first open dart of the trail.
@@ -111,7 +111,7 @@ impl FoldingExploration {
     /// Finds the ways to the marker through the map, if it has grown.
     pub(super) fn find_ways_to_marker(&mut self) {
         if !mem::replace(&mut self.to_marker_is_current, true) {
-            self.to_marker.plant(&self.journey.map, START);
+            self.to_marker.grow_from(&self.journey.map, START);
             self.to_marker.grow_whole(&self.journey.map);
         }
     }

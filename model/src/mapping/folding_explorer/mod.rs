@@ -26,8 +26,8 @@ mod ways;
 use std::cmp::Reverse;
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, Journey, MapDart, MappingError,
-    Observer, StepPurpose, journey::has_journey, tree::BreadthFirstTree,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, MappingError,
+    Observer, StepPurpose, journey::has_walk, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -86,10 +86,10 @@ struct Pending {
 ///
 /// It is a plain value. To try every choice, clone it together with the world between two steps.
 #[derive(Debug)]
-pub struct FoldingExploration {
+pub struct FoldingRun {
     /// Whether it only makes strict tests.
     strict: bool,
-    journey: Journey,
+    journey: MapWalk,
     trail: FoldedTrail,
     /// Each dart of the map, as a dart of the trail.
     in_trail: Vec<Dart>,
@@ -110,7 +110,7 @@ pub struct FoldingExploration {
     way: Vec<Dart>,
 }
 
-clone_in_place!(FoldingExploration {
+clone_in_place!(FoldingRun {
     strict,
     journey,
     trail,
@@ -125,15 +125,15 @@ clone_in_place!(FoldingExploration {
     scratch tests, way
 });
 
-has_journey!(FoldingExploration);
+has_walk!(FoldingRun);
 
-impl FoldingExploration {
+impl FoldingRun {
     /// A state ready for a run whose map may have at most `bound` darts.
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
             strict: false,
-            journey: Journey::new(bound),
+            journey: MapWalk::new(bound),
             trail: FoldedTrail::default(),
             in_trail: Vec::new(),
             unexplored: Vec::new(),
@@ -182,7 +182,7 @@ impl FoldingExploration {
 
 /// The folding explorer. Its default choices break every tie. The map is complete when its trail is
 /// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`] darts.
-impl Explorer for FoldingExploration {
+impl Explorer for FoldingRun {
     type Marker = Directional;
     type Choice = FoldingStep;
 
@@ -261,7 +261,7 @@ impl Explorer for FoldingExploration {
         self.settle(world, observer)
     }
 
-    fn map_walk(&self) -> Option<&Journey> {
+    fn map_walk(&self) -> Option<&MapWalk> {
         Some(&self.journey)
     }
 

@@ -19,7 +19,7 @@
 use std::mem;
 
 use super::{
-    FoldingExploration,
+    FoldingRun,
     marker_walk::MarkerWalk,
     walks::{ArrivalMeasurement, EarlierWalk, EarlierWalks, sees_marker},
 };
@@ -27,7 +27,7 @@ use crate::{
     embedded_graph::Dart,
     folding::FoldedTrail,
     mapping::{
-        Contradiction, Explorer, FACING, InvalidStep, Journey, MappingError, MappingEvent,
+        Contradiction, Explorer, FACING, InvalidStep, MapWalk, MappingError, MappingEvent,
         Observer, SafeguardEvent,
         audit::{AuditError, AuditMove, audit, try_doors},
         explore,
@@ -148,12 +148,12 @@ impl<W: Relocate> World for Remembering<'_, W> {
 struct Through<'o, O>(&'o mut O);
 
 impl<W, O: Observer<W>> Observer<Remembering<'_, W>> for Through<'_, O> {
-    fn event(&mut self, world: &mut Remembering<'_, W>, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, world: &mut Remembering<'_, W>, journey: &MapWalk, event: MappingEvent) {
         self.0.event(world.world, journey, event);
     }
 }
 
-impl FoldingExploration {
+impl FoldingRun {
     /// Goes on with a trail of earlier walks, with the robot where the marker lies. `seen` is its percept.
     fn resume<W: World>(
         &mut self,
@@ -217,7 +217,7 @@ impl FoldingExploration {
 /// Returns an error if the world cannot go on, at the bound, or after too many recoveries.
 pub fn map_with_recovery<W: Relocate>(
     world: &mut W,
-    exploration: &mut FoldingExploration,
+    exploration: &mut FoldingRun,
     config: RecoveryConfig,
     earlier: &[EarlierWalk],
     observer: &mut impl Observer<W>,
@@ -245,7 +245,7 @@ pub fn map_with_recovery<W: Relocate>(
 /// A run that recovers.
 struct Recovery<'w, 'e, W, O> {
     world: Remembering<'w, W>,
-    exploration: &'e mut FoldingExploration,
+    exploration: &'e mut FoldingRun,
     observer: Through<'w, O>,
     config: RecoveryConfig,
     walks: EarlierWalks,

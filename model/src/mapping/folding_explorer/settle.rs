@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use super::{FoldingExploration, Pending, hypotheses::Witness};
+use super::{FoldingRun, Pending, hypotheses::Witness};
 use crate::{
     embedded_graph::Dart,
     injected_flaw::InjectedFlaw,
@@ -11,7 +11,7 @@ use crate::{
     world::World,
 };
 
-impl FoldingExploration {
+impl FoldingRun {
     /// Joins the ends of edges that are both known, and puts pending places without a living hypothesis
     /// into the map, until nothing changes.
     pub(super) fn settle<W: World>(

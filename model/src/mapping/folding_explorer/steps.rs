@@ -2,7 +2,7 @@
 
 use std::cmp::Reverse;
 
-use super::{FoldingExploration, FoldingStep, HypothesisTest, Pending};
+use super::{FoldingRun, FoldingStep, HypothesisTest, Pending};
 use crate::embedded_graph::Dart;
 
 /// The most moves of a test that the robot prefers to the nearest open dart of the map. The figures are the best
@@ -11,7 +11,7 @@ fn worthwhile(moves_to_open: usize) -> usize {
     8 * moves_to_open + 2
 }
 
-impl FoldingExploration {
+impl FoldingRun {
     /// What to do next; `None` if no dart is open.
     pub(super) fn next_step(&mut self) -> Option<FoldingStep> {
         if self.trail.open_count() == 0 {

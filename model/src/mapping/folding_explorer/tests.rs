@@ -21,7 +21,7 @@ type Failure = (usize, Vec<u32>, String);
 
 /// The first start of the class `multigraph` with up to so many edges on which the explorer fails.
 fn first_failure(most: usize) -> Option<Failure> {
-    let mut explorer = FoldingExploration::default();
+    let mut explorer = FoldingRun::default();
     let mut candidate = Candidate::default();
     (1..=most).find_map(|edges| {
         let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();

@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use super::{FoldingExploration, HypothesisTest};
+use super::{FoldingRun, HypothesisTest};
 use crate::{
     embedded_graph::Dart,
     folding::TrailError,
@@ -12,7 +12,7 @@ use crate::{
     world::World,
 };
 
-impl FoldingExploration {
+impl FoldingRun {
     /// Goes to an open dart of the map and takes it.
     pub(super) fn explore<W: World>(
         &mut self,

@@ -9,7 +9,7 @@ use crate::{
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     isomorphism::code,
     mapping::{
-        Choices, Contradiction, FACING, Journey,
+        Choices, Contradiction, FACING, MapWalk,
         MappingAlgorithm::{Algorithm1, Folding},
         MappingEvent, PartialMap, map_world,
     },
@@ -34,12 +34,12 @@ fn chosen(graph: &EmbeddedGraph, numbers: &[u8]) -> Trace {
         }
     }
     let mut doors = Vec::new();
-    let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+    let mut listen = |_: &mut GraphWorld, _: &MapWalk, event: MappingEvent| {
         if let MappingEvent::Moved { door, .. } = event {
             doors.push(door);
         }
     };
-    let mut exploration = Exploration::new(graph.dart_count());
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, Dart(0));
     let mut choices = Numbers(numbers.iter().cycle());
     map_world(&mut world, &mut choices, &mut exploration, &mut listen).unwrap();

@@ -1,8 +1,8 @@
 //! The state of the movable marker algorithm, and the small steps that it consists of. Section 2.3.
 
 use super::{
-    Choices, Contradiction, InvalidStep, Journey, MappingError, MappingEvent, MovableEvent,
-    Observer, PartialMap, ValidationResult, journey::has_journey,
+    Choices, Contradiction, InvalidStep, MapWalk, MappingError, MappingEvent, MovableEvent,
+    Observer, PartialMap, ValidationResult, journey::has_walk,
 };
 use crate::{
     clone_in_place::clone_in_place,
@@ -13,8 +13,8 @@ use crate::{
 
 /// The state of a run with a movable marker: the robot's journey, and the candidates.
 #[derive(Debug)]
-pub struct MarkerSearch {
-    journey: Journey,
+pub struct MovableMarkerRun {
+    journey: MapWalk,
     /// The known vertices that the unknown end may be and that were not searched yet. The next one is
     /// the last.
     candidates: Vec<Vertex>,
@@ -25,7 +25,7 @@ pub struct MarkerSearch {
     back_links: Vec<Dart>,
 }
 
-clone_in_place!(MarkerSearch { journey, candidates, is_candidate, back_links });
+clone_in_place!(MovableMarkerRun { journey, candidates, is_candidate, back_links });
 
 /// The percept of the same place with the marker there.
 fn marked(place: Percept) -> Percept {
@@ -39,14 +39,14 @@ fn carrier<W: World>(
     world.carrier().ok_or(InvalidStep::NoMovableMarker)
 }
 
-has_journey!(MarkerSearch);
+has_walk!(MovableMarkerRun);
 
-impl MarkerSearch {
+impl MovableMarkerRun {
     /// A state for a run with at most `bound` known darts.
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
-            journey: Journey::new(bound),
+            journey: MapWalk::new(bound),
             candidates: Vec::new(),
             is_candidate: Vec::new(),
             back_links: Vec::new(),
@@ -106,7 +106,7 @@ impl MarkerSearch {
     /// world has no loops and no parallel edges, they are neither the known end nor joined to it.
     /// In the order in which a depth-first walk of the shortest paths from the known end meets them.
     fn list_candidates(&mut self, known_end: Vertex) {
-        let Self { journey: Journey { map, arrival, from_robot, .. }, .. } = self;
+        let Self { journey: MapWalk { map, arrival, from_robot, .. }, .. } = self;
         let looks_like_it = |vertex| map.degree(vertex) == arrival.degree;
         self.is_candidate.clear();
         self.is_candidate
@@ -117,7 +117,7 @@ impl MarkerSearch {
         }
         self.candidates.clear();
         if self.is_candidate.contains(&true) {
-            from_robot.plant(map, known_end);
+            from_robot.grow_from(map, known_end);
             from_robot.grow_whole(map);
             from_robot.preorder(map, &mut self.candidates);
             self.candidates.retain(|vertex| self.is_candidate[vertex.at()]);

@@ -3,8 +3,8 @@
 use std::sync::atomic::AtomicU64;
 
 use super::{
-    LazySweep,
-    sweep::{Unit, count_worlds},
+    SharedPrefixCheck,
+    check::{Unit, count_worlds},
 };
 use crate::{
     check::{PartTally, Tally},
@@ -12,11 +12,11 @@ use crate::{
     mapping::Explorer,
 };
 
-/// The pieces of a [`LazySweep`]: its units, and the parts of the worlds that are counted. Equal sweeps have
+/// The pieces of a [`SharedPrefixCheck`]: its units, and the parts of the worlds that are counted. Equal sweeps have
 /// equal pieces on every machine.
 #[derive(Debug)]
 pub struct CheckPieces {
-    sweep: LazySweep,
+    sweep: SharedPrefixCheck,
     units: Vec<Unit>,
     world_parts: Vec<EnumerationPart>,
     /// The most moves of a run in a unit that was checked here.
@@ -25,7 +25,11 @@ pub struct CheckPieces {
 
 impl CheckPieces {
     /// The pieces of a sweep with an explorer.
-    pub fn new<E: Explorer>(sweep: &LazySweep, new: impl Fn() -> E, watch: &dyn Watch) -> Self {
+    pub fn new<E: Explorer>(
+        sweep: &SharedPrefixCheck,
+        new: impl Fn() -> E,
+        watch: &dyn Watch,
+    ) -> Self {
         Self {
             units: sweep.units(new, watch),
             world_parts: sweep.world_parts(),
@@ -55,8 +59,8 @@ impl CheckPieces {
         part.map_or_else(PartTally::default, |part| count_worlds(part, watch))
     }
 
-    /// The result, from the counts of all pieces. It is that of [`LazySweep::run`].
+    /// The result, from the counts of all pieces. It is that of [`SharedPrefixCheck::run`].
     pub fn finished<E: Explorer>(counts: PartTally, new: impl Fn() -> E) -> Tally {
-        LazySweep::finished(counts, new)
+        SharedPrefixCheck::finished(counts, new)
     }
 }

@@ -6,9 +6,9 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, InvalidStep, Journey, MappingChoice, MappingError, MappingEvent,
+    Choices, Contradiction, InvalidStep, MapWalk, MappingChoice, MappingError, MappingEvent,
     Observer, PartialMap,
-    journey::{NOWHERE, has_journey},
+    map_walk::{NO_PERCEPT, has_walk},
     partial_map::START,
     tree::BreadthFirstTree,
 };
@@ -21,9 +21,9 @@ use crate::{
 
 /// The state of a run of Algorithm 1: the robot's journey, and the hypotheses about its place.
 #[derive(Debug)]
-pub struct Exploration {
-    journey: Journey,
-    here: Here,
+pub struct Algorithm1Run {
+    journey: MapWalk,
+    current: CurrentVertex,
     /// H, from the farthest to the nearest.
     hypotheses: Vec<Dart>,
     /// Within a step: the percept at each vertex since the path began, and the door taken there.
@@ -32,11 +32,11 @@ pub struct Exploration {
     to_marker: BreadthFirstTree,
 }
 
-clone_in_place!(Exploration { journey, here, hypotheses, to_marker; scratch trail });
+clone_in_place!(Algorithm1Run { journey, current, hypotheses, to_marker; scratch trail });
 
 /// The robot at its vertex.
 #[derive(Clone, Copy, Debug)]
-struct Here {
+struct CurrentVertex {
     /// Its percept, with doors counted from its reference dart.
     percept: Percept,
     /// The door, counted from the reference dart, by which it really came in. It differs from
@@ -44,15 +44,15 @@ struct Here {
     entry: Door,
 }
 
-has_journey!(Exploration);
+has_walk!(Algorithm1Run);
 
-impl Exploration {
+impl Algorithm1Run {
     /// A state ready for a run that may come to know at most `bound` darts.
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
-            journey: Journey::new(bound),
-            here: Here { percept: NOWHERE, entry: Door::BACK },
+            journey: MapWalk::new(bound),
+            current: CurrentVertex { percept: NO_PERCEPT, entry: Door::BACK },
             hypotheses: Vec::new(),
             trail: Vec::new(),
             to_marker: BreadthFirstTree::default(),
@@ -77,7 +77,7 @@ impl Exploration {
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.journey.clear();
-        self.stand(NOWHERE);
+        self.set_percept(NO_PERCEPT);
         self.hypotheses.clear();
         self.trail.clear();
         self.to_marker.clear();
@@ -86,8 +86,8 @@ impl Exploration {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
         let start = self.journey.begin(percept, world, observer)?;
-        self.stand(percept);
-        self.to_marker.plant(self.journey.map(), start);
+        self.set_percept(percept);
+        self.to_marker.grow_from(self.journey.map(), start);
         Ok(())
     }
 
@@ -149,10 +149,10 @@ impl Exploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        self.set_out();
+        self.clear_trail();
         self.journey.explore(edge, PartialMap::expected, world, observer)?;
         let percept = self.journey.arrival;
-        self.stand(percept);
+        self.set_percept(percept);
         self.list_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
@@ -163,7 +163,7 @@ impl Exploration {
 
     // paper: alg1.hypotheses
     fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
-        let Self { journey: Journey { map, arrival, .. }, hypotheses, .. } = self;
+        let Self { journey: MapWalk { map, arrival, .. }, hypotheses, .. } = self;
         hypotheses.clear();
         let marked = arrival.sighting != Sighting::Nothing;
         // The unexplored darts that were not looked at yet, besides the edge itself.
@@ -194,8 +194,8 @@ impl Exploration {
                 _ => Err(Contradiction::Marker { vertex, index, perceived }),
             };
         }
-        if !self.to_marker.is_planted() {
-            self.to_marker.plant(map, START);
+        if !self.to_marker.is_grown() {
+            self.to_marker.grow_from(map, START);
             self.to_marker.grow_whole(map);
         }
         if hypotheses.len() > 1 {
@@ -229,7 +229,7 @@ impl Exploration {
 
     /// Begins a path that can be retraced.
     #[inline]
-    pub fn set_out(&mut self) {
+    pub fn clear_trail(&mut self) {
         self.trail.clear();
     }
 
@@ -238,21 +238,21 @@ impl Exploration {
     /// # Errors
     /// Returns an error if the world does, or if no vertex has the percept.
     #[inline]
-    pub fn take<W: World>(
+    pub fn go_through<W: World>(
         &mut self,
         door: Door,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
-        let Here { percept, entry } = self.here;
+        let CurrentVertex { percept, entry } = self.current;
         self.trail.push((percept, door));
         let door = door.seen_from(entry, percept.degree);
         let perceived = self.journey.go(door, world, observer)?;
-        self.stand(perceived);
+        self.set_percept(perceived);
         Ok(perceived)
     }
 
-    /// Line 15: goes back along the path since [`set_out`](Self::set_out), and counts doors there
+    /// Line 15: goes back along the path since [`clear_trail`](Self::clear_trail), and counts doors there
     /// as before.
     ///
     /// # Errors
@@ -274,7 +274,7 @@ impl Exploration {
             }
         }
         if let Some(&(percept, entry)) = trail.first() {
-            self.here = Here { percept, entry };
+            self.current = CurrentVertex { percept, entry };
         }
         self.trail = trail;
         Ok(())
@@ -284,13 +284,13 @@ impl Exploration {
     /// marker by the dart `pose`.
     pub fn arrive_at_marker(&mut self, pose: Dart) {
         self.journey.robot = pose;
-        self.stand(self.here.percept);
+        self.set_percept(self.current.percept);
     }
 
     /// The robot has come in, with this percept.
     #[inline]
-    fn stand(&mut self, percept: Percept) {
-        self.here = Here { percept, entry: Door::BACK };
+    fn set_percept(&mut self, percept: Percept) {
+        self.current = CurrentVertex { percept, entry: Door::BACK };
     }
 
     /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
@@ -306,8 +306,8 @@ impl Exploration {
         observer: &mut impl Observer<W>,
     ) -> Result<(), InvalidStep> {
         let edge = self.journey.close_loop(hypothesis, world, observer)?;
-        let is_planted = self.to_marker.is_planted();
-        if is_planted && !self.to_marker.stays_with(self.journey.map(), edge, hypothesis) {
+        let is_grown = self.to_marker.is_grown();
+        if is_grown && !self.to_marker.stays_with(self.journey.map(), edge, hypothesis) {
             self.to_marker.clear();
         }
         self.hypotheses.clear();
@@ -326,12 +326,12 @@ impl Exploration {
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         // The robot may have come back by another dart than it first came in by.
-        let entry = self.here.entry;
+        let entry = self.current.entry;
         let vertex = self.journey.add_place(entry, world, observer)?;
-        if self.to_marker.is_planted() {
+        if self.to_marker.is_grown() {
             self.to_marker.add_leaf(self.journey.map(), vertex);
         }
-        self.stand(self.map().expected(self.robot()));
+        self.set_percept(self.map().expected(self.robot()));
         self.hypotheses.clear();
         Ok(())
     }

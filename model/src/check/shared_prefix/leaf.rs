@@ -7,7 +7,7 @@ use std::{
 
 use super::{LazyWorld, search::LazyRunEnd, world::FACING};
 use crate::{
-    check::{EnumeratedStart, PartTally, judge_map, sweep::go_on},
+    check::{EnumeratedStart, PartTally, judge_map, one_by_one::check_stop},
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     folding::MarkerTree,
@@ -50,7 +50,7 @@ impl<'m> LeafJudge<'m> {
                 LazyRunEnd::Done | LazyRunEnd::Cut => self.judge_run(world, explorer, graph),
             };
             self.count(graph, world.robot().moves, judged.is_ok());
-            if is_decided { ControlFlow::Continue(()) } else { go_on(watch) }
+            if is_decided { ControlFlow::Continue(()) } else { check_stop(watch) }
         })
     }
 

@@ -4,13 +4,13 @@ use std::{collections::BTreeMap, sync::atomic::AtomicU64};
 
 use super::{
     leaf::LeafJudge,
-    search::{RunSearch, beginnings},
+    search::{RunSearch, prefixes},
     world::Prefix,
 };
 use crate::{
     check::{
         EnumeratedStart, FailedStart, PartTally, Shard, Tally, WorstStart, first_false_step,
-        judge_start, sweep::go_on,
+        judge_start, one_by_one::check_stop,
     },
     enumerate::{
         Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
@@ -21,7 +21,7 @@ use crate::{
 
 /// The number of edges that are decided in the beginning that a unit's runs have in common. A unit of 7 edges
 /// then has about a thousand starts.
-fn beginning(edges: usize) -> usize {
+fn prefix_edges(edges: usize) -> usize {
     if edges < 8 { 2 } else { 3 }
 }
 
@@ -30,7 +30,7 @@ const SAMPLE: usize = 16;
 
 /// A check of every start of every world of a class with a number of edges, without repetition.
 #[derive(Clone, Debug)]
-pub struct LazySweep {
+pub struct SharedPrefixCheck {
     worlds: Enumeration,
     draft: Draft,
     shard: Shard,
@@ -73,7 +73,7 @@ pub(super) fn count_worlds(part: &EnumerationPart, watch: &dyn Watch) -> PartTal
     let mut found = PartTally::default();
     let ended = part.for_each(&mut |_| {
         found.worlds += 1;
-        go_on(watch)
+        check_stop(watch)
     });
     found.interrupted = ended.is_break();
     found
@@ -85,7 +85,7 @@ fn merged(mut one: PartTally, other: PartTally) -> PartTally {
     one
 }
 
-impl LazySweep {
+impl SharedPrefixCheck {
     /// A check of one shard of the starts.
     ///
     /// # Errors
@@ -157,8 +157,8 @@ impl LazySweep {
     /// The units of the shard. They do not depend on the number of threads.
     pub(super) fn units<E: Explorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
         let edges = self.draft.edges_left();
-        let cut_at = edges.saturating_sub(beginning(edges));
-        let all = beginnings(new(), self.draft.clone(), cut_at, watch);
+        let cut_at = edges.saturating_sub(prefix_edges(edges));
+        let all = prefixes(new(), self.draft.clone(), cut_at, watch);
         self.shard.select(all.into_iter().map(Unit).collect())
     }
 

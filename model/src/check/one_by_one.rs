@@ -75,12 +75,12 @@ impl fmt::Display for Shard {
 
 /// A check of every start of every world of a class with a number of edges.
 #[derive(Clone, Copy, Debug)]
-pub struct Sweep {
+pub struct Check {
     worlds: Enumeration,
     shard: Shard,
 }
 
-impl Sweep {
+impl Check {
     /// A check of one shard of the worlds.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl Sweep {
     }
 }
 
-/// Checks explorers on every start of some worlds, each on one part of them. As with a [`Sweep`], the result does
+/// Checks explorers on every start of some worlds, each on one part of them. As with a [`Check`], the result does
 /// not depend on the number of threads.
 pub fn check_worlds<E: Explorer>(
     graphs: &[EmbeddedGraph],
@@ -130,7 +130,7 @@ pub fn check_worlds<E: Explorer>(
     })
 }
 
-pub(super) fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
+pub(super) fn check_stop(watch: &dyn Watch) -> ControlFlow<()> {
     if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
@@ -142,7 +142,7 @@ fn tally_parts<P: Sync>(
 ) -> Tally {
     let check = |part: &P| {
         let mut tally = Tally::default();
-        tally.interrupted = go_on(watch).is_break() || check(part, &mut tally).is_break();
+        tally.interrupted = check_stop(watch).is_break() || check(part, &mut tally).is_break();
         tally
     };
     let merge = |mut sum: Tally, later: Tally| {
@@ -191,7 +191,7 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
             }
             tally.starts += 1;
             self.check_start((graph, facing), measured.map(|(_, length)| length), tally);
-            go_on(self.watch)
+            check_stop(self.watch)
         };
         if automorphisms == 1 {
             graph.darts().try_for_each(check)

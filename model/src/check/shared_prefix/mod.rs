@@ -20,10 +20,10 @@
 //!   the moves of this step before the decision are made again.
 //! * `LeafJudge` judges each end by a bijection between the explorer's map and the record: by the identity if they
 //!   are equal, dart for dart. It does not know the algorithm.
-//! * [`LazySweep`] divides the tree into *units*, subtrees of equal first decisions, and adds up their
+//! * [`SharedPrefixCheck`] divides the tree into *units*, subtrees of equal first decisions, and adds up their
 //!   [`PartTally`](super::PartTally)s. Which start is the worst or the first that fails does not depend on the order of the runs:
 //!   starts are compared by their place in the [`Enumeration`](crate::enumerate::Enumeration), as in a
-//!   [`Sweep`](super::Sweep).
+//!   [`Check`](super::Check).
 //!
 //! # Ends at which not everything is decided
 //!
@@ -32,7 +32,7 @@
 //! each is counted and judged. Their maps are equal, and no two of them are isomorphic, so at most one is
 //! right. If there are two or more, the explorer is wrong on all others. If there is only one (the number of
 //! edges can force what is behind the last doors), the map may be right, and it is then counted as right, as
-//! in a `Sweep`, although the explorer has guessed. It is wrong in a world of another size in which it makes the
+//! in a `Check`, although the explorer has guessed. It is wrong in a world of another size in which it makes the
 //! same walk; and where its run is shorter than the certificate, `below_certificate` counts it.
 //!
 //! # Answers that lead to no start
@@ -41,12 +41,12 @@
 //! provably no way to end with the right number of edges. That test is not exact: if the robot takes a door
 //! and no answer is left, the search goes back, and nothing is counted.
 
+mod check;
 mod leaf;
 mod search;
-mod sweep;
 mod units;
 mod world;
 
-pub use sweep::{FinishedUnits, LazySweep, Probe};
+pub use check::{FinishedUnits, Probe, SharedPrefixCheck};
 pub use units::CheckPieces;
 pub use world::LazyWorld;

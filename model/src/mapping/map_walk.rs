@@ -24,24 +24,24 @@ pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 pub trait Observer<W: ?Sized> {
     /// Called after each event. The journey is as it is afterwards, except that at
     /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent);
+    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent);
 }
 
 /// Ignores every event.
 impl<W: ?Sized> Observer<W> for () {
     #[inline]
-    fn event(&mut self, _: &mut W, _: &Journey, _: MappingEvent) {}
+    fn event(&mut self, _: &mut W, _: &MapWalk, _: MappingEvent) {}
 }
 
-impl<W: ?Sized, F: FnMut(&mut W, &Journey, MappingEvent)> Observer<W> for F {
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+impl<W: ?Sized, F: FnMut(&mut W, &MapWalk, MappingEvent)> Observer<W> for F {
+    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent) {
         self(world, journey, event);
     }
 }
 
 /// The robot's map, its pose in the map and its moves.
 #[derive(Debug)]
-pub struct Journey {
+pub struct MapWalk {
     bound: usize,
     moves: u64,
     pub(super) map: PartialMap,
@@ -57,11 +57,11 @@ pub struct Journey {
     pub(super) way: Vec<Dart>,
 }
 
-clone_in_place!(Journey { bound, moves, map, robot, edge, arrival; scratch from_robot, way });
+clone_in_place!(MapWalk { bound, moves, map, robot, edge, arrival; scratch from_robot, way });
 
-pub(super) const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
+pub(super) const NO_PERCEPT: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
-impl Journey {
+impl MapWalk {
     /// A journey with at most `bound` known darts.
     pub(super) fn new(bound: usize) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Journey {
             map: PartialMap::new(),
             robot: FACING,
             edge: None,
-            arrival: NOWHERE,
+            arrival: NO_PERCEPT,
             from_robot: BreadthFirstTree::default(),
             way: Vec::new(),
         }
@@ -141,7 +141,7 @@ impl Journey {
         let nearest = if self.map.is_frontier(here) {
             self.map.unexplored_at(here).next()?
         } else {
-            self.from_robot.plant(&self.map, here);
+            self.from_robot.grow_from(&self.map, here);
             self.from_robot.nearest_unexplored(&self.map)?
         };
         Some(choices.next_edge(&self.map, self.robot, nearest))
@@ -211,7 +211,7 @@ impl Journey {
             way.clear();
             return Ok(way);
         }
-        self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
+        self.from_robot.grow_from_unless_rooted(&self.map, self.map.vertex(self.robot));
         self.from_robot.path_from_root(&self.map, target, &mut way);
         Ok(way)
     }
@@ -324,7 +324,7 @@ impl Journey {
 }
 
 /// What the states of all runs have: the journey, as parts of it and by itself.
-macro_rules! has_journey {
+macro_rules! has_walk {
     ($run:ident) => {
         impl Default for $run {
             fn default() -> Self {
@@ -332,7 +332,7 @@ macro_rules! has_journey {
             }
         }
 
-        impl From<$run> for $crate::mapping::Journey {
+        impl From<$run> for $crate::mapping::MapWalk {
             fn from(run: $run) -> Self {
                 run.journey
             }
@@ -347,7 +347,7 @@ macro_rules! has_journey {
             /// The robot's journey: its map, its pose in the map and its moves.
             #[inline]
             #[must_use]
-            pub fn journey(&self) -> &$crate::mapping::Journey {
+            pub fn walk(&self) -> &$crate::mapping::MapWalk {
                 &self.journey
             }
 
@@ -376,4 +376,4 @@ macro_rules! has_journey {
     };
 }
 
-pub(super) use has_journey;
+pub(super) use has_walk;
