@@ -2,7 +2,7 @@
 
 use super::{
     Choices, Contradiction, InvalidStep, MapWalk, MappingError, MappingEvent, MovableEvent,
-    Observer, PartialMap, ValidationResult, journey::has_walk,
+    Observer, PartialMap, ValidationResult, map_walk::has_walk,
 };
 use crate::{
     clone_in_place::clone_in_place,

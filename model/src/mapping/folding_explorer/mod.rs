@@ -27,7 +27,7 @@ use std::cmp::Reverse;
 
 use super::{
     Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, MappingError,
-    Observer, StepPurpose, journey::has_walk, tree::BreadthFirstTree,
+    Observer, StepPurpose, map_walk::has_walk, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
