@@ -148,8 +148,8 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
     }
 }
 
-/// The beginnings of all runs, up to the step after which at most `cut_at` edges are undecided.
-pub(super) fn beginnings<E: Explorer>(
+/// The prefixes of all runs, up to the step after which at most `cut_at` edges are undecided.
+pub(super) fn prefixes<E: Explorer>(
     explorer: E,
     draft: Draft,
     cut_at: usize,
