@@ -112,9 +112,9 @@ impl Growth {
 
     /// Repeats the first steps of a history.
     pub(super) fn resume(&mut self, prefix: Prefix) {
-        self.add_vertex(beginning.degree as usize);
-        self.graph.add_vertex(beginning.degree.into());
-        for &word in &prefix.words[..beginning.edges as usize] {
+        self.add_vertex(prefix.degree as usize);
+        self.graph.add_vertex(prefix.degree.into());
+        for &word in &prefix.words[..prefix.edges as usize] {
             let dart = self.free.trailing_zeros() as usize;
             let other = if (word as usize) < self.darts {
                 word as usize

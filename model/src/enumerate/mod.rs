@@ -92,7 +92,7 @@ impl Enumeration {
     pub fn parts(&self) -> Vec<EnumerationPart> {
         let mut parts = Vec::new();
         let prefix = PREFIX_EDGES.min(self.edges);
-        let _ = Growth::new(self.class, self.edges, self.each).grow_to(beginning, &mut |growth| {
+        let _ = Growth::new(self.class, self.edges, self.each).grow_to(prefix, &mut |growth| {
             parts.push(EnumerationPart { whole: *self, prefix: growth.prefix() });
             ControlFlow::Continue(())
         });
