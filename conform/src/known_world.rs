@@ -6,7 +6,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
     isomorphism::code,
-    mapping::{FACING, Journey, MappingAlgorithm, MappingEvent, Observer},
+    mapping::{FACING, MapWalk, MappingAlgorithm, MappingEvent, Observer},
     marker::Marker,
     percept::{Percept, WalkEvent},
     trace::{
@@ -122,7 +122,7 @@ impl ExpectedRun {
 }
 
 impl Observer<GraphWorld<'_>> for ExpectedRun {
-    fn event(&mut self, world: &mut GraphWorld, journey: &Journey, event: MappingEvent) {
+    fn event(&mut self, world: &mut GraphWorld, journey: &MapWalk, event: MappingEvent) {
         self.coverage.event(world, journey, event);
         self.poses.push(world.state().pose);
     }

@@ -265,7 +265,7 @@ impl CheckArguments {
             ("the class", self.class().name().to_owned()),
             ("the number of edges", format!("{sizes:?}")),
             ("the marker", algorithm.marker().name().to_owned()),
-            ("the algorithm", algorithm.info().name.to_owned()),
+            ("the algorithm", algorithm.info().title.to_owned()),
             ("--keep-going", self.keep_going.to_string()),
         ];
         let end = if self.journal.is_some() { LostEnd::Journal } else { LostEnd::Nothing };
@@ -353,7 +353,7 @@ impl CheckArguments {
             class: self.class().name().to_owned(),
             edges,
             marker: algorithm.marker().name().to_owned(),
-            algorithm: algorithm.info().name.to_owned(),
+            algorithm: algorithm.info().title.to_owned(),
             shard: self.shard.to_string(),
             units: algorithm.unit_count(sweep),
         }

@@ -63,7 +63,7 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
         assert!(fs::exists(line["file"].as_str().unwrap()).unwrap(), "{line}");
     }
     for (line, theorem) in proved.iter().zip(theorems::all()) {
-        let (name, sentence, paper) = (&*theorem.name, &*theorem.sentence, &*theorem.paper);
+        let (name, sentence, paper) = (theorem.name, theorem.sentence, theorem.paper);
         has(
             line,
             &json!({

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Scratch, has, names_in, objects, read_world, stderr, stdout};
+use super::{Scratch, has, names_in, read_world, stderr, stdout};
 
 const SHAPE_6: &str = "simulate worlds/shape-6.toml --by-scene";
 

@@ -217,7 +217,9 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
                 tally.count_run((moves, graph.vertex_count()), certificate, worst);
                 match self.choices.others(self.new, graph, facing, self.watch) {
                     Ok(ways) => {
-                        ways.iter().for_each(|ways| tally.count_every_way(ways));
+                        if let Some(ways) = &ways {
+                            tally.count_every_way(ways);
+                        }
                         tally.mapped += 1;
                         return;
                     }

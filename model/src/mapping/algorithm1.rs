@@ -141,7 +141,7 @@ impl Explorer for Algorithm1Run {
 
     const INFO: ExplorerInfo = ExplorerInfo {
         option: "algorithm1",
-        name: "Algorithm 1",
+        title: "Algorithm 1",
         in_words: "Algorithm 1",
         order: CostOrder::EdgesSquaredVertices,
     };

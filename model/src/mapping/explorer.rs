@@ -148,7 +148,7 @@ pub struct ExplorerInfo {
     /// Its name in options and logs.
     pub option: &'static str,
     /// Its name in reports.
-    pub name: &'static str,
+    pub title: &'static str,
     /// Its name in a sentence.
     pub in_words: &'static str,
     /// The order of its cost.
@@ -159,7 +159,7 @@ impl ExplorerInfo {
     /// Of an explorer that states nothing.
     pub const UNNAMED: Self = Self {
         option: "explorer",
-        name: "Explorer",
+        title: "Explorer",
         in_words: "the explorer",
         order: CostOrder::EdgesSquaredVertices,
     };

@@ -148,7 +148,7 @@ impl Explorer for MovableMarkerRun {
 
     const INFO: ExplorerInfo = ExplorerInfo {
         option: "movable",
-        name: "Place and back-link validation",
+        title: "Place and back-link validation",
         in_words: "place and back-link validation",
         order: CostOrder::EdgesVertices,
     };

@@ -167,7 +167,7 @@ fn algorithm_of(found: &FoundShard) -> Result<MappingAlgorithm, CliError> {
     let FoundShard { place, line, .. } = found;
     let mut known = MappingAlgorithm::ALL.iter().copied();
     known
-        .find(|known| known.info().name == line.algorithm && known.marker().name() == line.marker)
+        .find(|known| known.info().title == line.algorithm && known.marker().name() == line.marker)
         .ok_or_else(|| {
             let SizeLine { algorithm, marker, .. } = line;
             CliError::at(place, format!("no algorithm is `{algorithm}` with marker `{marker}`"))

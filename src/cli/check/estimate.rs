@@ -204,7 +204,7 @@ impl EstimateOptions {
             edges,
             class: sweep.class().name(),
             marker: algorithm.marker().name(),
-            algorithm: algorithm.info().name,
+            algorithm: algorithm.info().title,
             probes,
             seed,
             starts: is_known.then(|| starts.interval()),

@@ -27,7 +27,7 @@ pub(in crate::cli) struct AlgorithmInfo {
 impl AlgorithmInfo {
     pub(in crate::cli) fn of(algorithm: MappingAlgorithm) -> Self {
         Self {
-            algorithm: algorithm.info().name,
+            algorithm: algorithm.info().title,
             marker: algorithm.marker().name(),
             certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
             order: algorithm.info().order,

@@ -176,7 +176,7 @@ impl<'o> CheckReport<'o> {
             let step = failure.step.as_ref().map_or(String::new(), |step| format!(" {step}"));
             writeln!(self.out)?;
             print_paragraph(self.out, &format!("Wrong{step}: {}", failure.cause))?;
-            let is_folding = self.subject.algorithm == MappingAlgorithm::Folding.info().name;
+            let is_folding = self.subject.algorithm == MappingAlgorithm::Folding.info().title;
             let algorithm = if is_folding { " --algorithm folding" } else { "" };
             let explore = format!("toposlam explore --marker {}{algorithm}", self.subject.marker);
             print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;

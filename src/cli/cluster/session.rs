@@ -36,18 +36,17 @@ struct ThreadsLine<'t> {
     threads: &'t [ThreadUse],
 }
 
-impl From<ClusterError> for CliError {
-    fn from(error: ClusterError) -> Self {
-        match error {
-            ClusterError::Interrupted | ClusterError::Connect(ConnectError::Interrupted) => {
-                Self::Interrupted
-            }
-            ClusterError::Connect(missing @ ConnectError::Missing { .. }) => {
-                Self::Unfinished(missing.to_string())
-            }
-            ClusterError::Connect(error) => Self::at("--hosts", error),
-            ClusterError::Ended(_) => Self::Unfinished(error.to_string()),
+/// The failure of the command if a process of the cluster fails.
+fn failure(error: ClusterError) -> CliError {
+    match error {
+        ClusterError::Interrupted | ClusterError::Connect(ConnectError::Interrupted) => {
+            CliError::Interrupted
         }
+        ClusterError::Connect(missing @ ConnectError::Missing { .. }) => {
+            CliError::Unfinished(missing.to_string())
+        }
+        ClusterError::Connect(error) => CliError::at("--hosts", error),
+        ClusterError::Ended(_) => CliError::Unfinished(error.to_string()),
     }
 }
 
@@ -82,7 +81,8 @@ impl ClusterSession {
             output::exit_between_files(3);
         };
         let cluster =
-            ClusterProcess::connect(&hosts, process, &settings, &progress, &waiting, lost)?;
+            ClusterProcess::connect(&hosts, process, &settings, &progress, &waiting, lost)
+                .map_err(failure)?;
         Ok(Self { cluster, threads: Vec::new() })
     }
 
@@ -99,7 +99,7 @@ impl ClusterSession {
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Result<Tally, CliError> {
-        let found = self.cluster.check(algorithm, sweep, units, watch)?;
+        let found = self.cluster.check(algorithm, sweep, units, watch).map_err(failure)?;
         self.threads = found.threads;
         Ok(found.check)
     }
@@ -117,7 +117,7 @@ impl ClusterSession {
                 Ok(found.findings)
             }
             Err(ClusterError::Interrupted) => Ok(Err(Unfinished::Interrupted)),
-            Err(error) => Err(error.into()),
+            Err(error) => Err(failure(error)),
         }
     }
 

@@ -24,7 +24,7 @@ pub(super) fn json(world: &NamedWorld, facing: Dart) -> String {
         json!({ "name": name, "doors": doors })
     };
     let walk_of = |algorithm: MappingAlgorithm| {
-        walk(algorithm.info().name, doors_of(algorithm, graph, facing))
+        walk(algorithm.info().title, doors_of(algorithm, graph, facing))
     };
     let data = json!({
         "world": graph.vertices().map(vertex).collect::<Value>(),

@@ -188,7 +188,7 @@ impl Explorer for FoldingRun {
 
     const INFO: ExplorerInfo = ExplorerInfo {
         option: "folding",
-        name: "Folding explorer",
+        title: "Folding explorer",
         in_words: "the folding explorer",
         order: CostOrder::EdgesSquaredVertices,
     };

@@ -274,6 +274,6 @@ pub(super) fn unlearned(error: LearningError) -> CliError {
 }
 
 /// A failure that is not the user's.
-pub(super) fn unmeasured(error: impl std::fmt::Display) -> CliError {
+pub(super) fn unmeasured(error: impl Display) -> CliError {
     CliError::at("evaluate", error)
 }

@@ -102,7 +102,7 @@ impl EvaluateMistakesArguments {
         let outcome = outcome(status, ending);
         self.print(method, &tally, sheet.text())?;
         for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
-            report
+            sheet
                 .line("mistake", &mistake_line(kind, tally.counts[at], tally.first[at].as_ref()))?;
         }
         let line = json!({
