@@ -81,9 +81,8 @@ Ctrl-C stops the check and prints the results so far.",
              the connection to another process is lost; no probe of an estimate found a start"),
     ],
 ))]
-#[command(mut_arg("hosts", |hosts| {
-    hosts.conflicts_with_all(["shard", "from", "explorer", "estimate", "choices"])
-}))]
+#[command(mut_arg("hosts", |hosts| hosts.conflicts_with_all(NOT_SHARED)))]
+#[command(mut_arg("process", |process| process.conflicts_with_all(NOT_SHARED)))]
 pub(super) struct CheckArguments {
     /// Number of edges, as in 6, or a range, as in 1..=6
     #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
@@ -143,14 +142,11 @@ pub(super) struct CheckArguments {
 
     /// Do not check: add up the results of the shards of a check, the files of --json; each shard must be
     /// there once
-    #[arg(long, requires = "shards", conflicts_with_all = [
-        "edges", "class", "marker", "algorithm", "choices", "max_states", "shard", "from", "worst",
-        "threads", "journal", "estimate", "keep_going", "explorer", "hosts",
-    ])]
+    #[arg(long, requires = "shards", conflicts_with_all = NOT_ADDED)]
     add: bool,
 
     /// With --add: files with the lines of shards
-    #[arg(value_name = "FILE", requires = "add")]
+    #[arg(value_name = "FILE", requires = "add", conflicts_with_all = NOT_ADDED)]
     shards: Vec<PathBuf>,
 
     #[command(flatten)]
@@ -169,6 +165,29 @@ pub(super) struct CheckArguments {
     #[command(flatten)]
     ci: CiOptions,
 }
+
+/// Options of a check, which --add does not do.
+const NOT_ADDED: [&str; 15] = [
+    "edges",
+    "class",
+    "marker",
+    "algorithm",
+    "choices",
+    "max_states",
+    "shard",
+    "from",
+    "worst",
+    "threads",
+    "journal",
+    "estimate",
+    "keep_going",
+    "explorer",
+    "hosts",
+];
+
+/// Options of a check that machines cannot share. Clap does not ask for `--hosts` where it cannot be given, so
+/// `--process` excludes them, too.
+const NOT_SHARED: [&str; 5] = ["shard", "from", "explorer", "estimate", "choices"];
 
 /// Parses the name of a kind of marker.
 fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {

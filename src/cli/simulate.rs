@@ -132,7 +132,7 @@ pub(super) struct SimulateArguments {
     #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
     ros: Option<String>,
     /// With --ros: how fast simulated time passes, as a multiple of real time [default: 1]
-    #[arg(long, value_name = "TIMES", value_parser = speed, requires = "ros")]
+    #[arg(long, value_name = "TIMES", value_parser = speed)]
     speed: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
@@ -177,6 +177,9 @@ impl SimulateArguments {
         #[cfg(not(feature = "ros1"))]
         if self.ros.is_some() {
             return Err(super::without_ros());
+        }
+        if self.speed.is_some() && self.ros.is_none() {
+            return Err(CliError::at("--speed", "this needs --ros"));
         }
         self.options.method()?;
         let scanner = self.scanner_params()?;

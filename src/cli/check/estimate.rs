@@ -43,11 +43,11 @@ pub(super) struct EstimateOptions {
     pub(super) estimate: bool,
 
     /// With --estimate: number of probes [default: 10000]
-    #[arg(long, value_name = "N", requires = "estimate", value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", requires = "estimate", conflicts_with = "choices", value_parser = clap::value_parser!(u32).range(2..))]
     probes: Option<u32>,
 
     /// With --estimate: random seed [default: 1]
-    #[arg(long, value_name = "N", requires = "estimate")]
+    #[arg(long, value_name = "N", requires = "estimate", conflicts_with = "choices")]
     seed: Option<u64>,
 }
 

@@ -43,22 +43,22 @@ pub(super) struct ViewOptions {
         requires = "out", conflicts_with_all = ["start", "marker"])]
     pose: Option<ViewPose>,
     /// Camera calibration [default: a spherical mirror, 1280x960]
-    #[arg(long, value_name = "FILE", requires = "pose")]
+    #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
     /// Image size in pixels [default: the camera's]
-    #[arg(long, value_name = "SIZE", requires = "pose")]
+    #[arg(long, value_name = "SIZE")]
     size: Option<ImageSize>,
     #[command(flatten)]
     appearance: Appearance,
     /// Random seed
-    #[arg(long, default_value_t = 0, requires = "pose")]
+    #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Put the marker at the plan's start, along the facing hallway, or, without a start, at the first L
-    #[arg(long, requires = "pose")]
+    #[arg(long)]
     with_marker: bool,
     /// Also write the class of each pixel as a .png: floor green, stripe red, marker blue, the robot and
     /// the area outside the mirror white, anything else black
-    #[arg(long, value_name = "FILE", requires = "pose")]
+    #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
 }
 
@@ -134,13 +134,18 @@ fn parse_pose(text: &str) -> Result<ViewPose, String> {
     Ok(ViewPose::At(Pose { position: [x, y], heading: degrees.to_radians() }))
 }
 
-/// The options that other commands have as well, here.
+/// The options of a view need `--pose`. Clap does not ask for it beside the options that exclude it, so they exclude
+/// these, too.
 pub(super) fn only_with_a_pose(option: Arg) -> Arg {
+    const NOT_IN_A_VIEW: [&str; 2] = ["start", "marker"];
     match option.get_id().as_str() {
-        "effect" => {
-            option.help("Set one effect (repeatable); they are listed below").requires("pose")
+        "effect" => option
+            .help("Set one effect (repeatable); they are listed below")
+            .requires("pose")
+            .conflicts_with_all(NOT_IN_A_VIEW),
+        "calibration" | "size" | "look" | "effects" | "seed" | "with_marker" | "labels" => {
+            option.requires("pose").conflicts_with_all(NOT_IN_A_VIEW)
         }
-        "look" | "effects" => option.requires("pose"),
         _ => option,
     }
 }
