@@ -25,10 +25,9 @@ use super::{
     judgement::{JudgeError, Judgement, judge},
     known_world::{Known, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
-    marked_visits::{MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
+    marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
     quirks::Quirks,
-    report::AddedMarker,
-    twin::Twin,
+    twin::TwinWorld,
 };
 
 /// A log, and how its messages are read.
@@ -92,7 +91,7 @@ pub struct CheckedLog {
     /// Sightings that the log does not record as percepts.
     pub added: Option<AddedMarker>,
     /// Another world that the marker does not distinguish from the known one or the smallest.
-    pub twin: Option<Twin>,
+    pub twin: Option<TwinWorld>,
     pub driver: RunDriver,
     pub settings: RecordedSettings,
     pub search: WorldSearch,
@@ -204,7 +203,7 @@ impl LogCheck<'_> {
                 error => CheckError::Judge(error),
             }
         })?;
-        let twin = Twin::find(&judgement, known.as_ref(), marker);
+        let twin = TwinWorld::find(&judgement, known.as_ref(), marker);
         let (search, quirks) = (self.search, self.quirks.clone());
         Ok(CheckedLog {
             extracted,

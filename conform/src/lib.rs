@@ -16,6 +16,7 @@ mod extract;
 pub mod fuzz;
 mod impossible;
 mod inferred_events;
+mod json;
 mod judgement;
 mod known_world;
 mod laser_events;
@@ -54,22 +55,24 @@ pub use extract::{
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::InferredEvents;
+pub use json::LogsLine;
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::{Known, KnownWorld};
 pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};
 pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
 pub use marked_visits::{
-    MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
+    AddedMarker, MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits,
+    marker_at_start,
 };
 pub use measured_hallways::MeasuredHallways;
 pub use placed_scenes::{SceneClockError, SensedScene};
 pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
 pub use recorded_events::RecordedEvents;
 pub use report::{
-    AddedMarker, Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, Ending,
-    EventPose, Facts, FoldedReport, Limit, LogReport, LogsLine, MapSize, MessagePlace, OpenDoor,
-    PoseName, RecordedWorld, ReportedEvent, RequiredCoverage, SmallestFound, SourceFile,
-    ToleratedQuirk, UnreadLog, UnseenPlace, Visit, WorldFact, case_names,
+    Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
+    FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedEnding,
+    RecordedWorld, ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile,
+    ToleratedQuirk, UnreadLog, UnseenPlace, WorldFact, case_names,
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
-pub use twin::Twin;
+pub use twin::TwinWorld;

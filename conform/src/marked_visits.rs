@@ -27,6 +27,26 @@ pub struct VisitedJunction {
     pub doors: Vec<f64>,
 }
 
+/// Sightings that the log itself does not record as percepts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AddedMarker {
+    /// A marker that was not there.
+    Assumed {
+        /// In the frame of odometry, in metres.
+        position: [f64; 2],
+        /// In radians; `None` for an undirected marker.
+        heading: Option<f64>,
+        /// The number of visits at which it would have been seen.
+        seen: usize,
+    },
+    /// A fiducial.
+    Fiducial {
+        sightings: usize,
+        /// The number of them at no junction that the robot visited.
+        elsewhere: usize,
+    },
+}
+
 /// A sighting, and when it was, in nanoseconds.
 pub type TimedSighting = (u64, FiducialSighting);
 

@@ -20,7 +20,7 @@ use super::{judgement::Judgement, known_world::Known};
 
 /// Another world that explains a log, and that no walk distinguishes from the first one.
 #[derive(Clone, Debug, Serialize)]
-pub struct Twin {
+pub struct TwinWorld {
     pub vertices: usize,
     pub edges: usize,
     pub genus: usize,
@@ -51,7 +51,7 @@ const FIGURES: [(&str, &str); 2] = [
     ("Figure 1(b)", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../worlds/figure-1b.toml"))),
 ];
 
-impl Twin {
+impl TwinWorld {
     /// A world that no walk distinguishes from the known world of a log, or from the smallest one that explains
     /// it; the log is judged in it again. A robot without a marker has too many.
     pub(super) fn find(

@@ -18,13 +18,14 @@ use super::{
     events::{CheckedKind, UndecidedCause},
     extract::{Evidence, SkippedMessages},
     judgement::{ConformVerdict, ReachedLimit},
+    marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
     report::{
-        AddedMarker, Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport,
-        EventPose, Facts, LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName,
-        RequiredCoverage, UnseenPlace, WorldFact,
+        Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
+        LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
+        UnseenPlace, WorldFact,
     },
-    twin::Twin,
+    twin::TwinWorld,
 };
 
 /// A scanner with a field of view of fewer degrees does not see what is behind the robot.
@@ -451,8 +452,9 @@ pub fn unique(facts: &Facts) -> Option<String> {
     Some(format!("This log does not determine its world: {never} never followed: {listed}."))
 }
 
-fn twin(twin: &Twin) -> String {
-    let Twin { vertices: count, edges, genus, figure, worlds, marker, first_figure, .. } = twin;
+fn twin(twin: &TwinWorld) -> String {
+    let TwinWorld { vertices: count, edges, genus, figure, worlds, marker, first_figure, .. } =
+        twin;
     let first = first_figure.map_or(String::new(), |figure| format!(", {figure} of the paper"));
     let other = figure.map_or(String::new(), |figure| format!(": {figure} of the paper"));
     let size = format!("{}, {} and genus {genus}", vertices(*count), counted(*edges, "edge"));

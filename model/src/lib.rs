@@ -11,11 +11,11 @@
 //! * [`enumerate`]: every start and every world of a size, once;
 //! * [`folding`]: what a walk proves about its world;
 //! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
+//! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
 //! * [`world`]: the trait with everything that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
 //! * [`ambiguity`]: worlds that a marker does not distinguish, with witnesses (Section 2.2);
-//! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
 //! * [`measurement`]: lengths and turns of hallways by odometry, which contradict each other or not;
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
 //! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;

@@ -652,7 +652,7 @@ fn the_marker_is_asked_for_if_it_is_not_recorded() {
     let topics = "[percept]\ntopic = \"/toposlam/percept\"\ndegree = \"degree\"\n\
                   [door]\ntopic = \"/toposlam/door\"\ndoor = \"door\"\n";
     scratch.write("mapping.toml", topics);
-    let mapped = "conform run.mcap --mapping mapping.toml";
+    let mapped = "conform run.mcap --topics mapping.toml";
     // Nothing is mapped as the marker: that is not a marker that was not seen.
     for options in ["", "--driver anyone", "--world worlds/shape-6.toml"] {
         let message = scratch.error(&format!("{mapped} {options}"));

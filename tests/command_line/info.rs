@@ -65,13 +65,13 @@ fn facts_of_logs() {
 #[test]
 fn a_topic_map_is_written_and_checked_against_its_log() {
     let scratch = Scratch::new("info_mapping");
-    scratch.out(&format!("{RUN} --write-mapping mapping.toml"), 0);
+    scratch.out(&format!("{RUN} --write-topics mapping.toml"), 0);
     let text = scratch.text("mapping.toml");
     let start = "[image]\ntopic = \"/camera/image/compressed\"\n\n[odometry]\n";
     assert!(text.starts_with(start), "{text}");
-    let mapped = format!("{RUN} --mapping mapping.toml");
+    let mapped = format!("{RUN} --topics mapping.toml");
     scratch.facts(&[(&mapped, 0, json!({ "mapping.odometry": ["/odom"] }))]);
-    let message = scratch.error("info fuzz/corpus/bag/bz2 --mapping mapping.toml");
+    let message = scratch.error("info fuzz/corpus/bag/bz2 --topics mapping.toml");
     let cause = "mapping.toml: line 2, column 9: image.topic: the log has no topic";
     assert!(message.contains(cause), "{message}");
     scratch.write("mapping.toml", "[image]\ntopic = \"/a\"\nsize = 3\n");

@@ -96,7 +96,7 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
     has(&lines[2], &json!({ "unique": false, "assumed_marker": null, "open_doors": 4 }), RING);
     // Nearer to the stem than to the other arms.
     scratch.write("mapping.toml", "[marker]\nat = [0.5, -0.5, 2.8]\n");
-    for options in ["--assume-marker", "--assume-marker --mapping mapping.toml"] {
+    for options in ["--assume-marker", "--assume-marker --topics mapping.toml"] {
         let lines = scratch.lines(&format!("{RING} {options}"), 0);
         assert_eq!(markers(&lines), [&json!(0), &json!(1)], "{lines:?}");
         // The ring is closed; the end of the stem was never seen.
@@ -112,7 +112,7 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
     scratch.facts(&[
         // In the known building the marker may lie anywhere.
         (&format!(
-            "{RING} --world worlds/real/seattle.toml --start any --assume-marker --mapping mapping.toml"
+            "{RING} --world worlds/real/seattle.toml --start any --assume-marker --topics mapping.toml"
         ), 0, json!({ "verdict": "conforms" })),
         // An undirected marker leaves open how the robot came back.
         (&format!("{RING} --assume-marker --marker undirected"), 0, json!({ "unique": false })),
@@ -133,15 +133,15 @@ fn what_needs_other_scans_or_another_option_is_an_error() {
     }
     for (line, cause) in [
         (
-            "conform ring.log --driver anyone --mapping mapping.toml",
-            "[marker] at of --mapping: the log has no marker there; to assume one, add --assume-marker",
+            "conform ring.log --driver anyone --topics mapping.toml",
+            "[marker] at of --topics: the log has no marker there; to assume one, add --assume-marker",
         ),
         (
-            "conform ring.log --driver anyone --mapping flat.toml --assume-marker",
-            "[marker] at of --mapping: a directional marker needs a heading: at = [x, y, heading]",
+            "conform ring.log --driver anyone --topics flat.toml --assume-marker",
+            "[marker] at of --topics: a directional marker needs a heading: at = [x, y, heading]",
         ),
         (
-            "conform ring.log --driver anyone --mapping fiducial.toml",
+            "conform ring.log --driver anyone --topics fiducial.toml",
             "the log has no topic \"/tag\"; it has: FLASER",
         ),
         (
@@ -220,7 +220,7 @@ fn a_real_building_and_its_twin_on_the_torus_explain_the_same_log() {
     let log = logs.join("aces.log.gz");
     let conform =
         format!("conform {} --events laser --driver anyone --assume-marker", log.display());
-    let undirected = format!("{conform} --marker undirected --mapping hub.toml");
+    let undirected = format!("{conform} --marker undirected --topics hub.toml");
     let twin = json!({ "verdict": "conforms", "twin.figure": "Figure 1(b)", "twin.genus": 1 });
     scratch.facts(&[
         (&format!("{undirected} --world worlds/real/aces.toml"), 0, twin.clone()),

@@ -169,7 +169,7 @@ fn a_folder_of_rosbag2_is_one_log() {
     scratch.out("conform run --world worlds/shape-6.toml --html page.html", 0);
     assert!(scratch.text("page.html").contains("conforms"));
     // The files of the folder are inputs.
-    scratch.error("info run --write-mapping run/run_0.mcap");
+    scratch.error("info run --write-topics run/run_0.mcap");
     scratch.write("run/metadata.yaml", "relative_file_paths: [run_1.mcap]\n");
     let expected =
         "error: run: run_1.mcap: cannot be read: No such file or directory (os error 2)\n";

@@ -47,7 +47,7 @@ fn a_truncated_log_is_rerun_to_its_end_and_a_log_without_commands_is_an_error() 
     let scratch = Scratch::new("rerun-cut");
     scratch.out("simulate worlds/shape-6.toml --by-scene --log run.mcap", 0);
     scratch.write("mapping.toml", "[odometry]\ntopic = \"/odom\"\n");
-    let message = scratch.error(&format!("{RERUN} --mapping mapping.toml"));
+    let message = scratch.error(&format!("{RERUN} --topics mapping.toml"));
     assert!(message.contains("it has neither images nor scenes"), "{message}");
     let bytes = scratch.bytes("run.mcap");
     scratch.write("run.mcap", &bytes[..bytes.len() / 2]);

@@ -1,13 +1,13 @@
 //! The events and the visits of a report.
 
 use serde::Serialize;
-use toposlam_model::embedded_graph::Dart;
+use toposlam_model::{embedded_graph::Dart, percept::Sighting};
 
 use super::super::{
+    check::{CheckedLog, LogSource},
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
     known_world::Known,
 };
-use super::{CheckedLog, LogSource, line::MarkerSeen};
 
 /// An event that was checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct PoseName {
 
 /// A junction that the robot visited.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Visit {
+pub struct ReportedVisit {
     pub index: usize,
     /// In seconds, by the clock of the log.
     pub stamp: f64,
@@ -56,6 +56,27 @@ pub struct Visit {
     pub turned_back: bool,
     /// The length of the hallway by which it came, by odometry, in metres; `None` if it was not measured.
     pub length: Option<f64>,
+}
+
+/// What the robot saw of its marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum MarkerSeen {
+    /// The door along which it points, or -1 without a marker.
+    Door(i64),
+    /// It is there, and points along no door.
+    Seen(bool),
+}
+
+impl MarkerSeen {
+    pub(in super::super) fn from_sighting(sighting: Sighting) -> Option<Self> {
+        match sighting {
+            Sighting::Pointing(door) => Some(Self::Door(door.0.into())),
+            Sighting::Nothing => Some(Self::Door(-1)),
+            Sighting::Lying(_) => Some(Self::Seen(true)),
+            _ => None,
+        }
+    }
 }
 
 impl Known {
@@ -101,7 +122,7 @@ impl CheckedLog {
     }
 }
 
-impl Visit {
+impl ReportedVisit {
     /// The junctions that a robot visited.
     pub(super) fn all(events: &RunEvents) -> Vec<Self> {
         let mut visits: Vec<Self> = Vec::new();
@@ -110,7 +131,7 @@ impl Visit {
             let (degree, marker, length) = match kind {
                 CheckedKind::Arrival { arrival, hallway, .. } => (
                     Some(arrival.degree),
-                    arrival.sighting.and_then(MarkerSeen::of),
+                    arrival.sighting.and_then(MarkerSeen::from_sighting),
                     hallway.map(|hallway| hallway.length),
                 ),
                 CheckedKind::Undecided(_) => (None, None, None),

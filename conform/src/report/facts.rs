@@ -13,16 +13,18 @@ use toposlam_model::{
 };
 
 use super::super::{
+    check::{CheckedLog, LogSource},
     config::RunDriver,
     events::{CheckedKind, UndecidedCause},
     extract::{Evidence, SkippedMessages},
     judgement::Judgement,
     known_world::Known,
     log_head::LogHead,
+    marked_visits::AddedMarker,
     measured_hallways::MeasuredHallways,
-    twin::Twin,
+    twin::TwinWorld,
 };
-use super::{CheckedLog, LogSource, PoseName};
+use super::events::PoseName;
 
 /// What was checked, and against what. Each serialized field is one of the JSON line of a log.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -42,7 +44,7 @@ pub struct Facts {
     #[serde(rename = "skipped")]
     pub skipped_lines: Option<SkippedLines>,
     pub recorded: Option<RecordedWorld>,
-    pub ending: Option<Ending>,
+    pub ending: Option<RecordedEnding>,
     pub world: Option<WorldFact>,
     pub smallest: Option<SmallestFound>,
     pub lengths: MeasuredHallways,
@@ -52,7 +54,7 @@ pub struct Facts {
     pub open_doors: Option<usize>,
     pub never_followed: Option<Vec<OpenDoor>>,
     /// Another world that explains the log, and that no walk distinguishes from the known one or the smallest.
-    pub twin: Option<Twin>,
+    pub twin: Option<TwinWorld>,
     pub doors: Option<ComparedDoors>,
     pub map: Option<MapSize>,
 
@@ -91,26 +93,6 @@ pub enum UnseenPlace {
     Way,
 }
 
-/// Sightings that the log itself does not record as percepts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AddedMarker {
-    /// A marker that was not there.
-    Assumed {
-        /// In the frame of odometry, in metres.
-        position: [f64; 2],
-        /// In radians; `None` for an undirected marker.
-        heading: Option<f64>,
-        /// The number of visits at which it would have been seen.
-        seen: usize,
-    },
-    /// A fiducial.
-    Fiducial {
-        sightings: usize,
-        /// The number of them at no junction that the robot visited.
-        elsewhere: usize,
-    },
-}
-
 /// What the log records about its world.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RecordedWorld {
@@ -123,7 +105,7 @@ pub struct RecordedWorld {
 
 /// The recorded end of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Ending(pub RunEnding);
+pub struct RecordedEnding(pub RunEnding);
 
 /// The known world.
 #[derive(Clone, Debug, Serialize)]
@@ -199,7 +181,7 @@ impl CheckedLog {
             let is_way = judgement.events.events.get(event).is_some_and(|found| found.kind == way);
             (event + 1, if is_way { UnseenPlace::Way } else { UnseenPlace::Junction })
         });
-        let ending = judgement.events.end.as_ref().map(|end| Ending(end.ending.clone()));
+        let ending = judgement.events.end.as_ref().map(|end| RecordedEnding(end.ending.clone()));
         Facts {
             evidence: extracted.evidence,
             added_marker: self.added,
@@ -364,7 +346,7 @@ fn assumed_marker<S: Serializer>(
     assumed.serialize(serializer)
 }
 
-impl Serialize for Ending {
+impl Serialize for RecordedEnding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Fields<'e> {

@@ -1,10 +1,9 @@
-//! The report on a log as data. [`words`](super::words) makes sentences of it, `line` its JSON.
+//! The report on a log as data. [`words`](super::words) makes sentences of it, [`json`](super::json) its JSON lines.
 
 #![allow(missing_docs, reason = "the names of most fields and variants say what they are")]
 
 mod events;
 mod facts;
-mod line;
 
 use serde::Serialize;
 use toposlam_logs::{Format, error::OffsetUnit};
@@ -15,12 +14,11 @@ use toposlam_model::{
     trace::{AlgorithmCase, AllowedStep, MatchedChoices, MisfitReason},
 };
 
-pub use events::{EventPose, PoseName, ReportedEvent, Visit};
+pub use events::{EventPose, MarkerSeen, PoseName, ReportedEvent, ReportedVisit};
 pub use facts::{
-    AddedMarker, ComparedDoors, Ending, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound,
+    ComparedDoors, Facts, MapSize, OpenDoor, RecordedEnding, RecordedWorld, SmallestFound,
     UnseenPlace, WorldFact,
 };
-pub use line::LogsLine;
 
 use super::{
     check::{CheckedLog, LogSource},
@@ -76,7 +74,7 @@ pub struct LogReport {
     pub verdict: ConformVerdict,
     pub events: Vec<ReportedEvent>,
     /// The junctions that the robot visited, as they were inferred.
-    pub visits: Vec<Visit>,
+    pub visits: Vec<ReportedVisit>,
     pub divergence: Option<DivergenceReport>,
     /// The number of events before the divergence or the first junction that was not recognised, or of all.
     pub matched: usize,
@@ -196,7 +194,7 @@ impl CheckedLog {
         LogReport {
             log,
             verdict: judgement.verdict(),
-            visits: Visit::all(&self.extracted.events),
+            visits: ReportedVisit::all(&self.extracted.events),
             divergence: divergence.map(|divergence| self.divergence_report(source, divergence)),
             matched: matched.unwrap_or(events.len()),
             candidates: judgement.candidates(),

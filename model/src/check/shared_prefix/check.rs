@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, sync::atomic::AtomicU64};
 use super::{
     leaf::LeafJudge,
     search::{RunSearch, prefixes},
-    world::Prefix,
+    world::PrefixSource,
 };
 use crate::{
     check::{
@@ -150,7 +150,7 @@ impl SharedPrefixCheck {
     pub fn probe<E: Explorer>(&self, explorer: E, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         let most_moves = AtomicU64::new(u64::MAX);
         let (tally, weight) =
-            self.check_subtree(Prefix::Drawn(numbers), explorer, &most_moves, watch);
+            self.check_subtree(PrefixSource::Drawn(numbers), explorer, &most_moves, watch);
         Probe { weight, tally }
     }
 
@@ -173,13 +173,13 @@ impl SharedPrefixCheck {
         if watch.stop() {
             return PartTally { interrupted: true, ..PartTally::default() };
         }
-        self.check_subtree(Prefix::Given(unit.0.clone()), explorer, most_moves, watch).0
+        self.check_subtree(PrefixSource::Given(unit.0.clone()), explorer, most_moves, watch).0
     }
 
     /// Checks the starts of a subtree, and returns the weight of what was drawn.
     fn check_subtree<E: Explorer>(
         &self,
-        prefix: Prefix,
+        prefix: PrefixSource,
         explorer: E,
         most_moves: &AtomicU64,
         watch: &dyn Watch,

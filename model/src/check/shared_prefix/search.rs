@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::{
     LazyWorld,
-    world::{Prefix, RobotState},
+    world::{PrefixSource, RobotState},
 };
 use crate::{
     enumerate::{Answer, Draft, Watch},
@@ -57,7 +57,7 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
     pub(super) fn new(
         mut explorer: E,
         draft: Draft,
-        prefix: Prefix,
+        prefix: PrefixSource,
         cut_at: Option<usize>,
         watch: &'w dyn Watch,
     ) -> Self {
@@ -156,7 +156,7 @@ pub(super) fn prefixes<E: Explorer>(
     watch: &dyn Watch,
 ) -> Vec<Vec<Answer>> {
     let mut found = Vec::new();
-    let mut search = RunSearch::new(explorer, draft, Prefix::Open, Some(cut_at), watch);
+    let mut search = RunSearch::new(explorer, draft, PrefixSource::Open, Some(cut_at), watch);
     let _ = search.for_each_end(&mut |world, _, _| {
         found.push(world.answers());
         ControlFlow::Continue(())

@@ -24,7 +24,7 @@ pub(super) struct Decision {
 
 /// How the first decisions are made.
 #[derive(Clone, Debug, Default)]
-pub(super) enum Prefix {
+pub(super) enum PrefixSource {
     /// As all others: every answer is given.
     #[default]
     Open,
@@ -56,7 +56,7 @@ pub struct LazyWorld<M> {
     /// The most moves of a run.
     bound: u64,
     pub(super) decisions: Vec<Decision>,
-    prefix: Prefix,
+    prefix: PrefixSource,
     /// The step that is being made.
     pub(super) step: usize,
     /// Whether no answer was left. The run then goes back.
@@ -68,7 +68,7 @@ pub struct LazyWorld<M> {
 }
 
 impl<M: Marker> LazyWorld<M> {
-    pub(super) fn new(draft: Draft, marker: M, bound: u64, prefix: Prefix) -> Self {
+    pub(super) fn new(draft: Draft, marker: M, bound: u64, prefix: PrefixSource) -> Self {
         Self {
             draft,
             marker,
@@ -138,11 +138,11 @@ impl<M: Marker> LazyWorld<M> {
         let count = left.count();
         let index = self.decisions.len();
         let answer = match &self.prefix {
-            Prefix::Given(answers) if index < answers.len() => {
+            PrefixSource::Given(answers) if index < answers.len() => {
                 left = Answers::default();
                 Some(answers[index])
             }
-            Prefix::Drawn(numbers) if index < numbers.len() && count > 0 => {
+            PrefixSource::Drawn(numbers) if index < numbers.len() && count > 0 => {
                 for _ in 0..numbers[index] % u64::from(count) {
                     left.take_first();
                 }

@@ -10,7 +10,7 @@ use toposlam_terminal::{
     text::{grouped, print_rows},
 };
 
-use super::evaluation_report::{Ending, EvaluationReport, outcome, unmeasured};
+use super::evaluation_report::{EvaluationReport, MeasurementEnd, outcome, unmeasured};
 
 use toposlam_simulator::{
     EffectSettings,
@@ -45,7 +45,8 @@ pub(super) fn measure(
     out: &mut dyn Write,
 ) -> Result<Outcome, CliError> {
     let kinds = cluttered_settings().map_err(unmeasured)?;
-    let (mut rows, mut all, mut ending) = (Vec::new(), ClutterCounts::default(), Ending::Whole);
+    let (mut rows, mut all, mut ending) =
+        (Vec::new(), ClutterCounts::default(), MeasurementEnd::Whole);
     for (name, settings) in kinds {
         let views = ViewSampler { settings, ..views.clone() };
         let judge = judge(&views, &[Calibration::Right])?;
@@ -59,7 +60,7 @@ pub(super) fn measure(
         sheet.line("clutter", &line(name, &views.settings, counts))?;
         rows.push(row(name, counts));
         if (counts.all as u64) < count {
-            ending = Ending::Interrupted;
+            ending = MeasurementEnd::Interrupted;
             break;
         }
     }

@@ -12,7 +12,7 @@ use toposlam_terminal::{
 };
 
 use super::{
-    evaluation_report::{Ending, outcome},
+    evaluation_report::{MeasurementEnd, outcome},
     robots::{PLANS, RandomPlans, RobotArguments},
 };
 use toposlam_simulator::evaluation::report::TargetStatus;
@@ -60,7 +60,7 @@ impl EvaluateControlArguments {
         let progress = Progress::new("traversals", "traversals")?;
         let judged = traversals.judged(0..self.traversals, &equipment, &progress);
         progress.finish();
-        let ending = Ending::of(judged.len(), self.traversals);
+        let ending = MeasurementEnd::of(judged.len(), self.traversals);
         let (wrong, gave_up) = tally(&judged);
         let status = if wrong + gave_up > 0 { TargetStatus::Missed } else { TargetStatus::Met };
         let outcome = outcome(status, ending);
@@ -97,7 +97,7 @@ impl EvaluateControlArguments {
         let verdict = match (outcome, ending) {
             (Outcome::Holds, _) => "holds in these traversals: every door leads where it should",
             (Outcome::Violated, _) => "violated",
-            (_, Ending::Empty) => "incomplete: nothing was measured",
+            (_, MeasurementEnd::Empty) => "incomplete: nothing was measured",
             _ => "incomplete, interrupted",
         };
         let line = json!({

@@ -39,7 +39,7 @@ pub(super) struct EvaluationReport {
 
 /// How a measurement ended.
 #[derive(Clone, Copy)]
-pub(super) enum Ending {
+pub(super) enum MeasurementEnd {
     /// All cases were measured.
     Whole,
     /// No case was measured.
@@ -48,7 +48,7 @@ pub(super) enum Ending {
     Interrupted,
 }
 
-impl Ending {
+impl MeasurementEnd {
     /// The ending of a measurement of so many of the wanted cases.
     pub(super) fn of(measured: usize, wanted: u64) -> Self {
         if measured == 0 {
@@ -62,10 +62,10 @@ impl Ending {
 }
 
 /// The outcome of a measurement with targets.
-pub(super) fn outcome(status: TargetStatus, ending: Ending) -> Outcome {
+pub(super) fn outcome(status: TargetStatus, ending: MeasurementEnd) -> Outcome {
     match (status, ending) {
         (TargetStatus::Missed, _) => Outcome::Violated,
-        (TargetStatus::Met, Ending::Whole) => Outcome::Holds,
+        (TargetStatus::Met, MeasurementEnd::Whole) => Outcome::Holds,
         _ => Outcome::Incomplete,
     }
 }
@@ -194,7 +194,7 @@ impl EvaluationReport {
 /// The verdict of a measurement with targets, in words.
 pub(super) fn verdict_on_targets(
     outcome: Outcome,
-    ending: Ending,
+    ending: MeasurementEnd,
     statuses: impl IntoIterator<Item = TargetStatus>,
 ) -> String {
     let [mut missed, mut not_shown] = [0; 2];
@@ -205,7 +205,7 @@ pub(super) fn verdict_on_targets(
     match (outcome, ending) {
         (Outcome::Holds, _) => "holds: all targets are met".to_owned(),
         (Outcome::Violated, _) => format!("violated: missed {}", counted(missed, "target")),
-        (_, Ending::Interrupted) => "incomplete, interrupted".to_owned(),
+        (_, MeasurementEnd::Interrupted) => "incomplete, interrupted".to_owned(),
         _ => format!("not shown: the sample is too small for {}", counted(not_shown, "target")),
     }
 }

@@ -16,7 +16,7 @@ use toposlam_vision::laser::params::LaserParams;
 use super::{
     control,
     evaluation_report::{
-        Ending, EvaluationReport, ReportArguments, outcome, percent, verdict_on_targets,
+        EvaluationReport, MeasurementEnd, ReportArguments, outcome, percent, verdict_on_targets,
     },
     robots::{PLANS, RandomPlans, usual_plans},
 };
@@ -174,7 +174,7 @@ impl EvaluateLaserArguments {
         let traversals = self.driven(traversals, scanner.unwrap_or_default())?;
         let measured = walks.len() + runs.len() + traversals.len();
         let interrupted = (measured as u64) < wanted;
-        let ending = if interrupted { Ending::Interrupted } else { Ending::Whole };
+        let ending = if interrupted { MeasurementEnd::Interrupted } else { MeasurementEnd::Whole };
         let report = LaserReport::of(&walks, &runs, &traversals);
         let outcome = outcome(report.standing(), ending);
 

@@ -16,7 +16,7 @@ use toposlam_terminal::{
 };
 
 use super::{
-    evaluation_report::{Ending, outcome},
+    evaluation_report::{MeasurementEnd, outcome},
     robots::{RandomPlans, RobotArguments},
 };
 use toposlam_simulator::evaluation::{
@@ -72,7 +72,8 @@ impl EvaluateLengthsArguments {
         let numbers = 0..sampler.runs_with(self.traversals);
         let progress = Progress::new("runs", "runs")?;
         let runs = sampler.measured(numbers, &equipment, &progress);
-        let ending = if progress.stop() { Ending::Interrupted } else { Ending::Whole };
+        let ending =
+            if progress.stop() { MeasurementEnd::Interrupted } else { MeasurementEnd::Whole };
         progress.finish();
         let tally = Tally::of(&runs);
         let outcome = outcome(tally.status(), ending);
@@ -109,7 +110,7 @@ impl EvaluateLengthsArguments {
         let verdict = match (outcome, ending) {
             (Outcome::Holds, _) => "holds: at most 1 false alarm in 10,000 traversals",
             (Outcome::Violated, _) => "violated: more than 1 false alarm in 10,000 traversals",
-            (_, Ending::Interrupted) => "incomplete, interrupted",
+            (_, MeasurementEnd::Interrupted) => "incomplete, interrupted",
             _ => "not shown: there are too few traversals",
         };
         sheet.finish(out, ("lengths", &line), outcome, verdict)

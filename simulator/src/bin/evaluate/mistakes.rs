@@ -23,7 +23,7 @@ use toposlam_terminal::{
     text::{WIDTH, capital, counted, grouped, print_paragraph, print_rows, wrapped},
 };
 
-use super::evaluation_report::{Ending, ReportArguments, outcome};
+use super::evaluation_report::{MeasurementEnd, ReportArguments, outcome};
 
 /// Measure what one mistake does: is the map right, or is the mistake detected?
 ///
@@ -93,9 +93,9 @@ impl EvaluateMistakesArguments {
         }
         let all = tally.all();
         let ending = if tally.interrupted {
-            Ending::Interrupted
+            MeasurementEnd::Interrupted
         } else {
-            Ending::of(all.runs() as usize, 0)
+            MeasurementEnd::of(all.runs() as usize, 0)
         };
         let violations = violations(&tally);
         let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
@@ -121,7 +121,7 @@ impl EvaluateMistakesArguments {
                 grouped(violations.into()),
                 grouped(all.runs().into()),
             ),
-            (_, Ending::Interrupted) => "incomplete, interrupted".to_owned(),
+            (_, MeasurementEnd::Interrupted) => "incomplete, interrupted".to_owned(),
             _ => "incomplete: there is nothing to check".to_owned(),
         };
         self.write_mistakes(&tally)?;

@@ -13,7 +13,7 @@ use toposlam_terminal::{
 };
 
 use super::{
-    evaluation_report::{Ending, outcome},
+    evaluation_report::{MeasurementEnd, outcome},
     robots::{RandomPlans, RobotArguments},
 };
 use toposlam_simulator::{
@@ -93,7 +93,7 @@ impl EvaluateRunsArguments {
         let progress = Progress::new("runs", "runs")?;
         let judged = runs.judged(0..wanted, &equipment, &progress);
         progress.finish();
-        let ending = Ending::of(judged.len(), wanted);
+        let ending = MeasurementEnd::of(judged.len(), wanted);
         let violations = judged.iter().filter(|run| self.violates(run)).count();
         let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
         let outcome = outcome(status, ending);
@@ -145,7 +145,7 @@ impl EvaluateRunsArguments {
                 "holds in these runs: every map is right, or the robot gave up or was carried"
             }
             (Outcome::Violated, ..) => "violated",
-            (_, Ending::Empty, _) => "incomplete: nothing was measured",
+            (_, MeasurementEnd::Empty, _) => "incomplete: nothing was measured",
             _ => "incomplete, interrupted",
         };
         sheet.finish(out, ("runs", &line), outcome, verdict)

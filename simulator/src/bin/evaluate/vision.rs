@@ -17,7 +17,7 @@ use toposlam_vision::camera::Camera;
 use super::{
     clutter,
     evaluation_report::{
-        Ending, EvaluationReport, ReportArguments, outcome, unlearned, unmeasured,
+        EvaluationReport, MeasurementEnd, ReportArguments, outcome, unlearned, unmeasured,
         verdict_on_targets,
     },
     failing, vision_report,
@@ -137,11 +137,11 @@ impl EvaluateVisionArguments {
         let visits = self.visits.unwrap_or(self.views / 20);
         vision_report::add_source(&mut sheet, [self.views, visits], views)?;
         let mut statuses = Vec::new();
-        let mut ending = Ending::Whole;
+        let mut ending = MeasurementEnd::Whole;
         for &calibration in calibrations {
             let (judged, judged_visits) = self.measure(&judge, views, visits, calibration)?;
             if (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits {
-                ending = Ending::Interrupted;
+                ending = MeasurementEnd::Interrupted;
             }
             let report = VisionReport::of(&judged, &judged_visits, calibration);
             vision_report::add(&mut sheet, &report)?;
@@ -159,7 +159,7 @@ impl EvaluateVisionArguments {
         let count = |is| statuses.iter().filter(|&&status| status == is).count();
         let line = json!({
             "missed": count(TargetStatus::Missed), "not_shown": count(TargetStatus::NotShown),
-            "interrupted": matches!(ending, Ending::Interrupted),
+            "interrupted": matches!(ending, MeasurementEnd::Interrupted),
         });
         let verdict = verdict_on_targets(outcome, ending, statuses);
         sheet.finish(out, ("verdict", &line), outcome, &format!("\n{verdict}"))

@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 use toposlam_model::{
-    percept::{Percept, Sighting},
+    percept::Percept,
     trace::{AllowedStep, MisfitReason},
 };
 
-use super::super::{
+use super::{
     divergence::{DivergenceCause, FaultClass},
     events::CheckedKind,
     judgement::ConformVerdict,
+    report::{
+        Allowed, ConformReports, CoveredCase, DivergenceReport, Facts, Limit, LogReport,
+        MarkerSeen, MessagePlace,
+    },
     words,
-};
-use super::{
-    Allowed, ConformReports, CoveredCase, DivergenceReport, Facts, Limit, LogReport, MessagePlace,
 };
 
 #[derive(Serialize)]
@@ -131,27 +132,6 @@ impl ConformReports {
     }
 }
 
-/// What the robot saw of its marker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum MarkerSeen {
-    /// The door along which it points, or -1 without a marker.
-    Door(i64),
-    /// It is there, and points along no door.
-    Seen(bool),
-}
-
-impl MarkerSeen {
-    pub(super) fn of(sighting: Sighting) -> Option<Self> {
-        match sighting {
-            Sighting::Pointing(door) => Some(Self::Door(door.0.into())),
-            Sighting::Nothing => Some(Self::Door(-1)),
-            Sighting::Lying(_) => Some(Self::Seen(true)),
-            _ => None,
-        }
-    }
-}
-
 /// What is perceived, or the door that is taken.
 #[derive(Default, Serialize)]
 struct Step {
@@ -185,7 +165,7 @@ impl Serialize for CheckedKind {
         let step = match self {
             Self::Arrival { arrival, .. } => Step {
                 degree: Some(arrival.degree),
-                marker: arrival.sighting.and_then(MarkerSeen::of),
+                marker: arrival.sighting.and_then(MarkerSeen::from_sighting),
                 door: None,
             },
             Self::Door { door, .. } => Step { door: Some(door.0), ..Step::default() },
@@ -215,7 +195,7 @@ impl Serialize for Allowed {
             Self::InWorld(pose, why) => {
                 let (step, doors) = match *why {
                     MisfitReason::Percept { expected: Percept { degree, sighting } } => {
-                        let marker = MarkerSeen::of(sighting);
+                        let marker = MarkerSeen::from_sighting(sighting);
                         (Step { degree: Some(degree), marker, door: None }, None)
                     }
                     MisfitReason::NoSuchDoor { degree } => (Step::default(), Some(degree)),
