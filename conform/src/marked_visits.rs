@@ -41,6 +41,7 @@ pub enum AddedMarker {
     },
     /// A fiducial.
     Fiducial {
+        /// The number of all sightings.
         sightings: usize,
         /// The number of them at no junction that the robot visited.
         elsewhere: usize,

@@ -168,7 +168,9 @@ fn fields<'py>(
     let lengths = facts.lengths;
     fields.set_item("hallways", (lengths.moves, lengths.measured, lengths.compared))?;
     if let Some(smallest) = &facts.smallest {
-        fields.set_item("smallest", Py::new(py, CoreWorld(smallest.world.clone()))?)?;
+        let mut world = smallest.world.clone();
+        world.marker = None;
+        fields.set_item("smallest", Py::new(py, CoreWorld(world))?)?;
         fields.set_item("is_least", smallest.least)?;
     }
     Ok(fields)

@@ -14,7 +14,8 @@ use toposlam_model::{
     trace::{AlgorithmCase, AllowedStep, MatchedChoices, MisfitReason},
 };
 
-pub use events::{EventPose, MarkerSeen, PoseName, ReportedEvent, ReportedVisit};
+pub(super) use events::MarkerSeen;
+pub use events::{EventPose, PoseName, ReportedEvent, ReportedVisit};
 pub use facts::{
     ComparedDoors, Facts, MapSize, OpenDoor, RecordedEnding, RecordedWorld, SmallestFound,
     UnseenPlace, WorldFact,
