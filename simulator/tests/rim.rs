@@ -102,6 +102,7 @@ const CLUTTER: [(&str, f64); 6] = [
 ];
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_rim_is_found_in_one_image_with_any_clutter() {
     for setting in CLUTTER {
         for (size, more) in [([640, 480], &[][..]), ([1280, 960], &CROPPED[..])] {
@@ -113,6 +114,7 @@ fn the_rim_is_found_in_one_image_with_any_clutter() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn no_wrong_rim_is_found_in_one_image_with_all_clutter_that_crops_it_on_three_sides() {
     let mut all = [0; 2];
     for holder in [0.0, 0.015, 0.03, 0.06] {

@@ -98,6 +98,7 @@ fn among_furniture_doors_and_people_a_robot_gives_up_when_it_fails() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn buildings_are_mapped_by_laser() {
     for algorithm in MappingAlgorithm::with_fixed_marker() {
         let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
@@ -109,6 +110,7 @@ fn buildings_are_mapped_by_laser() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn buildings_are_mapped_by_a_scanner_that_does_not_see_all_round() {
     let mut all = plans().unwrap();
     all.extend((0..3).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
@@ -139,6 +141,7 @@ fn a_run_with_a_look_around_is_repeated_from_its_recording() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let robot = |config: &SimulationConfig| config.by_laser(&params);

@@ -34,6 +34,7 @@ fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
 // paper: sense.junction.type
 // paper: sense.junction.entry
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn sensing_is_never_wrong_and_seldom_unknown() {
     let views = views();
     let judge = Judge::new(&Camera::superscout(), &views, &[Calibration::Right], &()).unwrap();

@@ -109,6 +109,15 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
             options,
         );
     }
+    for (options, part) in [
+        ("--marker none", "180 degrees: arms that point back"),
+        ("--assume-marker", "assumed, not in the log: "),
+        ("--assume-marker --marker undirected", "the marker may have been entered in 2 ways."),
+    ] {
+        let text = scratch.out(&format!("{RING} {options}"), 0);
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(part.trim_end()), "{text}");
+    }
     scratch.facts(&[
         // In the known building the marker may lie anywhere.
         (&format!(

@@ -52,15 +52,6 @@ fn toposlam() -> Command {
     command
 }
 
-/// Runs the program to its end. Its exit code is one that the help of the verb has.
-fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
-    let arguments: Vec<OsString> =
-        arguments.into_iter().map(|word| word.as_ref().to_owned()).collect();
-    let output = toposlam().args(&arguments).output().unwrap();
-    check_exit_code(&arguments, &output);
-    output
-}
-
 /// Runs the program until it reads its standard input, and sends the signal of Ctrl-C.
 #[cfg(unix)]
 fn interrupted(line: &str) -> Output {
@@ -136,13 +127,6 @@ fn exit_codes(help: &str) -> BTreeMap<i32, String> {
         }
     }
     codes
-}
-
-/// The standard output of a successful run.
-fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
-    let output = run(arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    stdout(&output)
 }
 
 fn stdout(output: &Output) -> String {

@@ -89,6 +89,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
 
     #[test]
+    #[ignore = "a long sweep, for `.ci/run --all`"]
     fn any_image_has_a_scene_of_finite_numbers(patches in vec(any_patch(), 0..14)) {
         let image = painted(&patches);
         let mut sensor = SENSOR.clone();

@@ -99,6 +99,7 @@ fn found(drawn: &Drawn, count: u64, seed: u64) {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_rim_of_a_bright_disc_is_found_within_half_a_pixel() {
     for seed in 0..6 {
         let mut chance = Chance(seed + 77);
@@ -139,6 +140,7 @@ fn a_large_image_is_as_good() {
 }
 
 #[test]
+#[ignore = "a long sweep, for `.ci/run --all`"]
 fn without_a_mirror_there_is_no_rim() {
     let noise = |seed| {
         let mut chance = Chance(seed);
