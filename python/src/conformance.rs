@@ -1,15 +1,15 @@
 //! A log, checked against the specification.
 
 use pyo3::{prelude::*, types::PyDict};
-use toposlam_model::{
-    folding::WorldSearch, mapping::MappingAlgorithm, percept::Percept as ModelPercept,
-    percept::Sighting, trace::AlgorithmCase,
-};
 use toposlam_conform::{
     CheckError, CheckedKind, DoorChooser, Evidence, ExtractError, Facts, LogCheck, LogReport,
     LogSource, MarkerPlaceError, Quirks, RESUMED_REMARK, ReportedEvent, RobotStart, words,
 };
 use toposlam_logs::topic_map::TopicMap;
+use toposlam_model::{
+    folding::WorldSearch, mapping::MappingAlgorithm, percept::Percept as ModelPercept,
+    percept::Sighting, trace::AlgorithmCase,
+};
 use toposlam_vision::{
     camera::calibration, colour::ColourModel, laser::params::LaserParams, sensing::Sensor,
 };

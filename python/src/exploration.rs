@@ -3,9 +3,22 @@
 use pyo3::prelude::*;
 use thiserror::Error;
 use toposlam_draw::story::{PrintedStory, Story, StoryDetail};
-use toposlam_model::{enumerate::Watch, folding, format::named_world::NamedWorld, isomorphism::Candidate, mapping::{FACING, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observer}, marker::Marker, percept::{Door, Percept}, world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World}};
+use toposlam_model::{
+    enumerate::Watch,
+    folding,
+    format::named_world::NamedWorld,
+    isomorphism::Candidate,
+    mapping::{FACING, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observer},
+    marker::Marker,
+    percept::{Door, Percept},
+    world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World},
+};
 
-use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, world::CoreWorld};
+use crate::{
+    error::{error, interrupted},
+    long_work::{Watcher, run_watched},
+    world::CoreWorld,
+};
 
 /// A run that mapped its world.
 #[derive(IntoPyObject)]

@@ -4,11 +4,30 @@ use std::path::{Path, PathBuf};
 
 use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
-use toposlam_model::{driving::{odometry::Odometry, scene::{Place, Scene}}, enumerate::Watch, percept::{Door, Percept as ModelPercept}};
-use toposlam_logs::{Format, entries::{Content, Entry}, error::LogError, messages::Run, reader::Log, topic_map::{Role, TopicMap}, record::{Arrival, EventKind, Frame, RunEnding}};
+use toposlam_logs::{
+    Format,
+    entries::{Content, Entry},
+    error::LogError,
+    messages::Run,
+    reader::Log,
+    record::{Arrival, EventKind, Frame, RunEnding},
+    topic_map::{Role, TopicMap},
+};
+use toposlam_model::{
+    driving::{
+        odometry::Odometry,
+        scene::{Place, Scene},
+    },
+    enumerate::Watch,
+    percept::{Door, Percept as ModelPercept},
+};
 use toposlam_vision::geometry::from_robot;
 
-use crate::{error::{error, interrupted}, long_work::{Watcher, run_watched}, percept::Percept};
+use crate::{
+    error::{error, interrupted},
+    long_work::{Watcher, run_watched},
+    percept::Percept,
+};
 
 /// A log that is open for reading.
 #[pyclass(frozen, module = "toposlam._core")]

@@ -1,7 +1,15 @@
 //! Long work: without the interpreter lock, on a thread of its own, while the thread of the caller handles
 //! signals and shows progress.
 
-use std::{panic::{AssertUnwindSafe, catch_unwind}, sync::{atomic::{AtomicBool, AtomicU64, Ordering}, mpsc}, thread, time::Duration};
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{
+        atomic::{AtomicBool, AtomicU64, Ordering},
+        mpsc,
+    },
+    thread,
+    time::Duration,
+};
 
 use pyo3::prelude::*;
 use toposlam_model::enumerate::Watch;

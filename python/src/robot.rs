@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use toposlam_model::{
-    check::{determines_world},
+    check::determines_world,
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
     percept::{Door, Percept as ModelPercept},

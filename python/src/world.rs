@@ -4,7 +4,17 @@ use std::path::PathBuf;
 
 use pyo3::{prelude::*, types::PyBytes};
 use toposlam_draw::picture::{Placement, WorldPicture, png, svg};
-use toposlam_model::{embedded_graph::{Dart, EmbeddedGraph, GraphError}, format::{dot, named_world::NamedWorld, plantri, world_file::{WorldFileErrorKind, self}}, isomorphism::{canonical, code}, marker::{Marker, self}};
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph, GraphError},
+    format::{
+        dot,
+        named_world::NamedWorld,
+        plantri,
+        world_file::{self, WorldFileErrorKind},
+    },
+    isomorphism::{canonical, code},
+    marker::{self, Marker},
+};
 
 use crate::error::{error, guarded};
 

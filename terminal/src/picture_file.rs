@@ -54,7 +54,7 @@ pub fn write_stage(path: &Path, legend: &StageLegend, picture: &RgbImage) -> Res
     write(path, &whole.map_err(|error| CliError::in_file(path, error))?)
 }
 
-/// The bytes that [`write`] writes.
+/// The bytes that [`write()`] writes.
 ///
 /// # Errors
 /// Returns an error with its place and cause.
