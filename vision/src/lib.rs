@@ -2,7 +2,7 @@
 //!
 //! From the ground up:
 //!
-//! * [`params`]: the thresholds of all steps;
+//! * [`params`](mod@params): the thresholds of all steps;
 //! * [`geometry`]: directions and motions, besides what nalgebra has;
 //! * [`image_file`]: the image in a PNG or JPEG file;
 //! * [`colour`]: floor, stripe, marker or something else, by a Bayes classifier on HSV colours;

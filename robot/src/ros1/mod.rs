@@ -1,7 +1,7 @@
 //! A SuperScout behind the topics of ROS 1, with the usual names: one for wheel speeds, one for
 //! odometry, one for images, or one for laser scans and one for the marker. Section 2.5.
 //!
-//! [`LiveRobot`] drives any robot behind these topics. [`serve`] is a simulated robot behind them.
+//! [`LiveRobot`] drives any robot behind these topics. `toposlam_simulator::ros1` is a simulated robot behind them.
 //! Both are nodes of one master and have no other connection.
 
 mod base;
