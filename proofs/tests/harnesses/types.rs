@@ -22,8 +22,8 @@ fn run(rustc: &mut Command) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(String::from_utf8(stderr).unwrap()) }
 }
 
-/// The folder of the stand-in, and what cargo made of the model.
-static DEPENDENCIES: LazyLock<(PathBuf, PathBuf)> = LazyLock::new(|| {
+/// The folder of the stand-in, and what cargo made of the model and of serde.
+static DEPENDENCIES: LazyLock<(PathBuf, PathBuf, PathBuf)> = LazyLock::new(|| {
     let folder = scratch("stand_in");
     let crates = [
         ("kani_macros", "macros.rs", "proc-macro", "proc_macro"),
@@ -46,17 +46,17 @@ static DEPENDENCIES: LazyLock<(PathBuf, PathBuf)> = LazyLock::new(|| {
         .unwrap();
     assert!(cargo.status.success(), "{}", String::from_utf8(cargo.stderr).unwrap());
     let messages = String::from_utf8(cargo.stdout).unwrap();
-    let model = messages
-        .split('"')
-        .find(|word| word.contains("libtoposlam_model-") && word.contains(".rmeta"))
-        .expect("cargo says what it made");
-    (folder, model.into())
+    let [model, serde] = ["libtoposlam_model-", "libserde-"].map(|name| {
+        let made = |word: &&str| word.contains(name) && word.contains(".rmeta");
+        PathBuf::from(messages.split('"').find(made).expect("cargo says what it made"))
+    });
+    (folder, model, serde)
 });
 
 /// Checks the types of the library in this folder as Kani would have it compiled, and answers
 /// its harnesses with their unwindings.
 fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
-    let (stand_in, model) = &*DEPENDENCIES;
+    let (stand_in, model, serde) = &*DEPENDENCIES;
     let others = model.parent().unwrap();
     run(rustc()
         .args(["--crate-name", "toposlam_proofs", "--crate-type", "lib", "-F", "unsafe_code"])
@@ -65,6 +65,8 @@ fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
         .arg(stand_in)
         .arg("--extern")
         .arg(format!("toposlam_model={}", model.display()))
+        .arg("--extern")
+        .arg(format!("serde={}", serde.display()))
         .arg("-L")
         .arg(format!("dependency={}", others.display()))
         .args(["--emit", "dep-info,metadata", "--out-dir"])
