@@ -41,7 +41,6 @@ impl Door {
 /// What the marker in use adds to a percept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sighting {
-    /// No marker is noticed.
     Nothing,
     /// The directional marker is here and points along this door.
     Pointing(Door),
@@ -53,7 +52,6 @@ pub enum Sighting {
     Second,
     /// Two markers that look different are both here.
     Both,
-    /// The edge just traversed is marked.
     Passed,
     /// The edge just traversed is marked, by an arrow in the sense of the traversal.
     PassedAlong,
@@ -82,9 +80,7 @@ impl fmt::Display for Sighting {
 // paper: percept.degree, percept.featureless
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percept {
-    /// The number of doors.
     pub degree: u32,
-    /// What the marker adds.
     pub sighting: Sighting,
 }
 
@@ -117,7 +113,6 @@ impl Percept {
 /// Events are ordered as they happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkEvent {
-    /// The percept after this many moves.
     Percept(usize),
     /// The door that is taken after this many moves.
     Door(usize),
@@ -140,7 +135,6 @@ impl WalkEvent {
         }
     }
 
-    /// The number of moves before the event.
     #[must_use]
     pub fn moves(self) -> usize {
         match self {

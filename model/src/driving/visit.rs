@@ -29,7 +29,6 @@ pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
 pub struct JunctionEstimate {
     /// The number of images of each shape, by its [`JunctionShape::code`].
     forms: [u32; 8],
-    /// The best view of the marker.
     marker: Option<Glimpse>,
     /// Whether an image was taken from where a marker would be seen well.
     looked: bool,
@@ -92,7 +91,6 @@ impl JunctionShape {
         (0..4).filter(|&quarter| self.0[quarter as usize]).collect()
     }
 
-    /// The number of doors.
     #[must_use]
     pub fn degree(self) -> u32 {
         self.0.iter().map(|&door| u32::from(door)).sum()

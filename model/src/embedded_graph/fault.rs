@@ -9,64 +9,24 @@ use super::MAX_EDGES;
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum GraphError {
-    /// There is no dart at all.
     #[error("there is no edge; a world has at least one")]
     NoEdge,
-    /// There are more edges than [`MAX_EDGES`](super::MAX_EDGES).
     #[error("there are more edges than can be numbered")]
     TooManyEdges,
-    /// The two arrays have different lengths.
     #[error("`opposite` has {opposite} darts and `clockwise` has {clockwise}")]
-    LengthsDiffer {
-        /// The length of `opposite`.
-        opposite: usize,
-        /// The length of `clockwise`.
-        clockwise: usize,
-    },
-    /// `opposite` names a dart that does not exist.
+    LengthsDiffer { opposite: usize, clockwise: usize },
     #[error("the opposite of dart {dart} is {opposite}, which is not a dart")]
-    OppositeOutOfRange {
-        /// The dart.
-        dart: u32,
-        /// What was given as its opposite.
-        opposite: u32,
-    },
-    /// A dart is its own opposite.
+    OppositeOutOfRange { dart: u32, opposite: u32 },
     #[error("dart {dart} is its own opposite")]
-    OppositeFixed {
-        /// The dart.
-        dart: u32,
-    },
-    /// The opposite of the opposite is another dart.
+    OppositeFixed { dart: u32 },
     #[error("the opposite of dart {dart} is {opposite}, whose opposite is another dart")]
-    OppositeNotMutual {
-        /// The dart.
-        dart: u32,
-        /// Its opposite.
-        opposite: u32,
-    },
-    /// `clockwise` names a dart that does not exist.
+    OppositeNotMutual { dart: u32, opposite: u32 },
     #[error("clockwise from dart {dart} is {clockwise}, which is not a dart")]
-    ClockwiseOutOfRange {
-        /// The dart.
-        dart: u32,
-        /// What was given as the next one.
-        clockwise: u32,
-    },
-    /// Two darts have the same successor around their vertex.
+    ClockwiseOutOfRange { dart: u32, clockwise: u32 },
     #[error("clockwise from dart {dart} is {clockwise}, as from an earlier dart")]
-    ClockwiseRepeated {
-        /// The second of the two darts.
-        dart: u32,
-        /// The successor that both claim.
-        clockwise: u32,
-    },
-    /// The graph is not connected.
+    ClockwiseRepeated { dart: u32, clockwise: u32 },
     #[error("dart {dart} cannot be reached from dart 0: the world is not connected")]
-    NotConnected {
-        /// The least dart that cannot be reached.
-        dart: u32,
-    },
+    NotConnected { dart: u32 },
 }
 
 /// The error if a graph cannot have this number of darts.

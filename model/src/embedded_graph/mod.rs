@@ -31,7 +31,6 @@ pub struct Dart(pub u32);
 pub struct Vertex(pub u32);
 
 impl Dart {
-    /// The dart's number, to index with.
     #[must_use]
     pub fn at(self) -> usize {
         self.0 as usize
@@ -39,7 +38,6 @@ impl Dart {
 }
 
 impl Vertex {
-    /// The vertex's number, to index with.
     #[must_use]
     pub fn at(self) -> usize {
         self.0 as usize
@@ -57,7 +55,6 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 // paper: world.graph, world.embedding
 #[derive(Debug)]
 pub struct EmbeddedGraph {
-    /// The darts of each vertex.
     darts_of: Vec<Darts>,
     darts: Vec<DartPlace>,
 }
@@ -87,7 +84,6 @@ impl Hash for EmbeddedGraph {
 /// All that is known of a dart, side by side, so that a motion needs one look-up.
 #[derive(Clone, Copy, Debug)]
 struct DartPlace {
-    /// The other end of its edge.
     opposite: Dart,
     vertex: Vertex,
     /// The darts of its vertex, once more.
@@ -145,21 +141,18 @@ impl EmbeddedGraph {
         self.darts().map(|dart| (dart, self.opposite(dart))).filter(|(dart, other)| dart < other)
     }
 
-    /// The other end of the dart's edge.
     #[inline]
     #[must_use]
     pub fn opposite(&self, dart: Dart) -> Dart {
         self.darts[dart.at()].opposite
     }
 
-    /// The vertex at which the dart is.
     #[inline]
     #[must_use]
     pub fn vertex(&self, dart: Dart) -> Vertex {
         self.darts[dart.at()].vertex
     }
 
-    /// The number of darts at the vertex.
     #[inline]
     #[must_use]
     pub fn degree(&self, vertex: Vertex) -> u32 {
@@ -190,7 +183,6 @@ impl EmbeddedGraph {
         (first..end).map(Dart)
     }
 
-    /// The next dart around the same vertex.
     #[inline]
     #[must_use]
     pub fn clockwise(&self, dart: Dart) -> Dart {
@@ -198,7 +190,6 @@ impl EmbeddedGraph {
         if dart.0 + 1 == darts.end { Dart(darts.first) } else { Dart(dart.0 + 1) }
     }
 
-    /// The previous dart around the same vertex.
     #[inline]
     #[must_use]
     pub fn counterclockwise(&self, dart: Dart) -> Dart {
@@ -206,7 +197,6 @@ impl EmbeddedGraph {
         if dart.0 == darts.first { Dart(darts.end - 1) } else { Dart(dart.0 - 1) }
     }
 
-    /// The number of darts at the dart's vertex.
     #[inline]
     #[must_use]
     pub fn degree_around(&self, dart: Dart) -> u32 {

@@ -200,23 +200,12 @@ impl<'g> IntoEdges for &'g EmbeddedGraph {
 /// The error for a graph of petgraph that is no embedded graph.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PetgraphError {
-    /// The orders of the edges are not those of an embedded graph. Vertices and edges have their numbers as names.
     #[error(transparent)]
     Lists(#[from] ListError),
-    /// An edge is in the order of a node that it does not meet.
     #[error("edge {edge} is in the order of node {node}, which it does not meet")]
-    OtherNode {
-        /// The number of the edge.
-        edge: usize,
-        /// The number of the node.
-        node: usize,
-    },
-    /// An edge is in no order.
+    OtherNode { edge: usize, node: usize },
     #[error("edge {edge} is in the order of no node")]
-    NoNode {
-        /// The number of the edge.
-        edge: usize,
-    },
+    NoNode { edge: usize },
 }
 
 impl EmbeddedGraph {

@@ -5,7 +5,6 @@ use super::{Dart, EmbeddedGraph};
 /// An embedded graph without corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Smoothed {
-    /// The graph.
     pub graph: EmbeddedGraph,
     /// For each of its darts, the dart in the first graph.
     pub darts: Vec<Dart>,

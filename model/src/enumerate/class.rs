@@ -19,16 +19,13 @@ pub enum Class {
     Planar,
 }
 
-/// The error for a name that no class has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not a class of worlds; the classes are multigraph, simple, corridor and planar")]
 pub struct UnknownClass(String);
 
 impl Class {
-    /// Every class.
     pub const ALL: [Self; 4] = [Self::Multigraph, Self::Simple, Self::Corridor, Self::Planar];
 
-    /// The class's name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -21,7 +21,6 @@ pub(crate) struct Draft {
 /// What is behind a free dart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Another free dart.
     Free(u8),
     /// The first dart of a new vertex of this degree.
     NewVertex(u8),
@@ -30,7 +29,6 @@ pub(crate) enum Answer {
 /// The answers that are possible. The free darts come first, then the degrees from the highest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Answers {
-    /// The free darts, as bits.
     free: u64,
     /// The degrees of a new vertex, as bits: bit 63 for degree 1.
     degrees: u64,
@@ -41,12 +39,10 @@ fn degree_bit(degree: usize) -> u64 {
 }
 
 impl Answers {
-    /// Their number.
     pub(crate) fn count(self) -> u32 {
         self.free.count_ones() + self.degrees.count_ones()
     }
 
-    /// Removes the first one.
     pub(crate) fn take_first(&mut self) -> Option<Answer> {
         if self.free != 0 {
             let lowest = self.free.trailing_zeros() as u8;

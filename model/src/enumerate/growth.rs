@@ -8,7 +8,6 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 /// The most edges that a growth can have: its darts are the bits of a `u64`.
 pub(super) const MAX_EDGES: usize = 32;
 
-/// The most darts.
 pub(super) const DARTS: usize = 2 * MAX_EDGES;
 
 /// The opposite of a free dart.
@@ -20,7 +19,6 @@ pub(super) const PREFIX_EDGES: usize = 4;
 /// The first steps of a history of growth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prefix {
-    /// The degree of the start vertex.
     degree: u8,
     words: [u8; PREFIX_EDGES],
     edges: u8,
@@ -33,7 +31,6 @@ pub(super) struct Growth {
     each: Each,
     /// The number of edges at the end.
     target: usize,
-    /// The other end of each dart, or [`FREE`].
     pub(super) opposite: [u8; DARTS],
     pub(super) vertex: [u8; DARTS],
     /// The first dart of each vertex, and its degree.
@@ -44,7 +41,6 @@ pub(super) struct Growth {
     adjacent: [u64; MAX_EDGES + 1],
     vertices: usize,
     pub(super) darts: usize,
-    /// The free darts, as bits.
     free: u64,
     /// The code so far: a word an edge, as in `isomorphism::StartCode`, but in a byte.
     pub(super) words: [u8; MAX_EDGES],
@@ -201,12 +197,10 @@ impl Growth {
         ControlFlow::Continue(())
     }
 
-    /// The free dart with the lowest number.
     fn lowest_free(&self) -> Option<usize> {
         (self.free != 0).then(|| self.free.trailing_zeros() as usize)
     }
 
-    /// The number of edges that are still to be added.
     pub(super) fn edges_left(&self) -> usize {
         self.target - self.edges
     }

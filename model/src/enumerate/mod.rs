@@ -43,10 +43,8 @@ pub struct Enumeration {
 /// The error for a number of edges that cannot be enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SizeError {
-    /// No edges.
     #[error("a world has at least one edge")]
     NoEdge,
-    /// More than the enumeration can represent.
     #[error("worlds with {0} edges are too many to enumerate; the limit is {MAX_EDGES}")]
     TooManyEdges(usize),
 }
@@ -81,7 +79,6 @@ impl Enumeration {
         }
     }
 
-    /// The class of worlds.
     #[must_use]
     pub fn class(&self) -> Class {
         self.class

@@ -4,7 +4,6 @@ use std::cmp::Ordering;
 
 use super::growth::{DARTS, FREE, Growth, new_vertex};
 
-/// The number of a dart that was not met yet.
 const UNMET: u8 = u8::MAX;
 
 impl Growth {

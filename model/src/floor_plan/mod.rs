@@ -26,13 +26,9 @@ const TOLERANCE: f64 = 1e-6;
 // paper: env.right-angles
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Direction {
-    /// To greater y.
     North,
-    /// To greater x.
     East,
-    /// To lesser y.
     South,
-    /// To lesser x.
     West,
 }
 
@@ -79,18 +75,15 @@ impl Direction {
 // paper: env.junction-types
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JunctionKind {
-    /// One door.
     DeadEnd,
     /// Two doors at a right angle.
     L,
-    /// Three doors.
     T,
 }
 
 /// A place where hallways end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
-    /// Its name.
     pub name: String,
     /// Where its turning point is, in metres, x to the east and y to the north.
     pub position: [f64; 2],
@@ -182,7 +175,6 @@ impl FloorPlan {
         &self.junctions[vertex.at()]
     }
 
-    /// The hallways, in the order given.
     #[must_use]
     pub fn hallways(&self) -> &[Hallway] {
         &self.hallways

@@ -21,7 +21,6 @@ pub struct BuildingWall {
 }
 
 impl BuildingWall {
-    /// Its length, in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.span[1] - self.span[0]

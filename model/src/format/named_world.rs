@@ -24,7 +24,6 @@ pub struct NamedWorld {
     pub start: Option<Dart>,
     /// The kind of marker that the world is about, if the file has one.
     pub marker: Option<&'static dyn Marker>,
-    /// The name of each vertex.
     pub vertex_names: Vec<String>,
     /// The name of each dart's edge; `None` if the file lists neighbours, which it can only do for a
     /// simple graph.
@@ -38,52 +37,18 @@ pub struct NamedWorld {
 /// Why names do not give a start.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
-    /// A start on the command line has no colon.
     #[error("`{text}` is not a start; write `vertex:facing`")]
-    NoColon {
-        /// The text.
-        text: String,
-    },
-    /// No vertex has this name.
+    NoColon { text: String },
     #[error("there is no vertex `{vertex}`{similar}")]
-    UnknownVertex {
-        /// The name.
-        vertex: String,
-        /// A vertex with a similar name.
-        similar: SimilarName,
-    },
-    /// The vertex has no such neighbour.
+    UnknownVertex { vertex: String, similar: SimilarName },
     #[error("vertex `{vertex}` has no neighbour `{facing}`; it has {listed}")]
-    NoSuchNeighbour {
-        /// The vertex.
-        vertex: String,
-        /// The name.
-        facing: String,
-        /// Its neighbours.
-        listed: String,
-    },
-    /// No such edge ends at the vertex.
+    NoSuchNeighbour { vertex: String, facing: String, listed: String },
     #[error("no edge `{facing}` ends at vertex `{vertex}`; the edges there are {listed}")]
-    NoSuchEdge {
-        /// The vertex.
-        vertex: String,
-        /// The name.
-        facing: String,
-        /// The edges that end there.
-        listed: String,
-    },
-    /// Names with colons can make a text the start of several darts.
+    NoSuchEdge { vertex: String, facing: String, listed: String },
     #[error("`{text}` is ambiguous: several starts are written like this")]
-    Ambiguous {
-        /// The text.
-        text: String,
-    },
-    /// The edge is a loop, and the text does not name one of its ends.
+    Ambiguous { text: String },
     #[error("edge `{edge}` is a loop; write `{edge}:1` or `{edge}:2` for one of its ends")]
-    BareLoop {
-        /// The loop.
-        edge: String,
-    },
+    BareLoop { edge: String },
 }
 
 impl NamedWorld {
@@ -147,7 +112,6 @@ impl NamedWorld {
         }
     }
 
-    /// The vertex with this name.
     #[must_use]
     pub fn vertex_named(&self, name: &str) -> Option<Vertex> {
         let number = self.vertex_names.iter().position(|known| known == name)?;

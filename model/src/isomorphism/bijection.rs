@@ -61,7 +61,6 @@ impl Bijection {
 /// Makes one candidate bijection after another in the same memory.
 #[derive(Clone, Debug, Default)]
 pub struct Candidate {
-    /// The latest candidate.
     pub bijection: Bijection,
     /// Darts and their images, from which the rest is found.
     reached: Vec<(Dart, Dart)>,

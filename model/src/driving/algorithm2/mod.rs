@@ -45,13 +45,10 @@ const SAME: f64 = 0.6;
 // paper: alg2.1
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathState {
-    /// Leaving a junction.
     Leaving,
-    /// In a hallway.
     Hallway,
     /// At a junction, on the way to its turning point or turning there.
     Junction,
-    /// Lost.
     Unknown,
 }
 
@@ -161,7 +158,6 @@ impl<'a> PathExecution<'a> {
         self
     }
 
-    /// The robot's state.
     #[must_use]
     pub fn state(&self) -> PathState {
         self.state

@@ -30,7 +30,6 @@ pub use write::write;
 /// One of plantri's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PlantriCode {
-    /// Lists of neighbours; simple graphs only.
     Planar,
     /// Lists of edges; all graphs.
     Edge,

@@ -6,11 +6,8 @@ use crate::embedded_graph::{EmbeddedGraph, GraphError, MAX_EDGES};
 /// The byte order of the numbers of `planar_code` with two bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ByteOrder {
-    /// The lesser byte first.
     Little,
-    /// The greater byte first.
     Big,
-    /// The header does not give it.
     Unknown,
 }
 
