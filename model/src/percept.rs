@@ -127,7 +127,6 @@ impl WalkEvent {
     }
 
     /// The index of the event among all events of the walk, counted from 0.
-    #[must_use]
     pub fn index(self) -> usize {
         match self {
             Self::Percept(moves) => 2 * moves,
@@ -135,7 +134,6 @@ impl WalkEvent {
         }
     }
 
-    #[must_use]
     pub fn moves(self) -> usize {
         match self {
             Self::Percept(moves) | Self::Door(moves) => moves,
@@ -160,7 +158,6 @@ impl EmbeddedGraph {
     /// modulo the degree. This is also the dart by which the robot leaves.
     // paper: percept.entry, percept.doors
     #[inline]
-    #[must_use]
     pub fn behind(&self, pose: Dart, door: Door) -> Dart {
         let degree = self.degree_around(pose);
         let turn = if door.0 < degree { door.0 } else { door.0 % degree };
@@ -173,14 +170,12 @@ impl EmbeddedGraph {
     /// The pose after leaving by a door: the robot comes in by the other end of that edge.
     // paper: motion.door
     #[inline]
-    #[must_use]
     pub fn after(&self, pose: Dart, door: Door) -> Dart {
         self.opposite(self.behind(pose, door))
     }
 
     /// The pose at the end of a door sequence.
     // paper: motion.path
-    #[must_use]
     pub fn walk(&self, pose: Dart, doors: &[Door]) -> Dart {
         doors.iter().fold(pose, |pose, &door| self.after(pose, door))
     }

@@ -109,14 +109,12 @@ pub enum Reason {
 }
 
 /// An angle brought into (-pi, pi].
-#[must_use]
 pub fn wrapped(angle: f64) -> f64 {
     let angle = angle.rem_euclid(TAU);
     if angle > PI { angle - TAU } else { angle }
 }
 
 /// The direction of a line, for which opposite angles are the same, in (-pi/2, pi/2].
-#[must_use]
 pub fn undirected(angle: f64) -> f64 {
     let angle = angle.rem_euclid(PI);
     if angle > FRAC_PI_2 { angle - PI } else { angle }
@@ -124,7 +122,6 @@ pub fn undirected(angle: f64) -> f64 {
 
 impl JunctionView {
     /// How far the turning point is along the entry centre line, in metres: positive before it.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         let [x, y] = self.turning_point;
         let inwards = self.doors.first().map_or(0.0, |entry| entry.direction + PI);
@@ -132,7 +129,6 @@ impl JunctionView {
     }
 
     /// Where the robot is along the entry centre line.
-    #[must_use]
     pub fn turning(&self) -> Turning {
         let distance = self.distance();
         if distance > AT {

@@ -1,10 +1,9 @@
-//! The errors of two arrays that are not an embedded graph. Section 2.1.
-//!
-//! The checks work on plain slices and return a small copyable value.
+//! What is wrong with arrays or lists of names that are not an embedded graph. Section 2.1.
 
 use thiserror::Error;
 
 use super::MAX_EDGES;
+use crate::similar::SimilarName;
 
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -29,8 +28,33 @@ pub enum GraphError {
     NotConnected { dart: u32 },
 }
 
+/// Why lists of names are not an embedded graph.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ListError {
+    #[error("vertex `{vertex}` has two lists")]
+    VertexTwice { vertex: String },
+    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex{similar}")]
+    UnknownNeighbour { vertex: String, neighbour: String, similar: SimilarName },
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
+    )]
+    OneSided { vertex: String, neighbour: String },
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}` twice; \
+         parallel edges need edge names, in [doors]"
+    )]
+    RepeatedNeighbour { vertex: String, neighbour: String },
+    #[error("vertex `{vertex}` lists itself; loops need edge names, in [doors]")]
+    OwnNeighbour { vertex: String },
+    #[error("edge `{edge}` occurs {times} time{} ({places}); an edge has two ends", if *.times == 1 { "" } else { "s" })]
+    NotTwoEnds { edge: String, times: usize, places: String },
+    #[error("the world is not connected: vertex `{vertex}` cannot be reached from `{from}`")]
+    NotConnected { vertex: String, from: String },
+    #[error(transparent)]
+    GraphError(#[from] GraphError),
+}
+
 /// The error if a graph cannot have this number of darts.
-#[must_use]
 pub fn size_fault(darts: usize) -> Option<GraphError> {
     match darts / 2 {
         0 => Some(GraphError::NoEdge),
@@ -40,7 +64,6 @@ pub fn size_fault(darts: usize) -> Option<GraphError> {
 }
 
 /// The error if `opposite` is not an involution without fixed points on its own indices.
-#[must_use]
 pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < opposite.len() {
@@ -62,7 +85,6 @@ pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
 
 /// The error if `clockwise` is not a permutation of its own indices. `taken` is scratch space, all
 /// `false`, at least as long as `clockwise`.
-#[must_use]
 pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < clockwise.len() {

@@ -140,7 +140,6 @@ impl<'t> Document<'t> {
     }
 
     /// The whole document, which is a table.
-    #[must_use]
     pub fn root(&self) -> DocumentValue<'_> {
         DocumentValue::root(self)
     }

@@ -143,7 +143,6 @@ fn colours(graph: &EmbeddedGraph) -> Vec<u64> {
 
 /// The isomorphism of one embedded graph onto the [mirror image](EmbeddedGraph::mirror_image) of
 /// the other; `None` if they are not mirror images.
-#[must_use]
 pub fn mirror_isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Option<Bijection> {
     isomorphism(one, &other.mirror_image()).ok()
 }

@@ -116,7 +116,6 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
 
     /// The robot's percept: a graph can always be sensed.
     #[inline]
-    #[must_use]
     pub fn sensed(&self) -> Percept {
         let degree = self.graph.degree_around(self.state.pose);
         Percept { degree, sighting: self.sighting() }
@@ -145,7 +144,6 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         }
     }
 
-    #[must_use]
     pub fn carries(&self) -> bool {
         self.state.placed.is_none() && self.marker.is_movable()
     }
@@ -164,27 +162,22 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
 }
 
 impl<'g, M> GraphWorld<'g, M> {
-    #[must_use]
     pub fn graph(&self) -> &'g EmbeddedGraph {
         self.graph
     }
 
-    #[must_use]
     pub fn marker(&self) -> &M {
         &self.marker
     }
 
-    #[must_use]
     pub fn pose(&self) -> Dart {
         self.state.pose
     }
 
-    #[must_use]
     pub fn moves(&self) -> u64 {
         self.moves
     }
 
-    #[must_use]
     pub fn state(&self) -> State {
         self.state
     }

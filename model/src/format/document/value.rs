@@ -16,7 +16,6 @@ impl<'d> DocumentValue<'d> {
         Self { document, node: &document.root }
     }
 
-    #[must_use]
     pub fn position(self) -> TextPosition {
         self.document.position(self.node, self.node.at)
     }
@@ -26,7 +25,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// The error that something else is expected here.
-    #[must_use]
     pub fn expected(self, expected: impl Into<Cow<'static, str>>) -> DocumentError {
         let found = match &self.node.content {
             Content::Table(_) => "a table",
@@ -181,7 +179,6 @@ pub struct DocumentEntry<'d> {
 }
 
 impl<'d> DocumentTable<'d> {
-    #[must_use]
     pub fn position(&self) -> TextPosition {
         self.value.position()
     }
@@ -196,7 +193,6 @@ impl<'d> DocumentTable<'d> {
         })
     }
 
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<DocumentValue<'d>> {
         self.entries().find(|entry| entry.key == key).map(|entry| entry.value)
     }
@@ -207,7 +203,6 @@ impl<'d> DocumentTable<'d> {
 }
 
 impl DocumentEntry<'_> {
-    #[must_use]
     pub fn position(&self) -> TextPosition {
         self.value.document.position(self.value.node, self.at)
     }

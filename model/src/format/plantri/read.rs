@@ -37,13 +37,11 @@ pub struct Worlds<'a> {
 ///
 /// Vertices are numbered in the order of the file, and the darts of each in the order in which it
 /// lists them.
-#[must_use]
 pub fn read(bytes: &[u8]) -> Worlds<'_> {
     read_headerless(bytes, PlantriCode::Planar)
 }
 
 /// The worlds of a file: as [`read`], but without a header it has this code.
-#[must_use]
 pub fn read_headerless(bytes: &[u8], code: PlantriCode) -> Worlds<'_> {
     Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Unknown, done: false }
 }
