@@ -10,7 +10,7 @@ use toposlam_model::{
     check::{Check, RunChoices, Shard},
     enumerate::Class,
     mapping::{ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer},
-    marker::Directional,
+    marker::{Directional, MarkerKind},
     percept::{Door, Percept, Sighting, retrace},
     world::World,
 };
@@ -102,10 +102,10 @@ impl DepthFirst {
 }
 
 impl Explorer for DepthFirst {
-    type Marker = Directional;
+    type Marker = MarkerKind;
     type Choice = End;
 
-    fn marker(&self) -> Directional {
+    fn marker(&self) -> MarkerKind {
         Directional
     }
 

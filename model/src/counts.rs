@@ -1,7 +1,6 @@
 //! Numbers and counts in messages.
 
 /// A number with a comma between thousands, as in `16,471`.
-#[must_use]
 pub fn grouped(number: u128) -> String {
     let digits = number.to_string();
     let mut out = String::new();
@@ -15,13 +14,11 @@ pub fn grouped(number: u128) -> String {
 }
 
 /// A number and its noun, as in `1 edge`, `2 edges`.
-#[must_use]
 pub fn counted(number: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(number as u128), if number == 1 { "" } else { "s" })
 }
 
 /// A number of vertices, as in `1 vertex`, `2 vertices`.
-#[must_use]
 pub fn vertices(number: usize) -> String {
     format!("{} {}", grouped(number as u128), if number == 1 { "vertex" } else { "vertices" })
 }

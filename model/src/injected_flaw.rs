@@ -5,19 +5,14 @@
 /// A flaw that a test can inject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InjectedFlaw {
-    /// A sighting of the marker is not united with the first.
     SightingNotUnited,
-    /// What a union forces is not united.
     ForcedNotUnited,
     /// A hypothesis that contradicts itself is alive.
     ContradictionIgnored,
-    /// The sightings of two places are not compared.
     SightingsNotCompared,
     /// A place joins the map although a hypothesis about it is alive.
     PlaceAddedTooEarly,
-    /// Only the first hypothesis about a place is examined.
     OneHypothesisExamined,
-    /// A hypothesis is taken as confirmed without a test.
     NotTested,
     /// A walk that does not confirm a hypothesis is made, and its success is taken as proof.
     ProofByOtherWalk,

@@ -41,7 +41,6 @@ impl Door {
 /// What the marker in use adds to a percept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sighting {
-    /// No marker is noticed.
     Nothing,
     /// The directional marker is here and points along this door.
     Pointing(Door),
@@ -53,7 +52,6 @@ pub enum Sighting {
     Second,
     /// Two markers that look different are both here.
     Both,
-    /// The edge just traversed is marked.
     Passed,
     /// The edge just traversed is marked, by an arrow in the sense of the traversal.
     PassedAlong,
@@ -82,9 +80,7 @@ impl fmt::Display for Sighting {
 // paper: percept.degree, percept.featureless
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percept {
-    /// The number of doors.
     pub degree: u32,
-    /// What the marker adds.
     pub sighting: Sighting,
 }
 
@@ -117,7 +113,6 @@ impl Percept {
 /// Events are ordered as they happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkEvent {
-    /// The percept after this many moves.
     Percept(usize),
     /// The door that is taken after this many moves.
     Door(usize),
@@ -132,7 +127,6 @@ impl WalkEvent {
     }
 
     /// The index of the event among all events of the walk, counted from 0.
-    #[must_use]
     pub fn index(self) -> usize {
         match self {
             Self::Percept(moves) => 2 * moves,
@@ -140,8 +134,6 @@ impl WalkEvent {
         }
     }
 
-    /// The number of moves before the event.
-    #[must_use]
     pub fn moves(self) -> usize {
         match self {
             Self::Percept(moves) | Self::Door(moves) => moves,
@@ -166,7 +158,6 @@ impl EmbeddedGraph {
     /// modulo the degree. This is also the dart by which the robot leaves.
     // paper: percept.entry, percept.doors
     #[inline]
-    #[must_use]
     pub fn behind(&self, pose: Dart, door: Door) -> Dart {
         let degree = self.degree_around(pose);
         let turn = if door.0 < degree { door.0 } else { door.0 % degree };
@@ -179,14 +170,12 @@ impl EmbeddedGraph {
     /// The pose after leaving by a door: the robot comes in by the other end of that edge.
     // paper: motion.door
     #[inline]
-    #[must_use]
     pub fn after(&self, pose: Dart, door: Door) -> Dart {
         self.opposite(self.behind(pose, door))
     }
 
     /// The pose at the end of a door sequence.
     // paper: motion.path
-    #[must_use]
     pub fn walk(&self, pose: Dart, doors: &[Door]) -> Dart {
         doors.iter().fold(pose, |pose, &door| self.after(pose, door))
     }

@@ -16,7 +16,7 @@ use toposlam_model::{
         Algorithm1Run, Explorer, Flaw, InvalidStep, MapWalk, MappingAlgorithm, MappingChoice,
         MappingError, Observer, StateKey, explore,
     },
-    marker::Directional,
+    marker::MarkerKind,
     world::{GraphWorld, World},
 };
 
@@ -216,7 +216,7 @@ enum Alteration {
 }
 
 impl Explorer for Altered {
-    delegate_to_run!(Directional, MappingChoice);
+    delegate_to_run!(MappingChoice);
 
     /// The numbers of hypotheses are off by one, if that is altered.
     fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {

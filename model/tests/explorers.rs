@@ -16,7 +16,7 @@ use toposlam_model::{
     enumerate::Class,
     isomorphism::Candidate,
     mapping::{Algorithm1Run, ExploredMap, Explorer, Flaw, MappingError, Observer, explore},
-    marker::{Directional, Marker, named},
+    marker::{Directional, Marker, MarkerKind, named},
     percept::Door,
     world::{RefusedAction, World},
 };
@@ -81,10 +81,10 @@ enum Broken {
 struct BrokenExplorer(Broken, DepthFirst);
 
 impl Explorer for BrokenExplorer {
-    type Marker = Directional;
+    type Marker = MarkerKind;
     type Choice = ();
 
-    fn marker(&self) -> Directional {
+    fn marker(&self) -> MarkerKind {
         Directional
     }
 
@@ -172,10 +172,10 @@ fn the_world_counts_the_moves() {
     #[derive(Clone)]
     struct Pacing(u64);
     impl Explorer for Pacing {
-        type Marker = Directional;
+        type Marker = MarkerKind;
         type Choice = ();
 
-        fn marker(&self) -> Directional {
+        fn marker(&self) -> MarkerKind {
             Directional
         }
 

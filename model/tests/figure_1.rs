@@ -1,8 +1,6 @@
 //! Section 2.2: that one undirected marker does not suffice, the cases of the printed proof of it, and
 //! the other claims about markers there. The proof's base and step are lemmas of `toposlam-proofs`.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::{collections::BTreeMap, fs, path::Path};
 
 use toposlam_model::{

@@ -1,7 +1,5 @@
 //! The check without repetition against the check of one start after the other.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::{
     borrow::Cow,
     collections::BTreeMap,

@@ -4,11 +4,11 @@
 
 /// The items of an [`Explorer`](toposlam_model::mapping::Explorer) that are those of its field `run`.
 macro_rules! delegate_to_run {
-    ($marker:ident, $choice:ty) => {
-        type Marker = $marker;
+    ($choice:ty) => {
+        type Marker = MarkerKind;
         type Choice = $choice;
 
-        fn marker(&self) -> $marker {
+        fn marker(&self) -> MarkerKind {
             self.run.marker()
         }
 
@@ -40,7 +40,6 @@ macro_rules! delegate_to_run {
 
 mod ambiguity;
 mod broken;
-mod broken_folding;
 mod broken_movable;
 mod check;
 mod contradictions;

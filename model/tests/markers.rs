@@ -1,13 +1,11 @@
 //! What each kind of marker adds to a percept, and what a robot can do with it.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::ops::ControlFlow;
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
-    marker::{MARKERS, Marker, MarkerPart, named},
+    marker::{MARKERS, Marker, named},
     percept::{Door, Sighting},
     world::{Action, GraphWorld, MarkerCarrier, RefusedAction, World},
 };
@@ -15,7 +13,7 @@ use toposlam_model::{
 /// A junction `j` with, clockwise, a way `p` to a dead end `a`, a way `q` to a bend `b`, and a loop.
 /// Darts: 0 is that of `a`; 1 to 4 are those of `j`: to `a`, to `b`, and the ends of the loop; 5 and
 /// 6 are those of `b`: to `j`, and to the dead end `c`, whose dart is 7.
-fn junction() -> EmbeddedGraph {
+pub(crate) fn junction() -> EmbeddedGraph {
     let lists = [
         ("a", vec!["p"]),
         ("j", vec!["p", "q", "l", "l"]),
@@ -132,20 +130,6 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
         let mut world = GraphWorld::with_marker(&graph, marker, Dart(2));
         assert_eq!(world.pick_up(), Err(RefusedAction::NothingToPickUp), "{marker:?}");
         assert_eq!(world.actions().count(), 4);
-    }
-}
-
-#[test]
-fn a_reference_to_a_marker_has_the_same_properties() {
-    type Properties = (&'static str, &'static str, Vec<Dart>, Vec<MarkerPart>, bool);
-    fn properties<M: Marker + ?Sized>(marker: &M) -> Properties {
-        let (graph, facing) = (junction(), Dart(2));
-        let starts = marker.starts(&graph, facing);
-        let parts = marker.parts(&graph, facing);
-        (marker.name(), marker.about(), starts, parts, marker.is_movable())
-    }
-    for marker in MARKERS {
-        assert_eq!(properties(&marker), properties(marker));
     }
 }
 

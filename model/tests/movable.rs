@@ -15,7 +15,7 @@ use toposlam_model::{
         Flaw, MapWalk, MappingAlgorithm, MappingEvent, MovableEvent, MovableMarkerRun, Nearest,
         explore, map_with_movable_marker,
     },
-    marker::Movable,
+    marker::{MarkerKind, Movable},
     percept::{Percept, Sighting},
     world::GraphWorld,
 };
@@ -63,7 +63,7 @@ fn every_start_of_every_planar_world_with_up_to_eight_edges_is_mapped_right() {
     assert_eq!(rows.last(), Some(&(15_485, 371_598, 66)));
 }
 
-fn run(graph: &EmbeddedGraph, facing: Dart) -> (MovableMarkerRun, GraphWorld<'_, Movable>) {
+fn run(graph: &EmbeddedGraph, facing: Dart) -> (MovableMarkerRun, GraphWorld<'_, MarkerKind>) {
     let mut search = MovableMarkerRun::new(graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
     explore(&mut search, &mut world, &mut ()).unwrap();

@@ -1,25 +1,16 @@
 //! What a robot can sense and do in an embedded graph, and nothing else.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Percept},
     world::{GraphWorld, RefusedAction, World},
 };
 
-/// A junction with, clockwise, a way `p` to a dead end, a way `q` to a bend, and a loop. Darts: 0 is
-/// the dead end's, 1 to 4 are the junction's `p`, `q` and the two ends of the loop.
-fn junction() -> EmbeddedGraph {
-    let lists = [
-        ("a", vec!["p"]),
-        ("j", vec!["p", "q", "l", "l"]),
-        ("b", vec!["q", "r"]),
-        ("c", vec!["r"]),
-    ];
-    EmbeddedGraph::from_edge_lists(&lists).unwrap()
-}
+use crate::{
+    markers::junction,
+    scripted_world::{marked, plain},
+};
 
 /// The percepts along a door sequence, the first at the start.
 fn percepts(graph: &EmbeddedGraph, facing: Dart, doors: &[u32]) -> Vec<Percept> {
@@ -30,14 +21,6 @@ fn percepts(graph: &EmbeddedGraph, facing: Dart, doors: &[u32]) -> Vec<Percept> 
         percepts.push(world.percept().unwrap());
     }
     percepts
-}
-
-fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
-}
-
-fn marked(degree: u32, door: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
 }
 
 // paper: world.interface, percept.degree, percept.entry, percept.doors, motion.door, motion.arrival

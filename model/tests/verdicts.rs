@@ -1,7 +1,5 @@
 //! The judge names each flaw.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use toposlam_model::{
     check::{Check, RunChoices, Shard, Tally, judge},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},

@@ -1,7 +1,5 @@
 //! The world files of `worlds/`: each is what its name and its README say.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::{
     fs,
     path::{Path, PathBuf},

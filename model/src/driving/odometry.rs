@@ -14,20 +14,17 @@ pub struct Odometry {
 
 impl Odometry {
     /// How far it is from another place, in metres.
-    #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let [x, y] = [0, 1].map(|axis| self.position[axis] - other.position[axis]);
         x.hypot(y)
     }
 
     /// The direction of this frame that the robot sees in a direction relative to its heading.
-    #[must_use]
     pub fn whither(&self, seen: f64) -> f64 {
         wrapped(self.heading + seen)
     }
 
     /// Where the robot sees a direction of this frame, relative to its heading.
-    #[must_use]
     pub fn seen(&self, direction: f64) -> f64 {
         wrapped(direction - self.heading)
     }
@@ -69,7 +66,6 @@ impl WayLength {
     }
 
     /// The length up to the last reading, in metres; `None` without a reading, or if one is not a number.
-    #[must_use]
     pub fn length(&self) -> Option<f64> {
         let [from, last] = self.ends?;
         Some(self.steps + last.distance(&from)).filter(|length| length.is_finite())

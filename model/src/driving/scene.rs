@@ -12,9 +12,7 @@ use crate::percept::Door;
 /// What is sensed in one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the robot is.
     pub place: Place,
-    /// The marker, if it is seen.
     pub marker: Option<MarkerView>,
 }
 
@@ -23,11 +21,8 @@ pub struct Scene {
 // paper: alg2.6
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// On an edge.
     Hallway(HallwayView),
-    /// At a vertex.
     Junction(JunctionView),
-    /// It is not known.
     Unknown(Reason),
 }
 
@@ -40,7 +35,6 @@ pub struct HallwayView {
     pub left: f64,
     /// The same on its right.
     pub right: f64,
-    /// Whether the robot may go on at full speed.
     pub status: HallwayStatus,
     /// How well the view fits, from 0 to 1.
     pub confidence: f64,
@@ -58,11 +52,8 @@ pub enum HallwayStatus {
 /// Why a hallway is unclear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unclear {
-    /// There are clusters ahead of the robot.
     ClustersAhead,
-    /// The two major clusters are of very different sizes.
     SizesDiffer,
-    /// One of the two major clusters is behind the robot.
     ClusterBehind,
 }
 
@@ -72,7 +63,6 @@ pub enum Unclear {
 pub struct JunctionView {
     /// The doors, clockwise from the entry door, and their centre lines; never empty.
     pub doors: Vec<CentreLine>,
-    /// Where the centre lines meet.
     pub turning_point: [f64; 2],
     /// How well the view fits, from 0 to 1.
     pub confidence: f64,
@@ -90,11 +80,9 @@ pub struct CentreLine {
 /// Where the robot is along the entry centre line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turning {
-    /// Not yet at the turning point.
     Before,
     /// Within [`AT`] of it.
     At,
-    /// Beyond it.
     Past,
 }
 
@@ -104,7 +92,6 @@ pub const AT: f64 = 0.10;
 /// The marker as seen in one image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerView {
-    /// Its middle.
     pub position: [f64; 2],
     /// The direction of its longer side, in (-pi/2, pi/2].
     pub axis: f64,
@@ -115,25 +102,19 @@ pub struct MarkerView {
 /// Why the place in an image is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// No floor is visible around the robot.
     NoFloor,
-    /// Too few walls are visible.
     FewWalls,
-    /// The view is neither a hallway nor a junction.
     NothingFits,
-    /// The view fits different places equally well.
     Ambiguous,
 }
 
 /// An angle brought into (-pi, pi].
-#[must_use]
 pub fn wrapped(angle: f64) -> f64 {
     let angle = angle.rem_euclid(TAU);
     if angle > PI { angle - TAU } else { angle }
 }
 
 /// The direction of a line, for which opposite angles are the same, in (-pi/2, pi/2].
-#[must_use]
 pub fn undirected(angle: f64) -> f64 {
     let angle = angle.rem_euclid(PI);
     if angle > FRAC_PI_2 { angle - PI } else { angle }
@@ -141,7 +122,6 @@ pub fn undirected(angle: f64) -> f64 {
 
 impl JunctionView {
     /// How far the turning point is along the entry centre line, in metres: positive before it.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         let [x, y] = self.turning_point;
         let inwards = self.doors.first().map_or(0.0, |entry| entry.direction + PI);
@@ -149,7 +129,6 @@ impl JunctionView {
     }
 
     /// Where the robot is along the entry centre line.
-    #[must_use]
     pub fn turning(&self) -> Turning {
         let distance = self.distance();
         if distance > AT {

@@ -29,7 +29,6 @@ pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
 pub struct JunctionEstimate {
     /// The number of images of each shape, by its [`JunctionShape::code`].
     forms: [u32; 8],
-    /// The best view of the marker.
     marker: Option<Glimpse>,
     /// Whether an image was taken from where a marker would be seen well.
     looked: bool,
@@ -53,14 +52,12 @@ const BEST: f64 = 0.5;
 
 impl JunctionShape {
     /// Its name, if it is one of [`JUNCTION_SHAPES`].
-    #[must_use]
     pub fn name(self) -> Option<&'static str> {
         JUNCTION_SHAPES.iter().find(|(shape, _)| *shape == self).map(|(_, name)| *name)
     }
 
     /// The form of a junction as one image shows it; `None` where its doors are not at right angles
     /// to each other.
-    #[must_use]
     pub fn from_view(junction: &JunctionView) -> Option<Self> {
         let entry = junction.doors.first()?.direction;
         let mut doors = [false; 4];
@@ -87,19 +84,15 @@ impl JunctionShape {
     }
 
     /// The quarter turns clockwise from the entry door to each door, in the order of the doors.
-    #[must_use]
     pub fn quarters(self) -> Vec<u32> {
         (0..4).filter(|&quarter| self.0[quarter as usize]).collect()
     }
 
-    /// The number of doors.
-    #[must_use]
     pub fn degree(self) -> u32 {
         self.0.iter().map(|&door| u32::from(door)).sum()
     }
 
     /// Whether there are two doors, at a right angle.
-    #[must_use]
     pub fn is_l(self) -> bool {
         self.degree() == 2 && !self.0[2]
     }
@@ -155,7 +148,6 @@ impl JunctionEstimate {
     }
 
     /// The form of the junction, once two images agree on it and fewer on any other.
-    #[must_use]
     pub fn form(&self) -> Option<JunctionShape> {
         let most = self.forms.into_iter().max().filter(|&most| most >= AGREEING)?;
         let mut leading = (0..8).filter(|&code| self.forms[code] == most);
@@ -166,7 +158,6 @@ impl JunctionEstimate {
     // paper: marker-sense.place
     /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
     /// junctions that are Ls; that it does not is known once it would have been seen.
-    #[must_use]
     pub fn percept(&self) -> Option<Percept> {
         let form = self.form()?;
         let sighting = match self.marker {
@@ -205,23 +196,19 @@ mod tests {
     #[test]
     fn each_kind_and_entry_has_a_form_of_its_own() {
         let left = FRAC_PI_2;
-        let forms = [
-            (vec![PI], [true, false, false, false]),
-            (vec![PI, left], [true, true, false, false]),
-            (vec![PI, -left], [true, false, false, true]),
-            (vec![PI, left, -left], [true, true, false, true]),
-            (vec![PI, left, 0.0], [true, true, true, false]),
-            (vec![PI, 0.0, -left], [true, false, true, true]),
+        let seen: [&[f64]; 6] = [
+            &[PI],
+            &[PI, left],
+            &[PI, -left],
+            &[PI, left, -left],
+            &[PI, left, 0.0],
+            &[PI, 0.0, -left],
         ];
-        for (doors, expected) in forms {
+        for (doors, (shape, name)) in seen.into_iter().zip(JUNCTION_SHAPES) {
             for turned in [0.0, 0.4, -0.4] {
                 let doors: Vec<f64> = doors.iter().map(|door| wrapped(door + turned)).collect();
                 let Place::Junction(view) = junction(&doors, 0.3) else { unreachable!() };
-                assert_eq!(
-                    JunctionShape::from_view(&view),
-                    Some(JunctionShape(expected)),
-                    "{doors:?}"
-                );
+                assert_eq!(JunctionShape::from_view(&view), Some(shape), "{name}");
             }
         }
     }
@@ -230,10 +217,10 @@ mod tests {
     fn two_images_must_agree() {
         let (l, t) = (junction(&[PI, FRAC_PI_2], 0.3), junction(&[PI, FRAC_PI_2, 0.0], 0.3));
         let unknown = Place::Unknown(Reason::NothingFits);
-        assert_eq!(seen(std::slice::from_ref(&unknown), None).percept(), None);
-        assert_eq!(seen(&[l.clone(), unknown.clone()], None).percept(), None);
-        assert_eq!(seen(&[l.clone(), t.clone()], None).percept(), None);
-        assert_eq!(seen(&[l.clone(), t.clone(), t.clone(), l.clone()], None).percept(), None);
+        for undecided in [vec![&unknown], vec![&l, &unknown], vec![&l, &t], vec![&l, &t, &t, &l]] {
+            let places: Vec<Place> = undecided.into_iter().cloned().collect();
+            assert_eq!(seen(&places, None).percept(), None);
+        }
         let decided = seen(&[l.clone(), t, unknown, l], None).percept();
         assert_eq!(decided, Some(Percept { degree: 2, sighting: Sighting::Nothing }));
     }
@@ -241,13 +228,21 @@ mod tests {
     // paper: marker-sense.place
     #[test]
     fn the_marker_lies_along_the_entry_or_along_the_other_door_of_an_l() {
-        let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];
-        let marker = |axis| Some(MarkerView { position: [0.5, 0.0], axis, door: None });
-        let sighting = |axis| seen(&l, marker(axis)).percept().unwrap().sighting;
-        assert_eq!(sighting(0.1), Sighting::Pointing(Door::BACK));
-        assert_eq!(sighting(-1.5), Sighting::Pointing(Door(1)));
-        let dead_end = [junction(&[PI], 0.5), junction(&[PI], 0.5)];
-        assert_eq!(seen(&dead_end, marker(0.1)).percept().unwrap().sighting, Sighting::Nothing);
+        let (l, dead_end): (&[_], &[_]) = (&[PI, FRAC_PI_2], &[PI]);
+        for (doors, position, axis, sighting) in [
+            (l, [0.5, 0.0], 0.1, Sighting::Pointing(Door::BACK)),
+            (l, [0.5, 0.0], -1.5, Sighting::Pointing(Door(1))),
+            (dead_end, [0.5, 0.0], 0.1, Sighting::Nothing),
+            // Off the way.
+            (l, [0.1, 0.0], 0.0, Sighting::Nothing),
+            (l, [0.9, 0.0], 0.0, Sighting::Nothing),
+            (l, [-0.5, 0.0], 0.0, Sighting::Nothing),
+        ] {
+            let marker = MarkerView { position, axis, door: None };
+            let here = junction(doors, 0.5);
+            let percept = seen(&[here.clone(), here], Some(marker)).percept().unwrap();
+            assert_eq!(percept.sighting, sighting, "{position:?} {axis}");
+        }
     }
 
     #[test]
@@ -260,16 +255,6 @@ mod tests {
         }
         // No marker lies anywhere else.
         assert_ne!(seen(&[junction(&[PI], 0.1), junction(&[PI], 0.1)], None).percept(), None);
-    }
-
-    #[test]
-    fn a_marker_off_the_way_is_not_sighted() {
-        let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];
-        for position in [[0.1, 0.0], [0.9, 0.0], [-0.5, 0.0]] {
-            let marker = MarkerView { position, axis: 0.0, door: None };
-            let percept = seen(&l, Some(marker)).percept().unwrap();
-            assert_eq!(percept.sighting, Sighting::Nothing, "{position:?}");
-        }
     }
 
     #[test]

@@ -72,43 +72,35 @@ impl EmbeddedGraph {
     /// Returns an error that names the first invalid vertex and neighbour.
     pub fn from_neighbour_lists<N: AsRef<str>>(lists: &[(N, Vec<N>)]) -> Result<Self, ListError> {
         let number = number_vertices(lists)?;
+        let name_of = |vertex: usize| lists[vertex].0.as_ref().to_owned();
         let mut end_at: HashMap<(usize, usize), Dart> = HashMap::new();
         let mut ends = Vec::new();
-        for (vertex, (name, neighbours)) in lists.iter().enumerate() {
+        for (at, (name, neighbours)) in lists.iter().enumerate() {
             for neighbour in neighbours {
-                let vertex_name = || name.as_ref().to_owned();
-                let neighbour_name = || neighbour.as_ref().to_owned();
-                let Some(&other) = number.get(neighbour.as_ref()) else {
+                let (vertex, neighbour) = (name_of(at), neighbour.as_ref().to_owned());
+                let Some(&other) = number.get(neighbour.as_str()) else {
                     // A vertex cannot be its own neighbour, so it is not offered.
                     let others = lists.iter().map(|(other, _)| other.as_ref());
                     let others = others.filter(|other| *other != name.as_ref());
-                    return Err(ListError::UnknownNeighbour {
-                        vertex: vertex_name(),
-                        neighbour: neighbour_name(),
-                        similar: SimilarName::of(neighbour.as_ref(), others),
-                    });
+                    let similar = SimilarName::of(&neighbour, others);
+                    return Err(ListError::UnknownNeighbour { vertex, neighbour, similar });
                 };
-                if other == vertex {
-                    return Err(ListError::OwnNeighbour { vertex: vertex_name() });
+                if other == at {
+                    return Err(ListError::OwnNeighbour { vertex });
                 }
-                if end_at.insert((vertex, other), Dart(ends.len() as u32)).is_some() {
-                    return Err(ListError::RepeatedNeighbour {
-                        vertex: vertex_name(),
-                        neighbour: neighbour_name(),
-                    });
+                if end_at.insert((at, other), Dart(ends.len() as u32)).is_some() {
+                    return Err(ListError::RepeatedNeighbour { vertex, neighbour });
                 }
-                ends.push((vertex, other));
+                ends.push((at, other));
             }
         }
-        let opposite = ends
-            .iter()
-            .map(|&(vertex, other)| {
-                end_at.get(&(other, vertex)).copied().ok_or_else(|| ListError::OneSided {
-                    vertex: lists[vertex].0.as_ref().to_owned(),
-                    neighbour: lists[other].0.as_ref().to_owned(),
-                })
+        let opposite = ends.iter().map(|&(vertex, other)| {
+            end_at.get(&(other, vertex)).copied().ok_or_else(|| ListError::OneSided {
+                vertex: name_of(vertex),
+                neighbour: name_of(other),
             })
-            .collect::<Result<Vec<_>, _>>()?;
+        });
+        let opposite = opposite.collect::<Result<Vec<_>, _>>()?;
         Self::from_lists(lists, opposite)
     }
 
@@ -223,16 +215,6 @@ fn number_vertices<N: AsRef<str>>(
 mod tests {
     use super::*;
 
-    fn neighbours(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
-        let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
-        EmbeddedGraph::from_neighbour_lists(&owned)
-    }
-
-    fn edges(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
-        let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
-        EmbeddedGraph::from_edge_lists(&owned)
-    }
-
     #[test]
     fn a_chain_has_two_ends_and_a_cycle_has_none() {
         for edges in 1..6 {
@@ -258,71 +240,39 @@ mod tests {
 
     #[test]
     fn each_fault_of_permutations_is_named() {
-        let fault = |opposite: &[u32], clockwise: &[u32]| {
-            EmbeddedGraph::from_permutations(opposite, clockwise).unwrap_err()
-        };
-        assert_eq!(fault(&[], &[]), GraphError::NoEdge);
-        assert_eq!(fault(&[1, 0], &[0]), GraphError::LengthsDiffer { opposite: 2, clockwise: 1 });
-        assert_eq!(
-            fault(&[5, 0], &[0, 1]),
-            GraphError::OppositeOutOfRange { dart: 0, opposite: 5 }
-        );
-        assert_eq!(fault(&[0, 1], &[0, 1]), GraphError::OppositeFixed { dart: 0 });
-        assert_eq!(
-            fault(&[1, 2, 3, 0], &[0, 1, 2, 3]),
-            GraphError::OppositeNotMutual { dart: 0, opposite: 1 }
-        );
-        assert_eq!(
-            fault(&[1, 0], &[2, 0]),
-            GraphError::ClockwiseOutOfRange { dart: 0, clockwise: 2 }
-        );
-        assert_eq!(
-            fault(&[1, 0], &[1, 1]),
-            GraphError::ClockwiseRepeated { dart: 1, clockwise: 1 }
-        );
-        assert_eq!(fault(&[1, 0, 3, 2], &[0, 1, 2, 3]), GraphError::NotConnected { dart: 2 });
+        let cases: [(&[u32], &[u32], _); 8] = [
+            (&[], &[], GraphError::NoEdge),
+            (&[1, 0], &[0], GraphError::LengthsDiffer { opposite: 2, clockwise: 1 }),
+            (&[5, 0], &[0, 1], GraphError::OppositeOutOfRange { dart: 0, opposite: 5 }),
+            (&[0, 1], &[0, 1], GraphError::OppositeFixed { dart: 0 }),
+            (&[1, 2, 3, 0], &[0, 1, 2, 3], GraphError::OppositeNotMutual { dart: 0, opposite: 1 }),
+            (&[1, 0], &[2, 0], GraphError::ClockwiseOutOfRange { dart: 0, clockwise: 2 }),
+            (&[1, 0], &[1, 1], GraphError::ClockwiseRepeated { dart: 1, clockwise: 1 }),
+            (&[1, 0, 3, 2], &[0, 1, 2, 3], GraphError::NotConnected { dart: 2 }),
+        ];
+        for (opposite, clockwise, fault) in cases {
+            assert_eq!(EmbeddedGraph::from_permutations(opposite, clockwise), Err(fault));
+        }
     }
 
+    /// The other faults are those of world files.
     #[test]
-    fn each_fault_of_lists_is_named() {
-        let message = |result: Result<EmbeddedGraph, ListError>| result.unwrap_err().to_string();
-        assert_eq!(
-            message(neighbours(&[("a", &["b"]), ("b", &[])])),
-            "vertex `a` lists the neighbour `b`, which does not list `a` back"
-        );
-        assert_eq!(
-            message(neighbours(&[("a", &["c"])])),
-            "vertex `a` lists the neighbour `c`, which is not a vertex"
-        );
-        assert_eq!(
-            message(neighbours(&[("a", &["a"])])),
-            "vertex `a` lists itself; loops need edge names, in [doors]"
-        );
-        assert_eq!(
-            message(neighbours(&[("a", &["b", "b"]), ("b", &["a"])])),
-            "vertex `a` lists the neighbour `b` twice; parallel edges need edge names, in [doors]"
-        );
-        assert_eq!(
-            message(neighbours(&[("a", &["b"]), ("b", &["a"]), ("c", &["d"]), ("d", &["c"])])),
-            "the world is not connected: vertex `c` cannot be reached from `a`"
-        );
-        assert_eq!(
-            message(edges(&[("a", &["e", "e"]), ("b", &["e"])])),
-            "edge `e` occurs 3 times (a, a, b); an edge has two ends"
-        );
-        assert_eq!(
-            message(edges(&[("a", &["e"])])),
-            "edge `e` occurs 1 time (a); an edge has two ends"
-        );
-        assert_eq!(
-            message(edges(&[("a", &["e"; 8])])),
-            "edge `e` occurs 8 times (a, a, a, a, a, a, a, a); an edge has two ends"
-        );
-        assert_eq!(
-            message(edges(&[("a", &["e"; 9])])),
-            "edge `e` occurs 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends"
-        );
-        assert_eq!(message(edges(&[("a", &[]), ("a", &[])])), "vertex `a` has two lists");
-        assert_eq!(message(edges(&[("a", &[])])), "there is no edge; a world has at least one");
+    fn each_fault_of_edge_lists_is_named() {
+        let cases: [(&[_], _); 5] = [
+            (&[("a", vec!["e"; 1])], "edge `e` occurs 1 time (a); an edge has two ends"),
+            (
+                &[("a", vec!["e"; 8])],
+                "edge `e` occurs 8 times (a, a, a, a, a, a, a, a); an edge has two ends",
+            ),
+            (
+                &[("a", vec!["e"; 9])],
+                "edge `e` occurs 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends",
+            ),
+            (&[("a", vec![]), ("a", vec![])], "vertex `a` has two lists"),
+            (&[("a", vec![])], "there is no edge; a world has at least one"),
+        ];
+        for (lists, message) in cases {
+            assert_eq!(EmbeddedGraph::from_edge_lists(lists).unwrap_err().to_string(), message);
+        }
     }
 }

@@ -5,7 +5,6 @@ use super::{Dart, EmbeddedGraph};
 impl EmbeddedGraph {
     /// The graph in which the edges of some darts are cut into two dead ends each, as far as a robot can come
     /// from a dart, and the number there of each dart that it can come to.
-    #[must_use]
     pub fn cut(&self, edges: &[Dart], start: Dart) -> Option<(Self, Vec<Option<Dart>>)> {
         let count = self.dart_count() as u32;
         let is_cut = |dart: Dart| edges.contains(&dart) || edges.contains(&self.opposite(dart));

@@ -1,76 +1,60 @@
-//! The errors of two arrays that are not an embedded graph. Section 2.1.
-//!
-//! The checks work on plain slices and return a small copyable value.
+//! What is wrong with arrays or lists of names that are not an embedded graph. Section 2.1.
 
 use thiserror::Error;
 
 use super::MAX_EDGES;
+use crate::similar::SimilarName;
 
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum GraphError {
-    /// There is no dart at all.
     #[error("there is no edge; a world has at least one")]
     NoEdge,
-    /// There are more edges than [`MAX_EDGES`](super::MAX_EDGES).
     #[error("there are more edges than can be numbered")]
     TooManyEdges,
-    /// The two arrays have different lengths.
     #[error("`opposite` has {opposite} darts and `clockwise` has {clockwise}")]
-    LengthsDiffer {
-        /// The length of `opposite`.
-        opposite: usize,
-        /// The length of `clockwise`.
-        clockwise: usize,
-    },
-    /// `opposite` names a dart that does not exist.
+    LengthsDiffer { opposite: usize, clockwise: usize },
     #[error("the opposite of dart {dart} is {opposite}, which is not a dart")]
-    OppositeOutOfRange {
-        /// The dart.
-        dart: u32,
-        /// What was given as its opposite.
-        opposite: u32,
-    },
-    /// A dart is its own opposite.
+    OppositeOutOfRange { dart: u32, opposite: u32 },
     #[error("dart {dart} is its own opposite")]
-    OppositeFixed {
-        /// The dart.
-        dart: u32,
-    },
-    /// The opposite of the opposite is another dart.
+    OppositeFixed { dart: u32 },
     #[error("the opposite of dart {dart} is {opposite}, whose opposite is another dart")]
-    OppositeNotMutual {
-        /// The dart.
-        dart: u32,
-        /// Its opposite.
-        opposite: u32,
-    },
-    /// `clockwise` names a dart that does not exist.
+    OppositeNotMutual { dart: u32, opposite: u32 },
     #[error("clockwise from dart {dart} is {clockwise}, which is not a dart")]
-    ClockwiseOutOfRange {
-        /// The dart.
-        dart: u32,
-        /// What was given as the next one.
-        clockwise: u32,
-    },
-    /// Two darts have the same successor around their vertex.
+    ClockwiseOutOfRange { dart: u32, clockwise: u32 },
     #[error("clockwise from dart {dart} is {clockwise}, as from an earlier dart")]
-    ClockwiseRepeated {
-        /// The second of the two darts.
-        dart: u32,
-        /// The successor that both claim.
-        clockwise: u32,
-    },
-    /// The graph is not connected.
+    ClockwiseRepeated { dart: u32, clockwise: u32 },
     #[error("dart {dart} cannot be reached from dart 0: the world is not connected")]
-    NotConnected {
-        /// The least dart that cannot be reached.
-        dart: u32,
-    },
+    NotConnected { dart: u32 },
+}
+
+/// Why lists of names are not an embedded graph.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ListError {
+    #[error("vertex `{vertex}` has two lists")]
+    VertexTwice { vertex: String },
+    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex{similar}")]
+    UnknownNeighbour { vertex: String, neighbour: String, similar: SimilarName },
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
+    )]
+    OneSided { vertex: String, neighbour: String },
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}` twice; \
+         parallel edges need edge names, in [doors]"
+    )]
+    RepeatedNeighbour { vertex: String, neighbour: String },
+    #[error("vertex `{vertex}` lists itself; loops need edge names, in [doors]")]
+    OwnNeighbour { vertex: String },
+    #[error("edge `{edge}` occurs {times} time{} ({places}); an edge has two ends", if *.times == 1 { "" } else { "s" })]
+    NotTwoEnds { edge: String, times: usize, places: String },
+    #[error("the world is not connected: vertex `{vertex}` cannot be reached from `{from}`")]
+    NotConnected { vertex: String, from: String },
+    #[error(transparent)]
+    GraphError(#[from] GraphError),
 }
 
 /// The error if a graph cannot have this number of darts.
-#[must_use]
 pub fn size_fault(darts: usize) -> Option<GraphError> {
     match darts / 2 {
         0 => Some(GraphError::NoEdge),
@@ -80,7 +64,6 @@ pub fn size_fault(darts: usize) -> Option<GraphError> {
 }
 
 /// The error if `opposite` is not an involution without fixed points on its own indices.
-#[must_use]
 pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < opposite.len() {
@@ -102,7 +85,6 @@ pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
 
 /// The error if `clockwise` is not a permutation of its own indices. `taken` is scratch space, all
 /// `false`, at least as long as `clockwise`.
-#[must_use]
 pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < clockwise.len() {

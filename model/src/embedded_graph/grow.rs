@@ -13,13 +13,11 @@ impl EmbeddedGraph {
         Self { darts_of: Vec::new(), darts: Vec::new() }
     }
 
-    /// Removes all vertices and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.darts_of.clear();
         self.darts.clear();
     }
 
-    /// Reserves memory for this number of vertices and darts.
     pub(crate) fn reserve(&mut self, vertices: usize, darts: usize) {
         self.darts_of.reserve_exact(vertices);
         self.darts.reserve_exact(darts);
@@ -41,7 +39,6 @@ impl EmbeddedGraph {
         self.darts[other.at()].opposite = one;
     }
 
-    /// Undoes [`join`](Self::join).
     pub(crate) fn unjoin(&mut self, one: Dart, other: Dart) {
         self.darts[one.at()].opposite = FREE;
         self.darts[other.at()].opposite = FREE;
@@ -61,7 +58,6 @@ impl EmbeddedGraph {
         (other != FREE).then_some(other)
     }
 
-    /// The first dart of a vertex.
     #[inline]
     pub(crate) fn first_dart(&self, vertex: Vertex) -> Dart {
         Dart(self.darts_of[vertex.at()].first)

@@ -8,13 +8,11 @@ mod construct;
 mod cut;
 mod fault;
 mod grow;
-mod list_error;
 mod petgraph_traits;
 mod relabel;
 mod smooth;
 
-pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
-pub use list_error::ListError;
+pub use fault::{GraphError, ListError, clockwise_fault, opposite_fault, size_fault};
 pub use petgraph_traits::{EdgeView, PetgraphError, VisitedVertices};
 pub use smooth::Smoothed;
 
@@ -31,16 +29,12 @@ pub struct Dart(pub u32);
 pub struct Vertex(pub u32);
 
 impl Dart {
-    /// The dart's number, to index with.
-    #[must_use]
     pub fn at(self) -> usize {
         self.0 as usize
     }
 }
 
 impl Vertex {
-    /// The vertex's number, to index with.
-    #[must_use]
     pub fn at(self) -> usize {
         self.0 as usize
     }
@@ -57,7 +51,6 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 // paper: world.graph, world.embedding
 #[derive(Debug)]
 pub struct EmbeddedGraph {
-    /// The darts of each vertex.
     darts_of: Vec<Darts>,
     darts: Vec<DartPlace>,
 }
@@ -87,7 +80,6 @@ impl Hash for EmbeddedGraph {
 /// All that is known of a dart, side by side, so that a motion needs one look-up.
 #[derive(Clone, Copy, Debug)]
 struct DartPlace {
-    /// The other end of its edge.
     opposite: Dart,
     vertex: Vertex,
     /// The darts of its vertex, once more.
@@ -111,19 +103,16 @@ impl Darts {
 
 impl EmbeddedGraph {
     /// The number of vertices, `n`.
-    #[must_use]
     pub fn vertex_count(&self) -> usize {
         self.darts_of.len()
     }
 
     /// The number of edges, `m`.
-    #[must_use]
     pub fn edge_count(&self) -> usize {
         self.darts.len() / 2
     }
 
     /// The number of darts, `2m`.
-    #[must_use]
     pub fn dart_count(&self) -> usize {
         self.darts.len()
     }
@@ -145,37 +134,29 @@ impl EmbeddedGraph {
         self.darts().map(|dart| (dart, self.opposite(dart))).filter(|(dart, other)| dart < other)
     }
 
-    /// The other end of the dart's edge.
     #[inline]
-    #[must_use]
     pub fn opposite(&self, dart: Dart) -> Dart {
         self.darts[dart.at()].opposite
     }
 
-    /// The vertex at which the dart is.
     #[inline]
-    #[must_use]
     pub fn vertex(&self, dart: Dart) -> Vertex {
         self.darts[dart.at()].vertex
     }
 
-    /// The number of darts at the vertex.
     #[inline]
-    #[must_use]
     pub fn degree(&self, vertex: Vertex) -> u32 {
         self.darts_of[vertex.at()].count()
     }
 
     /// The dart's place in the clockwise order of its vertex, counted from the vertex's first dart.
     #[inline]
-    #[must_use]
     pub fn index(&self, dart: Dart) -> u32 {
         dart.0 - self.darts[dart.at()].around.first
     }
 
     /// The dart that stands `index` places clockwise from the vertex's first; the inverse of
     /// [`index`](Self::index). `None` if the vertex has fewer darts.
-    #[must_use]
     pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
         let darts = self.darts_of[vertex.at()];
         (index < darts.count()).then(|| Dart(darts.first + index))
@@ -190,31 +171,24 @@ impl EmbeddedGraph {
         (first..end).map(Dart)
     }
 
-    /// The next dart around the same vertex.
     #[inline]
-    #[must_use]
     pub fn clockwise(&self, dart: Dart) -> Dart {
         let darts = self.darts[dart.at()].around;
         if dart.0 + 1 == darts.end { Dart(darts.first) } else { Dart(dart.0 + 1) }
     }
 
-    /// The previous dart around the same vertex.
     #[inline]
-    #[must_use]
     pub fn counterclockwise(&self, dart: Dart) -> Dart {
         let darts = self.darts[dart.at()].around;
         if dart.0 == darts.first { Dart(darts.end - 1) } else { Dart(dart.0 - 1) }
     }
 
-    /// The number of darts at the dart's vertex.
     #[inline]
-    #[must_use]
     pub fn degree_around(&self, dart: Dart) -> u32 {
         self.darts[dart.at()].around.count()
     }
 
     /// The number of faces: the orbits of "cross the edge, then turn clockwise".
-    #[must_use]
     pub fn face_count(&self) -> usize {
         let mut seen = vec![false; self.dart_count()];
         let mut faces = 0;
@@ -232,13 +206,11 @@ impl EmbeddedGraph {
 
     /// The genus of the surface on which the graph lies: 0 in the plane, 1 on the torus, ...
     /// (Euler: `n - m + faces = 2 - 2 genus`).
-    #[must_use]
     pub fn genus(&self) -> usize {
         (2 + self.edge_count() - self.vertex_count() - self.face_count()) / 2
     }
 
     /// Whether the graph has neither a loop nor two edges between the same vertices.
-    #[must_use]
     pub fn is_simple(&self) -> bool {
         // Both ends of a loop meet its own vertex.
         let mut last_met_from = vec![None; self.vertex_count()];

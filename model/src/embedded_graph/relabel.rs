@@ -6,7 +6,6 @@ impl EmbeddedGraph {
     /// The same embedded graph with its vertices in the given order and the first dart of each as
     /// given, and the new number of each dart. `None` unless `firsts` names exactly one dart of
     /// every vertex.
-    #[must_use]
     pub fn relabelled(&self, firsts: &[Dart]) -> Option<(Self, Vec<Dart>)> {
         let mut order = Vec::with_capacity(self.dart_count());
         let mut taken = vec![false; self.vertex_count()];

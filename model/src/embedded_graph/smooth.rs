@@ -5,7 +5,6 @@ use super::{Dart, EmbeddedGraph};
 /// An embedded graph without corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Smoothed {
-    /// The graph.
     pub graph: EmbeddedGraph,
     /// For each of its darts, the dart in the first graph.
     pub darts: Vec<Dart>,
@@ -15,7 +14,6 @@ impl EmbeddedGraph {
     /// The same graph without corners: of each vertex with two darts, the two edges are one. The vertices that
     /// stay have the same darts, in the same order; the faces, and so the genus, are the same. Of a cycle, in
     /// which all vertices are corners, the first one stays.
-    #[must_use]
     pub fn smoothed(&self) -> Smoothed {
         let mut stays: Vec<bool> = self.vertices().map(|vertex| self.degree(vertex) != 2).collect();
         if !stays.contains(&true) {

@@ -19,17 +19,13 @@ pub enum Class {
     Planar,
 }
 
-/// The error for a name that no class has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not a class of worlds; the classes are multigraph, simple, corridor and planar")]
 pub struct UnknownClass(String);
 
 impl Class {
-    /// Every class.
     pub const ALL: [Self; 4] = [Self::Multigraph, Self::Simple, Self::Corridor, Self::Planar];
 
-    /// The class's name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Multigraph => "multigraph",
@@ -40,19 +36,16 @@ impl Class {
     }
 
     /// Whether loops and parallel edges are forbidden.
-    #[must_use]
     pub fn is_simple(self) -> bool {
         self != Self::Multigraph
     }
 
     /// The highest degree that a vertex may have.
-    #[must_use]
     pub fn max_degree(self) -> u32 {
         if self == Self::Corridor { 3 } else { u32::MAX }
     }
 
     /// Whether a connected graph is in the class.
-    #[must_use]
     pub fn contains(self, graph: &EmbeddedGraph) -> bool {
         let fits = |vertex| graph.degree(vertex) <= self.max_degree();
         (!self.is_simple() || graph.is_simple())

@@ -1,225 +1,466 @@
-//! A start that is decided step by step, in any order: what is behind a free dart, and with which degree.
+//! A start that is decided step by step: what is behind a free dart, and with which degree.
 //!
 //! An [`Enumeration`](super::Enumeration) decides in the order of the darts' numbers. A robot decides in the
 //! order in which it takes doors. Both come to each start of a class and a size exactly once.
 
 use std::ops::ControlFlow;
 
-use super::{
-    Class, Each, SizeError,
-    growth::{Growth, MAX_EDGES, bits, new_vertex},
-};
+use super::{Answer, Class, Each, EnumeratedGraph};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
-/// A start of a class that will have a certain number of edges, as far as it is decided. Its facing dart
-/// is dart 0.
+/// The most edges that a draft can have: its darts are the bits of a `u64`.
+pub(super) const MAX_EDGES: usize = 32;
+
+pub(super) const DARTS: usize = 2 * MAX_EDGES;
+
+/// The opposite of a free dart.
+pub(super) const FREE: u8 = u8::MAX;
+
+/// The number of edges in the beginnings that divide an enumeration into parts.
+pub(super) const PREFIX_EDGES: usize = 4;
+
+/// The first steps of a history.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Prefix {
+    degree: u8,
+    words: [u8; PREFIX_EDGES],
+    edges: u8,
+}
+
+/// A start of a class that will have a certain number of edges, as far as it is decided, and its code so
+/// far. Its facing dart is dart 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Draft {
-    growth: Growth,
-}
-
-/// What is behind a free dart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// Another free dart.
-    Free(u8),
-    /// The first dart of a new vertex of this degree.
-    NewVertex(u8),
-}
-
-/// The answers that are possible. The free darts come first, then the degrees from the highest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Answers {
-    /// The free darts, as bits.
+    class: Class,
+    each: Each,
+    /// The number of edges at the end.
+    target: usize,
+    pub(super) opposite: [u8; DARTS],
+    pub(super) vertex: [u8; DARTS],
+    /// The first dart of each vertex, and its degree.
+    pub(super) first: [u8; MAX_EDGES + 1],
+    pub(super) degree: [u8; MAX_EDGES + 1],
+    /// For each vertex, as bits, itself and those joined to it: a simple graph lets none of these be
+    /// joined to it again.
+    adjacent: [u64; MAX_EDGES + 1],
+    vertices: usize,
+    pub(super) darts: usize,
     free: u64,
-    /// The degrees of a new vertex, as bits: bit 63 for degree 1.
-    degrees: u64,
+    /// The code so far: a word an edge, as in `isomorphism::StartCode`, but in a byte.
+    pub(super) words: [u8; MAX_EDGES],
+    pub(super) edges: usize,
+    /// The darts, as bits, with a code so far that could still become less than that of dart 0. Dart 0
+    /// is not among them.
+    pub(super) rivals: u64,
+    /// For each free dart, the next one along the face into which it sticks, clockwise, and the one before. Kept in
+    /// the class `planar` only. A dart that is not free keeps its own, to be free again.
+    next_in_face: [u8; DARTS],
+    last_in_face: [u8; DARTS],
+    /// The same as an embedded graph with free darts. It lacks an edge that is only tried.
+    pub(super) graph: EmbeddedGraph,
 }
 
-fn degree_bit(degree: usize) -> u64 {
-    1 << (u64::BITS as usize - degree)
+/// The word of an edge to a new vertex of some degree; and the degree, from the word.
+pub(super) fn new_vertex(degree: u8) -> u8 {
+    u8::MAX - degree
 }
 
-impl Answers {
-    /// Their number.
-    pub(crate) fn count(self) -> u32 {
-        self.free.count_ones() + self.degrees.count_ones()
-    }
+/// Whether `free` free darts and `edges` edges to come can come out even: only the last edge may
+/// leave no dart free, and each uses up two at most.
+fn can_end(free: usize, edges: usize) -> bool {
+    (free == 0) == (edges == 0) && free <= 2 * edges
+}
 
-    /// Removes the first one.
-    pub(crate) fn take_first(&mut self) -> Option<Answer> {
-        if self.free != 0 {
-            let lowest = self.free.trailing_zeros() as u8;
-            self.free &= self.free - 1;
-            return Some(Answer::Free(lowest));
-        }
-        let lowest = (self.degrees != 0).then(|| self.degrees.trailing_zeros())?;
-        self.degrees &= self.degrees - 1;
-        Some(Answer::NewVertex((u64::BITS - lowest) as u8))
-    }
+/// The numbers of the bits that are set, from the lowest.
+pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = (set != 0).then(|| set.trailing_zeros() as usize)?;
+        set &= set - 1;
+        Some(lowest)
+    })
 }
 
 impl Draft {
-    /// A start of which nothing is decided.
-    ///
-    /// # Errors
-    /// Returns an error if the number of edges is 0 or more than 32.
-    pub(crate) fn new(class: Class, edges: usize) -> Result<Self, SizeError> {
-        match edges {
-            0 => Err(SizeError::NoEdge),
-            _ if edges > MAX_EDGES => Err(SizeError::TooManyEdges(edges)),
-            _ => {
-                let growth = Growth::new(class, edges, Each::Start);
-                Ok(Self { growth })
-            }
+    /// A start of which nothing is decided. It has at most [`MAX_EDGES`].
+    pub(super) fn empty(each: Each, class: Class, target: usize) -> Self {
+        Self {
+            class,
+            each,
+            target,
+            opposite: [FREE; DARTS],
+            vertex: [0; DARTS],
+            first: [0; MAX_EDGES + 1],
+            degree: [0; MAX_EDGES + 1],
+            adjacent: [0; MAX_EDGES + 1],
+            vertices: 0,
+            darts: 0,
+            free: 0,
+            words: [0; MAX_EDGES],
+            edges: 0,
+            rivals: 0,
+            next_in_face: [0; DARTS],
+            last_in_face: [0; DARTS],
+            graph: EmbeddedGraph::unfinished(),
         }
     }
 
-    /// What is decided. The other ends of the other darts are free.
-    #[inline]
-    pub(crate) fn graph(&self) -> &EmbeddedGraph {
-        &self.growth.graph
+    /// The first steps of the history, at most [`PREFIX_EDGES`].
+    pub(super) fn prefix(&self) -> Prefix {
+        let mut words = [0; PREFIX_EDGES];
+        words[..self.edges].copy_from_slice(&self.words[..self.edges]);
+        Prefix { degree: self.degree[0], words, edges: self.edges as u8 }
+    }
+
+    /// Repeats the first steps of a history.
+    pub(super) fn resume(&mut self, prefix: Prefix) {
+        self.decide(None, Answer::NewVertex(prefix.degree));
+        for &word in &prefix.words[..prefix.edges as usize] {
+            let known = usize::from(word) < self.darts;
+            let answer =
+                if known { Answer::Free(word) } else { Answer::NewVertex(new_vertex(word)) };
+            self.decide(self.lowest_free(), answer);
+            self.may_be_least();
+        }
+    }
+
+    /// Decides in every way until there are `edges` edges, and visits each result.
+    pub(super) fn grow_to(
+        &mut self,
+        edges: usize,
+        visit: &mut impl FnMut(&Self) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if self.edges == edges {
+            return visit(self);
+        }
+        // The start vertex comes first.
+        let dart = self.lowest_free();
+        if dart.is_none() && self.vertices > 0 {
+            return ControlFlow::Continue(());
+        }
+        let rivals = self.rivals;
+        let mut answers = self.answers(dart);
+        while let Some(answer) = answers.take_first() {
+            self.decide(dart, answer);
+            if self.may_be_least() {
+                self.grow_to(edges, visit)?;
+            }
+            self.rivals = rivals;
+            self.undo(dart, answer);
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The highest degree that the next vertex may have.
+    fn highest_degree(&self) -> usize {
+        let of_root = match self.each {
+            Each::World if self.vertices > 0 => self.degree[0] as usize,
+            _ => 2 * self.target,
+        };
+        of_root.min(self.class.max_degree() as usize)
+    }
+
+    /// The free dart with the lowest number.
+    fn lowest_free(&self) -> Option<Dart> {
+        (self.free != 0).then(|| Dart(self.free.trailing_zeros()))
     }
 
     /// The number of edges that are not decided.
     #[inline]
     pub(crate) fn edges_left(&self) -> usize {
-        self.growth.edges_left()
+        self.target - self.edges
     }
 
-    /// What may be behind a free dart; without a dart, the degree of the start vertex, of which nothing is
-    /// decided. In the class `multigraph` each of these leads to a start; in others some may not.
-    pub(crate) fn answers(&mut self, dart: Option<Dart>) -> Answers {
-        let growth = &mut self.growth;
-        let Some(dart) = dart else {
-            let degrees = growth.start_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
-            return Answers { free: 0, degrees };
-        };
-        let (dart, left) = (dart.at(), growth.edges_left() - 1);
-        let mut answers = Answers::default();
-        if !growth.can_get_stuck() {
-            if growth.can_join() {
-                answers.free = growth.partners(dart);
-            }
-            answers.degrees = growth.new_degrees().map(degree_bit).fold(0, |all, bit| all | bit);
-            return answers;
-        }
-        if growth.can_join() {
-            for other in bits(growth.partners(dart)) {
-                growth.join(dart, other, other as u8);
-                answers.free |= u64::from(growth.can_still_end(left)) << other;
-                growth.unjoin(dart, other);
-            }
-        }
-        for degree in growth.new_degrees() {
-            let entry = growth.darts;
-            growth.add_vertex(degree);
-            growth.join(dart, entry, new_vertex(degree as u8));
-            if growth.can_still_end(left) {
-                answers.degrees |= degree_bit(degree);
-            }
-            growth.unjoin(dart, entry);
-            growth.remove_vertex();
-        }
-        answers
+    /// Whether the number of edges lets the next edge join two free darts.
+    pub(super) fn can_join(&self) -> bool {
+        let free = self.free.count_ones() as usize;
+        free >= 2 && can_end(free - 2, self.edges_left() - 1)
     }
 
-    /// Decides what is behind a free dart, or the degree of the start vertex.
-    #[inline]
-    pub(crate) fn decide(&mut self, dart: Option<Dart>, answer: Answer) {
-        let (entry, word) = match answer {
-            Answer::Free(other) => (usize::from(other), other),
-            Answer::NewVertex(degree) => {
-                let entry = self.growth.darts;
-                self.growth.add_vertex(degree.into());
-                self.growth.graph.add_vertex(degree.into());
-                (entry, new_vertex(degree))
+    /// The degrees, from the highest, that the number of edges allows for a vertex at the end of the next
+    /// edge. There is a free dart.
+    pub(super) fn new_degrees(&self) -> impl Iterator<Item = usize> + use<> {
+        let free = self.free.count_ones() as usize;
+        let left = self.edges_left() - 1;
+        let most = self.highest_degree().min((2 * left + 2).saturating_sub(free));
+        (1..=most).rev().filter(move |degree| can_end(free + degree - 2, left))
+    }
+
+    /// The degrees, from the highest, that the number of edges allows for the start vertex.
+    pub(super) fn start_degrees(&self) -> impl Iterator<Item = usize> + use<> {
+        let target = self.target;
+        (1..=self.highest_degree()).rev().filter(move |&degree| can_end(degree, target))
+    }
+
+    /// The free darts, as bits, to which the class lets a dart be joined.
+    pub(super) fn partners(&self, dart: usize) -> u64 {
+        let mut partners = self.free & !(1 << dart);
+        if self.class.is_simple() {
+            let vertex = self.vertex[dart] as usize;
+            for neighbour in bits(self.adjacent[vertex]) {
+                partners &= !self.darts_of(neighbour);
             }
-        };
-        if let Some(dart) = dart {
-            self.growth.join(dart.at(), entry, word);
-            self.growth.graph.join(dart, Dart(entry as u32));
+        }
+        if self.class == Class::Planar {
+            partners &= self.free_in_face(dart);
+        }
+        partners
+    }
+
+    fn darts_of(&self, vertex: usize) -> u64 {
+        (u64::MAX >> (DARTS - self.degree[vertex] as usize)) << self.first[vertex]
+    }
+
+    /// The free darts, as bits, that stick out into the same face as a free dart, and it too. In the class
+    /// `planar`.
+    fn free_in_face(&self, dart: usize) -> u64 {
+        let mut found = 1 << dart;
+        let mut at = self.next_in_face[dart] as usize;
+        while at != dart {
+            found |= 1 << at;
+            at = self.next_in_face[at] as usize;
+        }
+        found
+    }
+
+    fn follow(&mut self, dart: u8, next: u8) {
+        self.next_in_face[dart as usize] = next;
+        self.last_in_face[next as usize] = dart;
+    }
+
+    /// An edge between two free darts divides their face, or unites their faces: each is followed by what
+    /// followed the other.
+    fn join_in_face(&mut self, one: usize, other: usize) {
+        let [(last, next), (last_other, next_other)] =
+            [one, other].map(|dart| (self.last_in_face[dart], self.next_in_face[dart]));
+        let [one, other] = [one, other].map(|dart| dart as u8);
+        match (next == one, next_other == other) {
+            // The only one in its face.
+            (true, true) => {}
+            (true, false) => self.follow(last_other, next_other),
+            (false, true) => self.follow(last, next),
+            (false, false) => {
+                if next_other != one {
+                    self.follow(last, next_other);
+                }
+                if next != other {
+                    self.follow(last_other, next);
+                }
+            }
         }
     }
 
-    /// Undoes the latest decision.
-    #[inline]
-    pub(crate) fn undo(&mut self, dart: Option<Dart>, answer: Answer) {
-        if let Some(dart) = dart {
-            let other = self.growth.opposite[dart.at()];
-            self.growth.unjoin(dart.at(), other.into());
-            self.growth.graph.unjoin(dart, Dart(other.into()));
-        }
-        if let Answer::NewVertex(_) = answer {
-            self.growth.remove_vertex();
-            self.growth.graph.remove_vertex();
+    /// Undoes [`join_in_face`](Self::join_in_face).
+    fn unjoin_in_face(&mut self, one: usize, other: usize) {
+        for dart in [one, other] {
+            let (last, next) = (self.last_in_face[dart], self.next_in_face[dart]);
+            self.next_in_face[last as usize] = dart as u8;
+            self.last_in_face[next as usize] = dart as u8;
         }
     }
 
-    /// Visits every start that agrees with what is decided, once, in a fixed order. Its darts keep their
-    /// numbers.
-    pub(crate) fn for_each_completion(
+    /// Whether the class can leave no way to use up the free darts.
+    pub(super) fn can_get_stuck(&self) -> bool {
+        self.class.is_simple()
+    }
+
+    /// Whether the class leaves a way to use up the free darts. (A necessary condition; that of
+    /// [`can_end`] has been checked.)
+    pub(super) fn can_still_end(&self) -> bool {
+        let left = self.edges_left();
+        // As many edges as free darts are always enough: a dead end at each.
+        if !self.can_get_stuck() || self.free.count_ones() as usize <= left {
+            return true;
+        }
+        if self.class != Class::Planar {
+            return self.edges_needed(self.free) <= left;
+        }
+        let (mut unseen, mut needed) = (self.free, 0);
+        while unseen != 0 {
+            let face = self.free_in_face(unseen.trailing_zeros() as usize);
+            unseen &= !face;
+            needed += self.edges_needed(face);
+        }
+        needed <= left
+    }
+
+    /// The least number of edges that can use up these free darts, if none may be joined to one at
+    /// its own vertex.
+    fn edges_needed(&self, free: u64) -> usize {
+        let (mut rest, mut most_at_one) = (free, 0);
+        while rest != 0 {
+            let here = self.darts_of(self.vertex[rest.trailing_zeros() as usize] as usize);
+            most_at_one = most_at_one.max((rest & here).count_ones());
+            rest &= !here;
+        }
+        free.count_ones().div_ceil(2).max(most_at_one) as usize
+    }
+
+    pub(super) fn clockwise(&self, dart: usize) -> usize {
+        let vertex = self.vertex[dart] as usize;
+        let first = self.first[vertex] as usize;
+        if dart + 1 == first + self.degree[vertex] as usize { first } else { dart + 1 }
+    }
+
+    pub(super) fn add_vertex(&mut self, degree: usize) {
+        let new = self.vertices;
+        self.first[new] = self.darts as u8;
+        self.degree[new] = degree as u8;
+        self.adjacent[new] = 1 << new;
+        self.vertex[self.darts..self.darts + degree].fill(new as u8);
+        if self.class == Class::Planar {
+            let first = self.darts as u8;
+            let end = first + degree as u8;
+            for dart in first..end {
+                self.follow(dart, if dart + 1 == end { first } else { dart + 1 });
+            }
+        }
+        self.vertices += 1;
+        self.darts += degree;
+        self.free |= self.darts_of(new);
+        // Only a vertex with as many darts can rival the start, and dart 0 is no rival to itself.
+        if self.each == Each::World && degree == self.degree[0] as usize {
+            self.rivals |= self.darts_of(new) & !1;
+        }
+    }
+
+    pub(super) fn remove_vertex(&mut self) {
+        self.vertices -= 1;
+        let darts = self.darts_of(self.vertices);
+        self.free &= !darts;
+        self.rivals &= !darts;
+        self.darts -= self.degree[self.vertices] as usize;
+    }
+
+    pub(super) fn join(&mut self, one: usize, other: usize, word: u8) {
+        self.opposite[one] = other as u8;
+        self.opposite[other] = one as u8;
+        self.free &= !(1 << one);
+        self.free &= !(1 << other);
+        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
+        self.adjacent[from] |= 1 << to;
+        self.adjacent[to] |= 1 << from;
+        self.words[self.edges] = word;
+        self.edges += 1;
+        if self.class == Class::Planar {
+            self.join_in_face(one, other);
+        }
+    }
+
+    pub(super) fn unjoin(&mut self, one: usize, other: usize) {
+        if self.class == Class::Planar {
+            self.unjoin_in_face(one, other);
+        }
+        self.opposite[one] = FREE;
+        self.opposite[other] = FREE;
+        self.free |= 1 << one;
+        self.free |= 1 << other;
+        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
+        if from != to {
+            self.adjacent[from] &= !(1 << to);
+            self.adjacent[to] &= !(1 << from);
+        }
+        self.edges -= 1;
+    }
+
+    /// Visits the finished start as an embedded graph.
+    pub(super) fn show(
         &self,
-        visit: &mut impl FnMut(&EmbeddedGraph) -> ControlFlow<()>,
+        visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if self.edges_left() == 0 {
-            return visit(self.graph());
-        }
-        let mut growth = self.growth.clone();
-        let edges = growth.edges_left() + growth.edges;
-        growth.grow_to(edges, &mut |grown| grown.show(&mut |found| visit(found.graph)))
+        let automorphisms = self.rivals.count_ones() + 1;
+        visit(EnumeratedGraph { graph: &self.graph, automorphisms })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::enumerate::Enumeration;
 
-    /// Decides everything, the last free dart first, and counts the starts.
-    fn count(draft: &mut Draft) -> u64 {
-        if draft.edges_left() == 0 {
-            return 1;
+    /// Vertices of these degrees, edges between some of their darts, and so many edges left.
+    fn grown(class: Class, degrees: &[usize], edges: &[(usize, usize)], left: usize) -> Draft {
+        let mut draft = Draft::empty(Each::Start, class, edges.len() + left);
+        for &degree in degrees {
+            draft.add_vertex(degree);
         }
-        let graph = draft.graph();
-        let dart = graph.darts().filter(|&dart| graph.joined(dart).is_none()).last();
-        let mut answers = draft.answers(dart);
-        let mut found = 0;
-        while let Some(answer) = answers.take_first() {
-            draft.decide(dart, answer);
-            found += count(draft);
-            draft.undo(dart, answer);
+        for &(one, other) in edges {
+            draft.join(one, other, other as u8);
         }
-        found
+        draft
     }
 
-    /// The order in which a start is decided does not matter: each is found once.
     #[test]
-    fn starts_decided_from_the_last_dart_are_as_many_as_those_enumerated() {
-        for class in Class::ALL {
-            for edges in 1..=6 {
-                let mut enumerated = 0;
-                let all = Enumeration::new(Each::Start, class, edges).unwrap();
-                let _ = all.for_each(&mut |_| {
-                    enumerated += 1;
-                    ControlFlow::Continue(())
-                });
-                assert_eq!(count(&mut Draft::new(class, edges).unwrap()), enumerated, "{class}");
+    fn a_word_encodes_the_degree_of_a_new_vertex_and_is_no_dart() {
+        for degree in 1..=DARTS as u8 {
+            assert_eq!(new_vertex(new_vertex(degree)), degree);
+            assert!(usize::from(new_vertex(degree)) >= DARTS);
+        }
+    }
+
+    /// An edge uses up two free darts, but not two at one vertex.
+    #[test]
+    fn free_darts_at_one_vertex_need_an_edge_each() {
+        let needed = |degrees: &[usize]| {
+            let draft = grown(Class::Simple, degrees, &[], 0);
+            draft.edges_needed(draft.free)
+        };
+        assert_eq!(needed(&[1, 1, 1, 1]), 2);
+        assert_eq!(needed(&[1, 1, 1]), 2);
+        assert_eq!(needed(&[3, 1, 1]), 3);
+        assert_eq!(needed(&[4]), 4);
+        let can_still_end = |class, left| grown(class, &[3, 1, 1], &[], left).can_still_end();
+        assert!(can_still_end(Class::Simple, 3) && !can_still_end(Class::Simple, 2));
+        assert!(can_still_end(Class::Multigraph, 2));
+    }
+
+    /// The darts of a face that are free, along its border.
+    fn free_along_the_border(draft: &Draft, dart: usize) -> u64 {
+        let mut found = 0;
+        let mut at = dart;
+        loop {
+            if draft.opposite[at] == FREE {
+                found |= 1 << at;
+            } else {
+                at = draft.opposite[at] as usize;
+            }
+            at = draft.clockwise(at);
+            if at == dart {
+                return found;
             }
         }
     }
 
+    /// In every planar draft on the way to 6 edges.
     #[test]
-    fn a_start_of_which_nothing_is_decided_is_completed_to_every_start() {
-        for (edges, starts) in [(1, 2), (2, 10), (3, 74), (4, 706)] {
-            let mut found = 0;
-            let draft = Draft::new(Class::Multigraph, edges).unwrap();
-            let _ = draft.for_each_completion(&mut |graph| {
-                assert_eq!(graph.edge_count(), edges);
-                found += 1;
+    fn the_free_darts_of_a_face_are_those_along_its_border() {
+        for left in 0..=3 {
+            let mut seen = 0;
+            let mut compare = |draft: &Draft| {
+                for dart in bits(draft.free) {
+                    let along = free_along_the_border(draft, dart);
+                    assert_eq!(draft.free_in_face(dart), along);
+                    let last = draft.last_in_face[dart] as usize;
+                    assert_eq!(draft.next_in_face[last] as usize, dart);
+                    seen += 1;
+                }
                 ControlFlow::Continue(())
-            });
-            assert_eq!(found, starts);
+            };
+            let _ = Draft::empty(Each::Start, Class::Planar, 6).grow_to(6 - left, &mut compare);
+            assert_eq!(seen > 100, left > 0);
         }
+    }
+
+    /// A triangle with two free darts: in the plane, one inside and one outside are not joined.
+    #[test]
+    fn free_darts_in_two_faces_need_an_edge_each_in_the_plane() {
+        let triangle = |class, free_at_one| {
+            // Clockwise 3, 4, 5 at the one: the side of the free dart is that of the turn.
+            let out = if free_at_one == 4 { 5 } else { 4 };
+            grown(class, &[3, 3, 2], &[(0, 3), (out, 6), (7, 2)], 1)
+        };
+        assert_eq!(triangle(Class::Planar, 4).free_in_face(1), 1 << 1);
+        assert_eq!(triangle(Class::Planar, 5).free_in_face(1), 1 << 1 | 1 << 5);
+        assert!(!triangle(Class::Planar, 4).can_still_end());
+        assert!(triangle(Class::Planar, 5).can_still_end());
+        assert!(triangle(Class::Simple, 4).can_still_end());
     }
 }

@@ -5,9 +5,9 @@
 //! vertex. Each start has exactly one such history, so nothing is made twice or discarded. An embedded
 //! graph is enumerated at its least start; a history that cannot become least is abandoned early.
 
+mod answers;
 mod class;
 mod draft;
-mod growth;
 mod rivals;
 mod watch;
 
@@ -15,13 +15,14 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
+pub(crate) use answers::{Answer, Answers};
 pub use class::{Class, UnknownClass};
-pub(crate) use draft::{Answer, Answers, Draft};
+pub(crate) use draft::Draft;
 pub(crate) use watch::in_parts;
 pub use watch::{Interrupted, Watch};
 
 use crate::embedded_graph::EmbeddedGraph;
-use growth::{Growth, MAX_EDGES, PREFIX_EDGES, Prefix};
+use draft::{MAX_EDGES, PREFIX_EDGES, Prefix};
 
 /// The objects that are enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,10 +44,8 @@ pub struct Enumeration {
 /// The error for a number of edges that cannot be enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SizeError {
-    /// No edges.
     #[error("a world has at least one edge")]
     NoEdge,
-    /// More than the enumeration can represent.
     #[error("worlds with {0} edges are too many to enumerate; the limit is {MAX_EDGES}")]
     TooManyEdges(usize),
 }
@@ -74,26 +73,20 @@ impl Enumeration {
     /// # Errors
     /// Returns an error if the number of edges is 0 or more than 32.
     pub fn new(each: Each, class: Class, edges: usize) -> Result<Self, SizeError> {
-        match edges {
-            0 => Err(SizeError::NoEdge),
-            _ if edges > MAX_EDGES => Err(SizeError::TooManyEdges(edges)),
-            _ => Ok(Self { class, edges, each }),
-        }
+        check_size(edges)?;
+        Ok(Self { class, edges, each })
     }
 
-    /// The class of worlds.
-    #[must_use]
     pub fn class(&self) -> Class {
         self.class
     }
 
     /// The parts of the enumeration, in its order. They do not depend on the number of threads.
-    #[must_use]
     pub fn parts(&self) -> Vec<EnumerationPart> {
         let mut parts = Vec::new();
         let prefix = PREFIX_EDGES.min(self.edges);
-        let _ = Growth::new(self.class, self.edges, self.each).grow_to(prefix, &mut |growth| {
-            parts.push(EnumerationPart { whole: *self, prefix: growth.prefix() });
+        let _ = Draft::empty(self.each, self.class, self.edges).grow_to(prefix, &mut |draft| {
+            parts.push(EnumerationPart { whole: *self, prefix: draft.prefix() });
             ControlFlow::Continue(())
         });
         parts
@@ -104,8 +97,16 @@ impl Enumeration {
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut whole = Growth::new(self.class, self.edges, self.each);
-        whole.grow_to(self.edges, &mut |growth| growth.show(visit))
+        let mut whole = Draft::empty(self.each, self.class, self.edges);
+        whole.grow_to(self.edges, &mut |draft| draft.show(visit))
+    }
+}
+
+fn check_size(edges: usize) -> Result<(), SizeError> {
+    match edges {
+        0 => Err(SizeError::NoEdge),
+        _ if edges > MAX_EDGES => Err(SizeError::TooManyEdges(edges)),
+        _ => Ok(()),
     }
 }
 
@@ -116,8 +117,8 @@ impl EnumerationPart {
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let Enumeration { class, edges, each } = self.whole;
-        let mut growth = Growth::new(class, edges, each);
-        growth.resume(self.prefix);
-        growth.grow_to(edges, &mut |growth| growth.show(visit))
+        let mut draft = Draft::empty(each, class, edges);
+        draft.resume(self.prefix);
+        draft.grow_to(edges, &mut |draft| draft.show(visit))
     }
 }

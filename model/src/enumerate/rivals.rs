@@ -1,15 +1,14 @@
-//! Whether a growth can still become the least start of its embedded graph.
+//! Whether a draft can still become the least start of its embedded graph.
 
 use std::cmp::Ordering;
 
-use super::growth::{DARTS, FREE, Growth, new_vertex};
+use super::draft::{DARTS, Draft, FREE, new_vertex};
 
-/// The number of a dart that was not met yet.
 const UNMET: u8 = u8::MAX;
 
-impl Growth {
+impl Draft {
     /// Whether no other dart has a lesser code than dart 0, as far as the codes are decided.
-    /// Removes the rivals with a greater code. When the growth is finished, the rivals that are left
+    /// Removes the rivals with a greater code. When the start is finished, the rivals that are left
     /// have the same code.
     pub(super) fn may_be_least(&mut self) -> bool {
         let mut open = self.rivals;

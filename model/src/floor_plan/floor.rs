@@ -31,14 +31,12 @@ impl Rectangle {
     }
 
     /// Whether the position is in the rectangle or on its border.
-    #[must_use]
     pub fn holds(&self, position: [f64; 2]) -> bool {
         let point = Self { least: position, greatest: position };
         self.meets(&point)
     }
 
     /// Whether the rectangles have a point in common; touching counts.
-    #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
         (0..2).all(|axis| {
             self.least[axis] <= other.greatest[axis] && other.least[axis] <= self.greatest[axis]
@@ -49,7 +47,6 @@ impl Rectangle {
 impl FloorPlan {
     /// The floor: for each hallway, in their order, its rectangle from junction to junction,
     /// widened by half the hallway width on all sides. Walls stand on the border of their union.
-    #[must_use]
     pub fn floor(&self) -> impl ExactSizeIterator<Item = Rectangle> + '_ {
         self.hallways.iter().map(|&hallway| self.middle(hallway).widened(self.hallway_width / 2.0))
     }

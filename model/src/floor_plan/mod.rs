@@ -26,13 +26,9 @@ const TOLERANCE: f64 = 1e-6;
 // paper: env.right-angles
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Direction {
-    /// To greater y.
     North,
-    /// To greater x.
     East,
-    /// To lesser y.
     South,
-    /// To lesser x.
     West,
 }
 
@@ -52,7 +48,6 @@ impl Direction {
     }
 
     /// The unit vector, x to the east and y to the north.
-    #[must_use]
     pub fn vector(self) -> [f64; 2] {
         match self {
             Self::North => [0.0, 1.0],
@@ -79,18 +74,15 @@ impl Direction {
 // paper: env.junction-types
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JunctionKind {
-    /// One door.
     DeadEnd,
     /// Two doors at a right angle.
     L,
-    /// Three doors.
     T,
 }
 
 /// A place where hallways end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
-    /// Its name.
     pub name: String,
     /// Where its turning point is, in metres, x to the east and y to the north.
     pub position: [f64; 2],
@@ -165,44 +157,36 @@ impl FloorPlan {
     }
 
     /// The width of every hallway, from wall to wall, in metres.
-    #[must_use]
     pub fn hallway_width(&self) -> f64 {
         self.hallway_width
     }
 
     /// The junctions; the one at index `i` is vertex `i`.
-    #[must_use]
     pub fn junctions(&self) -> &[Junction] {
         &self.junctions
     }
 
     /// The junction that is this vertex.
-    #[must_use]
     pub fn junction(&self, vertex: Vertex) -> &Junction {
         &self.junctions[vertex.at()]
     }
 
-    /// The hallways, in the order given.
-    #[must_use]
     pub fn hallways(&self) -> &[Hallway] {
         &self.hallways
     }
 
     /// The embedded graph of the plan. It is planar.
     // paper: env.hallways
-    #[must_use]
     pub fn graph(&self) -> &EmbeddedGraph {
         &self.graph
     }
 
     /// Where the dart's hallway leads, seen from the dart's junction.
-    #[must_use]
     pub fn direction(&self, dart: Dart) -> Direction {
         self.directions[dart.at()]
     }
 
     /// The shape of a junction, seen from the entry by a dart.
-    #[must_use]
     pub fn shape(&self, entry: Dart) -> JunctionShape {
         let first = self.direction(entry) as usize;
         let mut doors = [false; 4];

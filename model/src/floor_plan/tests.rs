@@ -65,59 +65,30 @@ fn doors_stand_clockwise_from_north() {
 }
 
 #[test]
-fn junctions_are_dead_ends_ls_and_ts() {
+fn junctions_have_kinds_and_the_floor_reaches_half_a_width_beyond_them() {
     use JunctionKind::{DeadEnd, L, T};
     let kinds: Vec<_> = shape_6().junctions().iter().map(|j| j.kind).collect();
     assert_eq!(kinds, [DeadEnd, L, T, L, L, L]);
-}
-
-#[test]
-fn the_floor_reaches_half_a_width_beyond_the_junctions() {
     let first = shape_6().floor().next().unwrap();
     assert_eq!((first.least, first.greatest), ([-0.8, 7.2], [4.8, 8.8]));
 }
 
 #[test]
-fn numbers_must_be_finite_and_the_width_positive() {
+fn the_hallway_width_is_positive_and_finite() {
     for (width, shown) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         assert_eq!(
             message(wide(width, &[], &[])),
             format!("the hallway width is {shown}; it must be a positive number of metres")
         );
     }
-    assert_eq!(
-        message(plan(&[("a", [f64::NAN, 1.0])], &[])),
-        "junction `a` is at (NaN, 1); both must be finite numbers of metres"
-    );
 }
 
+// paper: env.right-angles, env.junction-types
 #[test]
-fn names_must_be_known_and_stand_once() {
+fn each_fault_of_junctions_and_hallways_is_named() {
     let (a, b) = (("a", [0.0, 0.0]), ("b", [4.0, 0.0]));
-    assert_eq!(message(plan(&[a, a], &[])), "junction `a` is listed twice");
-    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "q")])), "there is no junction `q`");
-    assert_eq!(
-        message(plan(&[a, b], &[("a", "b"), ("b", "a")])),
-        "hallway `b` - `a` is listed twice"
-    );
-}
-
-// paper: env.right-angles
-#[test]
-fn hallways_have_a_length_along_an_axis() {
-    let askew = [("a", [0.0, 0.0]), ("b", [4.0, 0.01])];
-    assert_eq!(
-        message(plan(&askew, &[("a", "b")])),
-        "hallway `a` - `b` runs neither north-south nor east-west"
-    );
-    assert_eq!(message(plan(&askew, &[("a", "a")])), "the hallway from `a` to `a` has no length");
-    let rounded = [("a", [0.0, 0.1 + 0.2]), ("b", [4.0, 0.3])];
-    assert!(plan(&rounded, &[("a", "b")]).is_ok());
-}
-
-// paper: env.junction-types
-#[test]
-fn other_junctions_than_the_three_kinds_are_named() {
+    let askew = [a, ("b", [4.0, 0.01])];
+    let line = [a, b, ("c", [8.0, 0.0])];
     let cross = [
         ("x", [0.0, 0.0]),
         ("n", [0.0, 4.0]),
@@ -125,42 +96,74 @@ fn other_junctions_than_the_three_kinds_are_named() {
         ("s", [0.0, -4.0]),
         ("w", [-4.0, 0.0]),
     ];
-    let kinds = "it must be a dead end, an L or a T";
-    assert_eq!(
-        message(plan(&cross, &[("x", "n"), ("x", "e"), ("x", "s"), ("x", "w")])),
-        format!("junction `x` has four doors; {kinds}")
-    );
-    for straight in [[("n", "x"), ("x", "s")], [("e", "x"), ("x", "w")]] {
-        assert_eq!(
-            message(plan(&cross, &straight)),
-            format!("junction `x` has two doors opposite each other; {kinds}")
-        );
+    let ring = [cross[1], cross[3], cross[2], cross[4], ("sw", [-4.0, -4.0])];
+    let near = [a, ("b", [3.0, 0.0])];
+    let on = [a, ("b", [8.0, 0.0]), ("c", [8.0, 4.0]), ("d", [4.0, 4.0]), ("e", [4.0, 0.5])];
+    let cases: [(&[_], &[_], _); 15] = [
+        (
+            &[("a", [f64::NAN, 1.0])],
+            &[],
+            "junction `a` is at (NaN, 1); both must be finite numbers of metres",
+        ),
+        (&[a, a], &[], "junction `a` is listed twice"),
+        (&[a, b], &[("a", "b"), ("b", "q")], "there is no junction `q`"),
+        (&[a, b], &[("a", "b"), ("b", "a")], "hallway `b` - `a` is listed twice"),
+        (&askew, &[("a", "b")], "hallway `a` - `b` runs neither north-south nor east-west"),
+        (&askew, &[("a", "a")], "the hallway from `a` to `a` has no length"),
+        (
+            &cross,
+            &[("x", "n"), ("x", "e"), ("x", "s"), ("x", "w")],
+            "junction `x` has four doors; it must be a dead end, an L or a T",
+        ),
+        (
+            &cross,
+            &[("n", "x"), ("x", "s")],
+            "junction `x` has two doors opposite each other; it must be a dead end, an L or a T",
+        ),
+        (
+            &cross,
+            &[("e", "x"), ("x", "w")],
+            "junction `x` has two doors opposite each other; it must be a dead end, an L or a T",
+        ),
+        (
+            &cross[..3],
+            &[("x", "n")],
+            "junction `e` has no door; it must be a dead end, an L or a T",
+        ),
+        (
+            &ring,
+            &[("n", "s"), ("s", "sw"), ("sw", "w"), ("w", "e")],
+            "hallways `n` - `s` and `w` - `e` cross",
+        ),
+        (&line, &[("a", "b"), ("a", "c")], "hallways `a` - `b` and `a` - `c` overlap"),
+        (
+            &near,
+            &[("a", "b")],
+            "junctions `a` and `b` are 3.00 m apart; it must be two hallway widths, 3.20 m",
+        ),
+        (
+            &on,
+            &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")],
+            "junction `e` lies on hallway `a` - `b`, which does not end there",
+        ),
+        (
+            &on[..4],
+            &[("a", "b"), ("c", "d")],
+            "the world is not connected: vertex `c` cannot be reached from `a`",
+        ),
+    ];
+    for (junctions, hallways, expected) in cases {
+        assert_eq!(message(plan(junctions, hallways)), expected);
     }
-    assert_eq!(
-        message(plan(&cross[..3], &[("x", "n")])),
-        format!("junction `e` has no door; {kinds}")
-    );
+    assert_eq!(message(plan(&[], &[])), "there is no edge; a world has at least one");
+    // Rounding makes no fault.
+    let rounded = [("a", [0.0, 0.1 + 0.2]), ("b", [3.2, 0.3])];
+    assert!(plan(&rounded, &[("a", "b")]).is_ok());
 }
 
+/// A U whose arms are so close that their floors touch, or just do not.
 #[test]
-fn hallways_neither_cross_nor_overlap() {
-    let cross = [
-        ("n", [0.0, 4.0]),
-        ("s", [0.0, -4.0]),
-        ("e", [4.0, 0.0]),
-        ("w", [-4.0, 0.0]),
-        ("sw", [-4.0, -4.0]),
-    ];
-    assert_eq!(
-        message(plan(&cross, &[("n", "s"), ("s", "sw"), ("sw", "w"), ("w", "e")])),
-        "hallways `n` - `s` and `w` - `e` cross"
-    );
-    let line = [("a", [0.0, 0.0]), ("b", [4.0, 0.0]), ("c", [8.0, 0.0])];
-    assert_eq!(
-        message(plan(&line, &[("a", "b"), ("a", "c")])),
-        "hallways `a` - `b` and `a` - `c` overlap"
-    );
-    // A U whose arms are so close that their floors touch, or just do not.
+fn floors_of_hallways_do_not_touch() {
     let arms = |gap: f64| {
         let u = [
             ("a", [0.0, 0.0]),
@@ -178,39 +181,4 @@ fn hallways_neither_cross_nor_overlap() {
         );
     }
     assert!(arms(1.7).is_ok());
-}
-
-#[test]
-fn junctions_are_two_widths_apart() {
-    let at = |x| plan(&[("a", [0.0, 0.0]), ("b", [x, 0.0])], &[("a", "b")]);
-    assert_eq!(
-        message(at(3.0)),
-        "junctions `a` and `b` are 3.00 m apart; it must be two hallway widths, 3.20 m"
-    );
-    assert!(at(3.2).is_ok());
-}
-
-#[test]
-fn no_junction_lies_on_a_foreign_hallway() {
-    let junctions = [
-        ("a", [0.0, 0.0]),
-        ("b", [8.0, 0.0]),
-        ("c", [8.0, 4.0]),
-        ("d", [4.0, 4.0]),
-        ("e", [4.0, 0.5]),
-    ];
-    assert_eq!(
-        message(plan(&junctions, &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")])),
-        "junction `e` lies on hallway `a` - `b`, which does not end there"
-    );
-}
-
-#[test]
-fn a_plan_is_connected_and_not_empty() {
-    let junctions = [("a", [0.0, 0.0]), ("b", [8.0, 0.0]), ("c", [8.0, 4.0]), ("d", [4.0, 4.0])];
-    assert_eq!(
-        message(plan(&junctions, &[("a", "b"), ("c", "d")])),
-        "the world is not connected: vertex `c` cannot be reached from `a`"
-    );
-    assert_eq!(message(plan(&[], &[])), "there is no edge; a world has at least one");
 }

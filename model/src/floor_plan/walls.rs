@@ -21,20 +21,16 @@ pub struct BuildingWall {
 }
 
 impl BuildingWall {
-    /// Its length, in metres.
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.span[1] - self.span[0]
     }
 
     /// The point of its foot at this place along its axis.
-    #[must_use]
     pub fn foot(&self, along: f64) -> [f64; 2] {
         if self.along == 0 { [along, self.plane] } else { [self.plane, along] }
     }
 
     /// Whether it stands between two places, in metres.
-    #[must_use]
     pub fn is_between(&self, one: [f64; 2], other: [f64; 2]) -> bool {
         let across = 1 - self.along;
         let [before, behind] = [one, other].map(|place| place[across] - self.plane);
@@ -48,7 +44,6 @@ impl BuildingWall {
 }
 
 /// The walls around the floor of a plan: first those along x, sorted by plane and beginning.
-#[must_use]
 pub fn walls(plan: &FloorPlan) -> Vec<BuildingWall> {
     let floors: Vec<Rectangle> = plan.floor().collect();
     let mut walls: Vec<BuildingWall> =

@@ -54,9 +54,7 @@ impl fmt::Display for TextPosition {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{position}{kind}")]
 pub struct DocumentError {
-    /// Where.
     pub position: TextPosition,
-    /// What is wrong there.
     #[source]
     pub kind: DocumentErrorKind,
 }
@@ -64,50 +62,22 @@ pub struct DocumentError {
 /// What can be wrong in any document.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DocumentErrorKind {
-    /// There is nothing but space.
     #[error("the file is empty")]
     Empty,
-    /// The bytes are not UTF-8.
     #[error("this is not UTF-8 text")]
     NotText,
-    /// The text is neither TOML nor JSON.
     #[error("{0}")]
     Syntax(String),
-    /// A value that its type does not allow.
     #[error("{0}")]
     Invalid(String),
-    /// A key that is not expected here.
     #[error("unknown key; expected one of: {known}")]
-    UnknownKey {
-        /// The expected keys.
-        known: String,
-    },
-    /// A key is missing.
+    UnknownKey { known: String },
     #[error("the key `{key}` is missing")]
-    MissingKey {
-        /// The key.
-        key: &'static str,
-    },
-    /// A value of another kind than the expected one.
+    MissingKey { key: &'static str },
     #[error("expected {expected}, found {found}")]
-    WrongKind {
-        /// What is expected.
-        expected: Cow<'static, str>,
-        /// What was found.
-        found: &'static str,
-    },
-    /// A number out of its range.
+    WrongKind { expected: Cow<'static, str>, found: &'static str },
     #[error("{found} is out of range; {what} lies between {low} and {high}")]
-    OutOfRange {
-        /// The meaning of the number, with its unit.
-        what: &'static str,
-        /// The number.
-        found: f64,
-        /// Its least value.
-        low: f64,
-        /// Its greatest value.
-        high: f64,
-    },
+    OutOfRange { what: &'static str, found: f64, low: f64, high: f64 },
 }
 
 impl DocumentErrorKind {
@@ -149,7 +119,6 @@ struct Key<'t> {
 }
 
 impl<'t> Document<'t> {
-    /// Parses TOML.
     pub fn parse_toml(bytes: &'t [u8]) -> Result<Self, DocumentError> {
         let text = text_of(bytes)?;
         Ok(Self { text, root: toml_text::parse(text)? })
@@ -171,7 +140,6 @@ impl<'t> Document<'t> {
     }
 
     /// The whole document, which is a table.
-    #[must_use]
     pub fn root(&self) -> DocumentValue<'_> {
         DocumentValue::root(self)
     }

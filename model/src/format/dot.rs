@@ -9,7 +9,6 @@ use crate::embedded_graph::Dart;
 /// start has a double border, and its facing edge is bold, with an arrow away from it. The vertices of
 /// a floor plan are pinned to their positions (`neato -n`), in points of 1/72 inch, a quarter inch for
 /// a metre.
-#[must_use]
 pub fn write(world: &NamedWorld) -> String {
     let mut text = format!("graph {} {{\n", quoted(&world.name));
     if !world.about.is_empty() {

@@ -24,7 +24,6 @@ pub struct NamedWorld {
     pub start: Option<Dart>,
     /// The kind of marker that the world is about, if the file has one.
     pub marker: Option<&'static dyn Marker>,
-    /// The name of each vertex.
     pub vertex_names: Vec<String>,
     /// The name of each dart's edge; `None` if the file lists neighbours, which it can only do for a
     /// simple graph.
@@ -38,52 +37,18 @@ pub struct NamedWorld {
 /// Why names do not give a start.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
-    /// A start on the command line has no colon.
     #[error("`{text}` is not a start; write `vertex:facing`")]
-    NoColon {
-        /// The text.
-        text: String,
-    },
-    /// No vertex has this name.
+    NoColon { text: String },
     #[error("there is no vertex `{vertex}`{similar}")]
-    UnknownVertex {
-        /// The name.
-        vertex: String,
-        /// A vertex with a similar name.
-        similar: SimilarName,
-    },
-    /// The vertex has no such neighbour.
+    UnknownVertex { vertex: String, similar: SimilarName },
     #[error("vertex `{vertex}` has no neighbour `{facing}`; it has {listed}")]
-    NoSuchNeighbour {
-        /// The vertex.
-        vertex: String,
-        /// The name.
-        facing: String,
-        /// Its neighbours.
-        listed: String,
-    },
-    /// No such edge ends at the vertex.
+    NoSuchNeighbour { vertex: String, facing: String, listed: String },
     #[error("no edge `{facing}` ends at vertex `{vertex}`; the edges there are {listed}")]
-    NoSuchEdge {
-        /// The vertex.
-        vertex: String,
-        /// The name.
-        facing: String,
-        /// The edges that end there.
-        listed: String,
-    },
-    /// Names with colons can make a text the start of several darts.
+    NoSuchEdge { vertex: String, facing: String, listed: String },
     #[error("`{text}` is ambiguous: several starts are written like this")]
-    Ambiguous {
-        /// The text.
-        text: String,
-    },
-    /// The edge is a loop, and the text does not name one of its ends.
+    Ambiguous { text: String },
     #[error("edge `{edge}` is a loop; write `{edge}:1` or `{edge}:2` for one of its ends")]
-    BareLoop {
-        /// The loop.
-        edge: String,
-    },
+    BareLoop { edge: String },
 }
 
 impl NamedWorld {
@@ -141,14 +106,12 @@ impl NamedWorld {
                 .vertices()
                 .map(|new| self.vertex_names[kept(new)].clone())
                 .collect(),
-            edge_names: edge_names.or(numbered.edge_names),
+            edge_names: edge_names.or(numbered.edge_names.clone()),
             positions: positions.map(|all| graph.vertices().map(|new| all[kept(new)]).collect()),
-            ..Self::numbered(&self.name, &self.about, graph.clone(), None)
+            ..numbered
         }
     }
 
-    /// The vertex with this name.
-    #[must_use]
     pub fn vertex_named(&self, name: &str) -> Option<Vertex> {
         let number = self.vertex_names.iter().position(|known| known == name)?;
         Some(Vertex(number as u32))
@@ -207,22 +170,18 @@ impl NamedWorld {
         if let Some(dart) = found {
             return Ok(dart);
         }
-        let vertex = at.to_owned();
-        let facing = shown(facing);
+        let (listed, at, facing) = (self.listed(vertex), at.to_owned(), shown(facing));
         Err(if bare_loop {
             StartError::BareLoop { edge: facing }
         } else if self.edge_names.is_some() {
-            let listed = self.listed(&vertex);
-            StartError::NoSuchEdge { vertex, facing, listed }
+            StartError::NoSuchEdge { vertex: at, facing, listed }
         } else {
-            let listed = self.listed(&vertex);
-            StartError::NoSuchNeighbour { vertex, facing, listed }
+            StartError::NoSuchNeighbour { vertex: at, facing, listed }
         })
     }
 
     /// The text `vertex:facing` of this dart, the inverse of
     /// [`start_from_text`](Self::start_from_text).
-    #[must_use]
     pub fn start_text(&self, dart: Dart) -> String {
         format!("{}:{}", self.at_text(dart), self.facing_text(dart))
     }
@@ -230,7 +189,6 @@ impl NamedWorld {
     /// A state of a robot in this world: its pose as `vertex:door`, where the first door that is listed
     /// at the vertex is 0; and the place of a movable marker: `@vertex`, or `+marker` while the robot
     /// carries it.
-    #[must_use]
     pub fn state_text(&self, marker: &impl Marker, state: State) -> String {
         let pose = format!("{}:{}", self.at_text(state.pose), self.graph.index(state.pose));
         match state.placed {
@@ -241,13 +199,11 @@ impl NamedWorld {
     }
 
     /// The name of the dart's vertex, as in a file's `at`.
-    #[must_use]
     pub fn at_text(&self, dart: Dart) -> &str {
         &self.vertex_names[self.graph.vertex(dart).at()]
     }
 
     /// The name of this dart, as in a file's `facing`.
-    #[must_use]
     pub fn facing_text(&self, dart: Dart) -> String {
         let name = self.leads_to(dart);
         if self.is_named_loop(dart) {
@@ -259,7 +215,6 @@ impl NamedWorld {
     }
 
     /// The name that the file lists for the dart: its edge, or the neighbour at its other end.
-    #[must_use]
     pub fn leads_to(&self, dart: Dart) -> &str {
         match &self.edge_names {
             Some(names) => &names[dart.at()],
@@ -273,11 +228,8 @@ impl NamedWorld {
     }
 
     /// The first few names that can be faced at a vertex, for a message.
-    fn listed(&self, vertex: &str) -> String {
+    fn listed(&self, vertex: Vertex) -> String {
         const SHOWN: usize = 8;
-        let Some(vertex) = self.vertex_named(vertex) else {
-            return String::new();
-        };
         let darts = self.graph.darts_of(vertex);
         let more = if darts.len() > SHOWN { ", ..." } else { "" };
         let shown: Vec<_> = darts.take(SHOWN).map(|dart| self.facing_text(dart)).collect();
@@ -295,56 +247,40 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::any_graph::{Class, any_graph};
+    use crate::{
+        any_graph::{Class, any_graph},
+        format::world_file,
+    };
+
+    fn world(file: &str) -> NamedWorld {
+        world_file::read(file.as_bytes()).unwrap()
+    }
 
     /// A loop `a` and two edges `b`, `c` to a second vertex.
     fn with_loop() -> NamedWorld {
-        let lists = [("u", vec!["a", "b", "a", "c"]), ("v", vec!["b", "c"])];
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        let edges = lists.iter().flat_map(|(_, edges)| edges);
-        NamedWorld {
-            edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
-            vertex_names: vec!["u".to_owned(), "v".to_owned()],
-            ..NamedWorld::numbered("", "", graph, None)
-        }
+        world("doors = {u = ['a', 'b', 'a', 'c'], v = ['b', 'c']}")
     }
 
-    fn path() -> NamedWorld {
-        let graph = EmbeddedGraph::from_neighbour_lists(&[
-            ("v0", vec!["v1"]),
-            ("v1", vec!["v0", "v2"]),
-            ("v2", vec!["v1"]),
-        ]);
-        NamedWorld::numbered("", "", graph.unwrap(), None)
+    fn path(names: [&str; 3]) -> NamedWorld {
+        let [one, middle, other] = names;
+        let ends = format!("'{one}' = ['{middle}'], '{middle}' = ['{one}', '{other}']");
+        world(&format!("clockwise = {{{ends}, '{other}' = ['{middle}']}}"))
     }
 
     /// A ring with two corners at a vertex `t`, and a dead end.
     #[test]
     fn a_world_without_corners_keeps_its_other_names() {
-        let lists = [
-            ("c1", vec!["t", "c2"]),
-            ("t", vec!["c1", "c2", "end"]),
-            ("c2", vec!["c1", "t"]),
-            ("end", vec!["t"]),
-        ];
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        let names = lists.iter().map(|(name, _)| (*name).to_owned()).collect();
-        let positions = Some(vec![[0.0, 1.0], [0.0, 0.0], [1.0, 0.0], [0.0, -1.0]]);
-        let world = NamedWorld {
-            vertex_names: names,
-            positions,
-            ..NamedWorld::numbered("w", "", graph, None)
-        };
+        let world = world(
+            "name = 'w'\n[clockwise]\nc1 = ['t', 'c2']\nt = ['c1', 'c2', 'end']\nc2 = ['c1', 't']\n\
+             end = ['t']\n[positions]\nc1 = [0, 1]\nt = [0, 0]\nc2 = [1, 0]\nend = [0, -1]",
+        );
         let started =
             |text| NamedWorld { start: world.start_from_text(text).ok(), ..world.clone() };
         let smooth = started("t:end").smoothed();
         assert_eq!(smooth.vertex_names, ["t", "end"]);
         assert_eq!(smooth.positions, Some(vec![[0.0, 0.0], [0.0, -1.0]]));
-        assert_eq!(
-            smooth.edge_names.as_deref(),
-            Some(&["e0", "e0", "e1", "e1"].map(str::to_owned)[..])
-        );
-        assert_eq!(smooth.start.map(|start| smooth.start_text(start)), Some("t:e1".to_owned()));
+        assert_eq!(smooth.edge_names.as_deref().unwrap(), ["e0", "e0", "e1", "e1"]);
+        assert_eq!(smooth.start_text(smooth.start.unwrap()), "t:e1");
         assert_eq!(started("c1:c2").smoothed().start, None);
         assert_eq!(smooth.smoothed(), smooth);
         // Names of edges stay, those of the first parts.
@@ -362,88 +298,68 @@ mod tests {
             assert_eq!(world.start_from_text(text), Ok(Dart(dart)));
             assert_eq!(world.start_text(Dart(dart)), text);
         }
-        assert_eq!(path().start_from_text("v1:v2"), Ok(Dart(2)));
     }
 
     #[test]
     fn names_with_colons_are_read_if_only_one_start_is_written_like_this() {
-        let named = |names: [&str; 3]| NamedWorld {
-            vertex_names: names.map(str::to_owned).to_vec(),
-            ..path()
-        };
-        let world = named(["a", "a:b", "c:d"]);
-        assert_eq!(world.start_from_text("a:b:c:d"), Ok(Dart(2)));
-        assert_eq!(world.start_from_text("c:d:a:b"), Ok(Dart(3)));
-        assert_eq!(world.start_from_text("a:a:b"), Ok(Dart(0)));
-        let world = named(["b:c", "a", "a:b"]);
+        let overlapping = path(["a", "a:b", "c:d"]);
         // From a to b:c, or from a:b to c: only one of them is there.
-        assert_eq!(world.start_from_text("a:b:c"), Ok(Dart(1)));
-        let lists = [("a", vec!["b:c", "x"]), ("a:b", vec!["c", "x"]), ("p", vec!["b:c", "c"])];
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        let edges = lists.iter().flat_map(|(_, edges)| edges);
-        let world = NamedWorld {
-            edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
-            vertex_names: lists.iter().map(|(vertex, _)| (*vertex).to_owned()).collect(),
-            ..NamedWorld::numbered("", "", graph, None)
-        };
-        let ambiguous = StartError::Ambiguous { text: "a:b:c".to_owned() };
-        assert_eq!(world.start_from_text("a:b:c"), Err(ambiguous));
-        let loop_and_edge = NamedWorld {
-            edge_names: Some(["e", "e:1", "e", "f", "e:1", "f"].map(str::to_owned).to_vec()),
-            ..with_loop()
-        };
-        let ambiguous = StartError::Ambiguous { text: "e:1".to_owned() };
-        assert_eq!(loop_and_edge.start_from_names("u", "e:1"), Err(ambiguous));
-        assert_eq!(loop_and_edge.start_from_text("u:e:2"), Ok(Dart(2)));
-        assert_eq!(loop_and_edge.start_from_text("v:e:1"), Ok(Dart(4)));
+        let one_of_two = path(["b:c", "a", "a:b"]);
+        let both = world("doors = {a = ['b:c', 'x'], 'a:b' = ['c', 'x'], p = ['b:c', 'c']}");
+        let loop_and_edge = world("doors = {u = ['e', 'e:1', 'e', 'f'], v = ['e:1', 'f']}");
+        let ambiguous = |text: &str| Err(StartError::Ambiguous { text: text.to_owned() });
+        for (world, text, start) in [
+            (path(["v0", "v1", "v2"]), "v1:v2", Ok(Dart(2))),
+            (overlapping.clone(), "a:b:c:d", Ok(Dart(2))),
+            (overlapping.clone(), "c:d:a:b", Ok(Dart(3))),
+            (overlapping, "a:a:b", Ok(Dart(0))),
+            (one_of_two, "a:b:c", Ok(Dart(1))),
+            (both, "a:b:c", ambiguous("a:b:c")),
+            (loop_and_edge.clone(), "u:e:1", ambiguous("e:1")),
+            (loop_and_edge.clone(), "u:e:2", Ok(Dart(2))),
+            (loop_and_edge, "v:e:1", Ok(Dart(4))),
+        ] {
+            assert_eq!(world.start_from_text(text), start, "{text}");
+        }
     }
 
     #[test]
     fn the_error_for_a_wrong_start_lists_the_right_ones() {
-        fn message(world: &NamedWorld, text: &str) -> String {
-            world.start_from_text(text).unwrap_err().to_string()
-        }
-        let world = with_loop();
-        assert_eq!(message(&world, "u"), "`u` is not a start; write `vertex:facing`");
-        assert_eq!(message(&world, "w:a"), "there is no vertex `w`");
-        assert_eq!(
-            message(&world, "u:a"),
-            "edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
+        let star = world(
+            "[doors]\nhub = ['1', '2', '3', '4', '5', '6', '7', '8', '9']\na = ['1', '2', '3']\n\
+             b = ['4', '5', '6', '7', '8', '9']",
         );
+        for (world, text, message) in [
+            (with_loop(), "u", "`u` is not a start; write `vertex:facing`"),
+            (with_loop(), "\u{7}", "`\\u{7}` is not a start; write `vertex:facing`"),
+            (with_loop(), "w:a", "there is no vertex `w`"),
+            (with_loop(), "w\n:a", "there is no vertex `w\\n`"),
+            (with_loop(), "u:a", "edge `a` is a loop; write `a:1` or `a:2` for one of its ends"),
+            (
+                with_loop(),
+                "v:\u{1b}[1m",
+                "no edge `\\u{1b}[1m` ends at vertex `v`; the edges there are b, c",
+            ),
+            (
+                path(["corner", "tee", "end"]),
+                "corne:tee",
+                "there is no vertex `corne`; did you mean `corner`?",
+            ),
+            (path(["v0", "v1", "v2"]), "v1:v1", "vertex `v1` has no neighbour `v1`; it has v0, v2"),
+            (
+                star,
+                "hub:q",
+                "no edge `q` ends at vertex `hub`; the edges there are 1, 2, 3, 4, 5, 6, 7, 8, ...",
+            ),
+        ] {
+            assert_eq!(world.start_from_text(text).unwrap_err().to_string(), message);
+        }
         for wrong in ["d", "a:3", "b:1", "a:1:1", ""] {
             assert_eq!(
-                message(&world, &format!("u:{wrong}")),
+                with_loop().start_from_names("u", wrong).unwrap_err().to_string(),
                 format!("no edge `{wrong}` ends at vertex `u`; the edges there are a:1, b, a:2, c")
             );
         }
-        assert_eq!(message(&world, "\u{7}"), "`\\u{7}` is not a start; write `vertex:facing`");
-        assert_eq!(message(&world, "w\n:a"), "there is no vertex `w\\n`");
-        assert_eq!(
-            message(&world, "v:\u{1b}[1m"),
-            "no edge `\\u{1b}[1m` ends at vertex `v`; the edges there are b, c"
-        );
-        let long = NamedWorld {
-            vertex_names: ["corner", "tee", "end"].map(str::to_owned).to_vec(),
-            ..path()
-        };
-        assert_eq!(
-            message(&long, "corne:tee"),
-            "there is no vertex `corne`; did you mean `corner`?"
-        );
-        assert_eq!(message(&path(), "v1:v1"), "vertex `v1` has no neighbour `v1`; it has v0, v2");
-    }
-
-    #[test]
-    fn a_long_list_of_neighbours_is_cut() {
-        let leaves: Vec<String> = (0..9).map(|leaf| format!("l{leaf}")).collect();
-        let mut lists = vec![("hub".to_owned(), leaves.clone())];
-        lists.extend(leaves.into_iter().map(|leaf| (leaf, vec!["hub".to_owned()])));
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        let star = NamedWorld::numbered("", "", graph, None);
-        assert_eq!(
-            star.start_from_text("v0:q").unwrap_err().to_string(),
-            "vertex `v0` has no neighbour `q`; it has v1, v2, v3, v4, v5, v6, v7, v8, ..."
-        );
     }
 
     #[test]
@@ -456,7 +372,6 @@ mod tests {
         assert_eq!(world.vertex_names, ["v0", "v1"]);
         assert_eq!(world.edge_names.as_deref().unwrap(), ["e0", "e1", "e0", "e2", "e1", "e2"]);
         assert_eq!(world.start_text(world.start.unwrap()), "v0:e0");
-        assert_eq!(path().edge_names, None);
     }
 
     proptest! {

@@ -27,13 +27,11 @@ impl Bijection {
     }
 
     /// The image of a dart; `None` if the dart does not exist.
-    #[must_use]
     pub fn image(&self, dart: Dart) -> Option<Dart> {
         self.0.get(dart.at()).copied()
     }
 
     /// The image of each dart, in the order of their numbers.
-    #[must_use]
     pub fn images(&self) -> &[Dart] {
         &self.0
     }
@@ -45,7 +43,6 @@ impl Bijection {
     /// This makes it a bijection too: the images are closed under both, so in a connected graph they
     /// are all of its darts, and both graphs have the same number of darts.
     // paper: world.isomorphic
-    #[must_use]
     pub fn verify(&self, from: &EmbeddedGraph, to: &EmbeddedGraph) -> bool {
         from.dart_count() == to.dart_count()
             && self.0.len() == from.dart_count()
@@ -61,7 +58,6 @@ impl Bijection {
 /// Makes one candidate bijection after another in the same memory.
 #[derive(Clone, Debug, Default)]
 pub struct Candidate {
-    /// The latest candidate.
     pub bijection: Bijection,
     /// Darts and their images, from which the rest is found.
     reached: Vec<(Dart, Dart)>,

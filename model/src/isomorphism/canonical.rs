@@ -27,7 +27,6 @@ pub struct Canonical {
 /// All starts compete, word by word, and drop out at the first greater word. Two starts with the
 /// same code are an automorphism, which then spares the rest of its orbits; so a graph with many
 /// automorphisms is no slower. Close to linear time, except for graphs that are almost symmetric.
-#[must_use]
 pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut best = Numbering::new(graph);
     let mut rival = Numbering::new(graph);

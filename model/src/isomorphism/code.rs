@@ -18,7 +18,6 @@ pub struct StartCode(pub(super) Vec<u32>);
 impl StartCode {
     /// The words of the code: `u32::MAX - degree` for the start vertex; then for each edge the
     /// number of its second dart, or `u32::MAX - degree` where that is at a new vertex.
-    #[must_use]
     pub fn words(&self) -> &[u32] {
         &self.0
     }
@@ -30,7 +29,6 @@ impl StartCode {
 
     /// The start with these words, as [`as_discovered`] numbers its darts: the facing dart is dart 0. `None`
     /// if they are not the code of a start.
-    #[must_use]
     pub fn start_of(words: &[u32]) -> Option<EmbeddedGraph> {
         let (&first, words) = words.split_first()?;
         let edges = words.len();
@@ -66,7 +64,6 @@ fn new_vertex(degree: u32) -> u32 {
 
 /// The code of a start. Linear time.
 // paper: world.unlabelled
-#[must_use]
 pub fn code(graph: &EmbeddedGraph, facing: Dart) -> StartCode {
     let mut numbering = Numbering::new(graph);
     let mut words = vec![numbering.begin(graph, facing)];
@@ -76,13 +73,11 @@ pub fn code(graph: &EmbeddedGraph, facing: Dart) -> StartCode {
 
 /// The same embedded graph with its darts numbered as a robot meets them from a start, the facing
 /// dart first. Isomorphic starts become equal graphs.
-#[must_use]
 pub fn as_discovered(graph: &EmbeddedGraph, facing: Dart) -> EmbeddedGraph {
     graph.renumbered(&discovery_order(graph, facing))
 }
 
 /// The darts in the order in which a robot meets them from a start, the facing dart first.
-#[must_use]
 pub fn discovery_order(graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
     let mut numbering = Numbering::new(graph);
     numbering.begin(graph, facing);

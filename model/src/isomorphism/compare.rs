@@ -11,18 +11,13 @@ use crate::{
 /// A difference that shows that two embedded graphs are not isomorphic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
-    /// Different numbers of edges.
     Edges(usize, usize),
-    /// Different numbers of vertices.
     Vertices(usize, usize),
     /// Different numbers of vertices of some degree; the highest such degree.
     Degrees {
-        /// The degree.
         degree: u32,
-        /// How many vertices of the one and of the other have it.
         vertices: (usize, usize),
     },
-    /// Different genus.
     Genus(usize, usize),
     /// All those numbers agree, but the orders around the vertices do not: no start of the one has
     /// the code of any start of the other.
@@ -148,7 +143,6 @@ fn colours(graph: &EmbeddedGraph) -> Vec<u64> {
 
 /// The isomorphism of one embedded graph onto the [mirror image](EmbeddedGraph::mirror_image) of
 /// the other; `None` if they are not mirror images.
-#[must_use]
 pub fn mirror_isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Option<Bijection> {
     isomorphism(one, &other.mirror_image()).ok()
 }

@@ -7,7 +7,11 @@ use super::{
     Algorithm1Run, Choices, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk,
     MappingChoice, MappingError, MappingEvent, Nearest, Observer, StateKey, StepPurpose,
 };
-use crate::{embedded_graph::Dart, marker::Directional, world::World};
+use crate::{
+    embedded_graph::Dart,
+    marker::{Directional, MarkerKind},
+    world::World,
+};
 
 /// The result of the validation of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,7 +140,7 @@ pub fn try_path<W: World>(
 
 /// Algorithm 1. The default choices are those of [`Nearest`].
 impl Explorer for Algorithm1Run {
-    type Marker = Directional;
+    type Marker = MarkerKind;
     type Choice = MappingChoice;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -146,7 +150,7 @@ impl Explorer for Algorithm1Run {
         order: CostOrder::EdgesSquaredVertices,
     };
 
-    fn marker(&self) -> Directional {
+    fn marker(&self) -> MarkerKind {
         Directional
     }
 

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
-    marker::Movable,
+    marker::{MarkerKind, Movable},
     world::World,
 };
 
@@ -143,7 +143,7 @@ pub fn validate_back_link<W: World>(
 /// The movable marker algorithm, for worlds without loops and parallel edges. The default choices are those of
 /// [`Nearest`].
 impl Explorer for MovableMarkerRun {
-    type Marker = Movable;
+    type Marker = MarkerKind;
     type Choice = Dart;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -153,7 +153,7 @@ impl Explorer for MovableMarkerRun {
         order: CostOrder::EdgesVertices,
     };
 
-    fn marker(&self) -> Movable {
+    fn marker(&self) -> MarkerKind {
         Movable
     }
 

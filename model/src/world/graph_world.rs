@@ -8,39 +8,25 @@ use super::{MarkerCarrier, World};
 use crate::{
     counts::{counted, grouped},
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::{Directional, Marker},
+    marker::{Directional, Marker, MarkerKind},
     percept::{Door, Percept, Sighting},
 };
 
 /// The error for an action that is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RefusedAction {
-    /// It chose a door that its vertex does not have.
     #[error("door {} was taken at a vertex with {}", door.0, counted(*degree as usize, "door"))]
-    NoSuchDoor {
-        /// The door.
-        door: Door,
-        /// The degree of the vertex.
-        degree: u32,
-    },
-    /// It tried to pick up a marker that is not here, or that cannot be moved.
+    NoSuchDoor { door: Door, degree: u32 },
     #[error("there is no marker here that could be picked up")]
     NothingToPickUp,
-    /// It tried to drop a marker that it does not carry.
     #[error("the robot carries no marker that it could drop")]
     NothingToDrop,
-    /// It made more moves than allowed.
     #[error("no more than {} moves are allowed", grouped((*bound).into()))]
-    OutOfMoves {
-        /// The number of moves allowed.
-        bound: u64,
-    },
-    /// The world is decided while the robot explores, and no answer is left.
+    OutOfMoves { bound: u64 },
     #[error("no world of this class and size agrees with what the robot has perceived")]
     NoWorldLeft,
 }
 
-/// The robot's pose, and the place of the marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct State {
     /// The dart by which the robot came in.
@@ -50,14 +36,10 @@ pub struct State {
     pub placed: Option<Dart>,
 }
 
-/// An action of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Action {
-    /// Leave by a door.
     Take(Door),
-    /// Pick the marker up.
     PickUp,
-    /// Drop the marker.
     Drop,
 }
 
@@ -72,7 +54,6 @@ impl fmt::Display for Action {
     }
 }
 
-/// The error for a text that is not an action.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not an action; write a door number, pick-up or drop")]
 pub struct UnknownAction(String);
@@ -95,12 +76,11 @@ impl FromStr for Action {
 
 /// An embedded graph with a marker and a robot in it, as a [`World`].
 #[derive(Clone, Debug)]
-pub struct GraphWorld<'g, M = Directional> {
+pub struct GraphWorld<'g, M = MarkerKind> {
     graph: &'g EmbeddedGraph,
     marker: M,
     state: State,
     moves: u64,
-    /// The most moves.
     bound: u64,
 }
 
@@ -136,7 +116,6 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
 
     /// The robot's percept: a graph can always be sensed.
     #[inline]
-    #[must_use]
     pub fn sensed(&self) -> Percept {
         let degree = self.graph.degree_around(self.state.pose);
         Percept { degree, sighting: self.sighting() }
@@ -165,8 +144,6 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         }
     }
 
-    /// Whether the robot carries the marker.
-    #[must_use]
     pub fn carries(&self) -> bool {
         self.state.placed.is_none() && self.marker.is_movable()
     }
@@ -185,32 +162,22 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
 }
 
 impl<'g, M> GraphWorld<'g, M> {
-    /// The embedded graph.
-    #[must_use]
     pub fn graph(&self) -> &'g EmbeddedGraph {
         self.graph
     }
 
-    /// The marker.
-    #[must_use]
     pub fn marker(&self) -> &M {
         &self.marker
     }
 
-    /// The robot's pose in the graph.
-    #[must_use]
     pub fn pose(&self) -> Dart {
         self.state.pose
     }
 
-    /// The moves made so far.
-    #[must_use]
     pub fn moves(&self) -> u64 {
         self.moves
     }
 
-    /// The robot's pose, and the place of the marker.
-    #[must_use]
     pub fn state(&self) -> State {
         self.state
     }

@@ -9,7 +9,6 @@ use crate::percept::{Door, Percept};
 /// Everything that a robot can sense of its world and do in it.
 // paper: world.interface, percept.no-metric
 pub trait World {
-    /// The error of sensing or moving.
     type Error;
 
     /// The robot's percept. At the start, the robot is at the marked vertex, and the facing dart is its
@@ -35,7 +34,6 @@ pub trait World {
 /// All that a robot can do with a movable marker, besides.
 // paper: world.interface
 pub trait MarkerCarrier {
-    /// The error of picking up and dropping.
     type Error;
 
     /// Picks the marker up where the robot is, to carry it.

@@ -22,7 +22,7 @@ pub const LEG: f64 = 100.0;
 
 /// A robot that does not know how far it is from the last junction supposes this distance, in metres. So a
 /// junction where it stands is not the one that it has left.
-const ON_THE_WAY: f64 = 1.2;
+pub(super) const ON_THE_WAY: f64 = 1.2;
 /// The step by which the robot turns to look around, to one side and the other: ten degrees.
 const LITTLE: f64 = 10.0 / 180.0 * PI;
 /// The largest difference between a view and odometry.
@@ -44,25 +44,24 @@ enum Stage {
     OnTheWay,
 }
 
-/// The state of dead reckoning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeadReckoning {
     now: Odometry,
     stage: Stage,
     /// The direction of the entry door, in the frame of odometry.
-    entry: f64,
+    pub(super) entry: f64,
     /// The direction of the hallway, likewise.
     leg: f64,
     /// The heading after the turn at the last image of a known place.
     known: f64,
     /// The last command, and the odometry then.
     asked: Option<(Command, Odometry)>,
-    since_turn: f64,
+    pub(super) since_turn: f64,
     unknowns: u32,
     crept: f64,
     stalls: u32,
     idle: u32,
-    leg_bound: f64,
+    pub(super) leg_bound: f64,
 }
 
 impl DeadReckoning {
@@ -83,24 +82,10 @@ impl DeadReckoning {
         }
     }
 
-    /// In a hallway, on the way in a direction of the frame of odometry.
-    pub(super) fn on_the_way(direction: f64) -> Self {
-        let known = wrapped(direction);
-        Self {
-            stage: Stage::OnTheWay,
-            leg: known,
-            since_turn: ON_THE_WAY,
-            ..Self::at_junction(known)
-        }
-    }
-
     /// On the way in a direction of the frame of odometry, from a junction that lies this far behind.
-    pub(super) fn from_junction(direction: f64, behind: f64) -> Self {
-        Self { since_turn: behind, ..Self::on_the_way(direction) }
-    }
-
-    pub(super) fn bound_leg(&mut self, metres: f64) {
-        self.leg_bound = metres;
+    pub(super) fn on_the_way(direction: f64, behind: f64) -> Self {
+        let known = wrapped(direction);
+        Self { stage: Stage::OnTheWay, leg: known, since_turn: behind, ..Self::at_junction(known) }
     }
 
     /// A round begins: the last command was executed or not.
@@ -185,10 +170,6 @@ impl DeadReckoning {
         self.stage == Stage::AtJunction
     }
 
-    pub(super) fn since_turn(&self) -> f64 {
-        self.since_turn
-    }
-
     /// The direction from which the robot comes, in the frame of odometry.
     pub(super) fn way_back(&self) -> f64 {
         match self.stage {
@@ -200,11 +181,6 @@ impl DeadReckoning {
     /// The direction of the hallway, relative to the robot's heading.
     pub(super) fn ahead(&self) -> f64 {
         self.now.seen(self.leg)
-    }
-
-    /// The direction of the entry door, in the frame of odometry.
-    pub(super) fn entry_direction(&self) -> f64 {
-        self.entry
     }
 
     /// A hallway with this heading is seen.

@@ -18,7 +18,7 @@ use super::{
     visit::{JunctionEstimate, JunctionShape},
 };
 use crate::percept::{Door, Percept};
-use dead_reckoning::{DeadReckoning, Round};
+use dead_reckoning::{DeadReckoning, ON_THE_WAY, Round};
 
 /// A unit distance, in metres.
 // paper: alg2.2
@@ -45,13 +45,10 @@ const SAME: f64 = 0.6;
 // paper: alg2.1
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathState {
-    /// Leaving a junction.
     Leaving,
-    /// In a hallway.
     Hallway,
     /// At a junction, on the way to its turning point or turning there.
     Junction,
-    /// Lost.
     Unknown,
 }
 
@@ -127,13 +124,9 @@ impl<'a> PathExecution<'a> {
     /// of odometry, and identifies the next junction.
     #[must_use]
     pub fn onwards_to_junction(direction: f64) -> Self {
-        Self {
-            queue: &[],
-            state: PathState::Hallway,
-            visit: JunctionEstimate::default(),
-            door: None,
-            reckoning: DeadReckoning::on_the_way(direction),
-        }
+        let reckoning = DeadReckoning::on_the_way(direction, ON_THE_WAY);
+        let visit = JunctionEstimate::default();
+        Self { queue: &[], state: PathState::Hallway, visit, door: None, reckoning }
     }
 
     /// The same of a robot that turns its back to a junction to which it could not come: it lies this far behind, in
@@ -142,7 +135,7 @@ impl<'a> PathExecution<'a> {
     pub fn onwards_from_junction(direction: f64, behind: f64) -> Self {
         Self {
             state: PathState::Leaving,
-            reckoning: DeadReckoning::from_junction(direction, behind),
+            reckoning: DeadReckoning::on_the_way(direction, behind),
             ..Self::onwards_to_junction(direction)
         }
     }
@@ -157,32 +150,26 @@ impl<'a> PathExecution<'a> {
     /// [`LEG`].
     #[must_use]
     pub fn with_leg_bound(mut self, metres: f64) -> Self {
-        self.reckoning.bound_leg(metres);
+        self.reckoning.leg_bound = metres;
         self
     }
 
-    /// The robot's state.
-    #[must_use]
     pub fn state(&self) -> PathState {
         self.state
     }
 
-    /// The doors that have not been taken.
-    #[must_use]
     pub fn queue(&self) -> &'a [Door] {
         self.queue
     }
 
     /// The direction from which the robot comes, in the frame of odometry.
-    #[must_use]
     pub fn way_back(&self) -> f64 {
         self.reckoning.way_back()
     }
 
     /// The distance since the robot last turned to a door, in metres of odometry.
-    #[must_use]
     pub fn since_turn(&self) -> f64 {
-        self.reckoning.since_turn()
+        self.reckoning.since_turn
     }
 
     /// One round of the loop, lines 3 to 32, on the scene of an image and the odometry when it was
@@ -197,7 +184,7 @@ impl<'a> PathExecution<'a> {
     pub fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost> {
         self.reckoning.begin(odometry).map_err(|why| self.lost(why))?;
         // 4, 5, 6: the caller's; type and status are the scene's.
-        let seen = self.made_out(scene).map_err(|why| self.lost(why))?;
+        let seen = self.interpret(scene).map_err(|why| self.lost(why))?;
         let command = match seen {
             // 7
             Seen::Hallway(hallway) => {
@@ -275,8 +262,8 @@ impl<'a> PathExecution<'a> {
                 door
             }
         };
-        let exit = junction.doors.get(door.0 as usize).map(|line| line.direction);
-        let Some(exit) = exit else {
+        let Some(CentreLine { direction: exit, .. }) = junction.doors.get(door.0 as usize).copied()
+        else {
             return Err(LostReason::NoSuchDoor { door, degree: standing.form.degree() });
         };
         if exit.abs() > STRAIGHT {
@@ -293,8 +280,7 @@ impl<'a> PathExecution<'a> {
         Ok(Step::Go(Command { turn: exit, forward: UNIT }))
     }
 
-    /// Interprets a scene.
-    fn made_out(&mut self, scene: &Scene) -> Result<Seen, LostReason> {
+    fn interpret(&mut self, scene: &Scene) -> Result<Seen, LostReason> {
         let seen = match &scene.place {
             Place::Unknown(_) => Seen::Unknown,
             // At a junction that the robot has not left there is no hallway.
@@ -305,18 +291,13 @@ impl<'a> PathExecution<'a> {
                 Seen::Hallway(*hallway)
             }
             Place::Junction(junction) if self.has_left(junction) => {
-                if self.reckoning.left(junction) {
-                    Seen::Left(junction.clone())
-                } else {
-                    Seen::Unknown
-                }
+                let is_here = self.reckoning.left(junction);
+                if is_here { Seen::Left(junction.clone()) } else { Seen::Unknown }
             }
             Place::Junction(junction) => self.junction(scene, junction),
         };
-        self.reckoning.note(match seen {
-            Seen::Hallway(_) | Seen::Left(_) | Seen::Junction(_) => Round::Known,
-            Seen::Unknown => Round::Unknown,
-        })?;
+        let is_known = !matches!(seen, Seen::Unknown);
+        self.reckoning.note(if is_known { Round::Known } else { Round::Unknown })?;
         Ok(seen)
     }
 
@@ -343,7 +324,7 @@ impl<'a> PathExecution<'a> {
         if self.reckoning.is_at_junction() {
             return false;
         }
-        let since = self.reckoning.since_turn();
+        let since = self.reckoning.since_turn;
         let [x, y] = junction.turning_point;
         let direction = self.reckoning.ahead();
         let ahead = x * direction.cos() + y * direction.sin();
@@ -360,7 +341,7 @@ impl<'a> PathExecution<'a> {
     /// The junction where the robot is, once two images agree on it.
     fn standing(&self) -> Option<Standing> {
         let (form, percept) = (self.visit.form()?, self.visit.percept()?);
-        Some(Standing { form, percept, entry: self.reckoning.entry_direction() })
+        Some(Standing { form, percept, entry: self.reckoning.entry })
     }
 
     /// The hallway's direction onwards.
@@ -385,7 +366,7 @@ impl<'a> PathExecution<'a> {
     }
 
     fn lost(&self, why: LostReason) -> Lost {
-        Lost { why, state: self.state, since_turn: self.reckoning.since_turn() }
+        Lost { why, state: self.state, since_turn: self.reckoning.since_turn }
     }
 }
 

@@ -1,9 +1,14 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
-use super::*;
+use super::{
+    PathState::{Hallway, Junction, Leaving, Unknown},
+    *,
+};
 use crate::driving::scene::{MarkerView, Reason, Unclear};
 use crate::percept::Sighting;
 
+/// A path of one door: the robot takes it, and stops at the junction to which it leads.
+const NEXT: &[Door] = &[Door(2)];
 /// The doors of the six forms, as a robot sees them that looks away from the entry door.
 const DEAD_END: &[f64] = &[PI];
 const L_LEFT: &[f64] = &[PI, FRAC_PI_2];
@@ -64,13 +69,21 @@ impl<'a> Robot<'a> {
     fn sees_and_does(&mut self, share: f64, scene: &Scene) -> Command {
         let step = self.round(scene);
         let Ok(Step::Go(command)) = step else { panic!("it goes on, and not: {step:?}") };
-        let Command { turn, forward } = command;
-        self.odometry = self.odometry.moved(turn * share, forward * share);
+        self.odometry = self.odometry.moved(command.turn * share, command.forward * share);
         command
     }
 
     fn sees(&mut self, scene: &Scene) -> Command {
         self.sees_and_does(1.0, scene)
+    }
+
+    /// Sees a scene, and executes a command with this turn and this way, in this state.
+    #[track_caller]
+    fn goes(&mut self, scene: &Scene, turn: f64, forward: f64, state: PathState) {
+        let command = self.sees(scene);
+        assert_near(command.turn, turn);
+        assert_near(command.forward, forward);
+        assert_eq!(self.path.state(), state);
     }
 
     fn arrives(&mut self, scene: &Scene) -> Standing {
@@ -140,94 +153,69 @@ fn assert_near(one: f64, other: f64) {
 fn a_path_begins_as_leaving_with_all_of_its_doors() {
     let queue = [Door(2), Door(1)];
     let robot = Robot::at(T_LEFT, &queue);
-    assert_eq!((robot.path.state(), robot.path.queue()), (PathState::Leaving, &queue[..]));
+    assert_eq!((robot.path.state(), robot.path.queue()), (Leaving, &queue[..]));
 }
 
 // paper: alg2.2, alg2.7, alg2.8, alg2.11, alg2.12, drive.clear
-#[test]
-fn in_a_clear_hallway_the_robot_goes_half_a_metre() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    assert_eq!(robot.sees(&hallway(0.0)), Command { turn: 0.0, forward: 0.5 });
-    assert_eq!(robot.path.state(), PathState::Hallway);
-}
-
 // paper: alg2.13, alg2.14, drive.unclear
 #[test]
-fn in_an_unclear_hallway_it_goes_half_as_far() {
-    for why in [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind] {
-        let mut robot = Robot::leaving(&[Door(2)]);
-        let unclear = hallway_of(0.0, [0.8, 0.8], HallwayStatus::Unclear(why));
-        assert_eq!(robot.sees(&unclear), Command { turn: 0.0, forward: 0.25 });
+fn in_a_hallway_the_robot_goes_half_a_metre_if_it_is_clear_and_else_half_as_far() {
+    for (status, forward) in [
+        (HallwayStatus::Clear, 0.5),
+        (HallwayStatus::Unclear(Unclear::ClustersAhead), 0.25),
+        (HallwayStatus::Unclear(Unclear::SizesDiffer), 0.25),
+        (HallwayStatus::Unclear(Unclear::ClusterBehind), 0.25),
+    ] {
+        let scene = hallway_of(0.0, [0.8, 0.8], status);
+        Robot::leaving(NEXT).goes(&scene, 0.0, forward, Hallway);
     }
 }
 
 // paper: alg2.9, drive.align
 #[test]
-fn it_turns_to_the_direction_of_the_hallway() {
-    for heading in [0.3, -0.3] {
-        assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(heading)).turn, heading);
+fn it_turns_to_the_direction_of_the_hallway_that_leads_onwards() {
+    for heading in [0.3, -0.3, 0.78, -0.78] {
+        assert_near(Robot::leaving(NEXT).sees(&hallway(heading)).turn, heading);
     }
-}
-
-#[test]
-fn of_the_two_directions_of_a_hallway_it_takes_the_one_onwards() {
-    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut robot = Robot::leaving(NEXT);
     robot.odometry.heading = 1.8;
     let off_centre = hallway_of(PI - 1.8, [1.1, 0.5], HallwayStatus::Clear);
     // What lies to the left of a robot that looks back lies to the right onwards.
     assert_near(robot.sees(&off_centre).turn, -1.8 - PI / 8.0);
-}
-
-#[test]
-fn a_hallway_at_more_than_45_degrees_against_odometry_is_an_error() {
-    for sign in [1.0, -1.0] {
-        assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(sign * 0.78)).turn, sign * 0.78);
-        let why = Robot::leaving(&[Door(2)]).gives_up(&hallway(sign * 0.80));
-        assert!(
-            matches!(why, LostReason::Turned { degrees } if (degrees - 45.8).abs() < 0.1),
-            "{why}"
-        );
+    // More than 45 degrees against odometry.
+    for heading in [0.80, -0.80] {
+        let why = Robot::leaving(NEXT).gives_up(&hallway(heading));
+        let LostReason::Turned { degrees } = why else { panic!("{why}") };
+        assert!((degrees - 45.8).abs() < 0.1, "{why}");
     }
 }
 
 // paper: alg2.10, drive.centre
 #[test]
 fn too_close_to_one_side_it_turns_towards_the_centre_line() {
-    let turn = |sides| {
+    for (sides, turn) in [
+        ([0.95, 0.65], 0.15_f64.atan2(0.5)),
+        ([0.65, 0.95], -0.15_f64.atan2(0.5)),
+        ([0.4, 1.2], -PI / 8.0),
+        ([0.85, 0.75], 0.0),
+    ] {
         let scene = hallway_of(0.1, sides, HallwayStatus::Clear);
-        Robot::leaving(&[Door(2)]).sees(&scene).turn - 0.1
-    };
-    assert_near(turn([0.95, 0.65]), 0.15_f64.atan2(0.5));
-    assert_near(turn([0.65, 0.95]), -0.15_f64.atan2(0.5));
-    assert_near(turn([0.4, 1.2]), -PI / 8.0);
-    assert_near(turn([0.85, 0.75]), 0.0);
+        assert_near(Robot::leaving(NEXT).sees(&scene).turn, 0.1 + turn);
+    }
 }
 
 // paper: alg2.15, alg2.16, alg2.17, alg2.18, alg2.19, drive.before
 #[test]
 fn before_the_turning_point_it_goes_towards_the_crossing_by_at_most_half_a_unit() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
-    let aside = {
-        let mut view = view(L_LEFT, 0.0, 0.0);
-        view.turning_point = [0.6, 0.2];
-        scene(Place::Junction(view))
-    };
-    let Command { turn, forward } = robot.sees(&aside);
-    assert_near(turn, 0.2_f64.atan2(0.6));
-    assert_near(forward, 0.25);
-    assert_eq!(robot.path.state(), PathState::Junction);
-    let mut robot = Robot::in_hallway(&[Door(2)]);
-    assert_near(robot.sees(&junction(L_LEFT, 0.15, 0.0)).forward, 0.15);
-}
-
-#[test]
-fn a_crossing_far_aside_is_not_aimed_at() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
-    let mut view = view(L_LEFT, 0.0, 0.0);
-    view.turning_point = [0.2, 0.5];
-    let Command { turn, forward } = robot.sees(&scene(Place::Junction(view)));
-    assert_near(turn, 0.0);
-    assert_near(forward, 0.2);
+    for (turning_point, turn, forward) in [
+        ([0.6, 0.2], 0.2_f64.atan2(0.6), 0.25),
+        ([0.15, 0.0], 0.0, 0.15),
+        // A crossing far aside is not aimed at.
+        ([0.2, 0.5], 0.0, 0.2),
+    ] {
+        let view = JunctionView { turning_point, ..view(L_LEFT, 0.0, 0.0) };
+        Robot::in_hallway(NEXT).goes(&scene(Place::Junction(view)), turn, forward, Junction);
+    }
 }
 
 // paper: alg2.20, alg2.21, alg2.22
@@ -237,8 +225,7 @@ fn at_the_turning_point_with_no_door_left_the_path_is_done() {
         [(DEAD_END, 1), (L_LEFT, 2), (L_RIGHT, 2), (T_STEM, 3), (T_LEFT, 3), (T_RIGHT, 3)]
     {
         for distance in [0.05, 0.0, -0.2] {
-            let standing =
-                Robot::come_to(doors, &[Door(2)]).arrives(&junction(doors, distance, 0.0));
+            let standing = Robot::come_to(doors, NEXT).arrives(&junction(doors, distance, 0.0));
             assert_eq!(Some(standing.form), JunctionShape::from_view(&view(doors, 0.0, 0.0)));
             assert_eq!(standing.percept, Percept { degree, sighting: Sighting::Nothing });
             assert_near(standing.entry.abs(), PI);
@@ -249,37 +236,26 @@ fn at_the_turning_point_with_no_door_left_the_path_is_done() {
 // paper: alg2.23, alg2.24, alg2.25, alg2.26, drive.turn
 #[test]
 fn with_a_door_left_it_turns_to_it_and_goes_half_a_metre_out_of_the_junction() {
+    let queue = [Door(2), Door(1), Door(0)];
     for (doors, turn) in [(L_LEFT, FRAC_PI_2), (L_RIGHT, -FRAC_PI_2), (T_STEM, FRAC_PI_2)] {
-        let queue = [Door(2), Door(1), Door(0)];
         let mut robot = Robot::come_to(doors, &queue);
-        assert_eq!(robot.sees(&junction(doors, 0.0, 0.0)), Command { turn, forward: 0.0 });
+        robot.goes(&junction(doors, 0.0, 0.0), turn, 0.0, Junction);
         assert_eq!(robot.path.queue(), &queue[2..], "the door is taken from the queue, once");
-        assert_eq!(robot.path.state(), PathState::Junction);
-        assert_eq!(robot.sees(&junction(doors, 0.0, turn)), ahead(0.5));
-        assert_eq!(robot.path.state(), PathState::Leaving);
+        robot.goes(&junction(doors, 0.0, turn), 0.0, 0.5, Leaving);
         assert_eq!(robot.path.queue(), &queue[2..]);
+        // The next junction takes the next door.
+        robot.goes(&hallway(0.0), 0.0, 0.5, Hallway);
+        robot.sees(&junction(T_LEFT, 0.25, 0.0));
+        assert_near(robot.sees(&junction(T_LEFT, 0.0, 0.0)).turn.abs(), PI);
+        assert_eq!(robot.path.queue(), []);
     }
-}
-
-#[test]
-fn each_junction_takes_the_next_door() {
-    let mut robot = Robot::come_to(L_LEFT, &[Door(2), Door(1), Door(0)]);
-    robot.sees(&junction(L_LEFT, 0.0, 0.0));
-    robot.sees(&junction(L_LEFT, 0.0, FRAC_PI_2));
-    assert_eq!(robot.sees(&hallway(0.0)), ahead(0.5));
-    assert_eq!(robot.path.queue(), [Door(0)]);
-    robot.sees(&junction(T_LEFT, 0.25, 0.0));
-    let turn = robot.sees(&junction(T_LEFT, 0.0, 0.0)).turn;
-    assert_near(turn.abs(), PI);
-    assert_eq!(robot.path.queue(), []);
 }
 
 #[test]
 fn while_it_turns_to_a_door_the_turning_point_does_not_matter() {
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
     robot.sees(&junction(T_STEM, 0.0, 0.0));
-    let mut view = view(T_STEM, 0.0, FRAC_PI_2);
-    view.turning_point = [0.0, -0.2];
+    let view = JunctionView { turning_point: [0.0, -0.2], ..view(T_STEM, 0.0, FRAC_PI_2) };
     assert_eq!(view.turning(), Turning::Before);
     assert_eq!(robot.sees(&scene(Place::Junction(view))), ahead(0.5));
 }
@@ -287,19 +263,11 @@ fn while_it_turns_to_a_door_the_turning_point_does_not_matter() {
 #[test]
 fn a_door_straight_ahead_takes_no_turn() {
     let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
-    let Command { turn, forward } = robot.sees(&junction(T_RIGHT, 0.0, 0.1));
-    assert_near(turn, -0.1);
-    assert_near(forward, 0.5);
-    assert_eq!(robot.path.state(), PathState::Leaving);
+    robot.goes(&junction(T_RIGHT, 0.0, 0.1), -0.1, 0.5, Leaving);
 }
 
 #[test]
-fn after_a_turn_a_image_must_show_the_doors_turned_before_it_leaves() {
-    let turning = || {
-        let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
-        robot.sees(&junction(T_STEM, 0.0, 0.0));
-        robot
-    };
+fn after_a_turn_an_image_must_show_the_doors_turned_before_it_leaves() {
     let left = FRAC_PI_2;
     // A junction that is not turned, or has another shape, or is none, is ignored.
     for other in [
@@ -309,20 +277,16 @@ fn after_a_turn_a_image_must_show_the_doors_turned_before_it_leaves() {
         hallway(FRAC_PI_2),
         unknown(),
     ] {
-        let mut robot = turning();
-        let command = robot.sees(&other);
-        assert_near(command.turn, FRAC_PI_6 / 3.0);
-        assert_near(command.forward, 0.0);
-        assert_eq!(robot.path.state(), PathState::Unknown);
+        let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+        robot.sees(&junction(T_STEM, 0.0, 0.0));
+        robot.goes(&other, FRAC_PI_6 / 3.0, 0.0, Unknown);
         let now = robot.odometry.heading;
         assert_near(robot.sees(&junction(T_STEM, 0.0, now)).forward, 0.5);
     }
     // Turned too little, it turns on.
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
     robot.sees_and_does(0.6, &junction(T_STEM, 0.0, 0.0));
-    let Command { turn, forward } = robot.sees(&junction(T_STEM, 0.0, 0.6 * left));
-    assert_near(turn, 0.4 * left);
-    assert_near(forward, 0.0);
+    robot.goes(&junction(T_STEM, 0.0, 0.6 * left), 0.4 * left, 0.0, Junction);
 }
 
 #[test]
@@ -330,8 +294,7 @@ fn the_entry_door_is_carried_by_odometry_while_the_robot_turns() {
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
     robot.sees(&junction(T_STEM, 0.0, 0.0));
     // Turned to the left, the door behind is the one on the other side of the stem.
-    let Place::Junction(seen) = junction(T_STEM, 0.0, FRAC_PI_2).place else { unreachable!() };
-    let listed = seen.entered_from(PI);
+    let listed = view(T_STEM, 0.0, FRAC_PI_2).entered_from(PI);
     assert_near(listed.doors[0].direction.abs(), PI);
     assert_eq!(robot.sees(&scene(Place::Junction(listed))), ahead(0.5));
 }
@@ -340,21 +303,20 @@ fn the_entry_door_is_carried_by_odometry_while_the_robot_turns() {
 fn the_entry_door_is_the_one_behind_on_arrival() {
     // By its image alone this T could have been entered by any of its doors.
     for first in 0..3 {
-        let mut robot = Robot::before(T_STEM, &[Door(2)]);
         let mut view = view(T_STEM, 0.05, 0.0);
         view.doors.rotate_left(first);
-        let standing = robot.arrives(&scene(Place::Junction(view)));
+        let standing = Robot::before(T_STEM, NEXT).arrives(&scene(Place::Junction(view)));
         assert_eq!(standing.form, JunctionShape([true, true, false, true]));
         assert_near(standing.entry.abs(), PI);
     }
     // Images show its direction better than odometry.
-    let standing = Robot::before(T_STEM, &[Door(2)]).arrives(&junction(T_STEM, 0.05, 0.2));
+    let standing = Robot::before(T_STEM, NEXT).arrives(&junction(T_STEM, 0.05, 0.2));
     assert_near(standing.entry, PI - 0.2);
 }
 
 #[test]
 fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut robot = Robot::in_hallway(NEXT);
     let marker = Some(MarkerView { position: [0.6, 0.0], axis: 0.0, door: None });
     robot.sees(&Scene { marker, ..hallway(0.0) });
     robot.sees(&junction(L_LEFT, 0.1, 0.0));
@@ -364,97 +326,80 @@ fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
 
 #[test]
 fn a_junction_without_a_door_behind_is_ignored() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
     let crosswise = [FRAC_PI_2, -FRAC_PI_2];
-    assert_eq!(robot.sees(&junction(&crosswise, 0.5, 0.0)), ahead(UNIT / 3.0));
-}
-
-#[test]
-fn a_junction_just_left_is_left_behind() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    for way in [0.5, 0.75, 1.0, 1.25, 1.5] {
-        assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
-        assert_eq!(robot.path.state(), PathState::Leaving, "after {way} m");
-    }
+    let command = Robot::in_hallway(NEXT).sees(&junction(&crosswise, 0.5, 0.0));
+    assert_eq!(command, ahead(UNIT / 3.0));
 }
 
 #[test]
 fn out_of_a_junction_it_goes_along_the_centre_line_of_the_door() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    let mut view = view(T_LEFT, -0.5, -0.1);
-    for line in &mut view.doors {
+    let mut robot = Robot::leaving(NEXT);
+    for way in [0.5, 0.75, 1.0, 1.25, 1.5] {
+        robot.goes(&junction(T_LEFT, -way, 0.0), 0.0, UNIT / 2.0, Leaving);
+    }
+    let mut aside = view(T_LEFT, -0.5, -0.1);
+    for line in &mut aside.doors {
         line.through = [-0.5, 0.1];
     }
     let left = 0.1 * 0.1_f64.cos() + 0.5 * 0.1_f64.sin();
-    assert_near(robot.sees(&scene(Place::Junction(view))).turn, 0.1 + left.atan2(0.5));
-}
-
-#[test]
-fn a_junction_just_left_is_ignored_without_the_door_that_was_taken() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    assert_eq!(robot.sees(&junction(T_STEM, -0.5, 0.0)), ahead(UNIT / 3.0));
-    assert_eq!(robot.path.state(), PathState::Leaving);
+    let turn = Robot::leaving(NEXT).sees(&scene(Place::Junction(aside))).turn;
+    assert_near(turn, 0.1 + left.atan2(0.5));
+    // It is ignored without the door that was taken.
+    Robot::leaving(NEXT).goes(&junction(T_STEM, -0.5, 0.0), 0.0, UNIT / 3.0, Leaving);
 }
 
 #[test]
 fn arrival_takes_a_hallway_in_between_or_a_metre_and_20() {
     // The turning point seems to be ahead still: it is that of the junction just left.
-    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut robot = Robot::leaving(NEXT);
     for _ in 0..3 {
         robot.sees(&junction(T_LEFT, 0.2, 0.0));
-        assert_eq!(robot.path.state(), PathState::Leaving);
+        assert_eq!(robot.path.state(), Leaving);
     }
     assert_near(robot.odometry.position[0], 1.25);
     robot.sees(&junction(T_LEFT, 0.2, 0.0));
-    assert_eq!(robot.path.state(), PathState::Junction, "after more than 1.2 m");
+    assert_eq!(robot.path.state(), Junction, "after more than 1.2 m");
 
-    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut robot = Robot::leaving(NEXT);
     robot.sees(&hallway_of(0.0, [0.8, 0.8], HallwayStatus::Unclear(Unclear::ClustersAhead)));
     robot.sees(&junction(T_LEFT, 0.2, 0.0));
-    assert_eq!(robot.path.state(), PathState::Junction, "after a hallway");
+    assert_eq!(robot.path.state(), Junction, "after a hallway");
 }
 
 #[test]
-fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+fn the_junction_just_left_is_no_arrival() {
+    // Though a hallway was seen.
+    let mut robot = Robot::in_hallway(NEXT);
     robot.sees(&junction(T_LEFT, -1.0, 0.0));
-    assert_eq!(robot.path.state(), PathState::Leaving);
+    assert_eq!(robot.path.state(), Leaving);
     // Nor if one image has shown a junction ahead where there is none.
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut robot = Robot::in_hallway(NEXT);
     robot.sees(&junction(L_LEFT, 0.05, 0.0));
     for _ in 0..4 {
         let way = robot.odometry.position[0];
-        assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
-        assert_eq!(robot.path.state(), PathState::Leaving);
+        robot.goes(&junction(T_LEFT, -way, 0.0), 0.0, UNIT / 2.0, Leaving);
     }
-}
-
-#[test]
-fn a_junction_that_the_robot_could_not_leave_is_no_arrival() {
-    let mut robot = Robot::at(T_LEFT, &[Door(2)]);
+    // Nor if the robot could not leave it, and an image is mistaken for one of a hallway.
+    let mut robot = Robot::at(T_LEFT, NEXT);
     robot.sees_and_does(0.0, &junction(T_LEFT, 0.0, 0.0));
-    // An image is mistaken for one of a hallway.
     robot.sees_and_does(0.0, &hallway(0.0));
-    assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT / 2.0));
-    assert_eq!(robot.path.state(), PathState::Leaving);
+    robot.goes(&junction(T_LEFT, 0.0, 0.0), 0.0, UNIT / 2.0, Leaving);
 }
 
 #[test]
 fn a_junction_that_was_passed_is_not_the_one_just_left() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut robot = Robot::in_hallway(NEXT);
     for _ in 0..4 {
         robot.sees(&hallway(0.0));
     }
-    // It is the next one, 3.3 m after the last, and the robot is 3 m after it.
-    let past = junction(L_LEFT, -0.3, 0.0);
-    assert_eq!(robot.sees(&past), Command::default(), "another image");
-    assert_eq!(robot.path.state(), PathState::Junction);
+    // It is the next one, 3.3 m after the last, and the robot is 3 m after it: another image.
+    robot.goes(&junction(L_LEFT, -0.3, 0.0), 0.0, 0.0, Junction);
 }
 
 #[test]
 fn a_junction_is_decided_by_two_images() {
     let here = junction(T_STEM, 0.0, 0.0);
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut robot = Robot::in_hallway(NEXT);
     assert_eq!(robot.sees(&here), Command::default(), "another image from the same place");
     assert_eq!(robot.arrives(&here).form, JunctionShape([true, true, false, true]));
 
@@ -463,24 +408,28 @@ fn a_junction_is_decided_by_two_images() {
     assert_eq!(robot.path.queue(), [Door(1)], "no door is taken at one that is not decided");
     assert_near(robot.sees(&here).turn, FRAC_PI_2);
     assert_eq!(robot.path.queue(), []);
+
+    // After the last one was left, it takes two again.
+    let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_RIGHT, 0.0, 0.0));
+    robot.sees(&hallway(0.0));
+    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default());
+    robot.arrives(&junction(T_RIGHT, 0.0, 0.0));
 }
 
 #[test]
-fn doors_are_not_counted_in_a_image_of_another_junction() {
-    let queue = [Door(2), Door(1)];
-    let mut robot = Robot::come_to(L_RIGHT, &queue);
+fn doors_are_not_counted_in_an_image_of_another_junction() {
+    let mut robot = Robot::come_to(L_RIGHT, &[Door(2), Door(1)]);
     // Door 1 would be straight ahead.
     assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default());
     assert_eq!(robot.path.queue(), [Door(1)]);
     assert_near(robot.sees(&junction(L_RIGHT, 0.0, 0.0)).turn, -FRAC_PI_2);
-}
 
-#[test]
-fn a_junction_that_is_known_is_not_decided_again() {
+    // A junction that is known is not decided again.
     let mut robot = Robot::at(L_LEFT, &[Door(1)]);
     for _ in 0..3 {
         robot.sees(&junction(T_LEFT, 0.0, robot.odometry.heading));
-        assert_eq!(robot.path.state(), PathState::Unknown);
+        assert_eq!(robot.path.state(), Unknown);
     }
     assert_eq!(robot.path.queue(), [Door(1)]);
     assert_near(robot.sees(&junction(L_LEFT, 0.0, robot.odometry.heading)).forward, 0.0);
@@ -488,18 +437,9 @@ fn a_junction_that_is_known_is_not_decided_again() {
 }
 
 #[test]
-fn a_junction_is_seen_again_after_the_last_one_was_left() {
-    let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
-    robot.sees(&junction(T_RIGHT, 0.0, 0.0));
-    robot.sees(&hallway(0.0));
-    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default(), "it takes two");
-    robot.arrives(&junction(T_RIGHT, 0.0, 0.0));
-}
-
-#[test]
 fn at_a_dead_end_it_turns_around_only_on_command() {
     let here = junction(DEAD_END, 0.0, 0.0);
-    assert_eq!(Robot::come_to(DEAD_END, &[Door(2)]).arrives(&here).percept.degree, 1);
+    assert_eq!(Robot::come_to(DEAD_END, NEXT).arrives(&here).percept.degree, 1);
 
     let mut robot = Robot::come_to(DEAD_END, &[Door(2), Door(0)]);
     assert_eq!(robot.sees(&here), Command { turn: PI, forward: 0.0 });
@@ -523,28 +463,22 @@ fn at_the_start_the_robot_gets_to_know_its_junction_with_its_back_to_the_marker(
 // paper: alg2.27, alg2.28, alg2.29
 #[test]
 fn unknown_in_a_hallway_or_leaving_it_goes_a_third_with_care() {
-    for (mut robot, state) in [
-        (Robot::leaving(&[Door(2)]), PathState::Leaving),
-        (Robot::in_hallway(&[Door(2)]), PathState::Hallway),
-    ] {
-        assert_eq!(robot.sees(&unknown()), ahead(0.5 / 3.0));
-        assert_eq!(robot.path.state(), state, "the last printed line is not for it");
-    }
+    // The last printed line is not for it.
+    Robot::leaving(NEXT).goes(&unknown(), 0.0, 0.5 / 3.0, Leaving);
+    Robot::in_hallway(NEXT).goes(&unknown(), 0.0, 0.5 / 3.0, Hallway);
 }
 
 // paper: alg2.30, alg2.31, alg2.32
 #[test]
 fn unknown_at_a_junction_it_turns_by_10_20_30_degrees_to_either_side() {
-    let mut robot = Robot::before(L_LEFT, &[Door(2)]);
+    let mut robot = Robot::before(L_LEFT, NEXT);
     for degrees in [10.0, -10.0, 20.0, -20.0, 30.0, -30.0_f64] {
         assert_near(robot.sees(&unknown()).forward, 0.0);
         assert_near(robot.odometry.heading, degrees.to_radians());
-        assert_eq!(robot.path.state(), PathState::Unknown);
+        assert_eq!(robot.path.state(), Unknown);
     }
-}
 
-#[test]
-fn what_it_turns_about_is_where_it_looked_when_it_last_knew() {
+    // It turns about where it looked when it last knew.
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
     robot.sees(&junction(T_STEM, 0.0, 0.0));
     robot.sees(&unknown());
@@ -558,44 +492,50 @@ fn what_it_turns_about_is_where_it_looked_when_it_last_knew() {
 }
 
 #[test]
-fn after_seven_unknowns_in_a_row_it_gives_up() {
-    let gives_up = (6, LostReason::Unknown { images: 7 });
-    assert_eq!(Robot::at(L_LEFT, &[Door(1)]).drives_on(1.0, &unknown()), gives_up);
-    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(1.0, &unknown()), gives_up);
-    assert_eq!(Robot::before(L_LEFT, &[Door(2)]).drives_on(1.0, &unknown()), gives_up);
+fn a_path_without_progress_is_given_up() {
+    let unknowns = (6, LostReason::Unknown { images: 7 });
+    let stalled = (3, LostReason::Stalled { times: 3 });
+    let here = |doors| junction(doors, 0.0, 0.0);
+    for (mut robot, share, scene, expected) in [
+        (Robot::at(L_LEFT, &[Door(1)]), 1.0, unknown(), unknowns),
+        (Robot::leaving(NEXT), 1.0, unknown(), unknowns),
+        (Robot::before(L_LEFT, NEXT), 1.0, unknown(), unknowns),
+        (Robot::leaving(NEXT), 0.0, hallway(0.0), stalled),
+        (Robot::leaving(NEXT), 0.4, hallway(0.0), stalled),
+        (Robot::come_to(L_LEFT, &[Door(2), Door(1)]), 0.0, here(L_LEFT), stalled),
+        // Beside its turning point the robot hides whether the marker lies at an L.
+        (Robot::in_hallway(NEXT), 1.0, here(L_LEFT), (16, LostReason::Idle { rounds: 16 })),
+        (Robot::leaving(NEXT), 1.0, hallway(0.0), (200, LostReason::TooFar { metres: 100.5 })),
+    ] {
+        assert_eq!(robot.drives_on(share, &scene), expected);
+    }
+    let mut robot = Robot::leaving(NEXT);
+    robot.path = robot.path.with_leg_bound(2.0);
+    assert_eq!(robot.drives_on(1.0, &hallway(0.0)), (4, LostReason::TooFar { metres: 2.5 }));
 
-    let mut robot = Robot::leaving(&[Door(2)]);
+    // Its wheels carry it farther than it asks for.
+    let (commands, why) = Robot::leaving(NEXT).drives_on(1.5, &unknown());
+    assert!(matches!(why, LostReason::Crept { metres } if (metres - 1.25).abs() < 1e-9), "{why}");
+    assert_eq!(commands, 5);
+}
+
+#[test]
+fn only_what_happens_in_a_row_is_counted() {
+    let mut robot = Robot::leaving(NEXT);
     for _ in 0..6 {
         robot.sees(&unknown());
     }
     robot.sees(&hallway(0.0));
-    assert_eq!(robot.drives_on(1.0, &unknown()), gives_up, "only in a row");
-}
+    assert_eq!(robot.drives_on(1.0, &unknown()), (6, LostReason::Unknown { images: 7 }));
 
-#[test]
-fn after_a_metre_of_creeping_it_gives_up() {
-    // Its wheels carry it farther than it asks for.
-    let (commands, why) = Robot::leaving(&[Door(2)]).drives_on(1.5, &unknown());
-    assert!(matches!(why, LostReason::Crept { metres } if (metres - 1.25).abs() < 1e-9), "{why}");
-    assert_eq!(commands, 5);
-
-    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut robot = Robot::leaving(NEXT);
     for _ in 0..4 {
         robot.sees_and_does(1.5, &unknown());
     }
     robot.sees(&hallway(0.0));
     assert_eq!(robot.drives_on(1.5, &unknown()).0, 5, "a known place resets the count");
-}
 
-#[test]
-fn what_is_not_carried_out_is_an_error_after_three_tries() {
-    let gives_up = (3, LostReason::Stalled { times: 3 });
-    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.0, &hallway(0.0)), gives_up);
-    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.4, &hallway(0.0)), gives_up);
-    let mut turning = Robot::come_to(L_LEFT, &[Door(2), Door(1)]);
-    assert_eq!(turning.drives_on(0.0, &junction(L_LEFT, 0.0, 0.0)), gives_up);
-
-    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut robot = Robot::leaving(NEXT);
     for share in [0.0, 0.0, 0.6, 0.0, 0.0] {
         robot.sees_and_does(share, &hallway(0.0));
     }
@@ -603,47 +543,25 @@ fn what_is_not_carried_out_is_an_error_after_three_tries() {
 }
 
 #[test]
-fn sixteen_images_from_the_same_place_are_enough() {
-    // Beside its turning point the robot hides whether the marker lies at an L.
-    let mut robot = Robot::in_hallway(&[Door(2)]);
-    let (commands, why) = robot.drives_on(1.0, &junction(L_LEFT, 0.0, 0.0));
-    assert_eq!((commands, why), (16, LostReason::Idle { rounds: 16 }));
-}
-
-#[test]
-fn a_hallway_without_end_is_given_up() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    let (commands, why) = robot.drives_on(1.0, &hallway(0.0));
-    assert_eq!((commands, why), (200, LostReason::TooFar { metres: 100.5 }));
-
-    let mut robot = Robot::leaving(&[Door(2)]);
-    robot.path = robot.path.with_leg_bound(2.0);
-    assert_eq!(robot.drives_on(1.0, &hallway(0.0)), (4, LostReason::TooFar { metres: 2.5 }));
-}
-
-#[test]
-fn what_is_too_little_counts_as_done() {
-    let mut robot = Robot::leaving(&[Door(2)]);
-    assert_eq!(robot.sees(&hallway(0.034)), ahead(0.5));
-    assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(0.036)).turn, 0.036);
-
-    let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
-    assert_eq!(reckoning.end(ahead(0.029)), Command::default());
-    assert_eq!(reckoning.end(ahead(0.031)), ahead(0.031));
-}
-
-#[test]
-fn no_command_goes_farther_than_a_unit_or_turns_farther_than_around() {
-    let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
-    assert_eq!(reckoning.end(ahead(0.6)), ahead(0.5));
-    assert_near(reckoning.end(Command { turn: 4.0, forward: 0.0 }).turn, 4.0 - 2.0 * PI);
-    let around = Command { turn: -PI, forward: 0.0 };
-    assert_eq!(reckoning.end(around), Command { turn: PI, forward: 0.0 });
+fn commands_are_neither_too_little_nor_too_large() {
+    assert_near(Robot::leaving(NEXT).sees(&hallway(0.034)).turn, 0.0);
+    assert_near(Robot::leaving(NEXT).sees(&hallway(0.036)).turn, 0.036);
+    let around = Command { turn: 4.0, forward: 0.0 };
+    for (asked, done) in [
+        (ahead(0.029), Command::default()),
+        (ahead(0.031), ahead(0.031)),
+        (ahead(0.6), ahead(0.5)),
+        (around, Command { turn: wrapped(4.0), ..around }),
+        (Command { turn: -PI, ..around }, Command { turn: PI, ..around }),
+    ] {
+        let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
+        assert_eq!(reckoning.end(asked), done);
+    }
 }
 
 #[test]
 fn a_path_is_given_up_in_words() {
-    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut robot = Robot::in_hallway(NEXT);
     for _ in 0..6 {
         robot.sees(&unknown());
     }
@@ -654,29 +572,24 @@ fn a_path_is_given_up_in_words() {
     assert_near(lost.since_turn, robot.path.since_turn());
 }
 
-/// A robot that has turned its back to a junction.
-fn with_its_back_to_a_junction(path: PathExecution<'static>) -> Robot<'static> {
-    Robot { path, odometry: Odometry::default() }
-}
-
 #[test]
 fn a_junction_to_which_the_robot_could_not_come_is_not_the_next_one() {
+    let with_its_back_to_it = |path| Robot { path, odometry: Odometry::default() };
     // An obstacle stopped it 0.4 m before the turning point, and it has turned round.
     let behind = junction(T_LEFT, -0.4, 0.0);
-    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_from_junction(0.0, 0.4));
-    assert_eq!(robot.sees(&behind), ahead(UNIT / 2.0));
-    assert_eq!((robot.path.state(), robot.path.way_back()), (PathState::Leaving, PI));
-    assert_eq!(robot.sees(&hallway(0.0)), ahead(UNIT));
-    assert_eq!(robot.path.state(), PathState::Hallway);
+    let mut robot = with_its_back_to_it(PathExecution::onwards_from_junction(0.0, 0.4));
+    robot.goes(&behind, 0.0, UNIT / 2.0, Leaving);
+    assert_near(robot.path.way_back(), PI);
+    robot.goes(&hallway(0.0), 0.0, UNIT, Hallway);
     // Otherwise it would be the one to which it has come.
-    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_to_junction(0.0));
+    let mut robot = with_its_back_to_it(PathExecution::onwards_to_junction(0.0));
     robot.sees(&behind);
-    assert_eq!(robot.path.state(), PathState::Junction);
+    assert_eq!(robot.path.state(), Junction);
     // The next one is.
-    let mut robot = with_its_back_to_a_junction(PathExecution::onwards_from_junction(0.0, 0.4));
+    let mut robot = with_its_back_to_it(PathExecution::onwards_from_junction(0.0, 0.4));
     for _ in 0..5 {
         robot.sees(&hallway(0.0));
     }
     robot.sees(&junction(T_LEFT, 0.75, 0.0));
-    assert_eq!(robot.path.state(), PathState::Junction);
+    assert_eq!(robot.path.state(), Junction);
 }

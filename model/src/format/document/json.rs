@@ -1,6 +1,6 @@
 //! JSON as a document: its values, with the place of each.
 
-use std::{collections::HashSet, fmt, marker::PhantomData};
+use std::{collections::HashSet, fmt};
 
 use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 
@@ -35,40 +35,28 @@ struct JsonPlaces<'t> {
 impl JsonPlaces<'_> {
     /// Sets the places of a value and of what is in it, and goes to its end.
     fn place(&mut self, node: &mut Node<'_>) {
-        node.at = Some(self.skip_space());
+        node.at = Some(self.skip_separators());
         match &mut node.content {
             Content::Table(entries) => {
                 self.at += 1;
                 for (key, child) in entries.iter_mut() {
-                    key.at = Some(self.skip_space());
+                    key.at = Some(self.skip_separators());
                     self.skip_text();
-                    self.skip_space();
-                    // The colon.
-                    self.at += 1;
                     self.place(child);
                     if matches!(child.content, Content::Table(_)) {
                         child.at = key.at;
                     }
-                    self.skip_space();
-                    // The comma, or the closing brace.
-                    self.at += 1;
                 }
-                if entries.is_empty() {
-                    self.skip_space();
-                    self.at += 1;
-                }
+                self.skip_separators();
+                self.at += 1;
             }
             Content::List(items) => {
                 self.at += 1;
                 for item in items.iter_mut() {
                     self.place(item);
-                    self.skip_space();
-                    self.at += 1;
                 }
-                if items.is_empty() {
-                    self.skip_space();
-                    self.at += 1;
-                }
+                self.skip_separators();
+                self.at += 1;
             }
             Content::Text(_) => self.skip_text(),
             _ => {
@@ -77,9 +65,9 @@ impl JsonPlaces<'_> {
         }
     }
 
-    /// Goes to the next byte that is not space, and returns its place.
-    fn skip_space(&mut self) -> usize {
-        self.skip_while(|byte| byte.is_ascii_whitespace());
+    /// Goes to the next byte that is neither space nor a comma or a colon, and returns its place.
+    fn skip_separators(&mut self) -> usize {
+        self.skip_while(|byte| byte.is_ascii_whitespace() || b",:".contains(&byte));
         self.at
     }
 
@@ -104,24 +92,24 @@ impl JsonPlaces<'_> {
     }
 }
 
-impl<'de> Deserialize<'de> for Node<'_> {
+impl<'de> Deserialize<'de> for Node<'static> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let content = deserializer.deserialize_any(JsonVisitor(PhantomData))?;
+        let content = deserializer.deserialize_any(JsonVisitor)?;
         Ok(Self { at: None, content })
     }
 }
 
-struct JsonVisitor<'t>(PhantomData<Content<'t>>);
+struct JsonVisitor;
 
-impl<'t, 'de> Visitor<'de> for JsonVisitor<'t> {
-    type Value = Content<'t>;
+impl<'de> Visitor<'de> for JsonVisitor {
+    type Value = Content<'static>;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("a table, a list, a text or a number")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Content<'t>, A::Error> {
-        let mut entries: Vec<(Key<'_>, Node<'_>)> = Vec::new();
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut entries = Vec::new();
         let mut seen = HashSet::new();
         while let Some(name) = map.next_key::<String>()? {
             if !seen.insert(name.clone()) {
@@ -133,7 +121,7 @@ impl<'t, 'de> Visitor<'de> for JsonVisitor<'t> {
         Ok(Content::Table(entries))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Content<'t>, A::Error> {
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
         let mut items = Vec::new();
         while let Some(item) = seq.next_element()? {
             items.push(item);
@@ -141,28 +129,28 @@ impl<'t, 'de> Visitor<'de> for JsonVisitor<'t> {
         Ok(Content::List(items))
     }
 
-    fn visit_str<E>(self, text: &str) -> Result<Content<'t>, E> {
+    fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
         Ok(Content::Text(text.to_owned().into()))
     }
 
-    fn visit_i64<E>(self, number: i64) -> Result<Content<'t>, E> {
+    fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
         Ok(Content::Whole(number))
     }
 
     #[expect(clippy::cast_precision_loss, reason = "no key takes a whole number as large")]
-    fn visit_u64<E>(self, number: u64) -> Result<Content<'t>, E> {
+    fn visit_u64<E>(self, number: u64) -> Result<Self::Value, E> {
         Ok(i64::try_from(number).map_or(Content::Number(number as f64), Content::Whole))
     }
 
-    fn visit_f64<E>(self, number: f64) -> Result<Content<'t>, E> {
+    fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
         Ok(Content::Number(number))
     }
 
-    fn visit_bool<E>(self, truth: bool) -> Result<Content<'t>, E> {
+    fn visit_bool<E>(self, truth: bool) -> Result<Self::Value, E> {
         Ok(Content::Truth(truth))
     }
 
-    fn visit_unit<E>(self) -> Result<Content<'t>, E> {
+    fn visit_unit<E>(self) -> Result<Self::Value, E> {
         Ok(Content::Null)
     }
 }

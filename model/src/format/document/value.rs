@@ -12,13 +12,10 @@ pub struct DocumentValue<'d> {
 }
 
 impl<'d> DocumentValue<'d> {
-    /// The whole document.
     pub(super) fn root(document: &'d Document<'d>) -> Self {
         Self { document, node: &document.root }
     }
 
-    /// Where it is.
-    #[must_use]
     pub fn position(self) -> TextPosition {
         self.document.position(self.node, self.node.at)
     }
@@ -28,7 +25,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// The error that something else is expected here.
-    #[must_use]
     pub fn expected(self, expected: impl Into<Cow<'static, str>>) -> DocumentError {
         let found = match &self.node.content {
             Content::Table(_) => "a table",
@@ -56,7 +52,6 @@ impl<'d> DocumentValue<'d> {
         }
     }
 
-    /// A table with any keys.
     pub fn any_table(self) -> Result<DocumentTable<'d>, DocumentError> {
         match &self.node.content {
             Content::Table(entries) => Ok(DocumentTable { value: self, entries }),
@@ -64,7 +59,6 @@ impl<'d> DocumentValue<'d> {
         }
     }
 
-    /// The items of a list; `expected` describes the list in errors.
     pub fn list(
         self,
         expected: &'static str,
@@ -90,7 +84,6 @@ impl<'d> DocumentValue<'d> {
         Ok(std::array::from_fn(|_| items.next().unwrap_or(self)))
     }
 
-    /// A text.
     pub fn text(self) -> Result<&'d str, DocumentError> {
         match &self.node.content {
             Content::Text(text) => Ok(text),
@@ -117,7 +110,6 @@ impl<'d> DocumentValue<'d> {
         })
     }
 
-    /// A number.
     #[expect(clippy::cast_precision_loss, reason = "what is counted or measured is smaller")]
     pub fn number(self) -> Result<f64, DocumentError> {
         match self.node.content {
@@ -141,7 +133,6 @@ impl<'d> DocumentValue<'d> {
         Err(self.error(DocumentErrorKind::OutOfRange { what, found, low, high }))
     }
 
-    /// True or false.
     pub fn truth(self) -> Result<bool, DocumentError> {
         match self.node.content {
             Content::Truth(truth) => Ok(truth),
@@ -149,7 +140,6 @@ impl<'d> DocumentValue<'d> {
         }
     }
 
-    /// A whole number.
     pub fn whole(self) -> Result<i64, DocumentError> {
         match self.node.content {
             Content::Whole(number) => Ok(number),
@@ -183,16 +173,12 @@ pub struct DocumentTable<'d> {
 /// A key of a table, and its value.
 #[derive(Clone, Copy, Debug)]
 pub struct DocumentEntry<'d> {
-    /// The key.
     pub key: &'d str,
-    /// Its value.
     pub value: DocumentValue<'d>,
     at: Option<usize>,
 }
 
 impl<'d> DocumentTable<'d> {
-    /// Where it is.
-    #[must_use]
     pub fn position(&self) -> TextPosition {
         self.value.position()
     }
@@ -207,21 +193,16 @@ impl<'d> DocumentTable<'d> {
         })
     }
 
-    /// The value of a key, if it has one.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<DocumentValue<'d>> {
         self.entries().find(|entry| entry.key == key).map(|entry| entry.value)
     }
 
-    /// The value of a key.
     pub fn need(&self, key: &'static str) -> Result<DocumentValue<'d>, DocumentError> {
         self.get(key).ok_or_else(|| self.value.error(DocumentErrorKind::MissingKey { key }))
     }
 }
 
 impl DocumentEntry<'_> {
-    /// Where its key is.
-    #[must_use]
     pub fn position(&self) -> TextPosition {
         self.value.document.position(self.value.node, self.at)
     }

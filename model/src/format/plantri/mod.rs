@@ -30,7 +30,6 @@ pub use write::write;
 /// One of plantri's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PlantriCode {
-    /// Lists of neighbours; simple graphs only.
     Planar,
     /// Lists of edges; all graphs.
     Edge,
@@ -39,7 +38,6 @@ pub enum PlantriCode {
 impl PlantriCode {
     /// The code of a file, by its header or else by the ending of its name. `None` for a file of another
     /// kind.
-    #[must_use]
     pub fn of_file(path: &Path, bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(b">>edge_code") {
             return Some(Self::Edge);

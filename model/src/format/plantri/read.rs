@@ -6,11 +6,8 @@ use crate::embedded_graph::{EmbeddedGraph, GraphError, MAX_EDGES};
 /// The byte order of the numbers of `planar_code` with two bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ByteOrder {
-    /// The lesser byte first.
     Little,
-    /// The greater byte first.
     Big,
-    /// The header does not give it.
     Unknown,
 }
 
@@ -40,13 +37,11 @@ pub struct Worlds<'a> {
 ///
 /// Vertices are numbered in the order of the file, and the darts of each in the order in which it
 /// lists them.
-#[must_use]
 pub fn read(bytes: &[u8]) -> Worlds<'_> {
     read_headerless(bytes, PlantriCode::Planar)
 }
 
 /// The worlds of a file: as [`read`], but without a header it has this code.
-#[must_use]
 pub fn read_headerless(bytes: &[u8], code: PlantriCode) -> Worlds<'_> {
     Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Unknown, done: false }
 }

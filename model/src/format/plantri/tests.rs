@@ -10,15 +10,6 @@ fn all(bytes: &[u8]) -> Result<Vec<EmbeddedGraph>, PlantriError> {
     read(bytes).collect()
 }
 
-fn message(bytes: &[u8]) -> String {
-    all(bytes).unwrap_err().to_string()
-}
-
-fn edge_message(body: &[u8]) -> String {
-    let error = read_headerless(body, PlantriCode::Edge).find_map(Result::err);
-    error.unwrap().to_string()
-}
-
 /// A path with a number of vertices.
 fn path(vertices: usize) -> EmbeddedGraph {
     let lists: Vec<(String, Vec<String>)> = (0..vertices)
@@ -96,7 +87,7 @@ fn two_bytes_are_read_in_the_order_of_the_header_or_the_one_that_makes_sense() {
     assert!(all(&[b">>planar_code be<<".as_slice(), &little].concat()).is_err());
     for cut in [&little[..little.len() - 1], &big[..big.len() - 1]] {
         assert_eq!(
-            message(cut),
+            all(cut).unwrap_err().to_string(),
             format!("byte {}, world 1: the file ends in the middle of a world", cut.len())
         );
     }
@@ -144,85 +135,84 @@ fn a_long_edge_code_gives_its_sizes() {
 }
 
 #[test]
-fn each_fault_of_planar_code_has_its_byte() {
-    assert_eq!(message(b""), "byte 0, world 1: there is no world");
-    assert_eq!(message(b">>planar_code<<"), "byte 15, world 1: there is no world");
-    assert_eq!(
-        message(b">>sparse6<<"),
-        "byte 0, world 1: unknown header; \
-         known are planar_code, planar_code le, planar_code be and edge_code"
-    );
-    let second = [&OCTAHEDRON[..], &OCTAHEDRON[..30]].concat();
-    assert_eq!(message(&second), "byte 61, world 2: the file ends in the middle of a world");
-    assert_eq!(
-        message(&[2, 2, 0, 3, 0]),
-        "byte 3, world 1: vertex 2 lists the neighbour 3; the world has 2 vertices"
-    );
-    assert_eq!(
-        message(&[3, 2, 0, 1, 3, 0, 1, 0]),
-        "byte 4, world 1: vertex 2 lists the neighbour 3, which does not list 2 back"
-    );
-    let not_simple = "planar_code cannot have parallel edges and loops, edge_code can";
-    assert_eq!(
-        message(&[2, 2, 2, 0, 1, 1, 0]),
-        format!("byte 2, world 1: vertex 1 lists 2 again or itself; {not_simple}")
-    );
-    assert_eq!(
-        message(&[2, 2, 0, 1, 2, 2, 0]),
-        format!("byte 4, world 1: vertex 2 lists 2 again or itself; {not_simple}")
-    );
-    assert_eq!(message(&[3, 2, 0, 1, 0, 0]), "byte 0, world 1: vertex 3 has no edge");
-    assert_eq!(
-        message(&[4, 2, 0, 1, 0, 4, 0, 3, 0]),
-        "byte 0, world 1: the world is not connected: vertex 3 cannot be reached from 1"
-    );
-    assert_eq!(message(&[1, 0]), "byte 0, world 1: there is no edge; a world has at least one");
-}
-
-#[test]
-fn each_fault_of_edge_code_has_its_byte() {
-    assert_eq!(
-        edge_message(&[3, 0, 255]),
-        "byte 3, world 1: the file ends in the middle of a world"
-    );
-    assert_eq!(
-        edge_message(&[0, 0x20, 0, 1]),
-        "byte 1, world 1: a length of 2 bytes and edges of 0 bytes are not possible"
-    );
-    assert_eq!(
-        edge_message(&[0, 0x12, 3, 0, 0, 0]),
-        "byte 5, world 1: the body ends in the middle of an edge"
-    );
-    assert_eq!(
-        edge_message(&[4, 0, 255, 0, 0]),
-        "byte 1, world 1: the lists have 3 edge ends; every edge has two"
-    );
-    assert_eq!(
-        edge_message(&[3, 0, 255, 1]),
-        "byte 3, world 1: vertex 2 lists edge 1; the world has 1 edge, counted from 0"
-    );
-    assert_eq!(
-        edge_message(&[5, 0, 0, 255, 0, 1]),
-        "byte 4, world 1: edge 0 is listed for the third time; every edge has two ends"
-    );
-    assert_eq!(edge_message(&[4, 0, 255, 0, 255]), "byte 1, world 1: vertex 3 has no edge");
-    assert_eq!(
-        edge_message(&[5, 0, 0, 255, 1, 1]),
-        "byte 1, world 1: the world is not connected: vertex 2 cannot be reached from 1"
-    );
+fn each_fault_has_its_byte() {
+    use PlantriCode::{Edge, Planar};
     // Two edge ends with the longest possible number.
-    assert_eq!(
-        edge_message(&[&[0, 0x1f, 30][..], &[1; 30]].concat()),
-        "byte 3, world 1: \
-         vertex 1 lists edge 18446744073709551615; the world has 1 edge, counted from 0"
-    );
-}
-
-#[test]
-fn nothing_follows_the_first_error() {
-    let mut worlds = read(b"\x02\x03\x00\x01\x00");
-    assert!(worlds.next().unwrap().is_err());
-    assert!(worlds.next().is_none());
+    let longest = [&[0, 0x1f, 30][..], &[1; 30]].concat();
+    let cases: [(_, &[u8], _, _); 20] = [
+        (Planar, b"", 0, "there is no world"),
+        (Planar, b">>planar_code<<", 15, "there is no world"),
+        (
+            Planar,
+            b">>sparse6<<",
+            0,
+            "unknown header; \
+             known are planar_code, planar_code le, planar_code be and edge_code",
+        ),
+        (Planar, &[2, 2, 0, 3, 0], 3, "vertex 2 lists the neighbour 3; the world has 2 vertices"),
+        (
+            Planar,
+            &[3, 2, 0, 1, 3, 0, 1, 0],
+            4,
+            "vertex 2 lists the neighbour 3, which does not list 2 back",
+        ),
+        (
+            Planar,
+            &[2, 2, 2, 0, 1, 1, 0],
+            2,
+            "vertex 1 lists 2 again or itself; \
+             planar_code cannot have parallel edges and loops, edge_code can",
+        ),
+        (
+            Planar,
+            &[2, 2, 0, 1, 2, 2, 0],
+            4,
+            "vertex 2 lists 2 again or itself; \
+             planar_code cannot have parallel edges and loops, edge_code can",
+        ),
+        (Planar, &[3, 2, 0, 1, 0, 0], 0, "vertex 3 has no edge"),
+        (
+            Planar,
+            &[4, 2, 0, 1, 0, 4, 0, 3, 0],
+            0,
+            "the world is not connected: vertex 3 cannot be reached from 1",
+        ),
+        (Planar, &[1, 0], 0, "there is no edge; a world has at least one"),
+        (Edge, &[3, 0, 255], 3, "the file ends in the middle of a world"),
+        (Edge, &[0, 0x20, 0, 1], 1, "a length of 2 bytes and edges of 0 bytes are not possible"),
+        (Edge, &[0, 0x12, 3, 0, 0, 0], 5, "the body ends in the middle of an edge"),
+        (Edge, &[4, 0, 255, 0, 0], 1, "the lists have 3 edge ends; every edge has two"),
+        (Edge, &[3, 0, 255, 1], 3, "vertex 2 lists edge 1; the world has 1 edge, counted from 0"),
+        (
+            Edge,
+            &[5, 0, 0, 255, 0, 1],
+            4,
+            "edge 0 is listed for the third time; every edge has two ends",
+        ),
+        (Edge, &[4, 0, 255, 0, 255], 1, "vertex 3 has no edge"),
+        (
+            Edge,
+            &[5, 0, 0, 255, 1, 1],
+            1,
+            "the world is not connected: vertex 2 cannot be reached from 1",
+        ),
+        (
+            Edge,
+            &longest,
+            3,
+            "vertex 1 lists edge 18446744073709551615; the world has 1 edge, counted from 0",
+        ),
+        (Edge, b"", 0, "there is no world"),
+    ];
+    for (code, bytes, byte, cause) in cases {
+        let mut worlds = read_headerless(bytes, code);
+        let error = worlds.find_map(Result::err).unwrap();
+        assert_eq!(error.to_string(), format!("byte {byte}, world 1: {cause}"));
+        assert!(worlds.next().is_none(), "nothing follows the first error");
+    }
+    let second = [&OCTAHEDRON[..], &OCTAHEDRON[..30]].concat();
+    let error = all(&second).unwrap_err().to_string();
+    assert_eq!(error, "byte 61, world 2: the file ends in the middle of a world");
 }
 
 proptest! {

@@ -15,9 +15,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{position}{kind}")]
 pub struct WorldFileError {
-    /// Where in the file.
     pub position: TextPosition,
-    /// What is wrong there.
     #[source]
     pub kind: WorldFileErrorKind,
 }
@@ -25,51 +23,27 @@ pub struct WorldFileError {
 /// What is wrong at a place of a world file.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum WorldFileErrorKind {
-    /// A key or a value is not as it should be.
     #[error(transparent)]
     Document(DocumentErrorKind),
-    /// This is not a name.
     #[error(
         "`{name}` is not a name; a name is printable, without quotes, / and \\, and without a space at its \
              ends"
     )]
-    NotAName {
-        /// The text.
-        name: String,
-    },
-    /// There is no graph.
+    NotAName { name: String },
     #[error("there is no world; the file needs one of [clockwise], [doors] and [floor]")]
     NoWorld,
-    /// There are two graphs.
     #[error("there are both [{one}] and [{other}]; a world needs only one of them")]
-    TwoWorlds {
-        /// The first key.
-        one: &'static str,
-        /// The second key.
-        other: &'static str,
-    },
-    /// A vertex has no position.
+    TwoWorlds { one: &'static str, other: &'static str },
     #[error("the vertex `{vertex}` has no position")]
-    NoPosition {
-        /// The vertex.
-        vertex: String,
-    },
-    /// There is no such vertex.
+    NoPosition { vertex: String },
     #[error("there is no vertex `{vertex}`")]
-    NoVertex {
-        /// The name.
-        vertex: String,
-    },
-    /// The junctions of a floor plan have positions.
+    NoVertex { vertex: String },
     #[error("a floor plan has its positions in [junctions]")]
     PositionsOfPlan,
-    /// The lists are not those of an embedded graph.
     #[error(transparent)]
     Lists(#[from] ListError),
-    /// The hallways are not a floor plan.
     #[error(transparent)]
     Plan(#[from] Box<FloorPlanError>),
-    /// There is no such start.
     #[error(transparent)]
     Start(#[from] StartError),
 }

@@ -301,7 +301,6 @@ fn key_name<'d>(entry: &DocumentEntry<'d>) -> Result<&'d str, WorldFileError> {
 
 /// Whether a text can be a name in a world file: printable characters, but no quotes, no `/` and no `\`,
 /// and no space at its ends.
-#[must_use]
 pub fn is_name(text: &str) -> bool {
     // All that is not printable is escaped, and so are `'`, `"` and `\`.
     let printable = text.escape_debug().eq(text.chars());

@@ -129,62 +129,46 @@ fn a_floor_plan_gives_its_graph_and_keeps_its_geometry() {
     assert_eq!(read(whole_numbers.as_bytes()).unwrap(), world);
 }
 
-#[test]
-fn a_file_without_text_is_an_error() {
-    assert_eq!(message(""), "the file is empty");
-    assert_eq!(message(" \n"), "the file is empty");
-    let error = read(b"name = \"a\"\nab\xff").unwrap_err();
-    assert_eq!(error.to_string(), "line 2, column 3: this is not UTF-8 text");
-}
+const KEYS: &str = "name, about, clockwise, doors, floor, junctions, hallways, positions, start";
+const NOT_A_NAME: &str = "is not a name; a name is printable, without quotes, / and \\, and without a \
+                          space at its ends";
 
+/// Texts that are not world files, each with the place and the cause.
 #[test]
-fn an_error_of_syntax_has_its_place() {
-    assert_eq!(
-        message("name = \"a\"\n[clockwise\n"),
-        "line 2, column 11: unclosed table, expected `]`"
-    );
-    assert_eq!(
-        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\na = []\n"),
-        "line 4, column 1: duplicate key"
-    );
-    assert_eq!(message("{\n \"name\": }"), "line 2, column 10: expected value");
-    assert_eq!(
-        message("{\"clockwise\": {\"a\": [],\n\"a\": []}}"),
-        "line 2, column 3: duplicate key `a`"
-    );
-    assert_eq!(message("{} x"), "line 1, column 4: trailing characters");
-}
-
-#[test]
-fn unknown_and_missing_keys_are_named() {
-    assert_eq!(
-        message("[clokwise]\na = [\"b\"]"),
-        "line 1, column 2: clokwise: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
-    );
-    assert_eq!(
-        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
-        "line 5, column 1: start.from: unknown key; expected one of: at, facing, marker"
-    );
-    assert_eq!(
-        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\""),
-        "line 4, column 2: start: the key `facing` is missing"
-    );
-    assert_eq!(
-        message("{\"a\\nb\": 1}"),
-        "line 1, column 2: a\\nb: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
-    );
-    assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
-    assert_eq!(
-        message(&PLAN.replace("to = \"corner\"\n\n[start]", "[start]")),
-        "line 15, column 1: hallways[1]: the key `to` is missing"
-    );
-}
-
-#[test]
-fn values_of_the_wrong_kind_are_named() {
+fn each_fault_has_its_place() {
+    let unknown = |place| format!("{place}: unknown key; expected one of: {KEYS}");
+    let no_name = |place, name| format!("{place}: `{name}` {NOT_A_NAME}");
+    let cases = [
+        ("name = \"a/b\"", no_name("line 1, column 8: name", "a/b")),
+        ("[clockwise]\n\"a \" = []", no_name("line 2, column 1: clockwise.a ", "a ")),
+        ("[clockwise]\na = [\"\"]", no_name("line 2, column 6: clockwise.a[0]", "")),
+        ("[doors]\na = [\"\\u00e9\\n\"]", no_name("line 2, column 6: doors.a[0]", "é\\n")),
+        ("[clokwise]\na = [\"b\"]", unknown("line 1, column 2: clokwise")),
+        ("{\"a\\nb\": 1}", unknown("line 1, column 2: a\\nb")),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(message(text), expected);
+    }
     for (text, expected) in [
+        // No text, or none of the syntax.
+        ("", "the file is empty"),
+        (" \n", "the file is empty"),
+        ("name = \"a\"\n[clockwise\n", "line 2, column 11: unclosed table, expected `]`"),
+        ("[clockwise]\na = [\"b\"]\nb = [\"a\"]\na = []\n", "line 4, column 1: duplicate key"),
+        ("{\n \"name\": }", "line 2, column 10: expected value"),
+        ("{\"clockwise\": {\"a\": [],\n\"a\": []}}", "line 2, column 3: duplicate key `a`"),
+        ("{} x", "line 1, column 4: trailing characters"),
+        // Keys.
+        (
+            "[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\"",
+            "line 5, column 1: start.from: unknown key; expected one of: at, facing, marker",
+        ),
+        (
+            "[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\"",
+            "line 4, column 2: start: the key `facing` is missing",
+        ),
+        ("[floor]\nhallway_width = 1", "the key `junctions` is missing"),
+        // Values of the wrong kind.
         ("name = 3", "line 1, column 8: name: expected a name, found a whole number"),
         ("about = []\n[doors]", "line 1, column 9: about: expected a text, found a list"),
         ("clockwise = []", "line 1, column 13: clockwise: expected a table, found a list"),
@@ -201,48 +185,16 @@ fn values_of_the_wrong_kind_are_named() {
             "line 1, column 18: doors.a[0]: expected a name, found null",
         ),
         ("doors = 1979-05-27", "line 1, column 9: doors: expected a table, found a date"),
-    ] {
-        assert_eq!(message(text), expected);
-    }
-    assert_eq!(
-        message(&PLAN.replace("[4.0, 0.0]", "[4.0]")),
-        "line 9, column 8: junctions.east: expected a list of two numbers, x and y, found a list of another length"
-    );
-    assert_eq!(
-        message(&PLAN.replace("[4.0, 0.0]", "[4.0, \"0\"]")),
-        "line 9, column 14: junctions.east[1]: expected a number, found a text"
-    );
-}
-
-#[test]
-fn what_is_not_a_name_is_refused_where_it_is() {
-    let names = "is not a name; a name is printable, without quotes, / and \\, and without a space at \
-                 its ends";
-    for (text, place, name) in [
-        ("name = \"a/b\"", "line 1, column 8: name", "a/b"),
-        ("[clockwise]\n\"a \" = []", "line 2, column 1: clockwise.a ", "a "),
-        ("[clockwise]\na = [\"\"]", "line 2, column 6: clockwise.a[0]", ""),
-        ("[doors]\na = [\"\\u00e9\\n\"]", "line 2, column 6: doors.a[0]", "é\\n"),
-    ] {
-        assert_eq!(message(text), format!("{place}: `{name}` {names}"));
-    }
-}
-
-#[test]
-fn a_world_is_given_in_one_way() {
-    assert_eq!(
-        message("name = \"a\""),
-        "there is no world; the file needs one of [clockwise], [doors] and [floor]"
-    );
-    assert_eq!(
-        message("[doors]\n[junctions]"),
-        "there are both [doors] and [floor]; a world needs only one of them"
-    );
-}
-
-#[test]
-fn an_error_in_lists_has_their_vertex() {
-    for (text, expected) in [
+        // Not one world.
+        (
+            "name = \"a\"",
+            "there is no world; the file needs one of [clockwise], [doors] and [floor]",
+        ),
+        (
+            "[doors]\n[junctions]",
+            "there are both [doors] and [floor]; a world needs only one of them",
+        ),
+        // Lists.
         (
             "[clockwise]\na = [\"b\"]\nb = []",
             "line 2, column 6: clockwise.a[0]: vertex `a` lists the neighbour `b`, which does not list `a` back",
@@ -273,71 +225,102 @@ fn an_error_in_lists_has_their_vertex() {
     ] {
         assert_eq!(message(text), expected);
     }
+    let error = read(b"name = \"a\"\nab\xff").unwrap_err();
+    assert_eq!(error.to_string(), "line 2, column 3: this is not UTF-8 text");
 }
 
+/// Files with a part replaced, each with the place and the cause.
 #[test]
-fn an_error_in_a_start_has_its_key() {
-    assert_eq!(
-        message(&TRIANGLE.replace("facing = \"z\"", "facing = \"a\"")),
-        "line 11, column 10: start.facing: vertex `a` has no neighbour `a`; it has m, z"
-    );
-    assert_eq!(
-        message(&TRIANGLE.replace("at = \"a\"", "at = \"q\"")),
-        "line 10, column 6: start.at: there is no vertex `q`"
-    );
-    assert_eq!(
-        message(&DOORS.replace("a:2", "a")),
-        "line 7, column 10: start.facing: edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
-    );
-}
-
-#[test]
-fn an_error_in_a_floor_plan_has_its_key() {
-    for (text, instead, expected) in [
+fn each_fault_of_a_start_or_a_floor_plan_has_its_place() {
+    for (file, text, instead, expected) in [
         (
+            TRIANGLE,
+            "facing = \"z\"",
+            "facing = \"a\"",
+            "line 11, column 10: start.facing: vertex `a` has no neighbour `a`; it has m, z",
+        ),
+        (
+            TRIANGLE,
+            "at = \"a\"",
+            "at = \"q\"",
+            "line 10, column 6: start.at: there is no vertex `q`",
+        ),
+        (
+            DOORS,
+            "a:2",
+            "a",
+            "line 7, column 10: start.facing: edge `a` is a loop; write `a:1` or `a:2` for one of its ends",
+        ),
+        (
+            PLAN,
+            "to = \"corner\"\n\n[start]",
+            "[start]",
+            "line 15, column 1: hallways[1]: the key `to` is missing",
+        ),
+        (
+            PLAN,
+            "[4.0, 0.0]",
+            "[4.0]",
+            "line 9, column 8: junctions.east: expected a list of two numbers, x and y, found a list of another length",
+        ),
+        (
+            PLAN,
+            "[4.0, 0.0]",
+            "[4.0, \"0\"]",
+            "line 9, column 14: junctions.east[1]: expected a number, found a text",
+        ),
+        (
+            PLAN,
             "1.6",
             "nan",
             "line 4, column 1: floor.hallway_width: the hallway width is NaN; it must be a positive number of metres",
         ),
         (
+            PLAN,
             "[4.0, 0.0]",
             "[inf, 0.0]",
             "line 9, column 1: junctions.east: junction `east` is at (inf, 0); both must be finite numbers of metres",
         ),
         (
+            PLAN,
             "[4.0, 0.0]",
             "[3.0, 0.0]",
             "line 6, column 2: junctions: junctions `corner` and `east` are 3.00 m apart; \
              it must be two hallway widths, 3.20 m",
         ),
         (
+            PLAN,
             "from = \"east\"",
             "from = \"q\"",
             "line 15, column 1: hallways[1]: there is no junction `q`",
         ),
         (
+            PLAN,
             "[4.0, 0.0]",
             "[4.0, 1.0]",
             "line 15, column 1: hallways[1]: hallway `east` - `corner` runs neither north-south nor east-west",
         ),
         (
+            PLAN,
             "[start]",
             "[[hallways]]\nfrom = \"corner\"\nto = \"east\"\n\n[start]",
             "line 19, column 1: hallways[2]: hallway `corner` - `east` is listed twice",
         ),
         (
+            PLAN,
             "[4.0, 0.0]",
             "[0.0, 4.0]",
             "line 8, column 1: junctions.corner: junction `corner` has two doors opposite each other; \
              it must be a dead end, an L or a T",
         ),
         (
+            PLAN,
             "from = \"east\"",
             "from = \"corner\"",
             "line 15, column 1: hallways[1]: the hallway from `corner` to `corner` has no length",
         ),
     ] {
-        assert_eq!(message(&PLAN.replace(text, instead)), expected);
+        assert_eq!(message(&file.replace(text, instead)), expected);
     }
 }
 

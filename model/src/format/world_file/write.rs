@@ -6,7 +6,6 @@ use serde_json::{Map, Value, json};
 use crate::{embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld};
 
 /// The world as a JSON value of the shape of a world file, for printing or reports.
-#[must_use]
 pub fn to_json(world: &NamedWorld) -> Value {
     let mut file = Map::new();
     for (key, text) in [("name", &world.name), ("about", &world.about)] {
@@ -31,7 +30,6 @@ pub fn to_json(world: &NamedWorld) -> Value {
 }
 
 /// The world as a TOML file.
-#[must_use]
 pub fn to_toml(world: &NamedWorld) -> String {
     let mut first = String::new();
     let mut tables = Vec::new();
@@ -63,7 +61,6 @@ fn toml_entry(key: &str, value: &Value) -> String {
 }
 
 /// The world as a JSON file.
-#[must_use]
 pub fn to_json_text(world: &NamedWorld) -> String {
     let file = to_json(world);
     let entries: Vec<String> = object(&file)

@@ -34,7 +34,7 @@ use crate::{
     embedded_graph::Dart,
     folding::{FoldedTrail, MAX_DARTS, TrailError},
     injected_flaw::InjectedFlaw,
-    marker::Directional,
+    marker::{Directional, MarkerKind},
     percept::{Door, Sighting},
     world::World,
 };
@@ -183,7 +183,7 @@ impl FoldingRun {
 /// The folding explorer. Its default choices break every tie. The map is complete when its trail is
 /// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`] darts.
 impl Explorer for FoldingRun {
-    type Marker = Directional;
+    type Marker = MarkerKind;
     type Choice = FoldingStep;
 
     const INFO: ExplorerInfo = ExplorerInfo {
@@ -193,7 +193,7 @@ impl Explorer for FoldingRun {
         order: CostOrder::EdgesSquaredVertices,
     };
 
-    fn marker(&self) -> Directional {
+    fn marker(&self) -> MarkerKind {
         Directional
     }
 

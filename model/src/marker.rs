@@ -1,0 +1,307 @@
+//! The kinds of markers: what they add to a percept, and whether a robot can move them. Sections 2.2
+//! and 2.3.
+//!
+//! A marker is placed once, by the facing dart of a start.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    percept::{Door, Sighting},
+};
+
+/// A kind of marker.
+///
+/// Different facing darts may place it alike: an undirected marker lies at a vertex, and all darts of
+/// the vertex place it there.
+pub trait Marker: Sync {
+    /// Its name on the command line.
+    fn name(&self) -> &'static str;
+
+    /// A sentence about what it is and when it is noticed.
+    fn about(&self) -> &'static str;
+
+    /// What it adds to the percept of a robot that came in by the dart `pose`. The facing dart placed
+    /// it.
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting;
+
+    /// The first of the facing darts that place it as this one does.
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart;
+
+    /// The poses in which the robot may begin, given the marker: all poses at which it is noticed as
+    /// at the start, in the order of their numbers.
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart>;
+
+    /// The parts of the marker, and where they lie.
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart>;
+
+    /// Whether the robot can pick it up where it notices it, carry it and drop it. A dropped marker is
+    /// placed as if the robot's entry dart were the facing dart.
+    fn is_movable(&self) -> bool {
+        false
+    }
+
+    /// Whether what it adds depends on the vertices of the facing dart and of the pose, and on their
+    /// indices there, and on nothing else. What is behind their doors may then be undecided.
+    fn is_local(&self) -> bool {
+        false
+    }
+}
+
+/// A part of a marker, and where it lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkerPart {
+    /// Lies at a vertex. Parts of different looks can be distinguished.
+    At { vertex: Vertex, look: MarkerLook },
+    /// Lies at the dart's vertex and points along the dart.
+    Pointing(Dart),
+    /// Lies in the middle of the dart's edge.
+    OnEdge(Dart),
+    /// Lies in the middle of the dart's edge and points away from the dart's vertex.
+    OnEdgeAlong(Dart),
+}
+
+/// How a part of a marker looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkerLook {
+    One,
+    Other,
+}
+
+/// The kinds of markers of this crate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkerKind {
+    /// No marker: the robot senses degrees and nothing else, and may have begun anywhere. Section 2.2.
+    // paper: marker.none-insufficient, marker.none-cycles
+    NoMarker,
+    /// Lies at the start vertex and stays there. Section 2.2.
+    // paper: marker.undirected-insufficient, marker.undirected-cycles
+    Undirected,
+    /// The marker of Algorithm 1: lies at the start vertex and points along the facing dart. Section 2.3.
+    // paper: marker.directional-sufficient
+    Directional,
+    /// A mark in the middle of the edge faced at the start, which the robot notices exactly when it
+    /// traverses that edge. At the start it counts as having just done so.
+    UndirectedEdge,
+    /// An arrow in the middle of the edge faced at the start, away from the start vertex. The robot
+    /// notices it as [`UndirectedEdge`], and then in which sense it traversed the edge.
+    DirectedEdge,
+    /// Two undirected markers that look alike, at the ends of the edge faced at the start. With a loop
+    /// faced, both lie at the start vertex.
+    TwoIdentical,
+    /// The same, but they look different: the first is the one at the start vertex.
+    TwoDistinct,
+    /// One undirected marker, at the start vertex at first, that the robot can move. Section 2.3, after
+    /// the paper's reference 8: Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph
+    /// construction" (1991).
+    Movable,
+}
+
+pub use MarkerKind::{
+    DirectedEdge, Directional, Movable, NoMarker, TwoDistinct, TwoIdentical, Undirected,
+    UndirectedEdge,
+};
+
+/// Every kind of marker.
+pub const MARKERS: [&dyn Marker; 8] = [
+    &NoMarker,
+    &Undirected,
+    &Directional,
+    &UndirectedEdge,
+    &DirectedEdge,
+    &TwoIdentical,
+    &TwoDistinct,
+    &Movable,
+];
+
+/// The ends of the edge of a dart: its own, and the other.
+fn ends(graph: &EmbeddedGraph, dart: Dart) -> [Dart; 2] {
+    [dart, graph.opposite(dart)]
+}
+
+impl Marker for MarkerKind {
+    fn name(&self) -> &'static str {
+        match self {
+            NoMarker => "none",
+            Undirected => "undirected",
+            Directional => "directional",
+            UndirectedEdge => "undirected-edge",
+            DirectedEdge => "directed-edge",
+            TwoIdentical => "two-identical",
+            TwoDistinct => "two-distinct",
+            Movable => "movable",
+        }
+    }
+
+    fn about(&self) -> &'static str {
+        match self {
+            NoMarker => "no marker at all: the robot senses the number of doors and nothing else",
+            Undirected => "one undirected marker at the start vertex: is it here?",
+            Directional => {
+                "one directional marker at the start vertex: is it here, and which door does it point \
+                 along?"
+            }
+            UndirectedEdge => {
+                "a mark in the middle of the edge faced at the start: was it on the edge just traversed?"
+            }
+            DirectedEdge => {
+                "an arrow in the middle of the edge faced at the start: was it on the edge just \
+                 traversed, and which way did it point?"
+            }
+            TwoIdentical => {
+                "two undirected markers that look alike, at the start vertex and at the other end of \
+                 the edge faced: how many are here?"
+            }
+            TwoDistinct => {
+                "two undirected markers that look different, at the start vertex and at the other end \
+                 of the edge faced: which of them are here?"
+            }
+            Movable => {
+                "one undirected marker, at the start vertex at first, that the robot can pick up, \
+                 carry and drop: is it here?"
+            }
+        }
+    }
+
+    #[inline]
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+        let is_here = |dart| graph.vertex(dart) == graph.vertex(pose);
+        match self {
+            Undirected | Movable if is_here(facing) => Sighting::Lying(1),
+            Directional if is_here(facing) => {
+                let (from, to) = (graph.index(pose), graph.index(facing));
+                Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
+            }
+            UndirectedEdge if ends(graph, facing).contains(&pose) => Sighting::Passed,
+            DirectedEdge if pose == facing => Sighting::PassedAgainst,
+            DirectedEdge if pose == graph.opposite(facing) => Sighting::PassedAlong,
+            TwoIdentical | TwoDistinct => match (self, ends(graph, facing).map(is_here)) {
+                (_, [false, false]) => Sighting::Nothing,
+                (TwoDistinct, [true, false]) => Sighting::First,
+                (TwoDistinct, [false, true]) => Sighting::Second,
+                (TwoDistinct, [true, true]) => Sighting::Both,
+                (_, [one, other]) => Sighting::Lying(u32::from(one) + u32::from(other)),
+            },
+            _ => Sighting::Nothing,
+        }
+    }
+
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {
+        // The first dart of the vertex with the same vertex at its other end.
+        let first_parallel = |dart| {
+            let far = |dart| graph.vertex(graph.opposite(dart));
+            let parallel = |other: &Dart| far(*other) == far(dart);
+            graph.darts_of(graph.vertex(dart)).find(parallel).unwrap_or(dart)
+        };
+        match self {
+            NoMarker => Dart(0),
+            Undirected | Movable => graph.first_dart(graph.vertex(facing)),
+            Directional | DirectedEdge => facing,
+            UndirectedEdge => facing.min(graph.opposite(facing)),
+            TwoDistinct => first_parallel(facing),
+            TwoIdentical => first_parallel(facing).min(first_parallel(graph.opposite(facing))),
+        }
+    }
+
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
+        let mut ends = ends(graph, facing);
+        ends.sort_unstable();
+        match self {
+            NoMarker => graph.darts().collect(),
+            Undirected | TwoDistinct | Movable => graph.darts_of(graph.vertex(facing)).collect(),
+            Directional => vec![facing],
+            UndirectedEdge | DirectedEdge => ends.to_vec(),
+            TwoIdentical => {
+                let mut vertices = ends.map(|end| graph.vertex(end)).to_vec();
+                vertices.dedup();
+                vertices.into_iter().flat_map(|vertex| graph.darts_of(vertex)).collect()
+            }
+        }
+    }
+
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        let [here, there] = ends(graph, facing).map(|end| graph.vertex(end));
+        let at = |vertex, look| MarkerPart::At { vertex, look };
+        match self {
+            NoMarker => vec![],
+            Undirected | Movable => vec![at(here, MarkerLook::One)],
+            Directional => vec![MarkerPart::Pointing(facing)],
+            UndirectedEdge => vec![MarkerPart::OnEdge(facing)],
+            DirectedEdge => vec![MarkerPart::OnEdgeAlong(facing)],
+            TwoIdentical => vec![at(here, MarkerLook::One), at(there, MarkerLook::One)],
+            TwoDistinct => vec![at(here, MarkerLook::One), at(there, MarkerLook::Other)],
+        }
+    }
+
+    fn is_movable(&self) -> bool {
+        matches!(self, Movable)
+    }
+
+    fn is_local(&self) -> bool {
+        matches!(self, NoMarker | Undirected | Directional | Movable)
+    }
+}
+
+impl<M: Marker + ?Sized> Marker for &M {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn about(&self) -> &'static str {
+        (**self).about()
+    }
+
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+        (**self).sighting(graph, facing, pose)
+    }
+
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {
+        (**self).first_alike(graph, facing)
+    }
+
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
+        (**self).starts(graph, facing)
+    }
+
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        (**self).parts(graph, facing)
+    }
+
+    fn is_movable(&self) -> bool {
+        (**self).is_movable()
+    }
+
+    fn is_local(&self) -> bool {
+        (**self).is_local()
+    }
+}
+
+impl fmt::Debug for dyn Marker + '_ {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(self.name())
+    }
+}
+
+impl PartialEq for dyn Marker + '_ {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for dyn Marker + '_ {}
+
+/// The error for a name that no marker has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{0}` is not a marker; the markers are {names}", names = MARKERS.map(Marker::name).join(", "))]
+pub struct UnknownMarker(String);
+
+/// The kind of marker with this name.
+///
+/// # Errors
+/// Returns an error if there is none. The message lists the names of all markers.
+pub fn named(name: &str) -> Result<&'static dyn Marker, UnknownMarker> {
+    let marker = MARKERS.into_iter().find(|marker| marker.name() == name);
+    marker.ok_or_else(|| UnknownMarker(name.to_owned()))
+}
