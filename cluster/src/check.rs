@@ -8,16 +8,7 @@ use toposlam_model::{
     mapping::MappingAlgorithm,
 };
 
-use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
-
-/// The result of a check.
-#[derive(Debug)]
-pub struct ClusterCheck {
-    /// The same as that of one process.
-    pub check: Tally,
-    /// What each thread did; nothing in other processes than the first.
-    pub threads: Vec<ThreadUse>,
-}
+use crate::{ClusterError, ClusterProcess, ThreadUse, dataflow::Job};
 
 struct CheckJob {
     algorithm: MappingAlgorithm,
@@ -41,9 +32,9 @@ impl Job for CheckJob {
 }
 
 impl ClusterProcess {
-    /// Checks an algorithm, as [`SharedPrefixCheck::resume`]. In process 0, `units` has those
-    /// that were finished before, and records others. If the watch stops process 0, its result has what is
-    /// known by then.
+    /// Checks an algorithm, as [`SharedPrefixCheck::resume`], with the same result. In process 0, `units` has those
+    /// that were finished before, and records others; process 0 alone knows what each thread did. If the watch stops
+    /// process 0, its result has what is known by then.
     ///
     /// # Errors
     /// Returns an error if the watch stops another process.
@@ -53,7 +44,7 @@ impl ClusterProcess {
         sweep: &SharedPrefixCheck,
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
-    ) -> Result<ClusterCheck, ClusterError> {
+    ) -> Result<(Tally, Vec<ThreadUse>), ClusterError> {
         let pieces = algorithm.pieces(sweep, watch);
         // The pieces of a watch that stops are not all.
         watch.check_stop().map_err(|_| ClusterError::Interrupted)?;
@@ -88,7 +79,6 @@ impl ClusterProcess {
             }
             shared => shared?,
         };
-        let check = algorithm.finished_pieces(counts);
-        Ok(ClusterCheck { check, threads })
+        Ok((algorithm.finished_pieces(counts), threads))
     }
 }

@@ -17,8 +17,7 @@ use toposlam_model::enumerate::Watch;
 use crate::{
     ConnectError, Hosts, Setting,
     connect::Connector,
-    dataflow::{self, JobEvent, TimelyWorker},
-    job::{Job, JobMessage},
+    dataflow::{self, Job, JobEvent, JobMessage, TimelyWorker},
     loss,
 };
 
@@ -31,13 +30,11 @@ type Command = Box<dyn FnOnce(&mut TimelyWorker) + Send>;
 /// Why a cluster has no result.
 #[derive(Debug, Error)]
 pub enum ClusterError {
-    /// The processes are not connected.
     #[error(transparent)]
     Connect(#[from] ConnectError),
     /// Timely dataflow does not start, or its thread ended.
     #[error("timely dataflow ended: {0}")]
     Ended(String),
-    /// The watch stopped the work.
     #[error("interrupted")]
     Interrupted,
 }
@@ -45,13 +42,10 @@ pub enum ClusterError {
 /// What a thread of a process did.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ThreadUse {
-    /// The process.
     pub process: usize,
     /// The thread in its process, from 0.
     pub thread: usize,
-    /// The tasks that it did.
     pub tasks: u64,
-    /// The time in which it did them, in seconds.
     pub busy_seconds: f64,
     /// The rest of the time from the first task of all to the end of the last, in seconds.
     pub idle_seconds: f64,

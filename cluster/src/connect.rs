@@ -41,31 +41,11 @@ pub type Setting = (String, String);
 pub enum ConnectError {
     /// The address of this process cannot be used.
     #[error("{name}: cannot listen at this address: {cause}")]
-    Listen {
-        /// This process.
-        name: String,
-        /// The cause.
-        cause: io::Error,
-    },
-    /// Another process does other work.
+    Listen { name: String, cause: io::Error },
     #[error("{name} does other work: {setting} is {theirs} there, and {ours} here")]
-    OtherWork {
-        /// The other process.
-        name: String,
-        /// What is different.
-        setting: String,
-        /// Its value there.
-        theirs: String,
-        /// Its value here.
-        ours: String,
-    },
-    /// Some processes did not connect.
+    OtherWork { name: String, setting: String, theirs: String, ours: String },
     #[error("not connected within {} minutes: {}", PATIENCE.as_secs() / 60, names.join(", "))]
-    Missing {
-        /// Those processes.
-        names: Vec<String>,
-    },
-    /// The watch stopped the wait.
+    Missing { names: Vec<String> },
     #[error("interrupted")]
     Interrupted,
 }

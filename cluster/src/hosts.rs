@@ -9,23 +9,10 @@ pub struct Hosts(Vec<String>);
 /// The error for a text that is not a list of addresses.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum HostsError {
-    /// A line is not an address.
     #[error("line {line}: `{text}` is not an address; write host:port")]
-    NotAnAddress {
-        /// The number of the line, from 1.
-        line: usize,
-        /// The line.
-        text: String,
-    },
-    /// Two processes cannot have one address.
+    NotAnAddress { line: usize, text: String },
     #[error("line {line}: {address} is listed twice")]
-    Twice {
-        /// The number of the second line, from 1.
-        line: usize,
-        /// The address.
-        address: String,
-    },
-    /// There is no address.
+    Twice { line: usize, address: String },
     #[error("there is no address; write host:port for each process, one a line")]
     Empty,
 }
@@ -53,7 +40,6 @@ impl Hosts {
         if addresses.is_empty() { Err(HostsError::Empty) } else { Ok(Self(addresses)) }
     }
 
-    /// The number of processes.
     #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
@@ -70,7 +56,6 @@ impl Hosts {
         self.0.get(process).map_or("", String::as_str)
     }
 
-    /// All addresses.
     pub(crate) fn all(&self) -> String {
         self.0.join(" ")
     }

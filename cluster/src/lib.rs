@@ -23,12 +23,9 @@ mod cluster;
 mod connect;
 mod dataflow;
 mod hosts;
-mod job;
 mod loss;
 mod search;
 
-pub use check::ClusterCheck;
 pub use cluster::{ClusterError, ClusterProcess, ThreadUse};
 pub use connect::{ConnectError, Setting};
 pub use hosts::{Hosts, HostsError};
-pub use search::ClusterSearch;

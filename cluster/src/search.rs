@@ -7,16 +7,7 @@ use toposlam_model::{
     enumerate::Watch,
 };
 
-use crate::{ClusterError, ClusterProcess, ThreadUse, job::Job};
-
-/// The result of a search.
-#[derive(Debug)]
-pub struct ClusterSearch {
-    /// In process 0 the same as that of one process. The others have the smallest pair only.
-    pub findings: Result<Findings, Unfinished>,
-    /// What each thread did; nothing in other processes than the first.
-    pub threads: Vec<ThreadUse>,
-}
+use crate::{ClusterError, ClusterProcess, ThreadUse, dataflow::Job};
 
 struct SearchJob {
     search: AmbiguitySearch<'static>,
@@ -47,7 +38,8 @@ impl Job for SearchJob {
 }
 
 impl ClusterProcess {
-    /// Makes a search, as [`AmbiguitySearch::run`], and keeps all pairs or only the smallest.
+    /// Makes a search, as [`AmbiguitySearch::run`], and keeps all pairs or only the smallest. Process 0 alone has all
+    /// findings and what each thread did; the others have the smallest pair.
     ///
     /// # Errors
     /// Returns an error if the watch stops this process.
@@ -56,7 +48,7 @@ impl ClusterProcess {
         search: &AmbiguitySearch<'static>,
         kept: KeptPairs,
         watch: &dyn Watch,
-    ) -> Result<ClusterSearch, ClusterError> {
+    ) -> Result<(Result<Findings, Unfinished>, Vec<ThreadUse>), ClusterError> {
         let job = Arc::new(SearchJob { search: search.clone(), parts: search.parts(), kept });
         let parts = &job.parts;
         watch.parts(if self.is_first() { parts.len() } else { 0 });
@@ -74,8 +66,7 @@ impl ClusterProcess {
         }
         let smallest = findings.clone().map(Findings::into_smallest);
         let shared = self.share(self.is_first().then_some(smallest), watch)?;
-        let findings = if self.is_first() { findings } else { shared };
-        Ok(ClusterSearch { findings, threads: end.threads })
+        Ok((if self.is_first() { findings } else { shared }, end.threads))
     }
 }
 

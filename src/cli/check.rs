@@ -10,6 +10,7 @@ mod report;
 use std::{
     collections::BTreeMap,
     io::Write,
+    ops::ControlFlow,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -17,7 +18,7 @@ use std::{
 use toposlam_model::{
     check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
-    enumerate::{Class, Watch},
+    enumerate::{Class, Each, Enumeration, Watch},
     format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
     marker::{self, Marker},
@@ -26,11 +27,12 @@ use toposlam_model::{
 use super::{
     ChoicesOption, CliError, Outcome, RunChoices,
     ci_report::{CiCase, CiOptions},
-    cluster::{ClusterOptions, ClusterSession, LostEnd, SharedOutput},
+    cluster::{ClusterOptions, ClusterSession, SharedOutput},
     edge_range::EdgeRange,
     exit_codes::help_end,
     input,
-    mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
+    mapping_marker::{algorithm_for, check_worlds, mapping_marker, movable_not_sufficient},
+    method_options::algorithms,
     output,
     progress::Progress,
     text::counted,
@@ -38,10 +40,9 @@ use super::{
     version::version,
 };
 use estimate::EstimateOptions;
-use explorer::ExplorerOptions;
+use explorer::{ExplorerOptions, ExplorerSweep};
 use journal::{CheckJournal, JournalHeader};
-use line::SizeResult;
-use line::{AlgorithmInfo, SizeLine};
+use line::SizeLine;
 use report::CheckReport;
 
 /// Run Algorithm 1 on every start of every world up to a size, and check every map
@@ -103,8 +104,8 @@ pub(super) struct CheckArguments {
     marker: &'static dyn Marker,
 
     /// The algorithm that maps with the directional marker: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
+    algorithm: MappingAlgorithm,
 
     /// Runs from each start: default, or all that the open choices of Algorithm 1 allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
@@ -189,65 +190,97 @@ const NOT_ADDED: [&str; 15] = [
 /// `--process` excludes them, too.
 const NOT_SHARED: [&str; 5] = ["shard", "from", "explorer", "estimate", "choices"];
 
-/// Parses the name of a kind of marker.
+/// Parses the name of a kind of marker. For a name that no marker has, the error lists those of the algorithms.
 fn marker_kind(name: &str) -> Result<&'static dyn Marker, String> {
-    // For a name that no marker has, the error lists the markers of the algorithms.
-    marker::named(name).map_err(|_| name.parse::<MappingMarker>().err().unwrap_or_default())
+    marker::named(name).or_else(|_| mapping_marker(name))
+}
+
+/// What maps the worlds.
+enum Mapper<'a> {
+    Algorithm(MappingAlgorithm, RunChoices),
+    Explorer(ExplorerSweep<'a>),
 }
 
 /// What is checked for one number of edges.
 enum Work {
     /// Runs share their beginnings.
-    Lazy(Box<SharedPrefixCheck>),
+    Shared(Box<SharedPrefixCheck>),
     /// All choices.
-    Check(Check),
-    Worlds(Vec<EmbeddedGraph>),
+    All(Check),
+    Enumerated(Enumeration),
+    Listed(Vec<EmbeddedGraph>),
 }
 
 impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let choice = self.choices.with_budget(self.max_states)?;
+        let choices = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.ci.check_places()?;
         if self.add {
             return self.add_shards(out);
         }
-        if self.explorer.is_given() {
-            return self.check_explorer(out);
-        }
-        let algorithm = self.algorithm.with(self.mapping_marker()?, choice)?;
+        let mapper = match &self.explorer.explorer {
+            Some(command) => {
+                let (options, marker) = (&self.explorer, self.marker);
+                Mapper::Explorer(ExplorerSweep { command, options, marker })
+            }
+            None => {
+                let algorithm = algorithm_for(self.algorithm, self.marker, choices)?;
+                Mapper::Algorithm(algorithm, choices)
+            }
+        };
         let work = match &self.from {
-            Some(path) => self.worlds_by_size(path)?,
-            None => self.sweeps()?,
+            Some(path) => self.listed(path)?,
+            None => {
+                self.edges.iter().map(|edges| self.enumerated(edges)).collect::<Result<_, _>>()?
+            }
         };
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
-        if self.estimate.estimate {
-            return self.print_estimates(&work, algorithm, out);
+        match mapper {
+            Mapper::Algorithm(algorithm, _) if self.estimate.estimate => {
+                self.print_estimates(&work, algorithm, out)
+            }
+            mapper => self.check(&mapper, work, out),
         }
-        let mut cluster = self.join_cluster(algorithm)?;
-        let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
-        let out = &mut SharedOutput::new(out, cluster.as_ref());
+    }
+
+    /// Checks each size until a map is wrong.
+    fn check(
+        &self,
+        mapper: &Mapper,
+        work: BTreeMap<usize, Work>,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
+        let mut cluster = self.join_cluster()?;
+        let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());
+        let out = &mut SharedOutput::new(out, is_first);
         let start = Instant::now();
-        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
+        let order = match mapper {
+            Mapper::Algorithm(algorithm, _) => Some(algorithm.info().order),
+            Mapper::Explorer(_) => None,
+        };
+        let mut report = CheckReport::new(out, self.json, order);
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
-        let mut is_done = true;
+        let (mut is_done, mut all_mapped) = (true, true);
         for (edges, work) in sizes.by_ref() {
-            let (tally, moves_made) =
-                self.check(edges, &work, (algorithm, choice), cluster.as_mut())?;
-            let line = report.line(&self.result(edges, &tally, moves_made));
+            let line = SizeLine::new(edges, self.class(), self.from.as_deref(), self.marker);
+            let (line, of_size) = self.check_size(line, &work, mapper, cluster.as_mut())?;
+            is_done = !line.interrupted;
+            all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
             cases.push(line.ci_case());
             report.size(line)?;
             if let Some(cluster) = &mut cluster {
                 report.threads(cluster, &counted(edges, "edge"))?;
             }
-            let (failed, interrupted) = (tally.failed() > 0, tally.interrupted);
-            keep_worse(&mut worst, tally.worst);
-            is_done = !interrupted;
-            if interrupted || (failed && !self.keep_going) {
+            let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
+            if moves(&of_size) > moves(&worst) {
+                worst = of_size;
+            }
+            if !is_done || (!all_mapped && !self.keep_going) {
                 break;
             }
         }
@@ -258,13 +291,16 @@ impl CheckArguments {
         if !is_first {
             return Ok(outcome);
         }
-        if outcome == Outcome::Violated {
-            let (tally, subject) = (Tally::default(), AlgorithmInfo::of(algorithm));
-            let name = |(edges, _)| {
-                let result = self.result(edges, &tally, None);
-                SizeLine::new(&result, subject, RunChoices::Default).name()
-            };
-            self.add_not_checked(&mut cases, sizes.map(name));
+        if !all_mapped {
+            let names = sizes.map(|(edges, _)| {
+                let line = SizeLine::new(edges, self.class(), self.from.as_deref(), self.marker);
+                SizeLine { shard: self.named_shard(), ..line }.name()
+            });
+            let checked = cases.len();
+            CiCase::add_not_checked(&mut cases, names, self.from.as_deref());
+            if cases.len() > checked {
+                remark!("worlds with more edges are not checked; --keep-going checks them");
+            }
         }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
@@ -274,108 +310,96 @@ impl CheckArguments {
     }
 
     /// Connects to the other processes, if there are others.
-    fn join_cluster(
-        &self,
-        algorithm: MappingAlgorithm,
-    ) -> Result<Option<ClusterSession>, CliError> {
-        let sizes = self.edges.iter();
+    fn join_cluster(&self) -> Result<Option<Box<dyn ClusterSession>>, CliError> {
+        let algorithm = algorithm_for(self.algorithm, self.marker, RunChoices::Default);
         let settings = [
             ("the command", "check".to_owned()),
             ("the class", self.class().name().to_owned()),
-            ("the number of edges", format!("{sizes:?}")),
-            ("the marker", algorithm.marker().name().to_owned()),
-            ("the algorithm", algorithm.info().title.to_owned()),
+            ("the number of edges", format!("{:?}", self.edges.iter())),
+            ("the marker", self.marker.name().to_owned()),
+            ("the algorithm", algorithm.map_or("", |algorithm| algorithm.info().title).to_owned()),
             ("--keep-going", self.keep_going.to_string()),
         ];
-        let end = if self.journal.is_some() { LostEnd::Journal } else { LostEnd::Nothing };
-        self.cluster.connect(&settings, end)
+        let journal = "; with the same --journal, it goes on from there";
+        self.cluster.connect(&settings, if self.journal.is_some() { journal } else { "" })
     }
 
-    /// Adds the sizes after the last one, by their names, for CI systems.
-    fn add_not_checked(&self, cases: &mut Vec<CiCase>, names: impl Iterator<Item = String>) {
-        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
-        let file = self.from.as_deref().map(Path::to_owned);
-        let checked = cases.len();
-        cases.extend(names.map(|name| CiCase::not_checked(name, &after, file.clone())));
-        if cases.len() > checked {
-            remark!("worlds with more edges are not checked; --keep-going checks them");
-        }
-    }
-
-    fn result<'t>(
-        &'t self,
-        edges: usize,
-        tally: &'t Tally,
-        moves_made: Option<u64>,
-    ) -> SizeResult<'t> {
-        let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
-        SizeResult { edges, class, from, shard, tally, moves_made }
-    }
-
-    /// Checks the starts with a number of edges. Returns the moves that were made, if runs shared some.
-    fn check(
+    /// Checks the starts with a number of edges. Returns the line with their counts, and the start that took the most
+    /// moves.
+    fn check_size(
         &self,
-        edges: usize,
+        line: SizeLine,
         work: &Work,
-        (algorithm, choices): (MappingAlgorithm, RunChoices),
-        cluster: Option<&mut ClusterSession>,
-    ) -> Result<(Tally, Option<u64>), CliError> {
-        let progress = Progress::new(&counted(edges, "edge"), "starts")?;
-        let is_first = cluster.as_deref().is_none_or(ClusterSession::is_first);
-        let journal = match (&self.journal, work) {
-            (Some(folder), Work::Lazy(sweep)) if is_first => {
-                let header = self.journal_header(edges, sweep, algorithm);
-                Some(CheckJournal::open(folder, &header)?)
+        mapper: &Mapper,
+        cluster: Option<&mut Box<dyn ClusterSession>>,
+    ) -> Result<(SizeLine, Option<WorstStart>), CliError> {
+        let name = counted(line.edges, "edge");
+        let (algorithm, choices) = match mapper {
+            Mapper::Algorithm(algorithm, choices) => (*algorithm, *choices),
+            Mapper::Explorer(sweep) => {
+                let progress = Progress::endless(&name, "starts")?;
+                let tally = sweep.run(work, &progress);
+                progress.finish();
+                let tally = tally?;
+                return Ok((tally.line(line, &sweep.command.text), tally.counts.worst));
             }
-            _ => None,
         };
-        if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
-            remark!(
-                "{}: {} of the work finished before",
-                counted(edges, "edge"),
-                counted(before, "unit")
-            );
-        }
-        let (units, watched): (&dyn FinishedUnits, _) = match &journal {
-            Some(journal) => (journal, Some(journal.watch(&progress))),
-            None => (&(), None),
-        };
-        let watch: &dyn Watch = watched.as_ref().map_or(&progress, |watched| watched);
-        let checked = match (work, cluster) {
-            (Work::Lazy(sweep), cluster) => {
-                let tally = match cluster {
-                    Some(cluster) => cluster.check(algorithm, sweep, units, watch)?,
-                    None => algorithm.lazy_sweep(sweep, units, watch),
-                };
+        let progress = Progress::new(&name, "starts")?;
+        let (tally, moves_made) = match work {
+            Work::Shared(sweep) => {
+                let tally = self.check_shared(line.edges, sweep, algorithm, cluster, &progress)?;
                 let moves_made = tally.moves_made;
                 (tally, Some(moves_made))
             }
-            (Work::Worlds(graphs), _) => (algorithm.check_worlds(graphs, choices, &progress), None),
-            (Work::Check(sweep), _) => (algorithm.sweep(sweep, choices, &progress), None),
+            Work::Listed(graphs) => (algorithm.check_worlds(graphs, choices, &progress), None),
+            Work::All(sweep) => (algorithm.sweep(sweep, choices, &progress), None),
+            // It is for explorers.
+            Work::Enumerated(_) => (Tally::default(), None),
         };
         progress.finish();
-        if let Some(journal) = journal {
-            journal.close()?;
-        }
-        Ok(checked)
+        let line = line.of_algorithm((algorithm, choices), self.shard, &tally, moves_made);
+        Ok((line, tally.worst))
     }
 
-    fn journal_header(
+    /// Checks starts whose runs share their beginnings, with a journal if one is asked for.
+    fn check_shared(
         &self,
         edges: usize,
         sweep: &SharedPrefixCheck,
         algorithm: MappingAlgorithm,
-    ) -> JournalHeader {
-        JournalHeader {
-            journal: JournalHeader::FORMAT,
-            version: version().to_owned(),
-            class: self.class().name().to_owned(),
-            edges,
-            marker: algorithm.marker().name().to_owned(),
-            algorithm: algorithm.info().title.to_owned(),
-            shard: self.shard.to_string(),
-            units: algorithm.unit_count(sweep),
+        cluster: Option<&mut Box<dyn ClusterSession>>,
+        progress: &Progress,
+    ) -> Result<Tally, CliError> {
+        let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());
+        let journal = match self.journal.as_ref().filter(|_| is_first) {
+            Some(folder) => {
+                let header = JournalHeader {
+                    journal: JournalHeader::FORMAT,
+                    version: version().to_owned(),
+                    class: self.class().name().to_owned(),
+                    edges,
+                    marker: algorithm.marker().name().to_owned(),
+                    algorithm: algorithm.info().title.to_owned(),
+                    shard: self.shard.to_string(),
+                    units: algorithm.unit_count(sweep),
+                };
+                Some(CheckJournal::open(folder, &header)?)
+            }
+            None => None,
+        };
+        if let Some(before @ 1..) = journal.as_ref().map(CheckJournal::finished_before) {
+            let (size, units) = (counted(edges, "edge"), counted(before, "unit"));
+            remark!("{size}: {units} of the work finished before");
         }
+        let watched = journal.as_ref().map(|journal| journal.watch(progress));
+        let units: &dyn FinishedUnits = journal.as_ref().map_or(&(), |journal| journal);
+        let watch: &dyn Watch = watched.as_ref().map_or(progress, |watched| watched);
+        let tally = match cluster {
+            Some(cluster) => cluster.check(algorithm, sweep, units, watch)?,
+            None => algorithm.lazy_sweep(sweep, units, watch),
+        };
+        journal.map_or(Ok(()), CheckJournal::close)?;
+        Ok(tally)
     }
 
     /// Prints what the checks will take.
@@ -387,9 +411,7 @@ impl CheckArguments {
     ) -> Result<Outcome, CliError> {
         let mut outcome = Outcome::Holds;
         for (&edges, work) in work {
-            let Work::Lazy(sweep) = work else {
-                return Err(needs_default_choices("--estimate"));
-            };
+            let Work::Shared(sweep) = work else { continue };
             let progress = Progress::new(&counted(edges, "edge"), "starts")?;
             let printed =
                 self.estimate.print((edges, sweep), algorithm, self.json, &progress, out)?;
@@ -406,37 +428,40 @@ impl CheckArguments {
         self.class.unwrap_or(usual)
     }
 
-    /// The marker of an algorithm.
-    fn mapping_marker(&self) -> Result<MappingMarker, CliError> {
-        self.marker.name().parse().map_err(|cause| CliError::at("--marker", cause))
+    /// The share of the starts, if it is not the whole.
+    fn named_shard(&self) -> Option<String> {
+        (self.shard != Shard::WHOLE).then(|| self.shard.to_string())
     }
 
-    /// A sweep for each number of edges.
-    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, CliError> {
+    /// The worlds with a number of edges.
+    fn enumerated(&self, edges: usize) -> Result<(usize, Work), CliError> {
         let class = self.class();
-        if self.marker.is_movable() && !class.is_simple() {
-            return Err(CliError::at("--class", movable_not_sufficient(format!("class {class}"))));
-        }
-        let sweep = |edges| {
-            let work = match self.choices {
-                ChoicesOption::Default => SharedPrefixCheck::new(class, edges, self.shard)
-                    .map(|lazy| Work::Lazy(Box::new(lazy))),
-                ChoicesOption::All => Check::new(class, edges, self.shard).map(Work::Check),
-            };
-            Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
+        let work = match self.choices {
+            _ if self.explorer.explorer.is_some() => {
+                Enumeration::new(Each::World, class, edges).map(Work::Enumerated)
+            }
+            _ if self.marker.is_movable() && !class.is_simple() => {
+                let cause = movable_not_sufficient(format!("class {class}"));
+                return Err(CliError::at("--class", cause));
+            }
+            ChoicesOption::Default => SharedPrefixCheck::new(class, edges, self.shard)
+                .map(|sweep| Work::Shared(Box::new(sweep))),
+            ChoicesOption::All => Check::new(class, edges, self.shard).map(Work::All),
         };
-        self.edges.iter().map(sweep).collect()
+        Ok((edges, work.map_err(|error| CliError::at("--edges", error))?))
     }
 
     /// The worlds of a file, by their number of edges.
-    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
+    fn listed(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
         let graphs = input::read_graphs(path)?;
-        self.mapping_marker()?.check_worlds(path, &graphs)?;
+        if self.explorer.explorer.is_none() {
+            check_worlds(self.marker, path, &graphs)?;
+        }
         let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
         for graph in graphs {
             sizes.entry(graph.edge_count()).or_default().push(graph);
         }
-        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
+        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Listed(graphs))).collect())
     }
 }
 
@@ -444,22 +469,24 @@ impl Work {
     /// Whether no world has a loop or parallel edges.
     fn is_simple(&self) -> bool {
         match self {
-            Self::Lazy(sweep) => sweep.class().is_simple(),
-            Self::Check(sweep) => sweep.class().is_simple(),
-            Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
+            Self::Shared(sweep) => sweep.class().is_simple(),
+            Self::All(sweep) => sweep.class().is_simple(),
+            Self::Enumerated(worlds) => worlds.class().is_simple(),
+            Self::Listed(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }
-}
 
-/// The error for work whose runs cannot share their beginnings.
-fn needs_default_choices(option: &str) -> CliError {
-    CliError::at(option, "this needs --choices default")
-}
-
-fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
-    let moves = |start: &Option<WorstStart>| start.as_ref().map(|start| start.moves);
-    if moves(&other) > moves(worst) {
-        *worst = other;
+    /// Visits the worlds for an explorer.
+    fn for_each_world(
+        &self,
+        visit: &mut dyn FnMut(&EmbeddedGraph) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        match self {
+            Self::Enumerated(worlds) => worlds.for_each(&mut |found| visit(found.graph)),
+            Self::Listed(graphs) => graphs.iter().try_for_each(visit),
+            // They are for algorithms.
+            Self::Shared(_) | Self::All(_) => ControlFlow::Continue(()),
+        }
     }
 }
 

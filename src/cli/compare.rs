@@ -12,6 +12,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     isomorphism::{Bijection, Difference, isomorphism, mirror_isomorphism},
     marker::{self, Marker},
+    world::Action,
 };
 
 use super::{
@@ -24,7 +25,6 @@ use super::{
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
 };
-use joint_walk::ActionList;
 use robot_comparison::RobotComparison;
 
 /// Compare two worlds: are they isomorphic, and can a robot with a marker distinguish them?
@@ -74,8 +74,14 @@ pub(super) struct CompareArguments {
     smooth_corners: bool,
 
     /// Print the percepts of a walk in both worlds: doors, pick-up and drop, separated by commas
-    #[arg(long, value_name = "ACTIONS")]
-    walk: Option<ActionList>,
+    #[arg(
+        long,
+        value_name = "ACTIONS",
+        num_args = 0..=1,
+        value_delimiter = ',',
+        value_parser = |action: &str| action.trim().parse::<Action>()
+    )]
+    walk: Option<Vec<Action>>,
 
     /// Write a page on which a person walks both worlds at once
     #[arg(long, value_name = "FILE")]
@@ -129,13 +135,9 @@ impl CompareArguments {
             mirror: mirror_isomorphism(&worlds[0].graph, &worlds[1].graph).is_some(),
         };
         if self.json {
-            let mut line = graphs.json();
-            line.extend(
-                robots
-                    .as_ref()
-                    .map_or_else(robot_comparison::no_robots_json, RobotComparison::json),
-            );
-            line.extend(walk.as_ref().map(|walk| ("walked".to_owned(), walk.json())));
+            let mut line = fields(graphs.json());
+            line.extend(robots.iter().flat_map(|robots| fields(robots.json())));
+            line.extend(walk.map(|walk| ("walked".to_owned(), json!(walk))));
             print_line(out, "comparison", &line)?;
         } else {
             graphs.print(out)?;
@@ -179,6 +181,11 @@ impl CompareArguments {
     }
 }
 
+/// The fields of an object.
+fn fields(object: Value) -> Map<String, Value> {
+    if let Value::Object(fields) = object { fields } else { Map::new() }
+}
+
 /// What differs first, and how much of it A and B have.
 fn differing(difference: &Difference) -> Value {
     let (what, counts, degree) = match *difference {
@@ -194,15 +201,20 @@ fn differing(difference: &Difference) -> Value {
 }
 
 impl GraphComparison<'_> {
-    fn json(&self) -> Map<String, Value> {
-        let line = json!({
-            "isomorphic": self.same.is_ok(),
+    /// The object without robots.
+    fn json(&self) -> Value {
+        let (same, difference) = (self.same.as_ref().ok(), self.same.as_ref().err());
+        json!({
+            "isomorphic": same.is_some(),
             "mirror": self.mirror,
-            "bijection": self.same.as_ref().ok().map(|same| self.pairs(same).collect::<Vec<_>>()),
-            "difference": self.same.as_ref().err().map(ToString::to_string),
-            "differing": self.same.as_ref().err().map(differing),
-        });
-        line.as_object().cloned().unwrap_or_default()
+            "bijection": same.map(|same| self.pairs(same).collect::<Vec<_>>()),
+            "difference": difference.map(ToString::to_string),
+            "differing": difference.map(differing),
+            "marker": null,
+            "distinguishable": null,
+            "walk": null,
+            "relation": null,
+        })
     }
 
     fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {

@@ -20,7 +20,10 @@ use toposlam_conform::{
     ConformReports, ConformVerdict, DoorChooser, Evidence, LogReport, Quirks, RequiredCoverage,
     RobotStart, UnreadLog, case_names, words,
 };
-use toposlam_model::{enumerate::Class, folding::WorldSearch, format::named_world::NamedWorld};
+use toposlam_model::{
+    enumerate::Class, folding::WorldSearch, format::named_world::NamedWorld,
+    mapping::MappingAlgorithm,
+};
 
 use super::{
     CliError, Outcome,
@@ -29,7 +32,7 @@ use super::{
     input,
     json::{print_line, print_unread},
     laser_options::LaserOptions,
-    mapping_marker::AlgorithmOption,
+    method_options::algorithms,
     open_log::LogOptions,
     outcome::SeveralInputs,
     output,
@@ -102,8 +105,8 @@ pub(super) struct ConformArguments {
     #[arg(long, value_enum, default_value = "algorithm", value_name = "WHO")]
     driver: DriverOption,
     /// The algorithm that chose the doors: algorithm1 or folding [default: from the log, or else algorithm1]
-    #[arg(long, hide_possible_values = true)]
-    algorithm: Option<AlgorithmOption>,
+    #[arg(long, hide_possible_values = true, value_parser = algorithms())]
+    algorithm: Option<MappingAlgorithm>,
     /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
@@ -370,9 +373,9 @@ fn ci_case(path: &Path, outcome: Outcome, message: String) -> CiCase {
 
 impl DriverOption {
     /// What chose the doors: this algorithm, or else that of the log, or anyone.
-    fn chooser(self, algorithm: Option<AlgorithmOption>) -> DoorChooser {
+    fn chooser(self, algorithm: Option<MappingAlgorithm>) -> DoorChooser {
         match self {
-            Self::Algorithm => DoorChooser::Algorithm(algorithm.map(AlgorithmOption::directional)),
+            Self::Algorithm => DoorChooser::Algorithm(algorithm),
             Self::Anyone => DoorChooser::Anyone,
         }
     }

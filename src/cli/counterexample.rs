@@ -9,7 +9,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::{AmbiguitySearch, KeptPairs, SearchError, Unfinished},
+    ambiguity::{AmbiguitySearch, Findings, KeptPairs, SearchError, Unfinished},
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
@@ -17,7 +17,7 @@ use toposlam_model::{
 use super::{
     CliError, Outcome,
     ci_report::{CiCase, CiOptions},
-    cluster::{ClusterOptions, ClusterSession, LostEnd, SharedOutput},
+    cluster::{ClusterOptions, ClusterSession, SharedOutput},
     exit_codes::help_end,
     marker_kinds, output,
     progress::Progress,
@@ -54,6 +54,11 @@ The smallest pair is the one whose larger world is smallest. A world is ambiguou
         (3, "interrupted, or the connection to another process is lost"),
     ],
 ))]
+#[command(mut_args(|option| match option.get_id().as_str() {
+    // Clap does not ask for `--expect` where it cannot be given.
+    "junit" | "sarif" => option.requires("expect").conflicts_with("atlas"),
+    _ => option,
+}))]
 pub(super) struct CounterexampleArguments {
     /// Kind of marker (repeatable) [default: every kind]
     #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
@@ -126,9 +131,6 @@ enum Expectation {
 impl CounterexampleArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
-        if self.expect.is_none() {
-            self.ci.check_unused("this needs --expect none")?;
-        }
         self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
             return atlas::write(folder, self.max_edges, self.memory);
@@ -137,81 +139,74 @@ impl CounterexampleArguments {
         // Each marker once, in the order of the list.
         let wanted =
             |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
-        let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
         let search = |marker| {
             let search = AmbiguitySearch::new(self.class, edges, marker);
-            search.map_err(|error| CliError::at("--max-edges", error))
+            Ok((marker, search.map_err(|error| CliError::at("--max-edges", error))?))
         };
-        let searches: Vec<_> =
-            markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
+        let searches = MARKERS.into_iter().filter(wanted).map(search);
+        let searches: Vec<(&dyn Marker, _)> = searches.collect::<Result<_, CliError>>()?;
         if let Some(path) = &self.html {
             walk_page::check_place(path)?;
             if searches.len() != 1 {
-                return Err(CliError::at(
-                    "--html",
-                    "a page shows one marker; choose it with --marker",
-                ));
+                let cause = "a page shows one marker; choose it with --marker";
+                return Err(CliError::at("--html", cause));
             }
         }
-        let mut cluster = self.join_cluster(&markers, edges)?;
-        let is_first = cluster.as_ref().is_none_or(ClusterSession::is_first);
-        if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
+        let mut cluster = self.join_cluster(searches.iter().map(|(marker, _)| *marker), edges)?;
+        let is_first = cluster.as_ref().is_none_or(|cluster| cluster.is_first());
+        let folder = self.out_dir.as_ref().filter(|_| is_first);
+        if let Some(folder) = folder {
             output::make_folder(folder)?;
         }
-        let out = &mut SharedOutput::new(out, cluster.as_ref());
+        let out = &mut SharedOutput::new(out, is_first);
         let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
         let mut cases = Vec::new();
-        for (search, &marker) in searches.iter().zip(&markers) {
+        let mut left = searches.iter();
+        for (marker, search) in left.by_ref() {
             let progress = Progress::new(marker.name(), "placed worlds")?;
             let kept = if self.all { KeptPairs::All } else { KeptPairs::Smallest };
             let findings = match &mut cluster {
-                None => search.run_sorted(memory::sorter(self.memory, search)?, kept, &progress),
-                Some(cluster) => {
-                    cluster.search(search, kept, &progress)?.map_err(SearchError::from)
-                }
+                None => run_search(search, self.memory, kept, &progress)?,
+                Some(cluster) => cluster.search(search, kept, &progress)?,
             };
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(SearchError::Sorter(cause)) => return Err(CliError::at("--memory", cause)),
-                Err(SearchError::Unfinished(unfinished)) => {
-                    cases.push(self.ci_case(marker, edges, Err(&unfinished)));
+                Err(unfinished) => {
+                    cases.push(self.ci_case(*marker, edges, Err(&unfinished)));
                     if is_first {
                         self.ci.write("counterexample", &cases)?;
                     }
                     return pairs::report_unfinished(&unfinished);
                 }
             };
-            let found = WorldPairs::new(marker, self.class, &findings, self.all);
-            report.marker(marker, &findings, &found)?;
-            if let Some(cluster) = &mut cluster {
-                report.threads(cluster, marker)?;
-            }
-            if let Some(folder) = self.out_dir.as_ref().filter(|_| is_first) {
+            let found = WorldPairs::new(*marker, self.class, &findings, self.all);
+            if let Some(folder) = folder {
                 found.write(folder)?;
             }
             if let Some(path) = self.html.as_ref().filter(|_| is_first) {
-                found.write_page(path, marker)?;
+                found.write_page(path, *marker)?;
             }
-            cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
-            if self.expect == Some(Expectation::None) && !found.pairs().is_empty() {
+            let pairs = found.pairs().len();
+            report.marker(*marker, &findings, found)?;
+            if let Some(cluster) = &mut cluster {
+                report.threads(cluster, *marker)?;
+            }
+            cases.push(self.ci_case(*marker, edges, Ok(pairs)));
+            if self.expect == Some(Expectation::None) && pairs > 0 {
                 outcome = Outcome::Violated;
                 if !self.keep_going {
                     break;
                 }
             }
         }
-        let others = markers.iter().skip(cases.len());
-        let others: Vec<_> = others.map(|&marker| self.case_name(marker, edges)).collect();
+        let others: Vec<_> = left.map(|(marker, _)| self.case_name(*marker, edges)).collect();
         if !others.is_empty() {
-            remark!(
-                "{} not searched; --keep-going searches with all markers",
-                counted(others.len(), "marker")
-            );
+            let count = counted(others.len(), "marker");
+            remark!("{count} not searched; --keep-going searches with all markers");
         }
-        let after = cases.last().map(|case| case.name.clone()).unwrap_or_default();
-        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, &after, None)));
+        CiCase::add_not_checked(&mut cases, others.into_iter(), None);
         report.end()?;
         if let Some(cluster) = cluster {
             cluster.close();
@@ -223,22 +218,22 @@ impl CounterexampleArguments {
     }
 
     /// Connects to the other processes, if there are others.
-    fn join_cluster(
+    fn join_cluster<'m>(
         &self,
-        markers: &[&dyn Marker],
+        markers: impl Iterator<Item = &'m dyn Marker>,
         edges: usize,
-    ) -> Result<Option<ClusterSession>, CliError> {
-        let markers = markers.iter().fold(String::new(), |all, marker| all + marker.name() + " ");
+    ) -> Result<Option<Box<dyn ClusterSession>>, CliError> {
+        let markers: Vec<_> = markers.map(Marker::name).collect();
         let settings = [
             ("the command", "counterexample".to_owned()),
             ("the class", self.class.name().to_owned()),
             ("--max-edges", edges.to_string()),
-            ("the markers", markers.trim_end().to_owned()),
+            ("the markers", markers.join(" ")),
             ("--all", self.all.to_string()),
             ("--expect", format!("{:?}", self.expect)),
             ("--keep-going", self.keep_going.to_string()),
         ];
-        self.cluster.connect(&settings, LostEnd::Nothing)
+        self.cluster.connect(&settings, "")
     }
 
     /// The result for a marker, for CI systems.
@@ -258,6 +253,20 @@ impl CounterexampleArguments {
 
     fn case_name(&self, marker: &dyn Marker, edges: usize) -> String {
         format!("{}, class {}, {}", marker.name(), self.class, up_to(edges))
+    }
+}
+
+/// Searches on this machine, in a memory.
+fn run_search(
+    search: &AmbiguitySearch,
+    memory: Option<MemoryLimit>,
+    kept: KeptPairs,
+    progress: &Progress,
+) -> Result<Result<Findings, Unfinished>, CliError> {
+    match search.run_sorted(memory::sorter(memory, search)?, kept, progress) {
+        Ok(findings) => Ok(Ok(findings)),
+        Err(SearchError::Sorter(cause)) => Err(CliError::at("--memory", cause)),
+        Err(SearchError::Unfinished(unfinished)) => Ok(Err(unfinished)),
     }
 }
 

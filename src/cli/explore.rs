@@ -1,30 +1,29 @@
 //! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
-mod certificate;
-mod doors_writer;
-mod explored_world;
-mod result;
-mod run_printer;
+mod report;
 mod summary;
 
 use std::{
     io::{self, Write},
     path::PathBuf,
-    slice,
 };
 
+use serde_json::Value;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingMethod},
+    mapping::{DEFAULT_DART_BOUND, MappingAlgorithm, MappingEvent, MappingMethod, Observer},
+    marker::Marker,
 };
 
 use super::{
     ChoicesOption, CliError, Outcome, RunChoices,
+    certificate_cost::CertificateCost,
     exit_codes::help_end,
     input,
-    mapping_marker::{AlgorithmOption, MappingMarker},
-    method_options::AuditOption,
+    json::action_json,
+    mapping_marker::{algorithm_for, check_worlds, is_directional, mapping_marker},
+    method_options::{AuditOption, algorithms},
     output,
     progress::{StopSignal, watch_for_interrupt},
     text::print_paragraph,
@@ -33,11 +32,7 @@ use crate::{
     picture::{self, WorldPicture},
     story::{PrintedStory, Story, StoryDetail, head},
 };
-use certificate::CertificateOfStart;
-use doors_writer::DoorsWriter;
-use explored_world::ExploredWorld;
-use result::ExploreResult;
-use run_printer::RunPrinter;
+use report::ExploredWorld;
 use summary::Summary;
 
 /// Map one world and print the story: each door, percept and hypothesis, and the map
@@ -86,12 +81,12 @@ pub(super) struct ExploreArguments {
     start: Option<String>,
 
     /// The algorithm that maps with the directional marker: algorithm1 or folding
-    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
-    algorithm: AlgorithmOption,
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true, value_parser = algorithms())]
+    algorithm: MappingAlgorithm,
 
     /// The robot's marker: directional or movable
-    #[arg(long, default_value = "directional")]
-    marker: MappingMarker,
+    #[arg(long, default_value = "directional", value_parser = mapping_marker)]
+    marker: &'static dyn Marker,
 
     /// Runs: default, or all to also try every choice that Algorithm 1 leaves open
     #[arg(long, default_value = "default", hide_possible_values = true)]
@@ -145,6 +140,16 @@ pub(super) struct ExploreArguments {
 /// The most vertices of a world whose run is printed round by round unless --story or --summary is given.
 const STORY_VERTICES: usize = 25;
 
+/// What is printed of a run.
+enum RunPrinter<'o, W: Write> {
+    /// Doors, pick-ups and drops, as JSON.
+    Doors(Vec<Value>),
+    /// Counts, at the end.
+    Summary(Summary),
+    /// Each round.
+    Story(Box<PrintedStory<&'o mut W>>),
+}
+
 impl ExploreArguments {
     /// Whether the run is summarised.
     fn summarises(&self, world: &NamedWorld) -> bool {
@@ -155,7 +160,7 @@ impl ExploreArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
         let world = input::read_world(&self.world)?;
-        self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
+        check_worlds(self.marker, &self.world, std::slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
         if let Some(map) = &self.map {
             output::check_world_place(map, world.graph.is_simple())?;
@@ -166,90 +171,82 @@ impl ExploreArguments {
         let of_directional =
             [("--certificate", self.certificate), ("--audit", self.audit.audits().is_some())];
         for (option, is_given) in of_directional {
-            if is_given && self.marker != MappingMarker::Directional {
+            if is_given && !is_directional(self.marker) {
                 return Err(CliError::at(option, "needs --marker directional"));
             }
         }
-        let choice = self.choices.with_budget(self.max_states)?;
-        let chosen = self.algorithm.with(self.marker, choice)?;
-        self.explore((chosen, choice), &world, facing, out)
+        let choices = self.choices.with_budget(self.max_states)?;
+        let algorithm = algorithm_for(self.algorithm, self.marker, choices)?;
+        self.explore((algorithm, choices), &world, facing, out)
     }
 
     fn explore(
         &self,
-        (chosen, choice): (MappingAlgorithm, RunChoices),
+        (algorithm, choices): (MappingAlgorithm, RunChoices),
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
         let mut out = io::BufWriter::new(out);
-        let mut printer = self.printer(&mut out, world, facing)?;
-        let method =
-            MappingMethod::By { algorithm: chosen, audits: self.audit.audits().unwrap_or(0) };
-        let explored =
-            ExploredWorld::new(method, self.max_darts, &world.graph, facing, &mut printer);
-        printer.finish()?;
+        let mut printer = if self.json {
+            RunPrinter::Doors(Vec::new())
+        } else if self.summarises(world) {
+            print_paragraph(&mut out, &head(world, facing))?;
+            RunPrinter::Summary(Summary::default())
+        } else {
+            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
+            let story = Story::new(world, facing, detail);
+            RunPrinter::Story(Box::new(PrintedStory::new(story, Some(&mut out))))
+        };
+        let method = MappingMethod::By { algorithm, audits: self.audit.audits().unwrap_or(0) };
+        let mut run = ExploredWorld::new(
+            method,
+            self.max_darts,
+            (world, facing),
+            &mut |world: &mut _, journey: &_, event: MappingEvent| match &mut printer {
+                RunPrinter::Doors(doors) => doors.extend(event.action().map(action_json)),
+                RunPrinter::Summary(summary) => summary.count(event),
+                RunPrinter::Story(story) => story.event(world, journey, event),
+            },
+        );
+        let mut doors = None;
+        match printer {
+            RunPrinter::Doors(taken) => doors = Some(taken),
+            RunPrinter::Summary(summary) => summary.print(&mut out)?,
+            RunPrinter::Story(story) => drop(story.finish()?),
+        }
         // All choices can take long.
         out.flush()?;
-        let moves = explored.result.is_ok().then(|| explored.moves_without_audits());
-        let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
-        let result = ExploreResult {
-            world,
-            facing,
-            marker: self.marker,
-            algorithm: self.algorithm,
-            explored,
-            certificate,
-            ways: chosen.other_runs(choice, (&world.graph, facing), &StopSignal).transpose(),
-        };
-        if self.json {
-            result.print_json(&mut out)?;
-        } else {
-            let most = if self.summarises(world) { STORY_VERTICES } else { usize::MAX };
-            result.print(&mut out, most)?;
+        let moves = run.moves_of_right_map();
+        let certificate = || CertificateCost::with_doors(&world.graph, facing, moves);
+        run.certificate = self.certificate.then(certificate);
+        run.ways = algorithm.other_runs(choices, (&world.graph, facing), &StopSignal).transpose();
+        match doors {
+            Some(doors) => run.print_json(doors, &mut out)?,
+            None => {
+                let all = !self.summarises(world);
+                run.print(&mut out, if all { usize::MAX } else { STORY_VERTICES })?;
+            }
         }
         out.flush()?;
-        match result.map() {
-            Some(map) => self.write_map(&map, &result)?,
+        match run.map() {
+            Some((map, moves)) => self.write_map(&map, moves, run.carries)?,
             None if self.map.is_some() || self.svg.is_some() => {
                 remark!("the map is not written: it is not complete");
             }
             None => {}
         }
-        Ok(result.outcome())
+        Ok(run.outcome())
     }
 
-    /// What is printed while the robot explores.
-    fn printer<'o, W: Write>(
-        &self,
-        out: &'o mut W,
-        world: &NamedWorld,
-        facing: Dart,
-    ) -> io::Result<RunPrinter<'o, W>> {
-        Ok(if self.json {
-            RunPrinter::Doors(DoorsWriter::new(out))
-        } else if self.summarises(world) {
-            print_paragraph(out, &head(world, facing))?;
-            RunPrinter::Summary(Summary::default(), out)
-        } else {
-            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
-            let story = Story::new(world, facing, detail);
-            RunPrinter::Story(Box::new(PrintedStory::new(story, Some(out))))
-        })
-    }
-
-    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), CliError> {
+    fn write_map(&self, map: &NamedWorld, moves: u64, carries: bool) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }
         if let Some(path) = &self.svg {
-            let moves = result.explored.moves_without_audits();
             // A marker that the robot carries has no place in the picture.
-            let (start, hand) = if result.explored.carries {
-                (None, "; the robot carries its marker")
-            } else {
-                (map.start, "")
-            };
+            let (start, hand) =
+                if carries { (None, "; the robot carries its marker") } else { (map.start, "") };
             let caption = format!("mapped in {moves} moves{hand}");
             let drawn = WorldPicture { caption: &caption, start, ..WorldPicture::from(map) };
             output::write_whole(path, picture::svg(&drawn).as_bytes())?;

@@ -107,10 +107,7 @@ enum ChoicesOption {
 }
 
 impl ChoicesOption {
-    /// The runs, with the budget of `--max-states`.
-    ///
-    /// # Errors
-    /// Returns an error if there is a budget for the default choices.
+    /// The runs, with the budget of `--max-states`. There is none for the default choices.
     fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, CliError> {
         match (self, max_states) {
             (Self::Default, None) => Ok(RunChoices::Default),

@@ -73,50 +73,42 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
     Ok(RenamedArguments { arguments, remarks })
 }
 
-/// An option that was renamed.
-struct RenamedOption {
-    verb: &'static [&'static str],
-    old: &'static str,
-    new: &'static str,
-}
-
-const fn renamed(
-    verb: &'static [&'static str],
-    old: &'static str,
-    new: &'static str,
-) -> RenamedOption {
-    RenamedOption { verb, old, new }
-}
-
-const OPTIONS: [RenamedOption; 16] = [
-    renamed(&["check"], "max-edges", "--edges 1..=N"),
-    renamed(&["counterexample"], "edges", "--max-edges"),
-    renamed(&["counterexample"], "out", "--out-dir"),
-    renamed(&["conform"], "edges", "--max-edges"),
-    renamed(&["camera", "calibrate"], "start", "--initial"),
-    renamed(&["camera", "calibrate"], "mirror-radius", "--initial"),
-    renamed(&["camera", "calibrate"], "mirror-distance", "--initial"),
-    renamed(&["camera", "calibrate"], "camera-height", "--initial"),
-    renamed(&["camera", "calibrate"], "ahead", "--initial"),
-    renamed(&["camera", "calibrate"], "seen-from", "--initial"),
-    renamed(&["drive"], "image-topic", "--topic images=TOPIC"),
-    renamed(&["drive"], "scan-topic", "--topic scans=TOPIC"),
-    renamed(&["drive"], "marker-topic", "--topic marker=TOPIC"),
-    renamed(&["drive"], "odom-topic", "--topic odometry=TOPIC"),
-    renamed(&["drive"], "cmd-vel-topic", "--topic wheels=TOPIC"),
-    renamed(&["simulate"], "picture-time", "--image-time"),
+/// The options that have another name, or none: the command, the old name, and what to write.
+const OPTIONS: [(&[&str], &str, &str); 19] = [
+    (&["check"], "max-edges", "--edges 1..=N"),
+    (&["check"], "failed", "the report has the world"),
+    (&["proofs"], "junit", "--json"),
+    (&["proofs"], "sarif", "--json"),
+    (&["counterexample"], "edges", "--max-edges"),
+    (&["counterexample"], "out", "--out-dir"),
+    (&["conform"], "edges", "--max-edges"),
+    (&["camera", "calibrate"], "start", "--initial"),
+    (&["camera", "calibrate"], "mirror-radius", "--initial"),
+    (&["camera", "calibrate"], "mirror-distance", "--initial"),
+    (&["camera", "calibrate"], "camera-height", "--initial"),
+    (&["camera", "calibrate"], "ahead", "--initial"),
+    (&["camera", "calibrate"], "seen-from", "--initial"),
+    (&["drive"], "image-topic", "--topic images=TOPIC"),
+    (&["drive"], "scan-topic", "--topic scans=TOPIC"),
+    (&["drive"], "marker-topic", "--topic marker=TOPIC"),
+    (&["drive"], "odom-topic", "--topic odometry=TOPIC"),
+    (&["drive"], "cmd-vel-topic", "--topic wheels=TOPIC"),
+    (&["simulate"], "picture-time", "--image-time"),
 ];
 
-/// The command line with the old names.
+/// The command line with the old names. The error for one says the new one.
 pub(super) fn with_old_options(command: Command) -> Command {
-    OPTIONS.iter().fold(command, |command, renamed| add(command, renamed, renamed.verb))
+    OPTIONS.iter().fold(command, |command, (verb, old, new)| add(command, verb, old, new))
 }
 
-fn add(command: Command, renamed: &RenamedOption, verb: &[&str]) -> Command {
+fn add(command: Command, verb: &[&str], old: &'static str, new: &'static str) -> Command {
     let Some((first, rest)) = verb.split_first() else {
-        let error = UnknownArgumentValueParser::suggest_arg(renamed.new);
-        let old = Arg::new(renamed.old).long(renamed.old).hide(true);
-        return command.arg(old.value_name("VALUE").value_parser(error));
+        let error = match new.strip_prefix("--") {
+            Some(_) => UnknownArgumentValueParser::suggest_arg(new),
+            None => UnknownArgumentValueParser::suggest(new),
+        };
+        return command
+            .arg(Arg::new(old).long(old).hide(true).value_name("VALUE").value_parser(error));
     };
-    command.mut_subcommand(first, |command| add(command, renamed, rest))
+    command.mut_subcommand(first, |command| add(command, rest, old, new))
 }

@@ -10,6 +10,7 @@ use toposlam_logs::{
     record::{EventId, EventKind},
     topic_map::{Role, TopicMap, TopicMapError},
 };
+use toposlam_model::mapping::MappingAlgorithm;
 use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{
     annotate,
@@ -18,7 +19,7 @@ use toposlam_vision::{
     sensing::{Sensor, WrongSize},
 };
 
-use super::{CliError, input, mapping_marker::AlgorithmOption};
+use super::{CliError, input};
 
 /// What the log itself may not contain.
 #[derive(Default, clap::Args)]
@@ -157,10 +158,9 @@ impl OpenLog {
     pub(super) fn settings(
         &self,
         path: &Path,
-        option: Option<AlgorithmOption>,
+        option: Option<MappingAlgorithm>,
     ) -> Result<RecordedSettings, CliError> {
-        let settings =
-            LogHead(self.run.as_ref()).settings(option.map(AlgorithmOption::directional));
+        let settings = LogHead(self.run.as_ref()).settings(option);
         settings.map_err(|head| {
             CliError::in_file(path, format!("its algorithm `{head}` is unknown; use --algorithm"))
         })

@@ -1,28 +1,36 @@
 //! `toposlam proofs`: lists and checks the lemmas behind the mapping algorithms, and prints single cases.
 
-mod case_view;
-mod check;
-mod lemma_case;
-mod listing;
-mod report;
+mod case;
 #[cfg(test)]
 mod tests;
 
-use std::{io::Write, num::ParseIntError, str::FromStr};
+use std::{
+    io::{self, Write},
+    sync::mpsc::{self, RecvTimeoutError},
+    thread,
+    time::{Duration, Instant},
+};
 
 use clap::ValueEnum;
-use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
+use serde::Serialize;
+use serde_json::json;
+use toposlam_model::enumerate::Watch;
+use toposlam_proofs::{
+    CaseReplay, Lemma, Stop, Theorem,
+    lemma::LemmaFailure,
+    lemmas,
+    odometer::listed,
+    theorems::{self, FILE},
+};
 
 use super::{
     CliError, Outcome,
-    ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
+    json::print_line,
     progress::Progress,
-    text::grouped,
+    text::{counted, grouped, print_command, print_hanging, print_paragraph},
 };
-use check::{CheckEnd, check_lemma};
-use lemma_case::LemmaCase;
-use report::ProofsReport;
+use case::CaseView;
 
 /// List the lemmas behind the mapping algorithms, or check them in every case within a bound
 ///
@@ -52,48 +60,20 @@ pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all lemmas (repeatable)
     #[arg(long, value_name = "NAME")]
     run: Vec<String>,
-
     /// Print the one case that these choices make: numbers, separated by commas
-    #[arg(long, value_name = "NUMBERS", requires = "run", allow_hyphen_values = true)]
-    choices: Option<CaseChoices>,
-
+    #[arg(long, value_name = "NUMBERS", requires = "run", num_args = 0..=1, value_delimiter = ',')]
+    choices: Option<Vec<u8>>,
     /// The engine whose bound applies to --choices: exhaustive or sampled
     #[arg(long, default_value = "exhaustive", hide_possible_values = true, requires = "choices")]
     engine: Engine,
-
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
-
-    /// Check the other lemmas also after one fails
-    #[arg(long, requires = "run", conflicts_with = "choices")]
-    keep_going: bool,
-
-    #[command(flatten)]
-    ci: CiOptions,
-}
-
-/// The choices that make a case.
-#[derive(Clone, Debug)]
-struct CaseChoices(Vec<u8>);
-
-impl FromStr for CaseChoices {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let words = text.split(',').map(str::trim).filter(|_| !text.trim().is_empty());
-        let choice = |word: &str| {
-            let refusal = |_: ParseIntError| {
-                format!("`{word}` is not a choice; write numbers from 0 to 255, as in 2,0,1")
-            };
-            word.parse().map_err(refusal)
-        };
-        words.map(choice).collect::<Result<_, _>>().map(Self)
-    }
 }
 
 /// An engine, with its bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Engine {
     /// Every case within a bound
     Exhaustive,
@@ -101,21 +81,11 @@ enum Engine {
     Sampled,
 }
 
-impl Engine {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Exhaustive => "exhaustive",
-            Self::Sampled => "sampled",
-        }
-    }
-}
+/// The name for every lemma.
+const ALL: &str = "all";
 
 impl ProofsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        if self.run.is_empty() || self.choices.is_some() {
-            self.ci.check_unused("this needs --run, without --choices")?;
-        }
-        self.ci.check_places()?;
         let theorems: Vec<_> = theorems::all().collect();
         self.run_with(&lemmas::all().collect::<Vec<_>>(), &theorems, out)
     }
@@ -126,96 +96,217 @@ impl ProofsArguments {
         theorems: &[Theorem],
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let is_wanted = |theorem: &&Theorem| self.run.iter().any(|name| name == theorem.name);
-        if let Some(Theorem { name, .. }) = theorems.iter().find(is_wanted) {
-            let cause = "is proved in Coq, for every world; run proofs/coq/check to check it";
-            return Err(CliError::at("--run", format!("{name} {cause}")));
-        }
+        let find = |name: &String| find_lemma(name, lemmas, theorems);
         match (&self.choices, self.run.as_slice()) {
-            (Some(choices), [name]) if name != ALL => {
-                let CaseChoices(choices) = choices;
-                LemmaCase::new(find_lemma(lemmas, name)?, self.engine, choices)?
-                    .print(self.json, out)
+            (None, []) => self.list(lemmas, theorems, out).map(|()| Outcome::Holds),
+            (None, names) => {
+                let mut chosen: Vec<&Lemma> = Vec::new();
+                for name in names {
+                    let named = if name == ALL { lemmas.to_vec() } else { vec![find(name)?] };
+                    let is_new = |lemma: &&Lemma| chosen.iter().all(|one| one.name != lemma.name);
+                    let new: Vec<_> = named.into_iter().filter(is_new).collect();
+                    chosen.extend(new);
+                }
+                self.check(&chosen, out)
             }
+            (Some(choices), [name]) if name != ALL => self.print_case(find(name)?, choices, out),
             (Some(_), _) => {
                 let cause = "choices make a case of one lemma; choose it with one --run";
                 Err(CliError::at("--choices", cause))
             }
-            (None, []) => {
-                listing::list(lemmas, theorems, self.json, out)?;
-                Ok(Outcome::Holds)
-            }
-            (None, names) => self.check(&find_lemmas(lemmas, names)?, out),
         }
     }
 
     /// Checks lemmas, each in every case within its bound.
     fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let mut report = ProofsReport::new(out, self.json, lemmas);
-        let mut results = Vec::new();
-        let mut left = lemmas.iter();
-        for &lemma in left.by_ref() {
+        let longest = |texts: Vec<String>| texts.iter().map(String::len).max().unwrap_or_default();
+        let names = longest(lemmas.iter().map(|lemma| lemma.name.to_owned()).collect());
+        let numbers = longest(lemmas.iter().map(|l| in_cases(l.exhaustive.cases)).collect());
+        let mut checked = Vec::new();
+        for &lemma in lemmas {
             let progress = Progress::new(lemma.name, "cases")?;
-            let checked = check_lemma(lemma, &progress)?;
+            let result = CheckedLemma::new(lemma, &progress)?;
             progress.finish();
-            let interrupted = matches!(checked.end, CheckEnd::Interrupted { .. });
-            let result = ci_case(lemma, &checked.end);
-            let failed = result.outcome == Outcome::Violated;
-            results.push(result);
-            report.lemma(lemma, checked)?;
-            if interrupted || (failed && !self.keep_going) {
+            if self.json {
+                print_line(out, "check", &result)?;
+            } else {
+                let (name, seconds, number) = (lemma.name, result.seconds, in_cases(result.cases));
+                let word = match result.outcome {
+                    Outcome::Holds => "holds",
+                    Outcome::Violated => "fails",
+                    Outcome::Incomplete => "interrupted",
+                };
+                writeln!(out, "{name:names$}  {number:>numbers$}  {seconds:>6.2} s  {word}")?;
+            }
+            out.flush()?;
+            let interrupted = result.interrupted;
+            checked.push((lemma, result));
+            if interrupted {
                 break;
             }
         }
-        let outcome = report.verdict()?;
-        if outcome == Outcome::Violated {
-            let after = results.last().map(|case| case.name.clone()).unwrap_or_default();
-            let names = left.map(|lemma| lemma.name.to_owned());
-            results.extend(names.map(|name| CiCase::not_checked(name, &after, None)));
-        }
-        self.ci.write("proofs", &results)?;
-        Ok(outcome)
+        self.print_end(lemmas.len(), &checked, out)
     }
-}
 
-/// The result of a lemma, for CI systems.
-fn ci_case(lemma: &Lemma, end: &CheckEnd) -> CiCase {
-    let (outcome, ended) = match end {
-        CheckEnd::Holds { .. } => (Outcome::Holds, "holds"),
-        CheckEnd::Interrupted { .. } => (Outcome::Incomplete, "interrupted"),
-        CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => (Outcome::Violated, "fails"),
-    };
-    let message = format!("{ended} after {}", cases(end.cases()));
-    CiCase { name: lemma.name.to_owned(), outcome, message, file: None }
-}
-
-/// The name for every lemma.
-const ALL: &str = "all";
-
-/// The lemmas of these names or parts of names, each once.
-fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, CliError> {
-    let mut selected: Vec<&Lemma> = Vec::new();
-    for name in names {
-        let found = if name == ALL { lemmas.to_vec() } else { vec![find_lemma(lemmas, name)?] };
-        for lemma in found {
-            if selected.iter().all(|known| known.name != lemma.name) {
-                selected.push(lemma);
+    /// Prints the cases in which lemmas fail, and the totals.
+    fn print_end(
+        &self,
+        lemmas: usize,
+        checked: &[(&Lemma, CheckedLemma)],
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
+        for (lemma, result) in checked {
+            if !self.json && result.outcome == Outcome::Violated {
+                writeln!(out)?;
+            }
+            if let Some(choices) = &result.choices {
+                self.print_case(lemma, choices, out)?;
+            }
+            if let (Some(pinned), false) = (result.pinned, self.json) {
+                let [found, pinned] = [result.cases, pinned].map(in_cases);
+                let cause = format!("expected {pinned} within its bound, found {found}");
+                print_head(out, lemma.name, lemma.sentence, Some(&cause))?;
             }
         }
+        let with = |outcome| checked.iter().filter(move |(_, result)| result.outcome == outcome);
+        let cases = with(Outcome::Holds).chain(with(Outcome::Incomplete));
+        let cases: u64 = cases.map(|(_, result)| result.cases).sum();
+        let worst = [Outcome::Violated, Outcome::Incomplete];
+        let worst = worst.into_iter().find(|&outcome| with(outcome).next().is_some());
+        let (outcome, verdict) = match worst {
+            Some(Outcome::Violated) => (Outcome::Violated, "violated"),
+            Some(_) => (Outcome::Incomplete, "incomplete, interrupted"),
+            None => (Outcome::Holds, "holds"),
+        };
+        let (held, not_checked) = (with(Outcome::Holds).count(), lemmas - checked.len());
+        if self.json {
+            let line = json!({
+                "lemmas": lemmas, "held": held, "not_checked": not_checked, "cases": cases,
+                "seconds": checked.iter().map(|(_, result)| result.seconds).sum::<f64>(),
+                "interrupted": outcome == Outcome::Incomplete, "verdict": outcome.verdict(),
+                "holds": outcome == Outcome::Holds,
+            });
+            print_line(out, "checks", &line)?;
+            return Ok(outcome);
+        }
+        let hold = if outcome == Outcome::Holds { "" } else { " held" };
+        let left =
+            if not_checked > 0 { format!("; {not_checked} not checked") } else { String::new() };
+        let (lemmas, cases) = (counted(lemmas, "lemma"), in_cases(cases));
+        writeln!(out, "\n{verdict}: {held} of {lemmas}{hold}, {cases}{left}")?;
+        Ok(outcome)
     }
-    Ok(selected)
+
+    /// Prints the case of these choices, and returns the outcome. A case that the lemma excludes is incomplete.
+    fn print_case(
+        &self,
+        lemma: &Lemma,
+        choices: &[u8],
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
+        let refused =
+            |option, cause: String| CliError::at(option, format!("{}{cause}", lemma.name));
+        let (replay, engine) = match (self.engine, lemma.sampled) {
+            (Engine::Exhaustive, _) => (lemma.exhaustive.replay, ""),
+            (Engine::Sampled, Some(sampled)) => (sampled.replay, " --engine sampled"),
+            (Engine::Sampled, None) => {
+                return Err(refused("--engine", " is not sampled".to_owned()));
+            }
+        };
+        let made = CaseReplay::show(replay, choices)
+            .map_err(|misfit| refused("--choices", format!(": {misfit}")))?;
+        let (outcome, word, verdict, claim) = match made.case {
+            Ok(()) => (Outcome::Holds, "holds", "holds: the lemma holds in this case", None),
+            Err(Stop::Fails(claim)) => {
+                (Outcome::Violated, "fails", "violated: the lemma fails in this case", Some(claim))
+            }
+            Err(Stop::Excluded) => {
+                (Outcome::Incomplete, "excluded", "incomplete: the lemma excludes this case", None)
+            }
+        };
+        let view = CaseView::new(lemma.name, &made.exhibits)?;
+        if self.json {
+            let line = json!({
+                "lemma": lemma.name, "engine": self.engine, "choices": choices, "verdict": word,
+                "holds": outcome == Outcome::Holds, "claim": claim, "worlds": view.worlds,
+                "walks": view.walks, "values": view.values,
+            });
+            print_line(out, "case", &line)?;
+            return Ok(outcome);
+        }
+        let cause = claim.map(|claim| format!("it is not true that {claim}"));
+        print_head(out, lemma.name, lemma.sentence, cause.as_deref())?;
+        let (name, choices) = (lemma.name, listed(choices));
+        let again = format!("toposlam proofs --run {name}{engine} --choices {choices}");
+        print_command(out, "  again: ", again.trim_end())?;
+        out.write_all(&view.text)?;
+        writeln!(out, "\n{verdict}")?;
+        Ok(outcome)
+    }
+
+    /// Prints the lemmas and the theorems, and their numbers.
+    fn list(
+        &self,
+        lemmas: &[&Lemma],
+        theorems: &[Theorem],
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let cases = lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum();
+        if self.json {
+            lemmas.iter().try_for_each(|lemma| print_line(out, "lemma", lemma))?;
+            for Theorem { name, sentence, paper } in theorems {
+                let line = json!({
+                    "theorem": name, "sentence": sentence, "paper": paper, "file": FILE,
+                    "coq": { "bound": EVERY_WORLD },
+                });
+                print_line(out, "theorem", &line)?;
+            }
+            let totals = json!({
+                "lemmas": lemmas.len(), "theorems": theorems.len(), "cases": cases,
+                "sampled": lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
+                "kani": lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),
+            });
+            return print_line(out, "lemmas", &totals);
+        }
+        for Lemma { name, sentence, paper, file, exhaustive, sampled, kani } in lemmas {
+            let every = format!("{}: {}", exhaustive.bound, in_cases(exhaustive.cases));
+            let kani = kani.map(|kani| format!("{}; unwind {}", kani.bound, kani.unwind));
+            print_head(out, name, sentence, None)?;
+            print_labelled(out, [("paper", *paper), ("file", *file), ("exhaustive", &every)])?;
+            print_labelled(out, sampled.map(|sampled| ("sampled", sampled.bound)))?;
+            print_labelled(out, kani.as_deref().map(|kani| ("Kani", kani)))?;
+            writeln!(out)?;
+        }
+        for Theorem { name, sentence, paper } in theorems {
+            print_head(out, name, sentence, None)?;
+            print_labelled(out, [("paper", paper.as_str()), ("file", FILE), ("Coq", EVERY_WORLD)])?;
+            writeln!(out)?;
+        }
+        print_labelled(out, ENGINES)?;
+        let [lemmas, theorems] =
+            [counted(lemmas.len(), "lemma"), counted(theorems.len(), "theorem")];
+        writeln!(out)?;
+        let totals =
+            format!("{lemmas}, {} within bounds; {theorems} for {EVERY_WORLD}", in_cases(cases));
+        Ok(print_paragraph(out, &totals)?)
+    }
 }
 
 /// The lemma of this name, or else the only one whose name contains it.
-fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, CliError> {
+fn find_lemma<'l>(
+    name: &str,
+    lemmas: &[&'l Lemma],
+    theorems: &[Theorem],
+) -> Result<&'l Lemma, CliError> {
     if let Some(lemma) = lemmas.iter().find(|lemma| lemma.name == name) {
         return Ok(lemma);
     }
-    if name.is_empty() {
-        return Err(CliError::at("--run", "the name is empty"));
-    }
     let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
+        _ if theorems.iter().any(|theorem| theorem.name == name) => {
+            let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
+            return Err(CliError::at("--run", format!("{name} {how}")));
+        }
         [lemma] => return Ok(lemma),
         [] => (format!("there is no lemma `{name}`; there are"), lemmas),
         several => (format!("`{name}` is part of several names"), several),
@@ -224,7 +315,115 @@ fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, CliErro
     Err(CliError::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
+/// The result of the check of a lemma: a line of `--json`.
+#[derive(Serialize)]
+struct CheckedLemma {
+    #[serde(skip)]
+    outcome: Outcome,
+    lemma: &'static str,
+    /// Those in which it holds, before the first one in which it fails.
+    cases: u64,
+    seconds: f64,
+    verdict: &'static str,
+    holds: bool,
+    choices: Option<Vec<u8>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    claim: Option<&'static str>,
+    /// The expected number of cases, if another number was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pinned: Option<u64>,
+    interrupted: bool,
+}
+
+impl CheckedLemma {
+    /// Checks a lemma on a thread of its own, so that an interrupt need not wait for the next case.
+    fn new(lemma: &Lemma, watch: &dyn Watch) -> Result<Self, CliError> {
+        const INTERVAL: Duration = Duration::from_millis(50);
+        let (start, copy) = (Instant::now(), *lemma);
+        let (so_far, number) = mpsc::channel();
+        // After an interrupt there is no receiver.
+        let work = move || copy.check(&mut |cases| so_far.send(cases).unwrap_or_default());
+        let checking = thread::Builder::new().spawn(work);
+        let checking = checking.map_err(|error| CliError::at(lemma.name, error))?;
+        let mut cases = 0;
+        let mut end = None;
+        while end.is_none() && !watch.stop() {
+            match number.recv_timeout(INTERVAL) {
+                Ok(more) => {
+                    if cases == 0 {
+                        watch.parts((lemma.exhaustive.cases / more.max(1)) as usize);
+                    }
+                    watch.part_done(more - cases);
+                    cases = more;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => end = Some(()),
+            }
+        }
+        let end = end.map(|()| checking.join()).transpose();
+        let end = end.map_err(|_| CliError::at(lemma.name, "the check ended without a result"))?;
+        let (outcome, cases, failed, pinned) = match end {
+            None => (Outcome::Incomplete, cases, None, None),
+            Some(Ok(all)) => (Outcome::Holds, all, None, None),
+            Some(Err(LemmaFailure::Case(it))) => (Outcome::Violated, it.cases, Some(it), None),
+            Some(Err(LemmaFailure::Cases { pinned, found })) => {
+                (Outcome::Violated, found, None, Some(pinned))
+            }
+        };
+        Ok(Self {
+            outcome,
+            lemma: lemma.name,
+            cases,
+            seconds: start.elapsed().as_secs_f64(),
+            verdict: outcome.verdict(),
+            holds: outcome == Outcome::Holds,
+            claim: failed.as_ref().map(|failed| failed.claim),
+            choices: failed.map(|failed| failed.choices),
+            pinned,
+            interrupted: outcome == Outcome::Incomplete,
+        })
+    }
+}
+
+/// Prints a lemma or a theorem, and why it fails.
+fn print_head(
+    out: &mut dyn Write,
+    name: &str,
+    sentence: &str,
+    fails: Option<&str>,
+) -> io::Result<()> {
+    writeln!(out, "{name}")?;
+    print_hanging(out, "  ", sentence)?;
+    fails.map_or(Ok(()), |cause| print_hanging(out, "  fails: ", cause))
+}
+
+fn print_labelled<'t>(
+    out: &mut dyn Write,
+    rows: impl IntoIterator<Item = (&'t str, &'t str)>,
+) -> io::Result<()> {
+    let print = |(label, text)| print_hanging(out, &format!("  {label:10}  "), text);
+    rows.into_iter().try_for_each(print)
+}
+
 /// A number of cases.
-fn cases(number: u64) -> String {
+fn in_cases(number: u64) -> String {
     format!("{} case{}", grouped(number.into()), if number == 1 { "" } else { "s" })
 }
+
+const EVERY_WORLD: &str = "every world";
+
+/// How to run each engine; printed below the list.
+const ENGINES: [(&str, &str); 4] = [
+    ("exhaustive", "every case within the bound: toposlam proofs --run NAME, or --run all"),
+    ("sampled", "random cases within the bound: cargo test -p toposlam-proofs"),
+    (
+        "Kani",
+        "every case within the bound, symbolically: proofs/kani/verify, if Kani is installed; \
+         neither this program nor cargo test runs it, and this list does not contain its results",
+    ),
+    (
+        "Coq",
+        "every world, without a bound: proofs/coq/check, if Coq is installed; cargo test -p \
+         toposlam-proofs runs it too, this program does not",
+    ),
+];

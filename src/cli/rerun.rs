@@ -10,7 +10,7 @@ use serde::Serialize;
 use toposlam_logs::topic_map::Role;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{FACING, MappingError},
+    mapping::{FACING, MappingAlgorithm, MappingError},
 };
 use toposlam_robot::{
     replay::{Agreement, Replay, ReplayDifference, ReplayError, replay},
@@ -21,7 +21,6 @@ use super::{
     CliError, Outcome,
     certificate_cost::CertificateCost,
     json::{TruncatedLine, print_line},
-    mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
     output,
     text::{counted, grouped, print_hanging, since_start, tenths, vertices},
@@ -32,7 +31,7 @@ pub(super) struct Rerun<'a> {
     pub(super) log: &'a Path,
     pub(super) sources: &'a LogOptions,
     /// Instead of the algorithm in the log.
-    pub(super) algorithm: Option<AlgorithmOption>,
+    pub(super) algorithm: Option<MappingAlgorithm>,
     /// Instead of the limit in the log.
     pub(super) max_darts: Option<usize>,
     /// Where the map is written.

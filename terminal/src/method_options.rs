@@ -93,7 +93,7 @@ impl MethodOptions {
 }
 
 /// Parses the name of an algorithm that maps with the directional marker.
-fn algorithms() -> impl TypedValueParser<Value = MappingAlgorithm> {
+pub fn algorithms() -> impl TypedValueParser<Value = MappingAlgorithm> {
     let names = MappingAlgorithm::with_fixed_marker().map(MappingAlgorithm::name);
     PossibleValuesParser::new(names.map(PossibleValue::new))
         .try_map(|name| name.parse::<MappingAlgorithm>())

@@ -396,19 +396,16 @@ fn the_result_does_not_depend_on_the_number_of_processes() {
 }
 
 #[test]
-fn the_first_start_that_was_not_mapped_and_the_worst_are_written() {
+fn the_first_start_that_was_not_mapped_is_printed_and_the_worst_is_written() {
     let scratch = Scratch::new("explorer_written");
     let at_once = scratch.always("{\"map\":[[[1,0]],[[0,0]]],\"pose\":[0,0]}");
     let options = "--edges 1 --class simple";
-    for ending in ["toml", "json", "svg", "png", "dot"] {
-        let file = format!("failed.{ending}");
-        let lines = scratch.check(&at_once, &format!("{options} --failed {file}"), 1);
-        assert_eq!(lines[0]["failure"]["cause"], "guessed");
-        assert!(scratch.bytes(&file).len() > 50);
-    }
-    let world = read_world(&scratch.path("failed.toml"));
+    let lines = scratch.check(&at_once, options, 1);
+    assert_eq!(lines[0]["failure"]["cause"], "guessed");
+    scratch.write("failed.json", lines[0]["failure"]["world"].to_string());
+    let world = read_world(&scratch.path("failed.json"));
     assert_eq!((world.graph.edge_count(), world.graph.vertex_count()), (1, 2));
-    scratch.out("explore failed.toml", 0);
+    scratch.out("explore failed.json", 0);
     // With an undirected marker the certificate is unknown, so a map at once can be right, and the worst.
     let undirected = format!("{options} --marker undirected --worst worst.toml");
     let lines = scratch.check(&at_once, &undirected, 0);

@@ -22,10 +22,9 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 41] = [
+const OUTPUTS: [OutputOption; 38] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
-    output("check", "--failed", &[("w.toml", "check --explorer cat --from IN --failed OUT")]),
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
@@ -46,8 +45,6 @@ const OUTPUTS: [OutputOption; 41] = [
     output("counterexample", "--html", &[]),
     output("counterexample", "--junit", &[]),
     output("counterexample", "--sarif", &[]),
-    output("proofs", "--junit", &[]),
-    output("proofs", "--sarif", &[]),
     output("counterexample", "--atlas", &[]),
     output("draw", "--out", &[("w.svg", "draw IN --out OUT")]),
     output(

@@ -8,10 +8,7 @@ use std::{collections::BTreeMap, io::Write, path::Path};
 use serde::Deserialize;
 use toposlam_model::{check::Shard, mapping::MappingAlgorithm};
 
-use super::{
-    AlgorithmInfo, CheckArguments, CheckReport, CiCase, CliError, Outcome, RunChoices, SizeLine,
-    counted, input,
-};
+use super::{CheckArguments, CheckReport, CiCase, CliError, Outcome, SizeLine, counted, input};
 
 /// The beginning of a line.
 #[derive(Deserialize)]
@@ -38,7 +35,7 @@ fn subject(line: &SizeLine) -> [(&'static str, String); 5] {
         ("version", text(&line.version)),
         ("class", text(&line.class)),
         ("marker", line.marker.clone()),
-        ("algorithm", line.algorithm.clone()),
+        ("algorithm", text(&line.algorithm)),
         ("choices", choices),
     ]
 }
@@ -50,64 +47,64 @@ impl CheckArguments {
         for file in &self.shards {
             read_shards(file, &mut shards)?;
         }
-        let Some(first) = shards.first() else {
+        let Some(FoundShard { place, line, .. }) = shards.first() else {
             let files: Vec<_> = self.shards.iter().map(|file| file.display().to_string()).collect();
             return Err(CliError::at(files.join(", "), "there is no line of a shard"));
         };
-        let algorithm = algorithm_of(first)?;
-        let choice = match first.line.max_states {
-            None => RunChoices::Default,
-            Some(budget) => RunChoices::All { budget },
+        let title = line.algorithm.as_deref().unwrap_or_default();
+        let is_this = |known: &&MappingAlgorithm| {
+            known.info().title == title && known.marker().name() == line.marker
         };
-        let sizes = by_size(shards)?;
-        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
-        let (mut cases, mut last) = (Vec::new(), String::new());
-        for line in sizes.complete {
-            last = line.name();
+        let algorithm = MappingAlgorithm::ALL.iter().find(is_this).ok_or_else(|| {
+            let cause = format!("no algorithm is `{title}` with marker `{}`", line.marker);
+            CliError::at(place, cause)
+        })?;
+        let (complete, left_out) = by_size(shards)?;
+        let mut report = CheckReport::new(out, self.json, Some(algorithm.info().order));
+        let mut cases = Vec::new();
+        for line in complete {
             cases.push(line.ci_case());
             report.size(line)?;
         }
         let outcome = report.verdict(None)?;
-        if let Some(first) = sizes.left_out.first() {
+        if let Some(first) = left_out.first() {
             let from = counted(first.edges, "edge");
             remark!(
                 "shards are missing from {from} on, after a wrong map; those sizes are left out"
             );
         }
-        let left_out = sizes.left_out.iter();
-        cases.extend(left_out.map(|line| CiCase::not_checked(line.name(), &last, None)));
+        CiCase::add_not_checked(&mut cases, left_out.iter().map(SizeLine::name), None);
         self.ci.write("check", &cases)?;
         Ok(outcome)
     }
 }
 
-/// The results for each number of edges.
-struct MergedSizes {
-    /// With all shards.
-    complete: Vec<SizeLine>,
-    /// After a wrong map: shards are missing.
-    left_out: Vec<SizeLine>,
-}
-
-/// Adds up the shards of each size.
+/// Adds up the shards of each size. Returns the sizes with all shards, and those after a wrong map whose shards are
+/// missing.
 ///
 /// # Errors
 /// Returns an error if shards are missing, duplicated or different, or if a sum is too large.
-fn by_size(mut shards: Vec<FoundShard>) -> Result<MergedSizes, CliError> {
-    let mut problems = different_shards(&shards);
+fn by_size(mut shards: Vec<FoundShard>) -> Result<(Vec<SizeLine>, Vec<SizeLine>), CliError> {
+    let mut problems = Vec::new();
+    for FoundShard { place, line, .. } in &shards {
+        for ((name, is), (_, first)) in subject(line).into_iter().zip(subject(&shards[0].line)) {
+            if is != first {
+                problems.push(format!("{place}: {name} is {is}, not {first}"));
+            }
+        }
+    }
     let mut found: BTreeMap<usize, Vec<FoundShard>> = BTreeMap::new();
     shards.sort_by_key(|found| found.shard.index());
     for shard in shards {
         found.entry(shard.line.edges).or_default().push(shard);
     }
-    let mut sizes = MergedSizes { complete: Vec::new(), left_out: Vec::new() };
+    let (mut complete, mut left_out) = (Vec::new(), Vec::new());
     let mut total = SizeLine::default();
     let mut is_violated = false;
     for (edges, shards) in found {
-        let MissingShards { places, missing } = check_shards(edges, &shards);
-        problems.extend(places);
+        let missing = missing_shards(edges, &shards, &mut problems);
         // A shard whose map was wrong has checked no larger size.
-        let is_left_out = !sizes.left_out.is_empty() || is_violated && !missing.is_empty();
+        let is_left_out = !left_out.is_empty() || is_violated && !missing.is_empty();
         if !is_left_out {
             problems.extend(missing);
         }
@@ -122,13 +119,17 @@ fn by_size(mut shards: Vec<FoundShard>) -> Result<MergedSizes, CliError> {
                 None => sum = Some(line),
             }
         }
-        if is_left_out { &mut sizes.left_out } else { &mut sizes.complete }.extend(sum);
+        if is_left_out { &mut left_out } else { &mut complete }.extend(sum);
     }
     if problems.len() > MOST_PROBLEMS {
         problems.truncate(MOST_PROBLEMS);
         problems.push("...".to_owned());
     }
-    if problems.is_empty() { Ok(sizes) } else { Err(CliError::Input(problems.join("\n"))) }
+    if problems.is_empty() {
+        Ok((complete, left_out))
+    } else {
+        Err(CliError::Input(problems.join("\n")))
+    }
 }
 
 /// The most problems that are listed. A wrong number of shards can be huge.
@@ -143,10 +144,9 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
         }
         let place = format!("{}: line {number}", path.display());
         let at = |cause: String| CliError::at(&place, cause);
-        let head: LineHead = serde_json::from_slice(text)
+        let LineHead { schema, kind } = serde_json::from_slice(text)
             .map_err(|error| at(format!("this is not a line of `check --json`: {error}")))?;
-        if (head.schema, head.kind.as_str()) != (1, "size") {
-            let LineHead { schema, kind } = head;
+        if (schema, kind.as_str()) != (1, "size") {
             return Err(at(format!("this is a line `{kind}` of schema {schema}, not `size` of 1")));
         }
         let line: SizeLine = serde_json::from_slice(text).map_err(|error| at(error.to_string()))?;
@@ -162,61 +162,27 @@ fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError
     Ok(())
 }
 
-/// The algorithm of a shard.
-fn algorithm_of(found: &FoundShard) -> Result<MappingAlgorithm, CliError> {
-    let FoundShard { place, line, .. } = found;
-    let mut known = MappingAlgorithm::ALL.iter().copied();
-    known
-        .find(|known| known.info().title == line.algorithm && known.marker().name() == line.marker)
-        .ok_or_else(|| {
-            let SizeLine { algorithm, marker, .. } = line;
-            CliError::at(place, format!("no algorithm is `{algorithm}` with marker `{marker}`"))
-        })
-}
-
-/// The shards that are not of the same check as the first one.
-fn different_shards(shards: &[FoundShard]) -> Vec<String> {
-    let mut problems = Vec::new();
-    for FoundShard { place, line, .. } in shards {
-        for ((name, is), (_, first)) in subject(line).into_iter().zip(subject(&shards[0].line)) {
-            if is != first {
-                problems.push(format!("{place}: {name} is {is}, not {first}"));
-            }
-        }
-    }
-    problems
-}
-
-/// The problems of the shards of one size.
-struct MissingShards {
-    /// Shards that should not be there.
-    places: Vec<String>,
-    /// Shards without a whole result.
-    missing: Vec<String>,
-}
-
-/// What is missing, duplicated or interrupted in one size.
-fn check_shards(edges: usize, found: &[FoundShard]) -> MissingShards {
-    let (mut places, mut missing) = (Vec::new(), Vec::new());
+/// The shards of one size without a whole result. Those that should not be there are problems.
+fn missing_shards(edges: usize, found: &[FoundShard], problems: &mut Vec<String>) -> Vec<String> {
+    let mut missing = Vec::new();
     let (of, size) = (found[0].shard.of(), counted(edges, "edge"));
+    let mut by_index: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
     for FoundShard { place, shard, line } in found {
-        if shard.of() != of {
-            places.push(format!("{place}: {size}: {shard} is not one of {of} shards"));
+        if shard.of() == of {
+            by_index.entry(shard.index()).or_default().push(place);
+        } else {
+            problems.push(format!("{place}: {size}: {shard} is not one of {of} shards"));
         }
         if line.interrupted {
             missing.push(format!("{place}: shard {shard} was interrupted"));
         }
     }
-    let mut by_index: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
-    for FoundShard { place, shard, .. } in found.iter().filter(|found| found.shard.of() == of) {
-        by_index.entry(shard.index()).or_default().push(place);
-    }
     for (index, twice) in by_index.iter().filter(|(_, places)| places.len() > 1) {
         let twice = twice.join(", ");
-        places.push(format!("{size}: shard {index}/{of} occurs twice: {twice}"));
+        problems.push(format!("{size}: shard {index}/{of} occurs twice: {twice}"));
     }
     let absent = (1..=of).filter(|index| !by_index.contains_key(index));
     let absent = absent.map(|index| format!("{size}: shard {index}/{of} is missing"));
     missing.extend(absent.take(MOST_PROBLEMS + 1));
-    MissingShards { places, missing }
+    missing
 }

@@ -23,6 +23,7 @@ use toposlam_model::{
 use crate::cli::{
     CliError, Outcome,
     json::print_line,
+    progress::StopSignal,
     text::{counted, duration_text, grouped, print_paragraph},
 };
 
@@ -72,11 +73,8 @@ impl Sample {
     fn interval(self) -> Interval {
         let error = (self.squares / (self.count - 1.0) / self.count).sqrt();
         let bound = |times: f64| (self.mean + times * error).max(0.0);
-        Interval {
-            mean: self.mean,
-            low: bound(-STANDARD_DEVIATIONS),
-            high: bound(STANDARD_DEVIATIONS),
-        }
+        let [low, high] = [-STANDARD_DEVIATIONS, STANDARD_DEVIATIONS].map(bound);
+        Interval { mean: self.mean, low, high }
     }
 }
 
@@ -94,37 +92,19 @@ impl Interval {
     }
 
     /// The product of two quantities.
-    fn times(self, other: Self) -> Self {
-        Self {
-            mean: self.mean * other.mean,
-            low: self.low * other.low,
-            high: self.high * other.high,
-        }
-    }
-}
-
-/// Watches whether to stop, and counts no parts.
-struct OnlyStop<'w>(&'w dyn Watch);
-
-impl Watch for OnlyStop<'_> {
-    fn stop(&self) -> bool {
-        self.0.stop()
+    fn times(self, Self { mean, low, high }: Self) -> Self {
+        Self { mean: self.mean * mean, low: self.low * low, high: self.high * high }
     }
 }
 
 /// The seconds that one move of a check takes on all threads, by complete checks of smaller sizes: the mean is that
 /// of the largest one, and the interval is as wide to each side as its difference from the one before.
-fn seconds_a_move(
-    class: Class,
-    edges: usize,
-    algorithm: MappingAlgorithm,
-    watch: &dyn Watch,
-) -> Option<Interval> {
+fn seconds_a_move(class: Class, edges: usize, algorithm: MappingAlgorithm) -> Option<Interval> {
     let mut times = Vec::new();
     for size in 1..=edges {
         let sweep = SharedPrefixCheck::new(class, size, Shard::WHOLE).ok()?;
         let begun = Instant::now();
-        let check = algorithm.lazy_sweep(&sweep, &(), &OnlyStop(watch));
+        let check = algorithm.lazy_sweep(&sweep, &(), &StopSignal);
         let elapsed = begun.elapsed().as_secs_f64();
         if check.moves_made > 0 {
             times.push(elapsed / check.moves_made as f64);
@@ -161,9 +141,6 @@ struct EstimateLine<'a> {
 
 impl EstimateOptions {
     /// Prints the estimate for one number of edges. It is incomplete if no probe found a start.
-    ///
-    /// # Errors
-    /// Returns an error if it was interrupted, or cannot be printed.
     pub(super) fn print(
         &self,
         (edges, sweep): (usize, &SharedPrefixCheck),
@@ -191,15 +168,10 @@ impl EstimateOptions {
         }
         let is_known = starts.mean > 0.0;
         let moves_made = made.interval();
-        let seconds = if is_known {
-            let a_move = seconds_a_move(sweep.class(), edges, algorithm, watch);
-            if watch.stop() {
-                return Err(CliError::Interrupted);
-            }
-            a_move.map(|a_move| moves_made.times(a_move))
-        } else {
-            None
-        };
+        let a_move = is_known.then(|| seconds_a_move(sweep.class(), edges, algorithm)).flatten();
+        if watch.stop() {
+            return Err(CliError::Interrupted);
+        }
         let line = EstimateLine {
             edges,
             class: sweep.class().name(),
@@ -210,7 +182,7 @@ impl EstimateOptions {
             starts: is_known.then(|| starts.interval()),
             moves_total: is_known.then(|| total.interval()),
             moves_made: is_known.then_some(moves_made),
-            seconds,
+            seconds: a_move.map(|a_move| moves_made.times(a_move)),
             threads: rayon::current_num_threads(),
         };
         if json {
@@ -241,14 +213,13 @@ impl EstimateLine<'_> {
         let time = text(self.seconds, duration_text);
         writeln!(out, "  time        {time} on {}", counted(*threads, "thread"))?;
         let probes = grouped((*probes).into());
-        if self.starts.is_none() {
-            writeln!(
-                out,
-                "  none of {probes} probes found a start, seed {seed}; use more --probes"
-            )?;
-        } else {
-            writeln!(out, "  {probes} probes, seed {seed}; 95 % confidence")?;
-        }
+        let last = match self.starts {
+            None => {
+                format!("none of {probes} probes found a start, seed {seed}; use more --probes")
+            }
+            Some(_) => format!("{probes} probes, seed {seed}; 95 % confidence"),
+        };
+        writeln!(out, "  {last}")?;
         Ok(out.flush()?)
     }
 }
@@ -273,12 +244,8 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_product_is_between_the_least_and_the_greatest_product() {
-        let [one, other] = [(2.0, 1.0, 4.0), (10.0, 9.0, 12.0)].map(|(mean, low, high)| Interval {
-            mean,
-            low,
-            high,
-        });
-        let Interval { mean, low, high } = one.times(other);
+        let other = Interval { mean: 10.0, low: 9.0, high: 12.0 };
+        let Interval { mean, low, high } = Interval { mean: 2.0, low: 1.0, high: 4.0 }.times(other);
         assert_eq!([mean, low, high].map(f64::to_bits), [20.0, 9.0, 48.0].map(f64::to_bits));
     }
 }

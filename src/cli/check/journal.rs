@@ -5,7 +5,7 @@
 //! by one process at a time: the file is locked. The check stops at the first line that cannot be written.
 
 use std::{
-    collections::{BTreeMap, btree_map::Entry},
+    collections::BTreeMap,
     fmt::Display,
     fs,
     io::{self, Write},
@@ -25,18 +25,16 @@ use toposlam_model::{
 use crate::cli::{CliError, output, version::release};
 
 /// The check that a journal is of.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 pub(super) struct JournalHeader {
     /// The version of the format.
     pub(super) journal: u32,
-    /// The version of the program.
     pub(super) version: String,
     pub(super) class: String,
     pub(super) edges: usize,
     pub(super) marker: String,
     pub(super) algorithm: String,
     pub(super) shard: String,
-    /// The number of units.
     pub(super) units: usize,
 }
 
@@ -46,22 +44,21 @@ impl JournalHeader {
 
     /// The first thing in which a check differs from another.
     fn difference(&self, other: &Self) -> Option<String> {
-        let here = self.fields();
-        let differs = here.into_iter().zip(other.fields()).find(|(one, other)| one != other);
-        differs.map(|((name, one), (_, other))| format!("{name} is {one}, not {other}"))
-    }
-
-    fn fields(&self) -> [(&'static str, String); 8] {
-        [
-            ("the format", self.journal.to_string()),
-            ("the version", release(&self.version).to_owned()),
-            ("the class", self.class.clone()),
-            ("the number of edges", self.edges.to_string()),
-            ("the marker", self.marker.clone()),
-            ("the algorithm", self.algorithm.clone()),
-            ("the shard", self.shard.clone()),
-            ("the number of units", self.units.to_string()),
-        ]
+        let fields = |of: &Self| {
+            [
+                ("the format", of.journal.to_string()),
+                ("the version", release(&of.version).to_owned()),
+                ("the class", of.class.clone()),
+                ("the number of edges", of.edges.to_string()),
+                ("the marker", of.marker.clone()),
+                ("the algorithm", of.algorithm.clone()),
+                ("the shard", of.shard.clone()),
+                ("the number of units", of.units.to_string()),
+            ]
+        };
+        let mut pairs = fields(self).into_iter().zip(fields(other));
+        let ((name, one), (_, other)) = pairs.find(|(one, other)| one != other)?;
+        Some(format!("{name} is {one}, not {other}"))
     }
 }
 
@@ -87,13 +84,6 @@ pub(super) struct JournalWatch<'a> {
     other: &'a dyn Watch,
 }
 
-/// The lines of a journal.
-struct JournalLines {
-    finished: BTreeMap<usize, PartTally>,
-    /// The number of bytes in whole lines.
-    length: usize,
-}
-
 fn text_of(content: &impl Serialize) -> io::Result<String> {
     let json = serde_json::to_string(content)?;
     Ok(format!("{:08x} {json}\n", crc32fast::hash(json.as_bytes())))
@@ -106,50 +96,42 @@ fn object_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     (checksum == expected.as_bytes()).then(|| serde_json::from_slice(json).ok()).flatten()
 }
 
-/// Whether the results of two runs of a unit agree. Which of its starts is noted as the worst one depends on the
-/// other units that have run, and each of the two is right.
-fn have_equal_counts(one: &PartTally, other: &PartTally) -> bool {
-    let counts = |tally: &PartTally| PartTally { worst: None, ..tally.clone() };
-    counts(one) == counts(other)
-}
-
 /// The cause if a file is not a journal.
 const NOT_A_JOURNAL: &str = "line 1: this is not the first line of a journal";
 
-impl JournalLines {
-    /// The lines of the journal of a check. A line without an end was being written when the check was killed.
-    fn read(bytes: &[u8], header: &JournalHeader, header_line: &str) -> Result<Self, String> {
-        let length = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-        let mut finished = BTreeMap::new();
-        let mut lines = bytes[..length].split_inclusive(|&byte| byte == b'\n');
-        let Some(first) = lines.next() else {
-            let is_beginning = header_line.as_bytes().starts_with(bytes);
-            let empty = Self { finished, length };
-            return is_beginning.then_some(empty).ok_or_else(|| NOT_A_JOURNAL.to_owned());
-        };
-        let found: JournalHeader = object_of(&first[..first.len() - 1]).ok_or(NOT_A_JOURNAL)?;
-        if let Some(difference) = found.difference(header) {
-            return Err(format!("this is the journal of another check: {difference}"));
-        }
-        for (number, line) in (2..).zip(lines) {
-            let corrupt = |what: &str| format!("line {number}: the journal is corrupt: {what}");
-            let FinishedUnit { unit, counts } = object_of(&line[..line.len() - 1])
-                .ok_or_else(|| corrupt("the checksum is wrong"))?;
-            if unit >= header.units {
-                return Err(corrupt("there is no such unit"));
-            }
-            match finished.entry(unit) {
-                Entry::Vacant(entry) => {
-                    entry.insert(counts);
-                }
-                Entry::Occupied(entry) if have_equal_counts(entry.get(), &counts) => {}
-                Entry::Occupied(_) => {
-                    return Err(corrupt("a unit occurs twice, with different counts"));
-                }
-            }
-        }
-        Ok(Self { finished, length })
+/// The finished units in the journal of a check, and the bytes of its whole lines. A line without an end was being
+/// written when the check was killed.
+fn finished_units(
+    bytes: &[u8],
+    header: &JournalHeader,
+    header_line: &str,
+) -> Result<(BTreeMap<usize, PartTally>, usize), String> {
+    let length = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+    let mut finished = BTreeMap::new();
+    let mut lines = bytes[..length].split_inclusive(|&byte| byte == b'\n');
+    let Some(first) = lines.next() else {
+        let is_beginning = header_line.as_bytes().starts_with(bytes);
+        return is_beginning.then_some((finished, 0)).ok_or_else(|| NOT_A_JOURNAL.to_owned());
+    };
+    let found: JournalHeader = object_of(&first[..first.len() - 1]).ok_or(NOT_A_JOURNAL)?;
+    if let Some(difference) = found.difference(header) {
+        return Err(format!("this is the journal of another check: {difference}"));
     }
+    for (number, line) in (2..).zip(lines) {
+        let corrupt = |what: &str| format!("line {number}: the journal is corrupt: {what}");
+        let FinishedUnit { unit, counts } =
+            object_of(&line[..line.len() - 1]).ok_or_else(|| corrupt("the checksum is wrong"))?;
+        if unit >= header.units {
+            return Err(corrupt("there is no such unit"));
+        }
+        // Which of its starts is noted as the worst one depends on the other units that have run.
+        let without_worst = |tally: &PartTally| PartTally { worst: None, ..tally.clone() };
+        let known = finished.entry(unit).or_insert_with(|| counts.clone());
+        if without_worst(known) != without_worst(&counts) {
+            return Err(corrupt("a unit occurs twice, with different counts"));
+        }
+    }
+    Ok((finished, length))
 }
 
 impl CheckJournal {
@@ -164,8 +146,8 @@ impl CheckJournal {
         let at = |cause: &dyn Display| CliError::in_file(&path, cause);
         let (mut file, bytes) = output::open_growing_alone(&path)?;
         let header_line = text_of(header).map_err(|error| at(&error))?;
-        let JournalLines { finished, length } =
-            JournalLines::read(&bytes, header, &header_line).map_err(|cause| at(&cause))?;
+        let (finished, length) =
+            finished_units(&bytes, header, &header_line).map_err(|cause| at(&cause))?;
         file.set_len(length as u64).map_err(|error| at(&error))?;
         if length == 0 {
             file.write_all(header_line.as_bytes()).map_err(|error| at(&error))?;
@@ -177,7 +159,6 @@ impl CheckJournal {
         Self { path, finished, file: Mutex::new(Ok(file)), is_broken: AtomicBool::new(false) }
     }
 
-    /// A watch that also stops the check when the journal cannot be written.
     pub(super) fn watch<'a>(&'a self, other: &'a dyn Watch) -> JournalWatch<'a> {
         JournalWatch { journal: self, other }
     }
@@ -187,10 +168,7 @@ impl CheckJournal {
         self.finished.len()
     }
 
-    /// Closes the journal.
-    ///
-    /// # Errors
-    /// Returns the first error of writing.
+    /// Closes the journal, or returns the first error of writing.
     pub(super) fn close(self) -> Result<(), CliError> {
         let file = self.file.into_inner().unwrap_or_else(PoisonError::into_inner);
         let synced = file.and_then(|file| file.sync_all());

@@ -1,136 +1,151 @@
-//! A line of `check --json`: the result for one number of edges. `merge` reads the lines of shards.
+//! The result for one number of edges: a line of `check --json`, a row of the table, a case for CI. `--add` reads
+//! the lines of shards.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, fmt::Write as _, ops::Not, path::Path};
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use toposlam_model::{
-    check::{EnumeratedStart, FailedStart, Shard, Tally},
+    check::{EnumeratedStart, FailedStart, Shard, Tally, WorstStart},
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
-    mapping::{CostOrder, MappingAlgorithm},
-    marker::{Directional, Marker},
+    mapping::MappingAlgorithm,
+    marker::Marker,
 };
 
-use crate::cli::{CliError, Outcome, RunChoices, text::counted, version::version};
+use crate::cli::{
+    CliError, Outcome, RunChoices,
+    ci_report::CiCase,
+    mapping_marker::is_directional,
+    text::{counted, grouped},
+    version::version,
+};
 
-/// The algorithm that is checked, and its marker.
-#[derive(Clone, Copy)]
-pub(in crate::cli) struct AlgorithmInfo {
-    pub(super) algorithm: &'static str,
-    pub(super) marker: &'static str,
-    /// Whether the starts have certificates.
-    pub(super) certificates: bool,
-    /// The order of its cost.
-    pub(super) order: CostOrder,
-}
-
-impl AlgorithmInfo {
-    pub(in crate::cli) fn of(algorithm: MappingAlgorithm) -> Self {
-        Self {
-            algorithm: algorithm.info().title,
-            marker: algorithm.marker().name(),
-            certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
-            order: algorithm.info().order,
-        }
-    }
-}
-
-/// The result for one number of edges.
-pub(super) struct SizeResult<'a> {
-    pub(super) edges: usize,
-    /// The class of the worlds, unless they are from a file.
-    pub(super) class: Class,
-    pub(super) from: Option<&'a Path>,
-    /// The share of the worlds.
-    pub(super) shard: Shard,
-    pub(super) tally: &'a Tally,
-    /// The moves that were made, if runs share their beginnings.
-    pub(super) moves_made: Option<u64>,
-}
-
-/// The result for one number of edges, as it is printed.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(in crate::cli) struct SizeLine {
-    pub(in crate::cli) edges: usize,
+pub(super) struct SizeLine {
+    pub(super) edges: usize,
     /// `None` if the worlds are from a file.
-    pub(in crate::cli) class: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) from: Option<String>,
-    pub(in crate::cli) marker: String,
-    pub(in crate::cli) algorithm: String,
-    pub(in crate::cli) worlds: u64,
-    pub(in crate::cli) starts: u64,
-    pub(in crate::cli) mapped: u64,
-    pub(in crate::cli) failed: u64,
-    pub(in crate::cli) moves_total: u64,
-    pub(in crate::cli) moves_max: u64,
+    pub(super) class: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) from: Option<String>,
+    pub(super) marker: String,
+    /// `None` if an explorer is checked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) algorithm: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) explorer: Option<String>,
+    pub(super) worlds: u64,
+    pub(super) starts: u64,
+    pub(super) mapped: u64,
+    pub(super) failed: u64,
+    /// Of an explorer: starts on which a limit was reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) unknown: Option<u64>,
+    pub(super) moves_total: u64,
+    pub(super) moves_max: u64,
     /// The moves that were made, if runs share their beginnings.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) moves_made: Option<u64>,
-    // With a directional marker: the lengths of the certificates of the starts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) certificate_total: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) certificate_max: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) below_certificate: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) moves_made: Option<u64>,
+    // With a directional marker: the lengths of the certificates of the starts; of an explorer, of those that were
+    // mapped correctly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certificate_total: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certificate_max: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) below_certificate: Option<u64>,
     /// The total of the moves divided by that of the certificates; `None` without a start.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) ratio: Option<f64>,
-    pub(in crate::cli) largest_ratio: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) ratio: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) largest_ratio: Option<f64>,
     // With all choices: distinct states, runs, and the fewest and the most moves of a run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) states: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) runs: Option<u128>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) moves_least: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) moves_most: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) states: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) runs: Option<u128>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) moves_least: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) moves_most: Option<u64>,
     /// Starts with runs that were not tried.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) gave_up: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) gave_up: Option<u64>,
     /// Those with more states than `--max-states`, and those with more than fit in memory.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) limits: Option<BTreeMap<String, u64>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) max_states: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) shard: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) limits: Option<BTreeMap<String, u64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) max_states: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) shard: Option<String>,
     /// Of a shard: the version of the program.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) version: Option<String>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub(in crate::cli) interrupted: bool,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(in crate::cli) failure: Option<FailureLine>,
-    pub(in crate::cli) holds: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) version: Option<String>,
+    /// Of an explorer: the number of starts for each name of a fault.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) causes: Option<BTreeMap<String, u64>>,
+    /// Of an explorer: whether starts were left out because too many runs ended their process.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) stopped: Option<bool>,
+    #[serde(default, skip_serializing_if = "Not::not")]
+    pub(super) interrupted: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) failure: Option<FailureLine>,
+    /// The first start on which an explorer reached a limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) limit: Option<FailureLine>,
+    pub(super) holds: bool,
 }
 
 /// The first start that was mapped wrongly.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(in crate::cli) struct FailureLine {
-    pub(in crate::cli) cause: String,
-    pub(in crate::cli) step: Option<String>,
-    moves: Option<u64>,
-    pub(in crate::cli) world: serde_json::Value,
+pub(super) struct FailureLine {
+    pub(super) cause: String,
+    pub(super) moves: Option<u64>,
+    world: Value,
+    #[serde(flatten)]
+    pub(super) run: FailedRun,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum FailedRun {
+    Explorer {
+        message: String,
+        last_actions: Vec<Value>,
+        /// The end of the standard error, if the process was ended.
+        stderr: String,
+    },
+    Algorithm {
+        step: Option<String>,
+    },
 }
 
 impl FailureLine {
-    fn new(failure: &FailedStart, subject: AlgorithmInfo) -> Self {
-        let step = failure.false_step.map(|step| step.to_string());
-        Self {
-            cause: failure.flaw.to_string(),
-            step: step.or_else(|| {
-                failure.moves.map(|moves| format!("after {}", counted(moves as usize, "move")))
-            }),
-            moves: failure.moves,
-            world: world_file::to_json(&failed_world(failure, subject)),
-        }
+    /// A failure in a run from a start. `about` describes the start.
+    pub(super) fn new(
+        cause: String,
+        moves: Option<u64>,
+        about: &str,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        run: FailedRun,
+    ) -> Self {
+        let world = NamedWorld::discovered("failed", about, graph, facing);
+        Self { cause, moves, world: world_file::to_json(&world), run }
+    }
+
+    fn of_algorithm(algorithm: MappingAlgorithm, failure: &FailedStart) -> Self {
+        let FailedStart { graph, facing, flaw, moves, false_step } = failure;
+        let after = || moves.map(|moves| format!("after {}", counted(moves as usize, "move")));
+        let step = false_step.map(|step| step.to_string()).or_else(after);
+        let about = format!("{} fails here: {flaw}", algorithm.info().title);
+        let run = FailedRun::Algorithm { step };
+        Self::new(flaw.to_string(), *moves, &about, (graph, *facing), run)
     }
 
     /// The world with its start; `None` if it is not a world.
-    pub(in crate::cli) fn named_world(&self) -> Option<NamedWorld> {
+    pub(super) fn named_world(&self) -> Option<NamedWorld> {
         world_file::read(self.world.to_string().as_bytes()).ok()
     }
 
@@ -144,15 +159,10 @@ impl FailureLine {
     }
 }
 
-fn failed_world(failure: &FailedStart, subject: AlgorithmInfo) -> NamedWorld {
-    let about = format!("{} fails here: {}", subject.algorithm, failure.flaw);
-    NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
-}
-
 /// The sum of some counts is larger than 64 bits hold.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
 #[error("with this, the sum of `{0}` is 2^64 or more")]
-pub(in crate::cli) struct CountOverflow(&'static str);
+pub(super) struct CountOverflow(&'static str);
 
 impl From<CountOverflow> for CliError {
     fn from(overflow: CountOverflow) -> Self {
@@ -160,84 +170,100 @@ impl From<CountOverflow> for CliError {
     }
 }
 
-/// Adds a count with a name.
-fn add_count(sum: &mut u64, count: u64, name: &'static str) -> Result<(), CountOverflow> {
-    *sum = sum.checked_add(count).ok_or(CountOverflow(name))?;
-    Ok(())
-}
-
-/// Adds a count that not all results have.
-fn add_some(
-    sum: &mut Option<u64>,
-    count: Option<u64>,
-    name: &'static str,
-) -> Result<(), CountOverflow> {
-    match (sum.as_mut(), count) {
-        (Some(sum), Some(count)) => add_count(sum, count, name),
-        (Some(_), None) => Ok(()),
-        (None, count) => {
-            *sum = count;
-            Ok(())
-        }
-    }
-}
-
 impl SizeLine {
-    pub(super) fn new(size: &SizeResult, subject: AlgorithmInfo, choice: RunChoices) -> Self {
-        let &SizeResult { edges, class, from, shard, tally, moves_made } = size;
-        let certificate = |value| subject.certificates.then_some(value);
-        let all = choice != RunChoices::Default;
-        let is_shard = shard != Shard::WHOLE;
-        let mut line = Self {
+    /// A line without counts, for worlds of a class or from a file.
+    pub(super) fn new(
+        edges: usize,
+        class: Class,
+        from: Option<&Path>,
+        marker: &dyn Marker,
+    ) -> Self {
+        Self {
             edges,
             class: from.is_none().then(|| class.name().to_owned()),
             from: from.map(|path| path.display().to_string()),
-            marker: subject.marker.to_owned(),
-            algorithm: subject.algorithm.to_owned(),
+            marker: marker.name().to_owned(),
+            certificate_total: is_directional(marker).then_some(0),
+            ..Self::default()
+        }
+    }
+
+    /// The same line with the counts of a check.
+    pub(super) fn with_counts<F>(self, tally: &Tally<WorstStart, F>) -> Self {
+        let certificate = |value| self.certificate_total.and(Some(value));
+        let mut line = Self {
             worlds: tally.worlds,
             starts: tally.starts,
             mapped: tally.mapped,
             failed: tally.failed(),
             moves_total: tally.moves_total,
             moves_max: tally.moves_max(),
-            moves_made,
             certificate_total: certificate(tally.certificate_total),
             certificate_max: certificate(tally.certificate_max),
-            below_certificate: certificate(tally.below_certificate),
-            ratio: certificate(tally.certificate_total)
-                .and_then(|total| ratio(tally.moves_total, total)),
-            largest_ratio: tally.largest_ratio(edges, subject.order),
-            states: all.then_some(tally.states),
-            runs: all.then_some(tally.runs),
-            moves_least: tally.extremes.filter(|_| all).map(|(least, _)| least),
-            moves_most: tally.extremes.filter(|_| all).map(|(_, most)| most),
-            gave_up: all.then(|| tally.gave_up()),
-            limits: all.then(|| limits(tally)),
-            max_states: match choice {
-                RunChoices::All { budget } => Some(budget),
-                RunChoices::Default => None,
-            },
-            shard: is_shard.then(|| shard.to_string()),
-            version: is_shard.then(|| version().to_owned()),
             interrupted: tally.interrupted,
-            failure: tally.failure.as_ref().map(|failure| FailureLine::new(failure, subject)),
-            holds: false,
+            ..self
         };
-        line.holds = line.verdict().0 == Outcome::Holds;
+        line.set_ratio_and_verdict();
         line
     }
 
+    /// The same line with the counts of an algorithm. `moves_made` are those that were made, if runs share some.
+    pub(super) fn of_algorithm(
+        self,
+        (algorithm, choices): (MappingAlgorithm, RunChoices),
+        shard: Shard,
+        tally: &Tally,
+        moves_made: Option<u64>,
+    ) -> Self {
+        let is_shard = shard != Shard::WHOLE;
+        let below = self.certificate_total.and(Some(tally.below_certificate));
+        let mut line = Self {
+            algorithm: Some(algorithm.info().title.to_owned()),
+            moves_made,
+            below_certificate: below,
+            largest_ratio: Some(tally.largest_ratio(self.edges, algorithm.info().order)),
+            shard: is_shard.then(|| shard.to_string()),
+            version: is_shard.then(|| version().to_owned()),
+            failure: tally.failure.as_ref().map(|it| FailureLine::of_algorithm(algorithm, it)),
+            ..self
+        };
+        if let RunChoices::All { budget } = choices {
+            let limits = [("max-states", tally.over_budget), ("memory", tally.over_memory)];
+            let reached = limits.into_iter().filter(|(_, count)| *count > 0);
+            line = Self {
+                states: Some(tally.states),
+                runs: Some(tally.runs),
+                moves_least: tally.extremes.map(|(least, _)| least),
+                moves_most: tally.extremes.map(|(_, most)| most),
+                gave_up: Some(tally.gave_up()),
+                limits: Some(reached.map(|(limit, count)| (limit.to_owned(), count)).collect()),
+                max_states: Some(budget),
+                ..line
+            };
+        }
+        line.with_counts(tally)
+    }
+
+    fn set_ratio_and_verdict(&mut self) {
+        let certificates = self.certificate_total.filter(|&total| total > 0);
+        self.ratio = certificates.map(|total| self.moves_total as f64 / total as f64);
+        self.holds = self.verdict().0 == Outcome::Holds;
+    }
+
     /// The outcome of a check, and its name. A check does not hold if it is empty or interrupted.
-    pub(in crate::cli) fn verdict(&self) -> (Outcome, &'static str) {
+    pub(super) fn verdict(&self) -> (Outcome, &'static str) {
+        let is_some = |count: Option<u64>| count.is_some_and(|count| count > 0);
         match () {
-            () if self.failed > 0 || self.below_certificate.unwrap_or_default() > 0 => {
+            () if self.failed > 0 || is_some(self.below_certificate) => {
                 (Outcome::Violated, "violated")
             }
             () if self.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
             () if self.starts == 0 => {
                 (Outcome::Incomplete, "incomplete: there is nothing to check")
             }
-            () if self.gave_up.unwrap_or_default() > 0 => (Outcome::Incomplete, "incomplete"),
+            () if is_some(self.gave_up) || is_some(self.unknown) || self.stopped == Some(true) => {
+                (Outcome::Incomplete, "incomplete")
+            }
             () => (Outcome::Holds, "holds"),
         }
     }
@@ -248,12 +274,11 @@ impl SizeLine {
     }
 
     /// The first thing in which the counts of a line contradict each other.
-    pub(in crate::cli) fn contradiction(&self) -> Option<String> {
-        let Self { starts, mapped, failed, moves_total, moves_max, .. } = *self;
+    pub(super) fn contradiction(&self) -> Option<String> {
+        let Self { starts, mapped, failed, moves_total, moves_max, holds: said, .. } = *self;
         let (below, gave_up) = (self.below_certificate, self.gave_up);
         let limits =
             self.limits.iter().flatten().try_fold(0_u64, |sum, (_, &n)| sum.checked_add(n));
-        let is = |holds| if holds { "true" } else { "false" };
         let holds = self.verdict().0 == Outcome::Holds;
         let problem = match () {
             () if mapped.checked_add(failed) != Some(starts) => {
@@ -271,8 +296,8 @@ impl SizeLine {
             () if gave_up.is_some_and(|gave_up| gave_up > starts || limits != Some(gave_up)) => {
                 "`gave_up` is not the sum of `limits`, or more than `starts`".to_owned()
             }
-            () if self.holds != holds => {
-                format!("`holds` is {}, but by the counts it is {}", is(self.holds), is(holds))
+            () if said != holds => {
+                format!("`holds` is {said}, but by the counts it is {holds}")
             }
             () => return None,
         };
@@ -283,51 +308,90 @@ impl SizeLine {
     ///
     /// # Errors
     /// Returns an error if a sum is too large.
-    pub(in crate::cli) fn add(&mut self, other: Self) -> Result<(), CountOverflow> {
-        add_count(&mut self.worlds, other.worlds, "worlds")?;
-        add_count(&mut self.starts, other.starts, "starts")?;
-        add_count(&mut self.mapped, other.mapped, "mapped")?;
-        add_count(&mut self.failed, other.failed, "failed")?;
-        add_count(&mut self.moves_total, other.moves_total, "moves_total")?;
+    pub(super) fn add(&mut self, other: Self) -> Result<(), CountOverflow> {
+        for (sum, count, name) in [
+            (&mut self.worlds, other.worlds, "worlds"),
+            (&mut self.starts, other.starts, "starts"),
+            (&mut self.mapped, other.mapped, "mapped"),
+            (&mut self.failed, other.failed, "failed"),
+            (&mut self.moves_total, other.moves_total, "moves_total"),
+        ] {
+            *sum = sum.checked_add(count).ok_or(CountOverflow(name))?;
+        }
+        for (sum, count, name) in [
+            (&mut self.unknown, other.unknown, "unknown"),
+            (&mut self.moves_made, other.moves_made, "moves_made"),
+            (&mut self.certificate_total, other.certificate_total, "certificate_total"),
+            (&mut self.below_certificate, other.below_certificate, "below_certificate"),
+            (&mut self.states, other.states, "states"),
+            (&mut self.gave_up, other.gave_up, "gave_up"),
+        ] {
+            if let Some(count) = count {
+                let added = sum.unwrap_or_default().checked_add(count);
+                *sum = Some(added.ok_or(CountOverflow(name))?);
+            }
+        }
+        for (limit, starts) in other.limits.into_iter().flatten() {
+            let known = self.limits.get_or_insert_default().entry(limit).or_default();
+            *known = known.checked_add(starts).ok_or(CountOverflow("limits"))?;
+        }
         self.moves_max = self.moves_max.max(other.moves_max);
-        add_some(&mut self.moves_made, other.moves_made, "moves_made")?;
-        add_some(&mut self.certificate_total, other.certificate_total, "certificate_total")?;
         self.certificate_max = self.certificate_max.max(other.certificate_max);
-        add_some(&mut self.below_certificate, other.below_certificate, "below_certificate")?;
-        self.ratio = self.certificate_total.and_then(|total| ratio(self.moves_total, total));
-        self.largest_ratio = self.largest_ratio.max(other.largest_ratio);
-        add_some(&mut self.states, other.states, "states")?;
+        self.largest_ratio =
+            [self.largest_ratio, other.largest_ratio].into_iter().flatten().max_by(f64::total_cmp);
         self.runs = match (self.runs, other.runs) {
             (Some(one), Some(other)) => Some(one.saturating_add(other)),
             (one, other) => one.or(other),
         };
         self.moves_least = self.moves_least.into_iter().chain(other.moves_least).min();
         self.moves_most = self.moves_most.max(other.moves_most);
-        add_some(&mut self.gave_up, other.gave_up, "gave_up")?;
-        if let Some(limits) = other.limits {
-            let known = self.limits.get_or_insert_default();
-            for (limit, starts) in limits {
-                add_count(known.entry(limit).or_default(), starts, "limits")?;
-            }
-        }
+        self.stopped = self.stopped.max(other.stopped);
         self.interrupted |= other.interrupted;
         self.failure = match (self.failure.take(), other.failure) {
             (Some(one), Some(other)) => Some(if other.place() < one.place() { other } else { one }),
             (one, other) => one.or(other),
         };
-        self.holds = self.verdict().0 == Outcome::Holds;
+        self.set_ratio_and_verdict();
         Ok(())
     }
-}
 
-/// The ratio of moves to the moves of certificates.
-fn ratio(moves: u64, certificates: u64) -> Option<f64> {
-    (certificates > 0).then(|| moves as f64 / certificates as f64)
-}
+    /// The worlds, in words.
+    pub(super) fn worlds_in_words(&self) -> String {
+        let worlds = match &self.from {
+            Some(path) => format!("the worlds of {path}"),
+            None => format!("class {}", self.class.as_deref().unwrap_or_default()),
+        };
+        match &self.shard {
+            None => worlds,
+            Some(shard) => format!("{worlds}, shard {shard}"),
+        }
+    }
 
-/// The number of starts that reached each limit on the search for all runs.
-fn limits(tally: &Tally) -> BTreeMap<String, u64> {
-    let counts = [("max-states", tally.over_budget), ("memory", tally.over_memory)];
-    let reached = counts.into_iter().filter(|(_, count)| *count > 0);
-    reached.map(|(limit, count)| (limit.to_owned(), count)).collect()
+    /// What is checked.
+    pub(super) fn name(&self) -> String {
+        format!("{}, {}", counted(self.edges, "edge"), self.worlds_in_words())
+    }
+
+    /// The result for CI systems.
+    pub(super) fn ci_case(&self) -> CiCase {
+        let (mapped, starts) = (grouped(self.mapped.into()), grouped(self.starts.into()));
+        let mut message = format!("{mapped} of {starts} starts mapped correctly");
+        if let Some(failure) = self.failure.as_ref().or(self.limit.as_ref()) {
+            let _ = match &failure.run {
+                FailedRun::Algorithm { .. } => {
+                    write!(message, "; the first wrong one: {}", failure.cause)
+                }
+                FailedRun::Explorer { message: what, .. } => {
+                    let what = what.strip_prefix("The explorer ").unwrap_or(what);
+                    write!(message, "; on the first other one, the explorer {what}")
+                }
+            };
+        } else if self.interrupted {
+            message += "; interrupted";
+        } else if self.gave_up.unwrap_or_default() > 0 {
+            message += "; the other runs of some starts reached a limit";
+        }
+        let file = self.from.as_ref().map(Into::into);
+        CiCase { name: self.name(), outcome: self.verdict().0, message, file }
+    }
 }

@@ -1,36 +1,21 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
-use std::{
-    fmt::{Display, Write as _},
-    io::Write,
-    time::Duration,
-};
-
-use toposlam_model::{format::world_file, mapping::MappingAlgorithm};
+use std::{fmt::Write as _, io::Write, time::Duration};
 
 use serde::Serialize;
-
-use super::line::{AlgorithmInfo, SizeLine, SizeResult};
-use crate::cli::{
-    CliError, Outcome, RunChoices,
-    ci_report::CiCase,
-    cluster::ClusterSession,
-    json::print_line,
-    text::{counted, grouped, print_hanging, print_paragraph},
+use serde_json::{Value, json};
+use toposlam_model::{
+    format::world_file,
+    mapping::{CostOrder, MappingAlgorithm},
 };
 
-/// The worlds of a file or of a class, in words.
-pub(super) fn worlds_in_words(from: Option<impl Display>, class: &str) -> String {
-    match from {
-        Some(path) => format!("the worlds of {path}"),
-        None => format!("class {class}"),
-    }
-}
-
-/// The mean over some starts, and the largest value.
-pub(super) fn mean_and_most(total: u64, starts: u64, most: u64) -> String {
-    format!("{:.1}/{}", total as f64 / starts.max(1) as f64, grouped(most.into()))
-}
+use super::line::{FailedRun, FailureLine, SizeLine};
+use crate::cli::{
+    CliError, Outcome,
+    cluster::ClusterSession,
+    json::print_line,
+    text::{counted, grouped, print_hanging, print_indented, print_paragraph},
+};
 
 /// A line of `--json`: the counts, and the verdict that follows from them.
 #[derive(Serialize)]
@@ -40,68 +25,28 @@ struct PrintedSize<'l> {
     verdict: &'static str,
 }
 
-impl SizeLine {
-    /// The worlds, in words.
-    fn worlds_in_words(&self) -> String {
-        let class = self.class.as_deref().unwrap_or_default();
-        let worlds = worlds_in_words(self.from.as_ref(), class);
-        match &self.shard {
-            None => worlds,
-            Some(shard) => format!("{worlds}, shard {shard}"),
-        }
-    }
-
-    /// The result for CI systems.
-    pub(in crate::cli) fn ci_case(&self) -> CiCase {
-        let (mapped, starts) = (grouped(self.mapped.into()), grouped(self.starts.into()));
-        let mut message = format!("{mapped} of {starts} starts mapped correctly");
-        if let Some(failure) = &self.failure {
-            let _ = write!(message, "; the first wrong one: {}", failure.cause);
-        } else if self.interrupted {
-            message += "; interrupted";
-        } else if self.gave_up.unwrap_or_default() > 0 {
-            message += "; the other runs of some starts reached a limit";
-        }
-        let file = self.from.as_ref().map(Into::into);
-        CiCase { name: self.name(), outcome: self.verdict().0, message, file }
-    }
-
-    /// What is checked.
-    pub(in crate::cli) fn name(&self) -> String {
-        format!("{}, {}", counted(self.edges, "edge"), self.worlds_in_words())
-    }
-}
-
 /// Prints each result when it is there.
-pub(in crate::cli) struct CheckReport<'o> {
+pub(super) struct CheckReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
-    subject: AlgorithmInfo,
-    choice: RunChoices,
-    header: bool,
+    /// That of the algorithm's cost; `None` if an explorer is checked.
+    order: Option<CostOrder>,
     total: SizeLine,
+    has_head: bool,
 }
 
-impl<'o> CheckReport<'o> {
-    pub(in crate::cli) fn new(
-        out: &'o mut dyn Write,
-        json: bool,
-        subject: AlgorithmInfo,
-        choice: RunChoices,
-    ) -> Self {
-        Self { out, json, subject, choice, header: false, total: SizeLine::default() }
-    }
+/// The head of a column, its width and its cell.
+type Cell = (String, usize, String);
 
-    /// The line of a result.
-    pub(super) fn line(&self, size: &SizeResult) -> SizeLine {
-        SizeLine::new(size, self.subject, self.choice)
+impl<'o> CheckReport<'o> {
+    pub(super) fn new(out: &'o mut dyn Write, json: bool, order: Option<CostOrder>) -> Self {
+        Self { out, json, order, total: SizeLine::default(), has_head: false }
     }
 
     /// Prints the result for one number of edges.
-    pub(in crate::cli) fn size(&mut self, line: SizeLine) -> Result<(), CliError> {
+    pub(super) fn size(&mut self, line: SizeLine) -> Result<(), CliError> {
         if self.json {
-            let verdict = line.verdict().0.verdict();
-            print_line(self.out, "size", &PrintedSize { line: &line, verdict })?;
+            self.print_object(&line)?;
         } else {
             self.row(&line)?;
         }
@@ -112,111 +57,200 @@ impl<'o> CheckReport<'o> {
     /// Reports how busy the threads of a cluster were.
     pub(super) fn threads(
         &mut self,
-        cluster: &mut ClusterSession,
+        cluster: &mut Box<dyn ClusterSession>,
         work: &str,
     ) -> Result<(), CliError> {
         cluster.report(self.out, self.json, work)
     }
 
-    fn header(&mut self, line: &SizeLine) -> Result<(), CliError> {
-        let AlgorithmInfo { algorithm, marker, certificates, order } = self.subject;
-        let head = format!("{algorithm}, {marker} marker, {}", line.worlds_in_words());
-        print_paragraph(self.out, &head)?;
-        let cost = if certificates {
-            "  certificate  ratio".to_owned()
-        } else {
-            format!("  {:>11}", format!("max/({order})"))
+    fn print_object(&mut self, line: &SizeLine) -> Result<(), CliError> {
+        let printed = PrintedSize { line, verdict: line.verdict().0.verdict() };
+        if line.explorer.is_none() {
+            return print_line(self.out, "size", &printed);
+        }
+        // A line of an explorer has all its keys.
+        let mut object = json!(printed);
+        let keys =
+            [("failure", Value::Null), ("limit", Value::Null), ("interrupted", false.into())];
+        let ratio = line.certificate_total.map(|_| ("ratio", Value::Null));
+        if let Value::Object(fields) = &mut object {
+            for (key, absent) in keys.into_iter().chain(ratio) {
+                fields.entry(key).or_insert(absent);
+            }
+        }
+        print_line(self.out, "explorer-size", &object)
+    }
+
+    fn cells(&self, line: &SizeLine) -> Vec<Cell> {
+        let is_explorer = line.explorer.is_some();
+        let count = |head: &str, width, number: u64| -> Cell {
+            (head.to_owned(), width, grouped(number.into()))
         };
-        writeln!(
-            self.out,
-            "\n{:>5} {:>10}  {:>12}  {:>6}  {:>14}{cost}",
-            "edges", "worlds", "starts", "failed", "mean/max moves",
-        )?;
-        Ok(())
+        let of = if is_explorer { line.mapped } else { line.starts };
+        let mean_and_most = |total: u64, most: u64| {
+            format!("{:.1}/{}", total as f64 / of.max(1) as f64, grouped(most.into()))
+        };
+        let moves = mean_and_most(line.moves_total, line.moves_max);
+        let [worlds, starts] = if is_explorer { [10, 12] } else { [11, 14] };
+        let mut cells = vec![
+            count("edges", 5, line.edges as u64),
+            count("worlds", worlds, line.worlds),
+            count("starts", starts, line.starts),
+            count("failed", 8, line.failed),
+        ];
+        cells.extend(line.unknown.map(|unknown| count("unknown", 9, unknown)));
+        cells.push(("mean/max moves".to_owned(), 16, moves));
+        if let (Some(total), Some(most)) = (line.certificate_total, line.certificate_max) {
+            let cell = match line.ratio {
+                None if is_explorer => [String::new(), String::new()],
+                None => [mean_and_most(total, most), "-".to_owned()],
+                Some(ratio) => [mean_and_most(total, most), format!("{ratio:.2}")],
+            };
+            let [certificate, ratio] = cell;
+            cells.push(("certificate".to_owned(), 13, certificate));
+            cells.push(("ratio".to_owned(), 7, ratio));
+        } else if let (Some(order), Some(ratio)) = (self.order, line.largest_ratio) {
+            cells.push((format!("max/({order})"), 13, format!("{ratio:.3}")));
+        }
+        cells
     }
 
     fn row(&mut self, line: &SizeLine) -> Result<(), CliError> {
-        if !std::mem::replace(&mut self.header, true) {
-            self.header(line)?;
+        let cells = self.cells(line);
+        if !std::mem::replace(&mut self.has_head, true) {
+            let mapper = match (&line.algorithm, &line.explorer) {
+                (Some(algorithm), _) => algorithm.clone(),
+                (None, explorer) => format!("Explorer {}", explorer.as_deref().unwrap_or_default()),
+            };
+            let worlds = line.worlds_in_words();
+            print_paragraph(self.out, &format!("{mapper}, {} marker, {worlds}", line.marker))?;
+            let heads = cells.iter().map(|(head, width, _)| format!("{head:>width$}"));
+            writeln!(self.out, "\n{}", heads.collect::<String>())?;
         }
-        let cost = match (line.certificate_total, line.certificate_max) {
-            (Some(total), Some(most)) => {
-                let certificate = mean_and_most(total, line.starts, most);
-                let ratio =
-                    line.ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}"));
-                format!("  {certificate:>11}  {ratio:>5}")
-            }
-            _ => format!("  {:>11.3}", line.largest_ratio),
-        };
-        writeln!(
-            self.out,
-            "{:>5} {:>10}  {:>12}  {:>6}  {:>14}{cost}",
-            line.edges,
-            grouped(line.worlds.into()),
-            grouped(line.starts.into()),
-            grouped(line.failed.into()),
-            mean_and_most(line.moves_total, line.starts, line.moves_max),
-        )?;
+        let row = cells.iter().map(|(_, width, cell)| format!("{cell:>width$}"));
+        writeln!(self.out, "{}", row.collect::<String>().trim_end())?;
         if let Some(runs) = line.runs {
             let some = runs == u128::MAX || line.gave_up.unwrap_or_default() > 0;
+            let number = |count: Option<u64>| grouped(count.unwrap_or_default().into());
             let all = format!(
                 "{} states, {}{} runs of {} to {} moves",
-                grouped(line.states.unwrap_or_default().into()),
+                number(line.states),
                 if some { "at least " } else { "" },
                 grouped(runs),
-                grouped(line.moves_least.unwrap_or_default().into()),
-                grouped(line.moves_most.unwrap_or_default().into()),
+                number(line.moves_least),
+                number(line.moves_most),
             );
             print_hanging(self.out, "       all choices: ", &all)?;
+        }
+        let causes = line.causes.iter().flatten();
+        let causes: Vec<_> =
+            causes.map(|(cause, &count)| format!("{cause} {}", grouped(count.into()))).collect();
+        if !causes.is_empty() {
+            print_hanging(self.out, "       causes: ", &causes.join(", "))?;
+        }
+        if line.stopped == Some(true) {
+            writeln!(self.out, "       stopped: too many runs ended their process (--restarts)")?;
         }
         if line.interrupted {
             writeln!(self.out, "       interrupted")?;
         }
-        if let Some(failure) = &line.failure {
-            let step = failure.step.as_ref().map_or(String::new(), |step| format!(" {step}"));
-            writeln!(self.out)?;
-            print_paragraph(self.out, &format!("Wrong{step}: {}", failure.cause))?;
-            let is_folding = self.subject.algorithm == MappingAlgorithm::Folding.info().title;
-            let algorithm = if is_folding { " --algorithm folding" } else { "" };
-            let explore = format!("toposlam explore --marker {}{algorithm}", self.subject.marker);
-            print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
-            if let Some(world) = failure.named_world() {
-                writeln!(self.out, "\n{}", world_file::to_toml(&world))?;
+        match (&line.failure, &line.limit) {
+            (Some(failure), _) => self.print_failure(line, failure, "failed"),
+            (None, Some(limit)) => self.print_failure(line, limit, "reached a limit"),
+            (None, None) => Ok(()),
+        }
+    }
+
+    /// Prints the first start that was not mapped, and what happened there.
+    fn print_failure(
+        &mut self,
+        line: &SizeLine,
+        failure: &FailureLine,
+        what: &str,
+    ) -> Result<(), CliError> {
+        let FailureLine { cause, moves, run, .. } = failure;
+        writeln!(self.out)?;
+        match run {
+            FailedRun::Algorithm { step } => {
+                let step = step.as_ref().map_or(String::new(), |step| format!(" {step}"));
+                print_paragraph(self.out, &format!("Wrong{step}: {cause}"))?;
+                let is_folding =
+                    line.algorithm.as_deref() == Some(MappingAlgorithm::Folding.info().title);
+                let algorithm = if is_folding { " --algorithm folding" } else { "" };
+                let explore = format!("toposlam explore --marker {}{algorithm}", line.marker);
+                print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
             }
+            FailedRun::Explorer { message, last_actions, stderr } => {
+                let it = message.strip_prefix("The explorer ").unwrap_or(message);
+                let moves = counted(moves.unwrap_or_default() as usize, "move");
+                let text = format!(
+                    "The first start on which the explorer {what}. After {moves}, it {it}."
+                );
+                print_paragraph(self.out, &text)?;
+                if !last_actions.is_empty() {
+                    let plain = |action: &Value| action.as_str().map(str::to_owned);
+                    let actions = last_actions.iter();
+                    let actions: Vec<_> = actions
+                        .map(|action| plain(action).unwrap_or_else(|| action.to_string()))
+                        .collect();
+                    print_hanging(self.out, "  last doors  ", &actions.join(" "))?;
+                }
+                if !stderr.is_empty() {
+                    writeln!(self.out, "  the end of its standard error:")?;
+                    for line in stderr.lines() {
+                        let plain = line.replace(char::is_control, " ");
+                        print_indented(self.out, "    ", 4, plain.trim_end())?;
+                    }
+                }
+                print_paragraph(self.out, "The start, as a world file:")?;
+            }
+        }
+        if let Some(world) = failure.named_world() {
+            writeln!(self.out, "\n{}", world_file::to_toml(&world))?;
         }
         Ok(())
     }
 
-    /// Prints the verdict and returns the outcome.
-    pub(in crate::cli) fn verdict(self, elapsed: Option<Duration>) -> Result<Outcome, CliError> {
+    /// Prints the verdict and the time that it took, and returns the outcome.
+    pub(super) fn verdict(self, elapsed: Option<Duration>) -> Result<Outcome, CliError> {
         let (outcome, verdict) = self.total.verdict();
         if self.json {
             return Ok(outcome);
         }
-        let SizeLine { starts, mapped, below_certificate, .. } = self.total;
-        let mut verdict = verdict.to_owned();
+        let SizeLine { starts, mapped, below_certificate, unknown, ratio, .. } = self.total;
+        let is_explorer = unknown.is_some();
+        let mut text = verdict.to_owned();
         if starts > 0 {
             let (mapped, starts) = (grouped(mapped.into()), grouped(starts.into()));
-            let _ = write!(verdict, ": {mapped} of {starts} starts mapped correctly, ");
-            verdict += "each proved by a bijection";
+            let _ = write!(text, ": {mapped} of {starts} starts mapped correctly, ");
+            text += "each proved by a bijection";
         }
-        if let Some(below @ 1..) = below_certificate {
-            let starts = grouped(below.into());
-            let _ = write!(verdict, "; {starts} in fewer moves than their certificates have");
+        for (count, before, after) in [
+            (
+                below_certificate.unwrap_or_default(),
+                "",
+                " in fewer moves than their certificates have",
+            ),
+            (self.total.reached("max-states"), "", " have more states than --max-states"),
+            (self.total.reached("memory"), "the states of ", " need more than 1 GiB of memory"),
+            (unknown.unwrap_or_default(), "on ", ", a limit was reached"),
+        ] {
+            if count > 0 {
+                let _ = write!(text, "; {before}{}{after}", grouped(count.into()));
+            }
         }
-        if let over @ 1.. = self.total.reached("max-states") {
-            let starts = grouped(over.into());
-            let _ = write!(verdict, "; {starts} have more states than --max-states");
-        }
-        if let over @ 1.. = self.total.reached("memory") {
-            let starts = grouped(over.into());
-            let _ = write!(verdict, "; the states of {starts} need more than 1 GiB of memory");
+        if let Some(ratio) = ratio.filter(|_| is_explorer) {
+            let _ = write!(text, "; {ratio:.2} times the moves of the certificates");
         }
         writeln!(self.out)?;
-        print_paragraph(self.out, &verdict)?;
-        if let Some(elapsed) = elapsed {
-            let threads = counted(rayon::current_num_threads(), "thread");
-            remark!("{:.2} s on {threads}", elapsed.as_secs_f64());
+        print_paragraph(self.out, &text)?;
+        let threads = rayon::current_num_threads();
+        match elapsed.map(|elapsed| elapsed.as_secs_f64()) {
+            None => {}
+            Some(seconds) if is_explorer => {
+                remark!("{seconds:.2} s with {threads} processes at once");
+            }
+            Some(seconds) => remark!("{seconds:.2} s on {}", counted(threads, "thread")),
         }
         Ok(outcome)
     }
@@ -227,27 +261,23 @@ mod tests {
     use toposlam_model::{
         check::{Shard, Tally},
         enumerate::Class,
+        marker::Directional,
     };
 
     use super::*;
+    use crate::cli::RunChoices;
 
     #[test]
     fn more_runs_than_64_bits_hold_are_printed_and_read_exactly() {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
-        let (class, shard) = (Class::Simple, Shard::WHOLE);
-        let size =
-            SizeResult { edges: 1, class, from: None, shard, tally: &tally, moves_made: None };
-        let subject = AlgorithmInfo::of(MappingAlgorithm::Algorithm1);
-        let mut line = Vec::new();
-        print_line(
-            &mut line,
-            "size",
-            &SizeLine::new(&size, subject, RunChoices::All { budget: 9 }),
-        )
-        .unwrap();
-        let line = String::from_utf8(line).unwrap();
-        assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");
-        let read: SizeLine = serde_json::from_str(&line).unwrap();
+        let all = (MappingAlgorithm::Algorithm1, RunChoices::All { budget: 9 });
+        let line = SizeLine::new(1, Class::Simple, None, &Directional);
+        let line = line.of_algorithm(all, Shard::WHOLE, &tally, None);
+        let mut out = Vec::new();
+        CheckReport::new(&mut out, true, None).size(line).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(text.contains(r#""runs":340282366920938463463374607431768211455,"#), "{text}");
+        let read: SizeLine = serde_json::from_str(&text).unwrap();
         assert_eq!(read.runs, Some(u128::MAX));
     }
 }

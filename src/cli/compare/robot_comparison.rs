@@ -5,14 +5,14 @@ use std::{
     path::Path,
 };
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use toposlam_model::{
     ambiguity::{Bisimulation, Comparison, PlacedRobot, Relation, StateClasses, Walk, state_count},
     embedded_graph::Dart,
     enumerate::{Interrupted, Watch},
     format::named_world::NamedWorld,
     marker::Marker,
-    world::{Action, State},
+    world::State,
 };
 
 use super::{CliError, walk_page};
@@ -157,9 +157,9 @@ impl<'w> RobotComparison<'w> {
         classes.iter().map(|[one, other]| [text(0, one), text(1, other)]).collect()
     }
 
-    pub(super) fn json(&self) -> Map<String, Value> {
-        let [a, b] = self.worlds;
-        let bisimulation = self.bisimulation.as_ref();
+    /// The part of the object about robots.
+    pub(super) fn json(&self) -> Value {
+        let Self { worlds: [a, b], marker, start, others, bisimulation, .. } = self;
         let (pairs, classes) = match bisimulation {
             None => (None, None),
             Some(Bisimulation::Relation(relation)) => {
@@ -168,20 +168,21 @@ impl<'w> RobotComparison<'w> {
             }
             Some(Bisimulation::Classes(classes)) => (None, Some(self.classes_text(classes))),
         };
-        let walk = |walk: &Option<Walk>| walk.as_ref().map(|walk| actions_json(&walk.actions));
-        let first = self.others.first().filter(|_| bisimulation.is_none());
-        let line = json!({
-            "marker": self.marker.name(),
+        let walk = |walk: &Option<Walk>| -> Option<Value> {
+            Some(walk.as_ref()?.actions.iter().copied().map(action_json).collect())
+        };
+        let first = others.first().filter(|_| bisimulation.is_none());
+        json!({
+            "marker": marker.name(),
             "distinguishable": bisimulation.is_none(),
             "walk": first.and_then(|(_, first)| walk(first)),
             "relation": pairs,
             "classes": classes,
-            "relation_starts": bisimulation.map(|_| self.starts_text()),
-            "start": a.start_text(self.start),
-            "starts": self.others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
-            "walks": self.others.iter().map(|(_, other)| walk(other)).collect::<Vec<_>>(),
-        });
-        line.as_object().cloned().unwrap_or_default()
+            "relation_starts": bisimulation.as_ref().map(|_| self.starts_text()),
+            "start": a.start_text(*start),
+            "starts": others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
+            "walks": others.iter().map(|(_, other)| walk(other)).collect::<Vec<_>>(),
+        })
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
@@ -238,9 +239,7 @@ impl<'w> RobotComparison<'w> {
             more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
         }
     }
-}
 
-impl RobotComparison<'_> {
     /// Why no walk distinguishes the worlds, if there are many pairs of states.
     fn print_classes(&self, classes: &StateClasses, out: &mut dyn Write) -> io::Result<()> {
         let [start, other] = self.starts_text();
@@ -271,15 +270,4 @@ impl RobotComparison<'_> {
             more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
         }
     }
-}
-
-/// The part of the object without robots.
-pub(super) fn no_robots_json() -> Map<String, Value> {
-    let keys = ["marker", "distinguishable", "walk", "relation"];
-    keys.into_iter().map(|key| (key.to_owned(), Value::Null)).collect()
-}
-
-/// Doors as numbers, other actions as words.
-pub(super) fn actions_json(actions: &[Action]) -> Value {
-    actions.iter().copied().map(action_json).collect()
 }

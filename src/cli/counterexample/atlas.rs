@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use toposlam_model::{
-    ambiguity::{AmbiguitySearch, KeptPairs, SearchError},
+    ambiguity::{AmbiguitySearch, KeptPairs},
     enumerate::Class,
     format::named_world::NamedWorld,
     marker::{MARKERS, Marker},
@@ -12,8 +12,9 @@ use toposlam_model::{
 use toposlam_proofs::marker_theorems;
 
 use super::{
-    memory::{self, MemoryLimit},
+    memory::MemoryLimit,
     pairs::{self, WorldPairs},
+    run_search,
 };
 use crate::{
     cli::{
@@ -55,24 +56,19 @@ pub(super) fn write(
                 .map_err(|error| CliError::at("--max-edges", error))?;
             let work = format!("{}, {class}", marker.name());
             let progress = Progress::new(&work, "placed worlds")?;
-            let sorter = memory::sorter(limit, &search)?;
-            let findings = search.run_sorted(sorter, KeptPairs::Smallest, &progress);
+            let findings = run_search(&search, limit, KeptPairs::Smallest, &progress)?;
             progress.finish();
-            let findings = match findings {
-                Ok(findings) => findings,
-                Err(SearchError::Sorter(cause)) => return Err(CliError::at("--memory", cause)),
-                Err(SearchError::Unfinished(unfinished)) => {
-                    return pairs::report_unfinished(&unfinished);
-                }
-            };
-            found.push(WorldPairs::new(marker, class, &findings, false));
+            match findings {
+                Ok(findings) => found.push(WorldPairs::new(marker, class, &findings, false)),
+                Err(unfinished) => return pairs::report_unfinished(&unfinished),
+            }
         }
         rows.push(Row { marker, found });
     }
     for Row { found, .. } in &rows {
         for found in found {
             found.write(folder)?;
-            for world in found.worlds() {
+            for world in &found.worlds {
                 let path = folder.join(format!("{}.svg", world.name));
                 output::write_whole(&path, svg(&WorldPicture::from(world)).as_bytes())?;
             }

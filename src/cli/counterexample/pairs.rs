@@ -12,12 +12,13 @@ use toposlam_model::{
 use crate::cli::{CliError, Outcome, output, terminal, walk_page};
 
 /// The reported pairs, and each of their worlds once.
-#[derive(Clone)]
 pub(super) struct WorldPairs {
-    worlds: Vec<NamedWorld>,
+    /// Each once, in the order of the pairs.
+    pub(super) worlds: Vec<NamedWorld>,
     /// The indices of the two worlds of each pair, the smallest pair first.
     pairs: Vec<[usize; 2]>,
-    all: bool,
+    /// Whether these are all pairs, and not only the smallest.
+    pub(super) all: bool,
 }
 
 impl WorldPairs {
@@ -37,8 +38,7 @@ impl WorldPairs {
                 worlds.len() - 1
             })
         };
-        let pairs = pairs.into_iter().map(|pair| pair.map(&mut place)).collect();
-        let pairs: Vec<[usize; 2]> = pairs;
+        let pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(&mut place)).collect();
         let name = |place: usize| format!("{}-{class}-{}", marker.name(), place + 1);
         let named = |(place, world): (usize, &&PlacedWorld)| {
             let other = pairs.iter().find(|pair| pair.contains(&place));
@@ -55,16 +55,6 @@ impl WorldPairs {
             }
         };
         Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs, all }
-    }
-
-    /// Whether these are all pairs, and not only the smallest.
-    pub(super) fn has_all(&self) -> bool {
-        self.all
-    }
-
-    /// The worlds, each once, in the order of the pairs.
-    pub(super) fn worlds(&self) -> &[NamedWorld] {
-        &self.worlds
     }
 
     /// The pairs, the smallest first.

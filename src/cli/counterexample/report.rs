@@ -1,8 +1,8 @@
 //! The report of a search: a table and the smallest pair, or JSON.
 
-use std::io::Write;
+use std::io::{self, Write};
 
-use serde_json::{Value, json};
+use serde_json::json;
 use toposlam_model::{
     ambiguity::{Findings, SizeFindings},
     enumerate::Class,
@@ -30,7 +30,7 @@ pub(super) struct SearchReport<'o> {
     edges: usize,
     /// The number of markers. If there is one, the report on it is longer.
     markers: usize,
-    header: bool,
+    has_head: bool,
     /// Printed after the table.
     pairs: Vec<WorldPairs>,
 }
@@ -43,7 +43,7 @@ impl<'o> SearchReport<'o> {
         edges: usize,
         markers: usize,
     ) -> Self {
-        Self { out, json, class, edges, markers, header: false, pairs: Vec::new() }
+        Self { out, json, class, edges, markers, has_head: false, pairs: Vec::new() }
     }
 
     /// Prints the result for one marker.
@@ -51,23 +51,25 @@ impl<'o> SearchReport<'o> {
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
-        found: &WorldPairs,
+        found: WorldPairs,
     ) -> Result<(), CliError> {
         if self.json {
-            self.objects(marker, findings, found)?;
+            self.objects(marker.name(), findings, &found)?;
         } else if self.markers == 1 {
-            self.full_report(marker, findings, found)?;
+            self.full_report(marker, findings, &found)?;
         } else {
-            self.row(marker, findings, found)?;
+            self.row(marker, findings, &found)?;
+            if found.all && !found.pairs().is_empty() {
+                self.pairs.push(found);
+            }
         }
-        self.out.flush()?;
-        Ok(())
+        Ok(self.out.flush()?)
     }
 
     /// Reports how busy the threads of a cluster were.
     pub(super) fn threads(
         &mut self,
-        cluster: &mut ClusterSession,
+        cluster: &mut Box<dyn ClusterSession>,
         marker: &dyn Marker,
     ) -> Result<(), CliError> {
         cluster.report(self.out, self.json, marker.name())
@@ -75,47 +77,36 @@ impl<'o> SearchReport<'o> {
 
     fn objects(
         &mut self,
-        marker: &dyn Marker,
+        marker: &str,
         findings: &Findings,
         found: &WorldPairs,
     ) -> Result<(), CliError> {
+        let (class, edges_of) =
+            (self.class.name(), |[_, larger]: [&NamedWorld; 2]| larger.graph.edge_count());
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
             let line = json!({
-                "edges": edges,
-                "class": self.class.name(),
-                "marker": marker.name(),
-                "placed_worlds": placed_worlds,
+                "edges": edges, "class": class, "marker": marker, "placed_worlds": placed_worlds,
                 "ambiguous": ambiguous,
             });
             print_line(self.out, "size", &line)?;
         }
-        let pair = |pair: &[&NamedWorld; 2]| {
-            let edges = pair[1].graph.edge_count();
-            json!({ "edges": edges, "worlds": pair.map(world_file::to_json) })
-        };
         let pairs = found.pairs();
+        let smallest = pairs.first().map(
+            |&pair| json!({ "edges": edges_of(pair), "worlds": pair.map(world_file::to_json) }),
+        );
         let line = json!({
-            "smallest": pairs.first().map_or(Value::Null, pair),
-            "searched_edges": self.edges,
-            "class": self.class.name(),
-            "marker": marker.name(),
+            "smallest": smallest, "searched_edges": self.edges, "class": class, "marker": marker,
         });
         print_line(self.out, "smallest", &line)?;
-        if found.has_all() {
-            for world in found.worlds() {
-                let world = world_file::to_json(world);
-                let line = json!({ "world": world, "marker": marker.name() });
+        if found.all {
+            for world in &found.worlds {
+                let line = json!({ "world": world_file::to_json(world), "marker": marker });
                 print_line(self.out, "world", &line)?;
             }
-            for each in &pairs {
-                let line = json!({
-                        "pair": {
-                        "edges": each[1].graph.edge_count(),
-                        "worlds": each.map(|world| &world.name),
-                    },
-                    "marker": marker.name(),
-                });
-                print_line(self.out, "pair", &line)?;
+            for pair in pairs {
+                let names = pair.map(|world| &world.name);
+                let pair = json!({ "edges": edges_of(pair), "worlds": names });
+                print_line(self.out, "pair", &json!({ "pair": pair, "marker": marker }))?;
             }
         }
         Ok(())
@@ -127,41 +118,24 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), CliError> {
-        if !std::mem::replace(&mut self.header, true) {
+    ) -> io::Result<()> {
+        if !std::mem::replace(&mut self.has_head, true) {
             let (class, edges) = (self.class, up_to(self.edges));
-            let head =
-                format!("Pairs of worlds that no walk distinguishes: class {class}, {edges}");
-            print_paragraph(self.out, &head)?;
-            writeln!(self.out)?;
-            writeln!(
-                self.out,
-                "{:<15}  {:>13}  {:>9}  smallest pair",
-                "marker", "placed worlds", "ambiguous"
-            )?;
+            let head = "Pairs of worlds that no walk distinguishes";
+            print_paragraph(self.out, &format!("{head}: class {class}, {edges}"))?;
+            let (marker, placed, ambiguous) = ("marker", "placed worlds", "ambiguous");
+            writeln!(self.out, "\n{marker:<15}  {placed:>13}  {ambiguous:>9}  smallest pair")?;
         }
         let sum = |count: fn(&SizeFindings) -> u64| {
             grouped(findings.sizes.iter().map(|size| u128::from(count(size))).sum())
         };
-        writeln!(
-            self.out,
-            "{:<15}  {:>13}  {:>9}  {}",
-            marker.name(),
-            sum(|size| size.placed_worlds),
-            sum(|size| size.ambiguous),
-            self.sizes_of_smallest(marker, found),
-        )?;
-        if found.has_all() && !found.pairs().is_empty() {
-            self.pairs.push(found.clone());
-        }
-        Ok(())
-    }
-
-    fn sizes_of_smallest(&self, marker: &dyn Marker, found: &WorldPairs) -> String {
-        match found.pairs().first() {
-            Some([one, other]) => sizes(one, other),
+        let (name, placed) = (marker.name(), sum(|size| size.placed_worlds));
+        let ambiguous = sum(|size| size.ambiguous);
+        let smallest = match found.pairs().first() {
+            Some(&pair) => sizes(pair),
             None => none(marker, self.class, self.edges),
-        }
+        };
+        writeln!(self.out, "{name:<15}  {placed:>13}  {ambiguous:>9}  {smallest}")
     }
 
     /// The longer report on one marker.
@@ -170,41 +144,35 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), CliError> {
+    ) -> io::Result<()> {
         print_paragraph(self.out, &format!("{} marker: {}", marker.name(), marker.about()))?;
         writeln!(self.out, "class {}, {}\n", self.class, up_to(self.edges))?;
         writeln!(self.out, "{:>5}  {:>13}  {:>9}", "edges", "placed worlds", "ambiguous")?;
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
-            writeln!(
-                self.out,
-                "{edges:>5}  {:>13}  {:>9}",
-                grouped(placed_worlds.into()),
-                grouped(ambiguous.into())
-            )?;
+            let [placed, ambiguous] = [placed_worlds, ambiguous].map(|n| grouped(n.into()));
+            writeln!(self.out, "{edges:>5}  {placed:>13}  {ambiguous:>9}")?;
         }
-        let Some([one, other]) = found.pairs().first().copied() else {
-            writeln!(self.out)?;
-            let none = format!(
-                "no pair up to {}: a walk distinguishes any two",
-                counted(self.edges, "edge")
-            );
-            print_paragraph(self.out, &none)?;
+        writeln!(self.out)?;
+        let Some(&pair) = found.pairs().first() else {
+            let size = counted(self.edges, "edge");
+            print_paragraph(
+                self.out,
+                &format!("no pair up to {size}: a walk distinguishes any two"),
+            )?;
             if let Some(theorem) = proved(marker, self.class, true) {
                 let any = format!("none in any world of the class: `{theorem}`, proved in Coq");
                 print_paragraph(self.out, &any)?;
             }
             return Ok(());
         };
-        writeln!(self.out)?;
         let smallest = format!(
             "The smallest pair that no walk distinguishes: {}. For each vertex, the list shows where \
              its doors lead, clockwise.",
-            sizes(one, other)
+            sizes(pair)
         );
         print_paragraph(self.out, &smallest)?;
         writeln!(self.out)?;
-        self.print_world(one)?;
-        self.print_world(other)?;
+        pair.into_iter().try_for_each(|world| self.print_world(world))?;
         let command = format!(
             "toposlam counterexample --marker {} --class {} --max-edges {} --html walk.html",
             marker.name(),
@@ -213,30 +181,24 @@ impl<'o> SearchReport<'o> {
         );
         writeln!(self.out, "\nTo walk them in a browser:")?;
         print_command(self.out, "  ", &command)?;
-        if found.has_all() {
-            self.print_pairs(found)?;
-        }
-        Ok(())
+        if found.all { self.print_pairs(found) } else { Ok(()) }
     }
 
     /// All pairs by name, and the worlds in them.
-    fn print_pairs(&mut self, found: &WorldPairs) -> Result<(), CliError> {
+    fn print_pairs(&mut self, found: &WorldPairs) -> io::Result<()> {
         let pairs = found.pairs();
         let count = grouped(pairs.len() as u128);
         writeln!(self.out, "\nAll pairs: {count}\n")?;
-        for [one, other] in &pairs {
-            let pair = format!("{} ~ {}: {}", one.name, other.name, sizes(one, other));
+        for pair @ [one, other] in pairs {
+            let pair = format!("{} ~ {}: {}", one.name, other.name, sizes(pair));
             print_indented(self.out, "  ", 4, &pair)?;
         }
         writeln!(self.out, "\nTheir worlds:\n")?;
-        for world in found.worlds() {
-            self.print_world(world)?;
-        }
-        Ok(())
+        found.worlds.iter().try_for_each(|world| self.print_world(world))
     }
 
     /// The start of a world, and the clockwise order at each of its vertices.
-    fn print_world(&mut self, world: &NamedWorld) -> Result<(), CliError> {
+    fn print_world(&mut self, world: &NamedWorld) -> io::Result<()> {
         let start = world.start.map(|dart| world.start_text(dart)).unwrap_or_default();
         writeln!(self.out, "  {}, start {start}", world.name)?;
         for vertex in world.graph.vertices() {
@@ -249,14 +211,11 @@ impl<'o> SearchReport<'o> {
     }
 
     /// After the table, the pairs of all its rows.
-    pub(super) fn end(&mut self) -> Result<(), CliError> {
-        for found in std::mem::take(&mut self.pairs) {
-            self.print_pairs(&found)?;
-        }
-        Ok(())
+    pub(super) fn end(&mut self) -> io::Result<()> {
+        std::mem::take(&mut self.pairs).iter().try_for_each(|found| self.print_pairs(found))
     }
 }
 
-fn sizes(one: &NamedWorld, other: &NamedWorld) -> String {
+fn sizes([one, other]: [&NamedWorld; 2]) -> String {
     format!("{} and {} edges", one.graph.edge_count(), other.graph.edge_count())
 }

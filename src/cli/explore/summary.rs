@@ -2,9 +2,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{
-    FoldingEvent, MapWalk, MappingEvent, MovableEvent, Observer, SafeguardEvent,
-};
+use toposlam_model::mapping::{FoldingEvent, MappingEvent, MovableEvent, SafeguardEvent};
 
 use crate::cli::text::grouped;
 
@@ -48,10 +46,8 @@ impl Summary {
         }
         writeln!(out, "\nUse --story for each round.")
     }
-}
 
-impl<W: ?Sized> Observer<W> for Summary {
-    fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
+    pub(super) fn count(&mut self, event: MappingEvent) {
         match event {
             MappingEvent::Arrived { contradicted, .. } => {
                 self.rounds += 1;

@@ -10,7 +10,7 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 use toposlam_proofs::{
-    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit, Stop,
+    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit,
     choose::{claim, given},
     draw,
     lemma::Exhaustive,
@@ -19,9 +19,9 @@ use toposlam_proofs::{
 use super::*;
 
 /// Runs the verb on these lemmas.
-fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, CliError>, String) {
+fn run(lemmas: &[Lemma], line: &str) -> (Result<Outcome, CliError>, String) {
     let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
-    let matches = command.try_get_matches_from(arguments).unwrap();
+    let matches = command.try_get_matches_from(line.split_whitespace()).unwrap();
     let arguments = ProofsArguments::from_arg_matches(&matches).unwrap();
     let mut out = Vec::new();
     let theorems = [Theorem { name: "round", sentence: "It turns.".into(), paper: "2.2".into() }];
@@ -29,7 +29,10 @@ fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, CliError>, Stri
     (outcome, String::from_utf8(out).unwrap())
 }
 
-fn objects(text: &str) -> Vec<Value> {
+/// The objects that the verb prints, which ends with this outcome.
+fn objects(lemmas: &[Lemma], line: &str, expected: Outcome) -> Vec<Value> {
+    let (outcome, text) = run(lemmas, &format!("{line} --json"));
+    assert_eq!(outcome.unwrap(), expected, "{text}");
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
@@ -67,8 +70,8 @@ fn false_lemma() -> Lemma {
     lemma("entry", 1, a_marker_shows_the_entry, a_marker_shows_the_entry)
 }
 
-fn true_lemma() -> Lemma {
-    lemma("low", 4, numbers_are_low, numbers_are_low)
+fn true_lemma(name: &'static str, pinned: u64) -> Lemma {
+    lemma(name, pinned, numbers_are_low, numbers_are_low)
 }
 
 const FAILED: &str = "
@@ -97,96 +100,63 @@ A walk in the world, marker directional:
 
 undirected: marker
 
-violated: ";
+violated: the lemma fails in this case
+";
 
 #[test]
 fn a_lemma_that_fails_prints_the_case_and_the_command_that_repeats_it() {
-    let lemmas = [true_lemma(), false_lemma()];
-    let (outcome, text) = run(&lemmas, &["--run", "all"]);
+    let lemmas = [false_lemma(), true_lemma("low", 4)];
+    let (outcome, text) = run(&lemmas, "--run all");
     assert_eq!(outcome.unwrap(), Outcome::Violated);
     let rows: Vec<_> = text.lines().take(2).collect();
-    assert!(rows[0].starts_with("low    4 cases  ") && rows[0].ends_with(" s  holds"), "{text}");
-    assert!(rows[1].starts_with("entry   1 case  ") && rows[1].ends_with(" s  fails"), "{text}");
+    assert!(rows[0].starts_with("entry   1 case  ") && rows[0].ends_with(" s  fails"), "{text}");
+    assert!(rows[1].starts_with("low    4 cases  ") && rows[1].ends_with(" s  holds"), "{text}");
     let (_, failed) = text.split_at(rows[0].len() + rows[1].len() + 2);
-    assert_eq!(failed, format!("{FAILED}1 of 2 lemmas hold, 4 cases\n"));
-    // The printed command.
+    assert_eq!(failed, format!("{FAILED}\nviolated: 1 of 2 lemmas held, 4 cases\n"));
     let again = text.lines().find_map(|line| line.strip_prefix("  again: toposlam proofs "));
-    let (outcome, text) = run(&lemmas, &again.unwrap().split(' ').collect::<Vec<_>>());
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    assert_eq!(text, format!("{}the lemma fails in this case\n", &FAILED[1..]));
-}
+    let (outcome, text) = run(&lemmas, again.unwrap());
+    assert_eq!((outcome.unwrap(), text.as_str()), (Outcome::Violated, &FAILED[1..]));
 
-#[test]
-fn the_json_contains_the_same() {
-    let lemmas = [false_lemma(), true_lemma()];
-    let (outcome, text) = run(&lemmas, &["--run", "all", "--json", "--keep-going"]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    let lines = objects(&text);
-    let [failed, held, totals] = lines.as_slice() else { panic!("{text}") };
-    assert_eq!((&failed["lemma"], &failed["holds"]), (&json!("entry"), &json!(false)));
-    assert_eq!((&failed["cases"], &failed["choices"]), (&json!(1), &json!([0, 1, 0, 0, 0])));
-    assert_eq!(failed["claim"], "the robot has come in by the facing dart");
-    let world = world_file::read(failed["worlds"][0].to_string().as_bytes()).unwrap();
+    let lines = objects(&lemmas, "--run all", Outcome::Violated);
+    let [failed, held, case, totals] = lines.as_slice() else { panic!("{lines:?}") };
+    for (line, fields) in [
+        (
+            failed,
+            json!({ "lemma": "entry", "holds": false, "cases": 1, "choices": [0, 1, 0, 0, 0] }),
+        ),
+        (held, json!({ "lemma": "low", "holds": true, "cases": 4, "choices": null })),
+        (totals, json!({ "lemmas": 2, "held": 1, "cases": 4, "not_checked": 0, "holds": false })),
+        (
+            case,
+            json!({ "lemma": "entry", "holds": false, "engine": "exhaustive", "verdict": "fails" }),
+        ),
+        (case, json!({ "claim": failed["claim"], "choices": failed["choices"] })),
+    ] {
+        for (key, value) in fields.as_object().unwrap() {
+            assert_eq!(&line[key], value, "{key}: {line}");
+        }
+    }
+    let world = world_file::read(case["worlds"][0].to_string().as_bytes()).unwrap();
     assert_eq!((world.graph.edge_count(), world.start), (1, Some(Dart(0))));
     let seen = |door: u32| json!({ "degree": 2, "sighting": format!("marker along door {door}") });
     let walk = json!([{
-        "world": 0,
-            "marker": "directional", "doors": [0], "poses": ["v0:0", "v0:1"], "percepts": [seen(0), seen(1)],
-        "stopped": null,
+        "world": 0, "marker": "directional", "doors": [0], "poses": ["v0:0", "v0:1"],
+        "percepts": [seen(0), seen(1)], "stopped": null,
     }]);
-    assert_eq!(failed["walks"], walk);
-    assert_eq!(failed["values"], json!([{ "name": "undirected", "value": "marker" }]));
-    assert_eq!(
-        (&held["cases"], &held["holds"], &held["choices"]),
-        (&4.into(), &true.into(), &Value::Null)
-    );
-    assert!(held["seconds"].is_f64() && held.get("worlds").is_none(), "{held}");
-    assert_eq!(
-        (&totals["lemmas"], &totals["held"], &totals["cases"]),
-        (&2.into(), &1.into(), &4.into())
-    );
-    assert_eq!((&totals["schema"], &totals["holds"]), (&1.into(), &false.into()));
-
-    let choices = ["--run", "entry", "--choices", "0,1,0,0,0", "--json"];
-    let (outcome, text) = run(&lemmas, &choices);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    let [again] = objects(&text).try_into().unwrap();
-    for key in ["lemma", "holds", "choices", "claim", "worlds", "walks", "values"] {
-        assert_eq!(again[key], failed[key], "{key}");
-    }
-    assert_eq!((&again["engine"], &again["verdict"]), (&"exhaustive".into(), &"fails".into()));
+    assert_eq!(case["walks"], walk);
+    assert_eq!(case["values"], json!([{ "name": "undirected", "value": "marker" }]));
 }
 
 #[test]
-fn the_lemmas_after_one_that_fails_are_checked_if_the_check_is_to_keep_going() {
-    let lemmas = [false_lemma(), true_lemma()];
-    let (outcome, text) = run(&lemmas, &["--run", "all"]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    assert!(!text.contains("low"), "{text}");
-    let verdict =
-        "violated: 0 of 2 lemmas hold, 0 cases; 1 not checked (--keep-going checks them)\n";
-    assert!(text.ends_with(verdict), "{text}");
-    let (_, text) = run(&lemmas, &["--run", "all", "--json"]);
-    assert_eq!(objects(&text).last().unwrap()["not_checked"], 1);
-    let (outcome, text) = run(&lemmas, &["--run", "all", "--keep-going"]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    assert!(text.ends_with("violated: 1 of 2 lemmas hold, 4 cases\n"), "{text}");
-}
-
-#[test]
-fn a_case_holds_or_fails_or_is_excluded() {
-    let lemmas = [true_lemma()];
+fn a_case_holds_or_is_excluded() {
     for (choices, expected, verdict) in [
         ("3", Outcome::Holds, "holds: the lemma holds in this case"),
         ("4", Outcome::Incomplete, "incomplete: the lemma excludes this case"),
     ] {
-        let (outcome, text) = run(&lemmas, &["--run", "low", "--choices", choices]);
+        let line = format!("--run low --choices {choices}");
+        let (outcome, text) = run(&[true_lemma("low", 4)], &line);
         assert_eq!(outcome.unwrap(), expected);
         assert!(text.ends_with(&format!("\n\n{verdict}\n")), "{text}");
-        let json = ["--run", "low", "--choices", choices, "--json"];
-        let [line] = objects(&run(&lemmas, &json).1).try_into().unwrap();
-        assert_eq!((&line["worlds"], &line["claim"]), (&json!([]), &Value::Null));
-        assert_eq!(line["holds"], expected == Outcome::Holds);
     }
 }
 
@@ -195,29 +165,20 @@ fn a_lemma_with_another_number_of_cases_than_expected_fails() {
     for (pinned, cause) in
         [(5, "expected 5 cases within its bound, found 4 cases"), (1, "found 4 cases")]
     {
-        let lemmas = [lemma("low", pinned, numbers_are_low, numbers_are_low)];
-        let (outcome, text) = run(&lemmas, &["--run", "low"]);
+        let (outcome, text) = run(&[true_lemma("low", pinned)], "--run low");
         assert_eq!(outcome.unwrap(), Outcome::Violated);
         assert!(text.contains(" s  fails\n\nlow\n  It is so.\n  fails: expected "), "{text}");
         assert!(text.contains(cause), "{text}");
-        assert!(text.ends_with("\n\nviolated: 0 of 1 lemma holds, 0 cases\n"), "{text}");
-        let (_, text) = run(&lemmas, &["--run", "low", "--json"]);
-        let line = &objects(&text)[0];
+        assert!(text.ends_with("\n\nviolated: 0 of 1 lemma held, 0 cases\n"), "{text}");
+        let line = &objects(&[true_lemma("low", pinned)], "--run low", Outcome::Violated)[0];
         assert_eq!((&line["cases"], &line["pinned"]), (&4.into(), &pinned.into()));
         assert_eq!((&line["holds"], &line["choices"]), (&false.into(), &Value::Null));
     }
-}
-
-#[test]
-fn a_lemma_without_a_case_does_not_hold_nor_does_a_check_without_a_lemma() {
     fn excluded<C>(_: &mut C) -> CaseResult {
         Err(Stop::Excluded)
     }
-    let (outcome, text) = run(&[lemma("none", 0, excluded, excluded)], &["--run", "none"]);
+    let (outcome, text) = run(&[lemma("none", 0, excluded, excluded)], "--run none");
     assert_eq!(outcome.unwrap(), Outcome::Violated, "{text}");
-    let (outcome, text) = run(&[], &["--run", "all"]);
-    assert_eq!(outcome.unwrap(), Outcome::Incomplete);
-    assert_eq!(text, "\nincomplete: there is nothing to check\n");
 }
 
 /// Each walk goes as far as possible, if its world exists.
@@ -237,90 +198,71 @@ fn several_worlds_are_numbered() {
         Ok(())
     }
     let lemmas = [lemma("two", 20, two_worlds, two_worlds)];
-    let (outcome, text) = run(&lemmas, &["--run", "two", "--choices", "0,0,0,0,0"]);
+    let (outcome, text) = run(&lemmas, "--run two --choices 0,0,0,0,0");
     assert_eq!(outcome.unwrap(), Outcome::Holds);
     let heads: Vec<_> =
         text.lines().filter(|line| line.contains("orld ") && line.ends_with(':')).collect();
     let world = |n| format!("World {n}, as a file for `toposlam draw` and `toposlam explore`:");
     let walk = |n| format!("A walk in world {n}, marker undirected:");
     assert_eq!(heads, [world(1), walk(1), world(2), walk(2)]);
-    assert!(text.contains("\nwalk: from dart 0 by the doors 7\n"), "{text}");
-    assert!(text.contains("\nwalk: from dart 9 by the doors 0\n"), "{text}");
-    assert!(text.contains("name = \"case-1\"") && text.contains("name = \"case-2\""), "{text}");
-    let stopped = "  stopped: door 2 was taken at a vertex with 2 doors\n";
-    assert!(text.contains(stopped), "{text}");
+    for part in [
+        "\nwalk: from dart 0 by the doors 7\n",
+        "\nwalk: from dart 9 by the doors 0\n",
+        "name = \"case-1\"",
+        "name = \"case-2\"",
+        "  stopped: door 2 was taken at a vertex with 2 doors\n",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
 }
 
 #[test]
-fn the_command_of_a_case_without_choices_works_in_a_shell() {
+fn a_case_may_have_no_choices_and_a_lemma_that_panics_fails() {
     fn never<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
-    let lemmas = [lemma("never", 1, never, never)];
-    let (_, text) = run(&lemmas, &["--run", "never"]);
-    assert!(text.contains("\n  again: toposlam proofs --run never --choices ''\n"), "{text}");
-    let (outcome, _) = run(&lemmas, &["--run", "never", "--choices", ""]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-}
-
-#[test]
-fn a_failure_that_is_not_repeatable_is_reported() {
-    fn fails<C>(_: &mut C) -> CaseResult {
-        claim("one is two", false)
-    }
-    fn holds<C>(_: &mut C) -> CaseResult {
-        claim("one is one", true)
-    }
-    let (outcome, text) = run(&[lemma("moody", 1, fails, holds)], &["--run", "moody"]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    assert!(
-        text.contains("\nThe failure is not repeatable: the same choices give another result.\n"),
-        "{text}"
-    );
-}
-
-#[test]
-fn a_unique_part_of_a_name_is_enough() {
-    let named = |name| lemma(name, 4, numbers_are_low, numbers_are_low);
-    let lemmas = ["low", "lowest", "high"].map(named);
-    for (part, name) in [("low", "low"), ("lowe", "lowest"), ("hi", "high")] {
-        let (outcome, text) = run(&lemmas, &["--run", part, "--run", name, "--json"]);
-        assert_eq!(outcome.unwrap(), Outcome::Holds);
-        let lines = objects(&text);
-        assert_eq!((lines.len(), &lines[0]["lemma"]), (2, &name.into()));
-    }
-    for (part, cause) in [
-        ("lo", "`lo` is part of several names:\n  low\n  lowest"),
-        ("law", "there is no lemma `law`; there are:\n  low\n  lowest\n  high"),
-    ] {
-        let (Err(CliError::Input(message)), text) = run(&lemmas, &["--run", part]) else {
-            panic!()
-        };
-        assert_eq!((message, text), (format!("--run: {cause}"), String::new()));
-    }
-    let sampled = ["--run", "high", "--choices", "0", "--engine", "sampled"];
-    let (Err(CliError::Input(message)), _) = run(&lemmas, &sampled) else { panic!() };
-    assert_eq!(message, "--engine: high is not sampled");
-}
-
-#[test]
-fn a_lemma_that_panics_fails_in_that_case() {
     fn panics<C: Choose>(choose: &mut C) -> CaseResult {
         let number = choose.below(4);
         assert!(number < 2, "a lemma of a test does this");
         claim("it is below 2", number < 2)
     }
-    let (outcome, text) = run(&[lemma("wild", 1, panics, panics)], &["--run", "wild"]);
-    assert_eq!(outcome.unwrap(), Outcome::Violated);
-    let fails = "  fails: it is not true that the code does not panic\n  \
-                 again: toposlam proofs --run wild --choices 2\n";
-    assert!(text.contains(fails), "{text}");
+    let lemmas = [lemma("never", 1, never, never), lemma("wild", 1, panics, panics)];
+    for (name, claim, choices) in
+        [("never", "one is two", ""), ("wild", "the code does not panic", " 2")]
+    {
+        let (outcome, text) = run(&lemmas, &format!("--run {name}"));
+        assert_eq!(outcome.unwrap(), Outcome::Violated);
+        let again = format!("--run {name} --choices{choices}");
+        let fails =
+            format!("  fails: it is not true that {claim}\n  again: toposlam proofs {again}\n");
+        assert!(text.contains(&fails), "{text}");
+        assert_eq!(run(&lemmas, &again).0.unwrap(), Outcome::Violated);
+    }
+}
+
+#[test]
+fn a_unique_part_of_a_name_is_enough() {
+    let lemmas = ["low", "lowest", "high"].map(|name| true_lemma(name, 4));
+    for (part, name) in [("low", "low"), ("lowe", "lowest"), ("hi", "high")] {
+        let lines = objects(&lemmas, &format!("--run {part} --run {name}"), Outcome::Holds);
+        assert_eq!((lines.len(), &lines[0]["lemma"]), (2, &name.into()));
+    }
+    let proved = "round is proved in Coq, for every world; run proofs/coq/check to check it";
+    for (line, cause) in [
+        ("--run lo", "--run: `lo` is part of several names:\n  low\n  lowest"),
+        ("--run law", "--run: there is no lemma `law`; there are:\n  low\n  lowest\n  high"),
+        ("--run high --choices 0 --engine sampled", "--engine: high is not sampled"),
+        ("--run all --run round", &format!("--run: {proved}")),
+    ] {
+        let (Err(CliError::Input(message)), text) = run(&lemmas, line) else { panic!() };
+        assert_eq!((message.as_str(), text), (cause, String::new()));
+    }
 }
 
 #[test]
 fn an_interrupt_does_not_wait_for_the_case() {
-    struct QuestionLimit;
-    impl Watch for QuestionLimit {
+    struct AtOnce;
+    impl Watch for AtOnce {
         fn stop(&self) -> bool {
             true
         }
@@ -331,36 +273,28 @@ fn an_interrupt_does_not_wait_for_the_case() {
         }
     }
     let endless = lemma("endless", 9, endless, endless);
-    let interrupted = check_lemma(&endless, &QuestionLimit).unwrap();
-    assert!(matches!(interrupted.end, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
-        (false, "\nincomplete, interrupted: 0 of 1 lemma holds, 0 cases\n"),
+        (false, "\nincomplete, interrupted: 0 of 2 lemmas held, 0 cases; 1 not checked\n"),
         (true, "\"interrupted\":true,\"verdict\":\"not-known\",\"holds\":false}\n"),
     ] {
+        let checked = [(&endless, CheckedLemma::new(&endless, &AtOnce).unwrap())];
+        assert!(checked[0].1.interrupted);
+        let arguments =
+            ProofsArguments { run: Vec::new(), choices: None, engine: Engine::Exhaustive, json };
         let mut out = Vec::new();
-        let mut report = ProofsReport::new(&mut out, json, &[&endless]);
-        report.lemma(&endless, check_lemma(&endless, &QuestionLimit).unwrap()).unwrap();
-        assert_eq!(report.verdict().unwrap(), Outcome::Incomplete);
+        assert_eq!(arguments.print_end(2, &checked, &mut out).unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
-        assert!(text.ends_with(end) && text.contains("interrupted"), "{text}");
+        assert!(text.ends_with(end), "{text}");
     }
 }
 
 #[test]
-fn a_theorem_is_listed_but_not_checked() {
-    let (outcome, text) = run(&[true_lemma()], &[]);
+fn a_theorem_is_listed() {
+    let (outcome, text) = run(&[true_lemma("low", 4)], "");
     assert_eq!(outcome.unwrap(), Outcome::Holds);
     let entry = "\nround\n  It turns.\n  paper       2.2\n  file        proofs/coq/Theorems.v\n  \
                  Coq         every world\n\n";
     assert!(text.contains(entry), "{text}");
     let last = "\n1 lemma, 4 cases within bounds; 1 theorem for every world\n";
     assert!(text.ends_with(last), "{text}");
-    for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
-        let (Err(CliError::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
-        let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
-        assert_eq!((message, text), (format!("--run: round {how}"), String::new()));
-    }
-    let (outcome, text) = run(&[true_lemma()], &["--run", "all", "--json"]);
-    assert_eq!(outcome.unwrap(), Outcome::Holds);
-    assert_eq!(objects(&text).len(), 2);
 }

@@ -8,16 +8,12 @@ use crate::cli::text::counted;
 /// What is wrong with a run. Its message is a clause without a subject: the explorer.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(super) enum ExplorerFault {
-    /// A line is not JSON.
     #[error("wrote `{line}`, which is not JSON: {cause}")]
     NotJson { line: String, cause: String },
-    /// A line is JSON, and not an answer.
     #[error("wrote `{line}`, which is not an answer: {cause}")]
     NotAnAnswer { line: String, cause: String },
-    /// A line does not end.
     #[error("wrote a line of more than {limit} bytes")]
     LineTooLong { limit: u64 },
-    /// After its answer, it wrote more before the next percept.
     #[error("wrote more than one line for one percept")]
     ExtraLine,
     /// The process ended, or closed its standard output.
@@ -30,25 +26,19 @@ pub(super) enum ExplorerFault {
         /// Whether the status is that of a failure.
         failed: bool,
     },
-    /// An action is not possible.
     #[error("{}", refusal(refused))]
     RefusedAction { refused: RefusedAction },
-    /// It gave up.
     #[error("gave up: {reason}")]
     GaveUp { reason: String },
-    /// An edge of the map has one end only.
     #[error("returned a map in which an edge is missing: dart {dart} leads nowhere")]
     MissingEdge { dart: String },
-    /// The map or the pose contradicts itself.
     #[error("returned a map that is not an embedded graph: {cause}")]
     InvalidMap { cause: String },
-    /// The map is not isomorphic to the world.
     #[error("returned a map that is not isomorphic to the world{difference}")]
     WrongMap {
         /// A shortest walk with different percepts in the map and in the world; empty if none was searched.
         difference: String,
     },
-    /// The robot is elsewhere.
     #[error("returned the pose {believed}; the robot came in by dart {truly} of the map")]
     WrongPose { believed: String, truly: String },
     /// It returned a right map after a walk that does not determine the world.
@@ -57,10 +47,8 @@ pub(super) enum ExplorerFault {
          same walk, and returns the same map", counted(*moves as usize, "move")
     )]
     Guessed { moves: u64 },
-    /// An answer takes too long.
     #[error("did not read a percept and answer it within {seconds} s")]
     TimedOut { seconds: f64 },
-    /// The run takes too long.
     #[error("did not end within {}", counted(*limit as usize, "move"))]
     OutOfMoves { limit: u64 },
 }
@@ -80,6 +68,9 @@ fn refusal(refused: &RefusedAction) -> String {
     }
 }
 
+/// The name of a fault that is a limit on moves.
+const MAX_MOVES: &str = "max-moves";
+
 impl ExplorerFault {
     /// Its name in `--json` and in the table of causes.
     pub(super) fn name(&self) -> &'static str {
@@ -93,7 +84,7 @@ impl ExplorerFault {
             Self::RefusedAction { refused } => match refused {
                 RefusedAction::NoSuchDoor { .. } | RefusedAction::NoWorldLeft => "no-such-door",
                 RefusedAction::NothingToPickUp | RefusedAction::NothingToDrop => "no-such-marker",
-                RefusedAction::OutOfMoves { .. } => "max-moves",
+                RefusedAction::OutOfMoves { .. } => MAX_MOVES,
             },
             Self::GaveUp { .. } => "gave-up",
             Self::MissingEdge { .. } => "missing-edge",
@@ -102,36 +93,25 @@ impl ExplorerFault {
             Self::WrongPose { .. } => "wrong-pose",
             Self::Guessed { .. } => "guessed",
             Self::TimedOut { .. } => "timeout",
-            Self::OutOfMoves { .. } => "max-moves",
+            Self::OutOfMoves { .. } => MAX_MOVES,
         }
     }
 
     /// Whether a limit was reached. Then it is not known whether the explorer would have mapped the start.
     pub(super) fn is_limit(&self) -> bool {
-        match self {
-            Self::TimedOut { .. } | Self::OutOfMoves { .. } => true,
-            Self::RefusedAction { refused } => matches!(refused, RefusedAction::OutOfMoves { .. }),
-            _ => false,
-        }
+        matches!(self, Self::TimedOut { .. }) || self.name() == MAX_MOVES
     }
 
     /// Whether the run ended without the explorer's last answer, so that the process cannot begin another.
     pub(super) fn ends_process(&self) -> bool {
-        match self {
-            Self::NotJson { .. }
-            | Self::NotAnAnswer { .. }
-            | Self::LineTooLong { .. }
-            | Self::ExtraLine
-            | Self::Ended { .. }
-            | Self::RefusedAction { .. }
-            | Self::TimedOut { .. }
-            | Self::OutOfMoves { .. } => true,
+        !matches!(
+            self,
             Self::GaveUp { .. }
-            | Self::MissingEdge { .. }
-            | Self::InvalidMap { .. }
-            | Self::WrongMap { .. }
-            | Self::WrongPose { .. }
-            | Self::Guessed { .. } => false,
-        }
+                | Self::MissingEdge { .. }
+                | Self::InvalidMap { .. }
+                | Self::WrongMap { .. }
+                | Self::WrongPose { .. }
+                | Self::Guessed { .. }
+        )
     }
 }

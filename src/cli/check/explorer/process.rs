@@ -4,6 +4,7 @@ use std::{
     collections::VecDeque,
     io::{BufRead, BufReader, Read, Write},
     process::{Command, ExitStatus},
+    str::FromStr,
     sync::{
         Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, RecvTimeoutError, Sender},
@@ -34,23 +35,26 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// A command: a program and its arguments.
 #[derive(Clone, Debug)]
-pub(super) struct ExplorerCommand {
+pub(in crate::cli::check) struct ExplorerCommand {
     /// As on the command line.
-    pub(super) text: String,
+    pub(in crate::cli::check) text: String,
     words: Vec<String>,
 }
 
-impl ExplorerCommand {
-    /// The command in a text, whose words are separated and quoted as in a shell.
-    pub(super) fn from_text(text: &str) -> Result<Self, CliError> {
-        let cause = |cause| CliError::at("--explorer", format!("`{text}` {cause}"));
-        let words = shlex::split(text).ok_or_else(|| cause("has a quote that is not closed"))?;
-        if words.is_empty() {
-            return Err(cause("names no program"));
-        }
-        Ok(Self { text: text.to_owned(), words })
-    }
+/// A text whose words are separated and quoted as in a shell.
+impl FromStr for ExplorerCommand {
+    type Err = String;
 
+    fn from_str(text: &str) -> Result<Self, String> {
+        match shlex::split(text) {
+            None => Err("a quote is not closed".to_owned()),
+            Some(words) if words.is_empty() => Err("it names no program".to_owned()),
+            Some(words) => Ok(Self { text: text.to_owned(), words }),
+        }
+    }
+}
+
+impl ExplorerCommand {
     /// Starts a process.
     pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
         let mut words = self.words.iter();
@@ -80,29 +84,13 @@ impl ExplorerCommand {
     }
 }
 
-/// What came back.
-enum Reply {
-    Line(Vec<u8>),
-    TooLong,
-    /// More than one line for one percept.
-    ExtraLine,
-    /// The standard output is closed.
-    End,
-}
-
-/// Why there is no answer.
-pub(super) enum NoAnswer {
-    Fault(ExplorerFault),
-    /// The check is to stop.
-    Stopped,
-}
-
 /// A running process.
 pub(super) struct ExplorerProcess {
     running: RunningProgram,
     /// `None` after the end of its input.
     requests: Option<Sender<String>>,
-    received: Receiver<Reply>,
+    /// The lines that come back; closed after the end of its output.
+    received: Receiver<Result<Vec<u8>, ExplorerFault>>,
     /// The end of its standard error.
     errors: Arc<Mutex<VecDeque<u8>>>,
     /// Receives when its standard error is closed.
@@ -110,40 +98,36 @@ pub(super) struct ExplorerProcess {
 }
 
 impl ExplorerProcess {
-    /// Sends a line and returns the next one, without its end.
-    pub(super) fn ask(&mut self, line: String, timeout: Duration) -> Result<Vec<u8>, NoAnswer> {
+    /// Sends a line and returns the next one, without its end. `None` if the check is to stop.
+    pub(super) fn ask(
+        &mut self,
+        line: String,
+        timeout: Duration,
+    ) -> Option<Result<Vec<u8>, ExplorerFault>> {
         if let Some(requests) = &self.requests {
             // It fails if the process has ended, which is found below.
             let _ = requests.send(line);
         }
         let begun = Instant::now();
-        loop {
-            // An explorer can answer faster than it is looked at.
-            if must_stop() {
-                return Err(NoAnswer::Stopped);
-            }
+        // An explorer can answer faster than it is looked at.
+        while !must_stop() {
             let left = timeout.saturating_sub(begun.elapsed());
             match self.received.recv_timeout(left.min(LOOK)) {
-                Ok(Reply::Line(line)) => return Ok(line),
-                Ok(Reply::TooLong) => {
-                    return Err(NoAnswer::Fault(ExplorerFault::LineTooLong {
-                        limit: LONGEST_LINE,
-                    }));
-                }
-                Ok(Reply::ExtraLine) => return Err(NoAnswer::Fault(ExplorerFault::ExtraLine)),
-                Ok(Reply::End) | Err(RecvTimeoutError::Disconnected) => {
+                Ok(answer) => return Some(answer),
+                Err(RecvTimeoutError::Disconnected) => {
                     let status = self.running.wait(TO_END);
                     let failed = status.is_some_and(|status| !status.success());
                     let status = status.map(status_text);
-                    return Err(NoAnswer::Fault(ExplorerFault::Ended { status, failed }));
+                    return Some(Err(ExplorerFault::Ended { status, failed }));
                 }
                 Err(RecvTimeoutError::Timeout) if begun.elapsed() >= timeout => {
                     let seconds = timeout.as_secs_f64();
-                    return Err(NoAnswer::Fault(ExplorerFault::TimedOut { seconds }));
+                    return Some(Err(ExplorerFault::TimedOut { seconds }));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
         }
+        None
     }
 
     /// Ends the process and returns the end of its standard error.
@@ -164,30 +148,32 @@ impl ExplorerProcess {
     }
 }
 
-/// Sends each line and then receives one.
+/// Sends each line and then receives one, until the end of the output.
 fn converse(
     mut stdin: impl Write,
     mut stdout: BufReader<impl Read>,
     requests: &Receiver<String>,
-    answers: &Sender<Reply>,
+    answers: &Sender<Result<Vec<u8>, ExplorerFault>>,
 ) {
     for request in requests {
         // A process that has ended does not read, and has no more output either.
         let _ = stdin.write_all(request.as_bytes()).and_then(|()| stdin.flush());
         let mut line = Vec::new();
         let read = stdout.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line);
-        let reply = match (read, line.last()) {
-            (Ok(_), Some(b'\n')) if !stdout.buffer().is_empty() => Reply::ExtraLine,
+        let answer = match (read, line.last()) {
+            (Ok(_), Some(b'\n')) if !stdout.buffer().is_empty() => Err(ExplorerFault::ExtraLine),
             (Ok(_), Some(b'\n')) => {
                 line.pop();
-                Reply::Line(line)
+                Ok(line)
             }
-            (Ok(_), Some(_)) if line.len() as u64 == LONGEST_LINE => Reply::TooLong,
+            (Ok(_), Some(_)) if line.len() as u64 == LONGEST_LINE => {
+                Err(ExplorerFault::LineTooLong { limit: LONGEST_LINE })
+            }
             // A last line may have no end.
-            (Ok(_), Some(_)) => Reply::Line(line),
-            (Ok(_), None) | (Err(_), _) => Reply::End,
+            (Ok(_), Some(_)) => Ok(line),
+            (Ok(_), None) | (Err(_), _) => break,
         };
-        if answers.send(reply).is_err() {
+        if answers.send(answer).is_err() {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! One run of an explorer that is another program, from one start, and its judgement.
 
-use std::{collections::VecDeque, time::Duration};
+use std::collections::VecDeque;
 
 use toposlam_model::{
     ambiguity::Comparison,
@@ -14,19 +14,11 @@ use toposlam_model::{
 };
 
 use super::{
+    ExplorerOptions,
     fault::ExplorerFault,
-    process::{ExplorerProcess, NoAnswer},
+    process::ExplorerProcess,
     protocol::{ExplorerAnswer, ReportedMap, percept_line},
 };
-
-/// The limits of a run.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RunLimits {
-    /// For each answer.
-    pub(super) timeout: Duration,
-    /// The most moves, pick-ups and drops.
-    pub(super) actions: u64,
-}
 
 /// The last actions that are kept for the report.
 const LAST_ACTIONS: usize = 20;
@@ -49,35 +41,28 @@ pub(super) struct EndedRun {
     pub(super) result: Result<(), ExplorerFault>,
 }
 
-/// The check is to stop.
-pub(super) struct RunStopped;
-
 impl ExplorerStart<'_> {
-    /// Runs the explorer and judges its answer.
+    /// Runs the explorer and judges its answer. `None` if the check is to stop.
     pub(super) fn run(
         &self,
         process: &mut ExplorerProcess,
-        limits: RunLimits,
+        options: &ExplorerOptions,
         candidate: &mut Candidate,
-    ) -> Result<EndedRun, RunStopped> {
+    ) -> Option<EndedRun> {
         let mut world = GraphWorld::with_marker(self.graph, self.marker, self.facing);
         let mut last = VecDeque::with_capacity(LAST_ACTIONS + 1);
         let mut doors = Vec::new();
         let mut count = 0;
         let result = loop {
-            let line = match process.ask(percept_line(world.sensed()), limits.timeout) {
-                Ok(line) => line,
-                Err(NoAnswer::Fault(fault)) => break Err(fault),
-                Err(NoAnswer::Stopped) => return Err(RunStopped),
-            };
-            let action = match ExplorerAnswer::from_line(&line) {
+            let line = process.ask(percept_line(world.sensed()), options.timeout)?;
+            let action = match line.and_then(|line| ExplorerAnswer::from_line(&line)) {
                 Ok(ExplorerAnswer::Act(action)) => action,
                 Ok(ExplorerAnswer::Done(map)) => break self.judge(&map, &world, &doors, candidate),
                 Ok(ExplorerAnswer::GiveUp(reason)) => break Err(ExplorerFault::GaveUp { reason }),
                 Err(fault) => break Err(fault),
             };
-            if count == limits.actions {
-                break Err(ExplorerFault::OutOfMoves { limit: limits.actions });
+            if count == options.max_moves {
+                break Err(ExplorerFault::OutOfMoves { limit: options.max_moves });
             }
             count += 1;
             last.push_back(action);
@@ -91,7 +76,7 @@ impl ExplorerStart<'_> {
                 doors.push(door);
             }
         };
-        Ok(EndedRun { moves: world.moves(), actions: last.into(), result })
+        Some(EndedRun { moves: world.moves(), actions: last.into(), result })
     }
 
     /// Judges the map and the robot's pose in it, after a walk through `doors`.

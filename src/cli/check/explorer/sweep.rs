@@ -16,41 +16,34 @@ use std::{
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Enumeration, Watch},
+    enumerate::Watch,
     folding::certificate_length,
     isomorphism::{Candidate, canonical},
-    marker::{Directional, Marker},
+    marker::Marker,
 };
 
 use super::{
+    ExplorerOptions,
     fault::ExplorerFault,
     process::{ExplorerCommand, ExplorerProcess},
-    run::{ExplorerStart, RunLimits},
+    run::ExplorerStart,
     tally::ExplorerTally,
 };
 use crate::cli::{
     CliError,
+    check::Work,
+    mapping_marker::is_directional,
     progress::{Progress, must_stop},
 };
 
 /// A batch is complete with the first world that gives it this many starts.
 const BATCH: usize = 256;
 
-/// The worlds of one number of edges.
-pub(super) enum ExplorerWorlds {
-    Enumerated(Enumeration),
-    Listed(Vec<EmbeddedGraph>),
-}
-
 /// What is run, and within which limits.
-pub(super) struct ExplorerSweep<'a> {
-    pub(super) command: &'a ExplorerCommand,
-    pub(super) marker: &'static dyn Marker,
-    pub(super) limits: RunLimits,
-    /// After this many runs that ended their process, the rest of the starts is left out.
-    pub(super) restarts: u64,
-    /// The number of processes at once.
-    pub(super) processes: usize,
+pub(in crate::cli::check) struct ExplorerSweep<'a> {
+    pub(in crate::cli::check) command: &'a ExplorerCommand,
+    pub(in crate::cli::check) options: &'a ExplorerOptions,
+    pub(in crate::cli::check) marker: &'static dyn Marker,
 }
 
 /// Worlds with the facing darts of their starts.
@@ -71,44 +64,30 @@ struct BatchRun {
 /// The number of a batch, and its results.
 type BatchResult = Result<(usize, BatchRun), CliError>;
 
-impl ExplorerWorlds {
-    /// Whether no world has a loop or parallel edges.
-    pub(super) fn is_simple(&self) -> bool {
-        match self {
-            Self::Enumerated(enumeration) => enumeration.class().is_simple(),
-            Self::Listed(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
-        }
-    }
-
-    /// Sends the batches until the receiver is dropped.
-    fn send_batches(&self, batches: &SyncSender<Batch>) {
-        let mut number = 0;
-        let mut worlds = Vec::new();
-        let mut starts = 0;
-        let mut add = |graph: &EmbeddedGraph| {
-            if starts >= BATCH {
-                starts = 0;
-                let batch = Batch { number, worlds: std::mem::take(&mut worlds), is_last: false };
-                number += 1;
-                if batches.send(batch).is_err() {
-                    return ControlFlow::Break(());
-                }
+/// Sends the batches until the receiver is dropped.
+fn send_batches(work: &Work, batches: &SyncSender<Batch>) {
+    let mut number = 0;
+    let mut worlds = Vec::new();
+    let mut starts = 0;
+    let all = work.for_each_world(&mut |graph| {
+        if starts >= BATCH {
+            starts = 0;
+            let batch = Batch { number, worlds: std::mem::take(&mut worlds), is_last: false };
+            number += 1;
+            if batches.send(batch).is_err() {
+                return ControlFlow::Break(());
             }
-            let orbit = canonical(graph).orbit;
-            // Darts that an automorphism takes to each other are the same start.
-            let facing: Vec<_> = graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect();
-            starts += facing.len();
-            worlds.push((graph.clone(), facing));
-            ControlFlow::Continue(())
-        };
-        let all = match self {
-            Self::Enumerated(enumeration) => enumeration.for_each(&mut |found| add(found.graph)),
-            Self::Listed(graphs) => graphs.iter().try_for_each(add),
-        };
-        if all.is_continue() && !worlds.is_empty() {
-            // If the check stops, there is no receiver.
-            let _ = batches.send(Batch { number, worlds, is_last: true });
         }
+        let orbit = canonical(graph).orbit;
+        // Darts that an automorphism takes to each other are the same start.
+        let facing: Vec<_> = graph.darts().filter(|dart| orbit[dart.at()] == *dart).collect();
+        starts += facing.len();
+        worlds.push((graph.clone(), facing));
+        ControlFlow::Continue(())
+    });
+    if all.is_continue() && !worlds.is_empty() {
+        // If the check stops, there is no receiver.
+        let _ = batches.send(Batch { number, worlds, is_last: true });
     }
 }
 
@@ -117,18 +96,19 @@ impl ExplorerSweep<'_> {
     ///
     /// # Errors
     /// Returns an error if a process cannot be started.
-    pub(super) fn run(
+    pub(in crate::cli::check) fn run(
         &self,
-        worlds: &ExplorerWorlds,
+        work: &Work,
         progress: &Progress,
     ) -> Result<ExplorerTally, CliError> {
+        let processes = rayon::current_num_threads();
         let enough = AtomicBool::new(false);
         thread::scope(|scope| {
-            let (batches, to_run) = mpsc::sync_channel(2 * self.processes);
+            let (batches, to_run) = mpsc::sync_channel(2 * processes);
             let (results, to_merge) = mpsc::channel();
-            scope.spawn(move || worlds.send_batches(&batches));
+            scope.spawn(move || send_batches(work, &batches));
             let to_run = Arc::new(Mutex::new(to_run));
-            for _ in 0..self.processes {
+            for _ in 0..processes {
                 let (to_run, results, enough) = (Arc::clone(&to_run), results.clone(), &enough);
                 scope.spawn(move || self.work(&to_run, &results, enough, progress));
             }
@@ -168,7 +148,8 @@ impl ExplorerSweep<'_> {
         let mut tally = ExplorerTally::default();
         let mut process: Option<ExplorerProcess> = None;
         let mut candidate = Candidate::default();
-        let directional = self.marker.name() == Directional.name();
+        let directional = is_directional(self.marker);
+        let explorer = &self.command.text;
         for (graph, facing) in &batch.worlds {
             tally.counts.worlds += 1;
             for &facing in facing {
@@ -186,18 +167,18 @@ impl ExplorerSweep<'_> {
                     Some(process) => process,
                     None => self.command.start()?,
                 };
-                let Ok(run) = start.run(&mut running, self.limits, &mut candidate) else {
+                let Some(run) = start.run(&mut running, self.options, &mut candidate) else {
                     tally.counts.interrupted = true;
                     continue;
                 };
                 if !run.result.as_ref().is_err_and(ExplorerFault::ends_process) {
                     process = Some(running);
-                    tally.count(&start, run, String::new());
+                    tally.count(explorer, &start, run, String::new());
                     continue;
                 }
-                tally.count(&start, run, running.end());
+                tally.count(explorer, &start, run, running.end());
                 tallies.push(std::mem::take(&mut tally));
-                if tallies.len() as u64 == self.restarts {
+                if tallies.len() as u64 == self.options.restarts {
                     return Ok(ended(tallies, left));
                 }
             }
@@ -226,7 +207,7 @@ impl ExplorerSweep<'_> {
                 let mut tallies = tallies.into_iter();
                 while let Some(tally) = tallies.next() {
                     total.merge(tally);
-                    if total.processes_ended == self.restarts {
+                    if total.processes_ended == self.options.restarts {
                         enough.store(true, Ordering::Relaxed);
                         total.stopped = has_more || tallies.any(|later| later.counts.starts > 0);
                         return Ok(total);

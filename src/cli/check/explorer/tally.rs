@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use toposlam_model::{
     check::{KeptStart, Tally, WorstStart},
-    embedded_graph::{Dart, EmbeddedGraph},
     world::Action,
 };
 
@@ -12,38 +11,29 @@ use super::{
     fault::ExplorerFault,
     run::{EndedRun, ExplorerStart},
 };
-use crate::cli::Outcome;
-
-/// A start that was not mapped correctly.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct UnmappedStart {
-    pub(super) graph: EmbeddedGraph,
-    pub(super) facing: Dart,
-    pub(super) fault: ExplorerFault,
-    pub(super) moves: u64,
-    /// The last actions.
-    pub(super) actions: Vec<Action>,
-    /// The end of the standard error, if the process was ended.
-    pub(super) stderr: String,
-}
+use crate::cli::{
+    check::line::{FailedRun, FailureLine, SizeLine},
+    json::action_json,
+    text::capital,
+};
 
 /// The first start of its kind is kept.
-impl KeptStart for UnmappedStart {
+impl KeptStart for FailureLine {
     fn replaces(&self, _: &Self) -> bool {
         false
     }
 }
 
 /// The result for some starts.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct ExplorerTally {
+#[derive(Default)]
+pub(in crate::cli::check) struct ExplorerTally {
     /// The counts. Certificates are those of the starts that were mapped correctly. Of the others, those on which a
     /// limit was reached are unknown.
-    pub(super) counts: Tally<WorstStart, UnmappedStart>,
+    pub(in crate::cli::check) counts: Tally<WorstStart, FailureLine>,
     /// The first start on which a limit was reached.
-    pub(super) limit: Option<UnmappedStart>,
+    limit: Option<FailureLine>,
     /// The number of starts for each name of a fault.
-    pub(super) causes: BTreeMap<&'static str, u64>,
+    causes: BTreeMap<String, u64>,
     /// Runs that ended their process.
     pub(super) processes_ended: u64,
     /// Whether the rest of the starts was left out because too many runs ended their process.
@@ -51,51 +41,30 @@ pub(super) struct ExplorerTally {
 }
 
 impl ExplorerTally {
-    /// Moves for each move of a certificate; `None` without certificates.
-    pub(super) fn ratio(&self) -> Option<f64> {
-        let Tally { moves_total, certificate_total, .. } = self.counts;
-        (certificate_total > 0).then(|| moves_total as f64 / certificate_total as f64)
-    }
-
-    /// The outcome, and its name.
-    pub(super) fn verdict(&self) -> (Outcome, &'static str) {
-        let counts = &self.counts;
-        match () {
-            () if counts.failed() > 0 => (Outcome::Violated, "violated"),
-            () if counts.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if counts.starts == 0 => {
-                (Outcome::Incomplete, "incomplete: there is nothing to check")
-            }
-            () if counts.unknown > 0 || self.stopped => (Outcome::Incomplete, "incomplete"),
-            () => (Outcome::Holds, "holds"),
-        }
-    }
-
     /// Counts a run. `stderr` is the end of the standard error of a process that was ended.
-    pub(super) fn count(&mut self, start: &ExplorerStart, run: EndedRun, stderr: String) {
+    pub(super) fn count(
+        &mut self,
+        explorer: &str,
+        start: &ExplorerStart,
+        run: EndedRun,
+        stderr: String,
+    ) {
         let ExplorerStart { graph, facing, certificate, .. } = *start;
         let EndedRun { moves, actions, result } = run;
         let counts = &mut self.counts;
         counts.starts += 1;
-        let graph = graph.clone();
         let Err(fault) = result else {
             counts.mapped += 1;
             counts.count_certificate(certificate);
-            let vertices = graph.vertex_count();
-            let worst = WorstStart { graph, facing, moves };
-            counts.count_run((moves, vertices), certificate, Some(worst));
+            let worst = WorstStart { graph: graph.clone(), facing, moves };
+            counts.count_run((moves, graph.vertex_count()), certificate, Some(worst));
             return;
         };
-        *self.causes.entry(fault.name()).or_default() += 1;
+        *self.causes.entry(fault.name().to_owned()).or_default() += 1;
         self.processes_ended += u64::from(fault.ends_process());
-        let is_limit = fault.is_limit();
-        let unmapped = UnmappedStart { graph, facing, fault, moves, actions, stderr };
-        if is_limit {
-            counts.unknown += 1;
-            self.limit.get_or_insert(unmapped);
-        } else {
-            counts.count_failure(unmapped);
-        }
+        counts.unknown += u64::from(fault.is_limit());
+        let first = if fault.is_limit() { &mut self.limit } else { &mut counts.failure };
+        first.get_or_insert_with(|| unmapped(explorer, start, &fault, (moves, actions), stderr));
     }
 
     /// Adds the result of later starts.
@@ -108,4 +77,36 @@ impl ExplorerTally {
         }
         self.limit = self.limit.take().or(later.limit);
     }
+
+    /// A line with these counts.
+    pub(in crate::cli::check) fn line(&self, line: SizeLine, explorer: &str) -> SizeLine {
+        let line = SizeLine {
+            explorer: Some(explorer.to_owned()),
+            unknown: Some(self.counts.unknown),
+            causes: Some(self.causes.clone()),
+            stopped: Some(self.stopped),
+            failure: self.counts.failure.clone(),
+            limit: self.limit.clone(),
+            ..line
+        };
+        line.with_counts(&self.counts)
+    }
+}
+
+/// A start that was not mapped.
+fn unmapped(
+    explorer: &str,
+    start: &ExplorerStart,
+    fault: &ExplorerFault,
+    (moves, actions): (u64, Vec<Action>),
+    stderr: String,
+) -> FailureLine {
+    let about = format!("The explorer {explorer} does not map it: {}", fault.name());
+    let run = FailedRun::Explorer {
+        message: capital(&format!("the explorer {fault}")),
+        last_actions: actions.into_iter().map(action_json).collect(),
+        stderr,
+    };
+    let start = (start.graph, start.facing);
+    FailureLine::new(fault.name().to_owned(), Some(moves), &about, start, run)
 }
