@@ -2,7 +2,6 @@
 //!
 //! Outside of this crate's tests none is present, and the compiler removes the conditions.
 
-/// A flaw that a test can inject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InjectedFlaw {
     SightingNotUnited,

@@ -3,7 +3,6 @@
 //!
 //! The modules, bottom up. Each imports only from those above it in this list:
 //!
-//! * [`similar`]: the known name that is most like an unknown one;
 //! * [`counts`]: numbers and counts in messages;
 //! * [`embedded_graph`]: darts, `opposite`, `clockwise` (Section 2.1);
 //! * [`percept`]: degrees, doors, sightings, door sequences (Section 2.1);
@@ -60,7 +59,7 @@ pub mod mapping;
 pub mod marker;
 pub mod measurement;
 pub mod percept;
-pub mod similar;
+mod similar;
 pub mod trace;
 pub mod world;
 

@@ -34,7 +34,6 @@ pub trait Marker: Sync {
     /// at the start, in the order of their numbers.
     fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart>;
 
-    /// The parts of the marker, and where they lie.
     fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart>;
 
     /// Whether the robot can pick it up where it notices it, carry it and drop it. A dropped marker is
@@ -50,7 +49,6 @@ pub trait Marker: Sync {
     }
 }
 
-/// A part of a marker, and where it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerPart {
     /// Lies at a vertex. Parts of different looks can be distinguished.
@@ -63,14 +61,12 @@ pub enum MarkerPart {
     OnEdgeAlong(Dart),
 }
 
-/// How a part of a marker looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerLook {
     One,
     Other,
 }
 
-/// The kinds of markers of this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerKind {
     /// No marker: the robot senses degrees and nothing else, and may have begun anywhere. Section 2.2.
@@ -104,7 +100,6 @@ pub use MarkerKind::{
     UndirectedEdge,
 };
 
-/// Every kind of marker.
 pub const MARKERS: [&dyn Marker; 8] = [
     &NoMarker,
     &Undirected,
@@ -121,48 +116,54 @@ fn ends(graph: &EmbeddedGraph, dart: Dart) -> [Dart; 2] {
     [dart, graph.opposite(dart)]
 }
 
+impl MarkerKind {
+    /// Its name and the sentence about it.
+    const fn texts(self) -> (&'static str, &'static str) {
+        match self {
+            NoMarker => {
+                ("none", "no marker at all: the robot senses the number of doors and nothing else")
+            }
+            Undirected => ("undirected", "one undirected marker at the start vertex: is it here?"),
+            Directional => (
+                "directional",
+                "one directional marker at the start vertex: is it here, and which door does it point \
+                 along?",
+            ),
+            UndirectedEdge => (
+                "undirected-edge",
+                "a mark in the middle of the edge faced at the start: was it on the edge just traversed?",
+            ),
+            DirectedEdge => (
+                "directed-edge",
+                "an arrow in the middle of the edge faced at the start: was it on the edge just \
+                 traversed, and which way did it point?",
+            ),
+            TwoIdentical => (
+                "two-identical",
+                "two undirected markers that look alike, at the start vertex and at the other end of \
+                 the edge faced: how many are here?",
+            ),
+            TwoDistinct => (
+                "two-distinct",
+                "two undirected markers that look different, at the start vertex and at the other end \
+                 of the edge faced: which of them are here?",
+            ),
+            Movable => (
+                "movable",
+                "one undirected marker, at the start vertex at first, that the robot can pick up, \
+                 carry and drop: is it here?",
+            ),
+        }
+    }
+}
+
 impl Marker for MarkerKind {
     fn name(&self) -> &'static str {
-        match self {
-            NoMarker => "none",
-            Undirected => "undirected",
-            Directional => "directional",
-            UndirectedEdge => "undirected-edge",
-            DirectedEdge => "directed-edge",
-            TwoIdentical => "two-identical",
-            TwoDistinct => "two-distinct",
-            Movable => "movable",
-        }
+        self.texts().0
     }
 
     fn about(&self) -> &'static str {
-        match self {
-            NoMarker => "no marker at all: the robot senses the number of doors and nothing else",
-            Undirected => "one undirected marker at the start vertex: is it here?",
-            Directional => {
-                "one directional marker at the start vertex: is it here, and which door does it point \
-                 along?"
-            }
-            UndirectedEdge => {
-                "a mark in the middle of the edge faced at the start: was it on the edge just traversed?"
-            }
-            DirectedEdge => {
-                "an arrow in the middle of the edge faced at the start: was it on the edge just \
-                 traversed, and which way did it point?"
-            }
-            TwoIdentical => {
-                "two undirected markers that look alike, at the start vertex and at the other end of \
-                 the edge faced: how many are here?"
-            }
-            TwoDistinct => {
-                "two undirected markers that look different, at the start vertex and at the other end \
-                 of the edge faced: which of them are here?"
-            }
-            Movable => {
-                "one undirected marker, at the start vertex at first, that the robot can pick up, \
-                 carry and drop: is it here?"
-            }
-        }
+        self.texts().1
     }
 
     #[inline]
@@ -292,7 +293,6 @@ impl PartialEq for dyn Marker + '_ {
 
 impl Eq for dyn Marker + '_ {}
 
-/// The error for a name that no marker has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not a marker; the markers are {names}", names = MARKERS.map(Marker::name).join(", "))]
 pub struct UnknownMarker(String);

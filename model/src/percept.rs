@@ -11,7 +11,6 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 pub struct Door(pub u32);
 
 impl Door {
-    /// The way back.
     pub const BACK: Door = Door(0);
 
     /// The door that leads from the dart with index `from` to the one with index `to`, at a vertex
@@ -76,7 +75,6 @@ impl fmt::Display for Sighting {
     }
 }
 
-/// Everything that is sensed on arriving at a vertex.
 // paper: percept.degree, percept.featureless
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percept {
@@ -241,13 +239,6 @@ mod tests {
             let nothing = Percept { degree: 3, sighting: Sighting::Nothing };
             assert_eq!(percept.seen_from(Door(1)), nothing);
         }
-    }
-
-    #[test]
-    fn a_percept_is_written_in_words() {
-        let text = |degree, sighting| Percept { degree, sighting }.to_string();
-        assert_eq!(text(1, Sighting::Nothing), "1 door");
-        assert_eq!(text(3, Sighting::Pointing(Door(1))), "3 doors, marker along door 1");
     }
 
     #[test]

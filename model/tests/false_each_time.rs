@@ -131,20 +131,16 @@ fn doors_that_are_never_seen_are_missing_in_a_map_that_no_walk_contradicts() {
         assert_eq!(wrong, unnoticed, "{edges}");
     }
     // The middle of a chain of three, of which one door is never seen.
-    let chain = |names: &[(&str, &str)]| {
-        let lists: Vec<_> = names
-            .iter()
-            .map(|(name, others)| {
-                ((*name).to_owned(), others.split(' ').map(str::to_owned).collect::<Vec<_>>())
-            })
-            .collect();
-        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-    };
-    let three = chain(&[("middle", "left right"), ("left", "middle"), ("right", "middle")]);
+    let three = EmbeddedGraph::from_neighbour_lists(&[
+        ("middle", vec!["left", "right"]),
+        ("left", vec!["middle"]),
+        ("right", vec!["middle"]),
+    ])
+    .unwrap();
     let middle = three.vertex(FACING);
     let map = mapped(&three, |pose, percept, _| {
         let degree = if three.vertex(pose) == middle { 1 } else { percept.degree };
         Percept { degree, ..percept }
     });
-    assert!(is_right(&map.unwrap(), &chain(&[("a", "b"), ("b", "a")])));
+    assert!(is_right(&map.unwrap(), &EmbeddedGraph::chain(1)));
 }

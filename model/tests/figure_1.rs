@@ -109,17 +109,11 @@ fn without_a_marker_the_cycles_of_three_and_of_four_cannot_be_told_apart() {
 #[test]
 fn an_undirected_marker_tells_cycles_of_different_lengths_apart() {
     let undirected = named("undirected").unwrap();
-    let cycle = |edges: u32| {
-        let name = |n: u32| (n % edges).to_string();
-        let lists: Vec<_> =
-            (0..edges).map(|n| (name(n), vec![name(n + 1), name(n + edges - 1)])).collect();
-        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-    };
     for (shorter, longer) in (3..12).flat_map(|n| (n + 1..=12).map(move |m| (n, m))) {
-        let (one, other) = (cycle(shorter), cycle(longer));
+        let [one, other] = [shorter, longer].map(EmbeddedGraph::cycle);
         let comparison = Comparison::new(undirected, (&one, Dart(0)), (&other, Dart(0)));
         // Once round the shorter one.
         let walk = comparison.walk([Dart(0), Dart(0)]).unwrap();
-        assert_eq!(walk.actions.len(), shorter as usize);
+        assert_eq!(walk.actions.len(), shorter);
     }
 }

@@ -37,16 +37,6 @@ fn doors_lead_clockwise_from_the_entry() {
 }
 
 #[test]
-fn a_directional_marker_shows_the_entry_at_its_vertex() {
-    let graph = junction();
-    let from_the_junction = |doors: &[u32]| percepts(&graph, Dart(1), doors);
-    assert_eq!(from_the_junction(&[0, 0]), [marked(4, 0), plain(1), marked(4, 0)]);
-    assert_eq!(from_the_junction(&[2]), [marked(4, 0), marked(4, 1)]);
-    assert_eq!(from_the_junction(&[3]), [marked(4, 0), marked(4, 2)]);
-    assert_eq!(from_the_junction(&[1, 0]), [marked(4, 0), plain(2), marked(4, 3)]);
-}
-
-#[test]
 fn a_door_that_is_not_there_cannot_be_taken() {
     let graph = junction();
     let mut world = GraphWorld::new(&graph, Dart(0));

@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     check::{Check, RunChoices, Shard, Tally, judge},
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::{Candidate, code},
     mapping::{
@@ -150,17 +150,6 @@ fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
     // Out, back, out again and over the edge.
     exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
     assert_eq!((exploration.moves(), exploration.robot()), (4, Dart(3)));
-}
-
-#[test]
-fn a_dart_of_the_map_is_found_by_its_vertex_and_its_index() {
-    let graph = theta(["c", "b", "a"]);
-    let (exploration, _) = mapped(&graph);
-    let map = exploration.map();
-    for dart in map.vertices().flat_map(|vertex| map.darts_of(vertex)) {
-        assert_eq!(map.dart(map.vertex(dart), map.index(dart)), Some(dart));
-    }
-    assert_eq!(map.dart(Vertex(0), 3), None);
 }
 
 /// The run with the most moves for its vertices, and the first start that takes the most moves.

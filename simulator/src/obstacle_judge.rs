@@ -61,7 +61,7 @@ pub(crate) fn judge_with_obstacle(
     let free = compare(plan.graph(), facing, reached);
     let Some(obstacle) = obstacle else { return free };
     let if_cut = |edges: &[Dart]| {
-        let (cut, numbers) = plan.graph().cut(edges, facing).ok_or(Flaw::WrongMap)?;
+        let (cut, numbers) = plan.graph().cut(edges, facing);
         let number = |dart: Dart| numbers[dart.at()];
         let reached = match place {
             TruePlace::Junction(reached) => reached.and_then(number),
@@ -136,11 +136,8 @@ fn is_cut_off(
         TruePlace::Junction(reached) => reached,
         TruePlace::BeforeObstacle(pose) => hallway_behind(plan, &edges, pose, obstacle),
     };
-    let within_reach = plan.graph().cut(&edges, facing).map(|(_, numbers)| numbers);
-    match (robot, within_reach) {
-        (Some(robot), Some(numbers)) => numbers[robot.at()].is_none(),
-        _ => false,
-    }
+    let (_, numbers) = plan.graph().cut(&edges, facing);
+    robot.is_some_and(|robot| numbers[robot.at()].is_none())
 }
 
 /// The dart by which a robot that stands before an obstacle left the last junction: of the hallways that are cut, the one

@@ -13,7 +13,6 @@ pub struct Odometry {
 }
 
 impl Odometry {
-    /// How far it is from another place, in metres.
     pub fn distance(&self, other: &Self) -> f64 {
         let [x, y] = [0, 1].map(|axis| self.position[axis] - other.position[axis]);
         x.hypot(y)
@@ -53,7 +52,6 @@ pub struct WayLength {
 const STEP: f64 = 0.5;
 
 impl WayLength {
-    /// Adds a reading.
     pub fn add(&mut self, reading: Odometry) {
         let [from, _] = self.ends.unwrap_or([reading; 2]);
         let step = reading.distance(&from);

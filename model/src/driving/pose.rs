@@ -1,6 +1,5 @@
 //! The robot's pose on the floor.
 
-/// A position on the floor of a plan, and a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The robot's centre, in metres, x to the east and y to the north.

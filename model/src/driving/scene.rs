@@ -9,7 +9,6 @@ use std::fmt;
 
 use crate::percept::Door;
 
-/// What is sensed in one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub place: Place,
@@ -26,7 +25,6 @@ pub enum Place {
     Unknown(Reason),
 }
 
-/// A hallway, and the robot's pose in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallwayView {
     /// The hallway's direction, in (-pi/2, pi/2].
@@ -40,7 +38,6 @@ pub struct HallwayView {
     pub confidence: f64,
 }
 
-/// Whether a hallway is clear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HallwayStatus {
     /// Nothing but two walls, or more only behind.
@@ -49,7 +46,6 @@ pub enum HallwayStatus {
     Unclear(Unclear),
 }
 
-/// Why a hallway is unclear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unclear {
     ClustersAhead,
@@ -57,7 +53,6 @@ pub enum Unclear {
     ClusterBehind,
 }
 
-/// A junction, and where the robot is in it.
 // paper: drive.junction
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionView {
@@ -89,7 +84,6 @@ pub enum Turning {
 /// How near the turning point counts as being at it, in metres along the entry centre line.
 pub const AT: f64 = 0.10;
 
-/// The marker as seen in one image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerView {
     pub position: [f64; 2],
@@ -99,7 +93,6 @@ pub struct MarkerView {
     pub door: Option<Door>,
 }
 
-/// Why the place in an image is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     NoFloor,

@@ -24,7 +24,6 @@ pub const JUNCTION_SHAPES: [(JunctionShape, &str); 6] = [
     (JunctionShape([true, false, true, true]), "t-stem-right"),
 ];
 
-/// The estimate of a junction, from the images of one approach so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JunctionEstimate {
     /// The number of images of each shape, by its [`JunctionShape::code`].
@@ -34,7 +33,6 @@ pub struct JunctionEstimate {
     looked: bool,
 }
 
-/// The marker, seen on the approach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Glimpse {
     /// By how much its distance was off the best, in metres.
@@ -43,11 +41,9 @@ struct Glimpse {
     along_entry: bool,
 }
 
-/// The number of images that must agree.
 const AGREEING: u32 = 2;
 /// From where before its middle the marker is seen well, in metres.
 const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
-/// From where it is seen best.
 const BEST: f64 = 0.5;
 
 impl JunctionShape {
@@ -72,7 +68,6 @@ impl JunctionShape {
         Some(Self(doors))
     }
 
-    /// A number for it, below 8: its doors but the first, as bits.
     fn code(self) -> usize {
         let [_, left, ahead, right] = self.0;
         usize::from(left) | usize::from(ahead) << 1 | usize::from(right) << 2
@@ -119,7 +114,6 @@ impl JunctionEstimate {
         Self { marker, looked: true, ..Self::default() }
     }
 
-    /// Adds the scene of the next image.
     pub fn see(&mut self, scene: &Scene) {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),

@@ -5,14 +5,11 @@ use std::collections::HashMap;
 use petgraph::visit::{Dfs, VisitMap};
 
 use super::{
-    Dart, EmbeddedGraph, GraphError, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
+    Dart, EmbeddedGraph, GraphError, ListError, NO_DART, Vertex, VisitedVertices, clockwise_fault,
+    opposite_fault, size_fault,
 };
-use crate::similar::SimilarName;
+use crate::similar::similar_name;
 
-/// The opposite of a dart that is not known yet.
-const UNPAIRED: Dart = Dart(u32::MAX);
-
-/// The most vertices that an error lists.
 const SHOWN: usize = 8;
 
 impl EmbeddedGraph {
@@ -39,13 +36,13 @@ impl EmbeddedGraph {
         if let Some(fault) = fault {
             return Err(fault);
         }
-        let mut number = vec![UNPAIRED; opposite.len()];
+        let mut number = vec![NO_DART; opposite.len()];
         let mut inverse = Vec::with_capacity(opposite.len());
         let mut degrees = Vec::with_capacity(opposite.len());
         for least in 0..opposite.len() {
             let before = inverse.len();
             let mut dart = least;
-            while number[dart] == UNPAIRED {
+            while number[dart] == NO_DART {
                 number[dart] = Dart(inverse.len() as u32);
                 inverse.push(dart);
                 dart = clockwise[dart] as usize;
@@ -82,7 +79,7 @@ impl EmbeddedGraph {
                     // A vertex cannot be its own neighbour, so it is not offered.
                     let others = lists.iter().map(|(other, _)| other.as_ref());
                     let others = others.filter(|other| *other != name.as_ref());
-                    let similar = SimilarName::of(&neighbour, others);
+                    let similar = similar_name(&neighbour, others);
                     return Err(ListError::UnknownNeighbour { vertex, neighbour, similar });
                 };
                 if other == at {
@@ -191,11 +188,16 @@ impl EmbeddedGraph {
         graph
     }
 
-    /// The first vertex that cannot be reached from the first of all.
     fn unreached_vertex(&self) -> Option<Vertex> {
-        let mut search = Dfs::new(self, Vertex(0));
+        let reached = self.reached(Vertex(0));
+        self.vertices().find(|vertex| !reached.is_visited(vertex))
+    }
+
+    /// The vertices that can be reached from one.
+    pub(super) fn reached(&self, from: Vertex) -> VisitedVertices {
+        let mut search = Dfs::new(self, from);
         while search.next(self).is_some() {}
-        self.vertices().find(|vertex| !search.discovered.is_visited(vertex))
+        search.discovered
     }
 }
 

@@ -1,42 +1,29 @@
 //! A graph without some passages: edges replaced by two dead ends each.
 
-use super::{Dart, EmbeddedGraph};
+use petgraph::visit::VisitMap;
+
+use super::{Dart, EmbeddedGraph, NO_DART};
 
 impl EmbeddedGraph {
     /// The graph in which the edges of some darts are cut into two dead ends each, as far as a robot can come
     /// from a dart, and the number there of each dart that it can come to.
-    pub fn cut(&self, edges: &[Dart], start: Dart) -> Option<(Self, Vec<Option<Dart>>)> {
-        let count = self.dart_count() as u32;
+    #[must_use]
+    pub fn cut(&self, edges: &[Dart], start: Dart) -> (Self, Vec<Option<Dart>>) {
         let is_cut = |dart: Dart| edges.contains(&dart) || edges.contains(&self.opposite(dart));
-        let ends: Vec<Dart> = self.darts().filter(|&dart| is_cut(dart)).collect();
-        // The darts of the dead ends are the last ones.
-        let opposite = |dart: u32| match dart.checked_sub(count) {
-            Some(end) => ends[end as usize].0,
-            None => match ends.binary_search(&Dart(dart)) {
-                Ok(end) => count + end as u32,
-                Err(_) => self.opposite(Dart(dart)).0,
-            },
-        };
-        let clockwise = |dart: u32| if dart < count { self.clockwise(Dart(dart)).0 } else { dart };
-        let mut found = vec![None; count as usize + ends.len()];
-        let mut darts = vec![start.0];
-        found[start.at()] = Some(0);
-        let mut next = 0;
-        while let Some(&dart) = darts.get(next) {
-            next += 1;
-            for dart in [opposite(dart), clockwise(dart)] {
-                if found[dart as usize].is_none() {
-                    found[dart as usize] = Some(darts.len() as u32);
-                    darts.push(dart);
-                }
-            }
+        let mut degrees: Vec<u32> = self.vertices().map(|vertex| self.degree(vertex)).collect();
+        let mut opposite: Vec<Dart> = self.darts().map(|dart| self.opposite(dart)).collect();
+        for dart in self.darts().filter(|&dart| is_cut(dart)) {
+            opposite[dart.at()] = Dart(opposite.len() as u32);
+            opposite.push(dart);
+            degrees.push(1);
         }
-        let renumbered = |dart: u32| found[dart as usize].unwrap_or_default();
-        let opposites: Vec<u32> = darts.iter().map(|&dart| renumbered(opposite(dart))).collect();
-        let clockwises: Vec<u32> = darts.iter().map(|&dart| renumbered(clockwise(dart))).collect();
-        let (graph, number) = Self::from_permutations(&opposites, &clockwises).ok()?;
-        let numbers = found[..count as usize].iter().map(|found| Some(number[(*found)? as usize]));
-        Some((graph, numbers.collect()))
+        let whole = Self::from_degrees(&degrees, opposite);
+        let reached = whole.reached(whole.vertex(start));
+        let vertices = whole.vertices().filter(|vertex| reached.is_visited(vertex));
+        let order: Vec<Dart> = vertices.flat_map(|vertex| whole.darts_of(vertex)).collect();
+        let (graph, numbers) = whole.rearranged(&order, |dart| whole.opposite(dart));
+        let numbers = numbers[..self.dart_count()].iter();
+        (graph, numbers.map(|&number| (number != NO_DART).then_some(number)).collect())
     }
 }
 
@@ -46,18 +33,12 @@ mod tests {
 
     #[test]
     fn a_cut_ring_is_a_chain_and_a_cut_chain_is_its_near_part() {
-        let ring = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["c", "b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b", "a"]),
-        ]);
-        let ring = ring.unwrap();
-        let (chain, numbers) = ring.cut(&[Dart(0)], Dart(2)).unwrap();
+        let (chain, numbers) = EmbeddedGraph::cycle(3).cut(&[Dart(0)], Dart(2));
         assert_eq!((chain.vertex_count(), chain.edge_count()), (5, 4));
         assert!(numbers.iter().all(Option::is_some));
         let end = numbers[0].unwrap();
         assert_eq!(chain.degree_around(chain.opposite(end)), 1);
-        let (near, numbers) = chain.cut(&[end], end).unwrap();
+        let (near, numbers) = chain.cut(&[end], end);
         assert_eq!((near.vertex_count(), near.edge_count()), (5, 4));
         assert!(numbers.iter().filter(|number| number.is_none()).count() == 1);
     }

@@ -3,7 +3,6 @@
 use thiserror::Error;
 
 use super::MAX_EDGES;
-use crate::similar::SimilarName;
 
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -34,7 +33,7 @@ pub enum ListError {
     #[error("vertex `{vertex}` has two lists")]
     VertexTwice { vertex: String },
     #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex{similar}")]
-    UnknownNeighbour { vertex: String, neighbour: String, similar: SimilarName },
+    UnknownNeighbour { vertex: String, neighbour: String, similar: String },
     #[error(
         "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
     )]

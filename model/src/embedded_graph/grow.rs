@@ -2,13 +2,9 @@
 //!
 //! For the modules of this crate that build graphs step by step. They never expose an unfinished one.
 
-use super::{Dart, DartPlace, Darts, EmbeddedGraph, Vertex};
-
-/// The opposite of a free dart.
-const FREE: Dart = Dart(u32::MAX);
+use super::{Dart, DartPlace, Darts, EmbeddedGraph, NO_DART, Vertex};
 
 impl EmbeddedGraph {
-    /// A graph without vertices, to be built.
     pub(crate) fn unfinished() -> Self {
         Self { darts_of: Vec::new(), darts: Vec::new() }
     }
@@ -29,19 +25,18 @@ impl EmbeddedGraph {
         let first = self.darts.len() as u32;
         let around = Darts { first, end: first + degree };
         self.darts_of.push(around);
-        self.darts.resize(around.end as usize, DartPlace { opposite: FREE, vertex, around });
+        self.darts.resize(around.end as usize, DartPlace { opposite: NO_DART, vertex, around });
         vertex
     }
 
-    /// Makes two free darts the ends of one edge.
     pub(crate) fn join(&mut self, one: Dart, other: Dart) {
         self.darts[one.at()].opposite = other;
         self.darts[other.at()].opposite = one;
     }
 
     pub(crate) fn unjoin(&mut self, one: Dart, other: Dart) {
-        self.darts[one.at()].opposite = FREE;
-        self.darts[other.at()].opposite = FREE;
+        self.darts[one.at()].opposite = NO_DART;
+        self.darts[other.at()].opposite = NO_DART;
     }
 
     /// Undoes the latest [`add_vertex`](Self::add_vertex). Its darts are free.
@@ -55,7 +50,7 @@ impl EmbeddedGraph {
     #[inline]
     pub(crate) fn joined(&self, dart: Dart) -> Option<Dart> {
         let other = self.darts[dart.at()].opposite;
-        (other != FREE).then_some(other)
+        (other != NO_DART).then_some(other)
     }
 
     #[inline]

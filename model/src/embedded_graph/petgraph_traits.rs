@@ -22,17 +22,7 @@
 //! ```
 //!
 //! A [`Graph`](petgraph::Graph) keeps the clockwise order of the edges in the weights of its nodes:
-//!
-//! ```
-//! use toposlam_model::embedded_graph::EmbeddedGraph;
-//!
-//! // Two vertices with three edges between them, on the torus.
-//! let theta = EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", vec!["a", "b", "c"])])?;
-//! let graph = theta.to_petgraph();
-//! assert_eq!((graph.node_count(), graph.edge_count()), (2, 3));
-//! assert_eq!(EmbeddedGraph::from_petgraph(&graph)?, theta);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! [`EmbeddedGraph::to_petgraph`].
 
 use petgraph::{
     Undirected,
@@ -50,7 +40,6 @@ use super::{Dart, EmbeddedGraph, ListError, Vertex};
 /// An edge, seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EdgeView {
-    /// The dart at the end from which it is seen.
     pub dart: Dart,
     source: Vertex,
     target: Vertex,
@@ -79,7 +68,6 @@ impl EdgeRef for EdgeView {
     }
 }
 
-/// The vertices that a search has visited.
 #[derive(Clone, Debug, Default)]
 pub struct VisitedVertices(Vec<bool>);
 
@@ -197,7 +185,6 @@ impl<'g> IntoEdges for &'g EmbeddedGraph {
     }
 }
 
-/// The error for a graph of petgraph that is no embedded graph.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PetgraphError {
     #[error(transparent)]
@@ -218,14 +205,11 @@ impl EmbeddedGraph {
     /// The graph of petgraph: nodes have the numbers of the vertices, edges those of [`edges`](Self::edges), and the
     /// weight of a node lists its edges in clockwise order from the first dart of the vertex, a loop twice.
     pub fn to_petgraph(&self) -> UnGraph<Vec<EdgeIndex>, ()> {
-        let mut number = vec![EdgeIndex::end(); self.dart_count()];
-        for (edge, (one, other)) in self.edges().enumerate() {
-            number[one.at()] = EdgeIndex::new(edge);
-            number[other.at()] = EdgeIndex::new(edge);
-        }
+        let numbers = self.edge_numbers();
+        let number = |dart: Dart| EdgeIndex::from(numbers[dart.at()]);
         let mut graph = UnGraph::with_capacity(self.vertex_count(), self.edge_count());
         for vertex in self.vertices() {
-            graph.add_node(self.darts_of(vertex).map(|dart| number[dart.at()]).collect());
+            graph.add_node(self.darts_of(vertex).map(number).collect());
         }
         for (one, other) in self.edges() {
             let [one, other] = [one, other].map(|dart| NodeIndex::new(self.vertex(dart).at()));

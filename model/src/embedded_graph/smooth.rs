@@ -2,11 +2,9 @@
 
 use super::{Dart, EmbeddedGraph};
 
-/// An embedded graph without corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Smoothed {
     pub graph: EmbeddedGraph,
-    /// For each of its darts, the dart in the first graph.
     pub darts: Vec<Dart>,
 }
 
@@ -21,20 +19,14 @@ impl EmbeddedGraph {
         }
         let is_kept = |dart: Dart| stays[self.vertex(dart).at()];
         let darts: Vec<Dart> = self.darts().filter(|&dart| is_kept(dart)).collect();
-        let mut number = vec![Dart(u32::MAX); self.dart_count()];
-        for (place, &dart) in darts.iter().enumerate() {
-            number[dart.at()] = Dart(place as u32);
-        }
-        let opposite = |&dart: &Dart| {
+        let opposite = |dart: Dart| {
             let mut far = self.opposite(dart);
             while !is_kept(far) {
                 far = self.opposite(self.clockwise(far));
             }
-            number[far.at()]
+            far
         };
-        let kept = self.vertices().filter(|vertex| stays[vertex.at()]);
-        let degrees: Vec<u32> = kept.map(|vertex| self.degree(vertex)).collect();
-        let graph = Self::from_degrees(&degrees, darts.iter().map(opposite).collect());
+        let (graph, _) = self.rearranged(&darts, opposite);
         Smoothed { graph, darts }
     }
 }

@@ -6,7 +6,6 @@ use thiserror::Error;
 
 use crate::embedded_graph::EmbeddedGraph;
 
-/// A class of embedded graphs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// All embedded graphs: loops and parallel edges allowed, any genus.
@@ -15,7 +14,6 @@ pub enum Class {
     Simple,
     /// Simple, and no vertex of degree more than 3: dead ends, bends and T junctions.
     Corridor,
-    /// Simple, and of genus 0.
     Planar,
 }
 
@@ -35,17 +33,14 @@ impl Class {
         }
     }
 
-    /// Whether loops and parallel edges are forbidden.
     pub fn is_simple(self) -> bool {
         self != Self::Multigraph
     }
 
-    /// The highest degree that a vertex may have.
     pub fn max_degree(self) -> u32 {
         if self == Self::Corridor { 3 } else { u32::MAX }
     }
 
-    /// Whether a connected graph is in the class.
     pub fn contains(self, graph: &EmbeddedGraph) -> bool {
         let fits = |vertex| graph.degree(vertex) <= self.max_degree();
         (!self.is_simple() || graph.is_simple())
@@ -78,9 +73,5 @@ mod tests {
         let names = ["multigraph", "simple", "corridor", "planar"];
         assert_eq!(Class::ALL.map(|class| class.to_string()), names);
         assert_eq!(names.map(str::parse), Class::ALL.map(Ok));
-        assert_eq!(
-            "tree".parse::<Class>().unwrap_err().to_string(),
-            "`tree` is not a class of worlds; the classes are multigraph, simple, corridor and planar"
-        );
     }
 }

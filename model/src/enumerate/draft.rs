@@ -33,7 +33,6 @@ pub(super) struct Prefix {
 pub(crate) struct Draft {
     class: Class,
     each: Each,
-    /// The number of edges at the end.
     target: usize,
     pub(super) opposite: [u8; DARTS],
     pub(super) vertex: [u8; DARTS],
@@ -104,14 +103,12 @@ impl Draft {
         }
     }
 
-    /// The first steps of the history, at most [`PREFIX_EDGES`].
     pub(super) fn prefix(&self) -> Prefix {
         let mut words = [0; PREFIX_EDGES];
         words[..self.edges].copy_from_slice(&self.words[..self.edges]);
         Prefix { degree: self.degree[0], words, edges: self.edges as u8 }
     }
 
-    /// Repeats the first steps of a history.
     pub(super) fn resume(&mut self, prefix: Prefix) {
         self.decide(None, Answer::NewVertex(prefix.degree));
         for &word in &prefix.words[..prefix.edges as usize] {
@@ -150,7 +147,6 @@ impl Draft {
         ControlFlow::Continue(())
     }
 
-    /// The highest degree that the next vertex may have.
     fn highest_degree(&self) -> usize {
         let of_root = match self.each {
             Each::World if self.vertices > 0 => self.degree[0] as usize,
@@ -164,7 +160,6 @@ impl Draft {
         (self.free != 0).then(|| Dart(self.free.trailing_zeros()))
     }
 
-    /// The number of edges that are not decided.
     #[inline]
     pub(crate) fn edges_left(&self) -> usize {
         self.target - self.edges
@@ -249,7 +244,6 @@ impl Draft {
         }
     }
 
-    /// Undoes [`join_in_face`](Self::join_in_face).
     fn unjoin_in_face(&mut self, one: usize, other: usize) {
         for dart in [one, other] {
             let (last, next) = (self.last_in_face[dart], self.next_in_face[dart]);
@@ -362,7 +356,6 @@ impl Draft {
         self.edges -= 1;
     }
 
-    /// Visits the finished start as an embedded graph.
     pub(super) fn show(
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,

@@ -41,7 +41,6 @@ pub struct Enumeration {
     each: Each,
 }
 
-/// The error for a number of edges that cannot be enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SizeError {
     #[error("a world has at least one edge")]
@@ -111,7 +110,6 @@ fn check_size(edges: usize) -> Result<(), SizeError> {
 }
 
 impl EnumerationPart {
-    /// Visits everything in the part, in order, until `visit` breaks.
     pub fn for_each(
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,

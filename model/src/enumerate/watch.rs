@@ -2,20 +2,17 @@
 
 use thiserror::Error;
 
-/// The error of work that its [`Watch`] stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("interrupted")]
 pub struct Interrupted;
 
 /// Watches long work, from several threads at once, and may stop it.
 pub trait Watch: Sync {
-    /// The number of parts of the work.
     fn parts(&self, _count: usize) {}
 
     /// One part is done, with this number of cases.
     fn part_done(&self, _cases: u64) {}
 
-    /// Whether to stop.
     fn stop(&self) -> bool {
         false
     }
@@ -29,7 +26,6 @@ pub trait Watch: Sync {
     }
 }
 
-/// Watches nothing.
 impl Watch for () {}
 
 /// Works on the parts and merges the results in the order of the parts. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.

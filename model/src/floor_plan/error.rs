@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{embedded_graph::ListError, similar::SimilarName};
+use crate::embedded_graph::ListError;
 
 /// Why junctions and hallways are not a floor plan; names the culprits.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -22,7 +22,7 @@ pub enum FloorPlanError {
     )]
     TooClose { one: String, other: String, distance: f64, least: f64 },
     #[error("there is no junction `{junction}`{similar}")]
-    UnknownJunction { number: usize, junction: String, similar: SimilarName },
+    UnknownJunction { number: usize, junction: String, similar: String },
     #[error("the hallway from `{junction}` to `{junction}` has no length")]
     NoLength { junction: String },
     #[error("hallway `{from}` - `{to}` runs neither north-south nor east-west")]
@@ -31,15 +31,8 @@ pub enum FloorPlanError {
     HallwayTwice { from: String, to: String },
     #[error("hallways `{junction}` - `{one}` and `{junction}` - `{other}` overlap")]
     SameDirection { junction: String, one: String, other: String },
-    #[error("junction `{junction}` has no door; it must be a dead end, an L or a T")]
-    NoDoor { junction: String },
-    #[error(
-        "junction `{junction}` has two doors opposite each other; \
-         it must be a dead end, an L or a T"
-    )]
-    StraightThrough { junction: String },
-    #[error("junction `{junction}` has four doors; it must be a dead end, an L or a T")]
-    FourDoors { junction: String },
+    #[error("junction `{junction}` has {doors}; it must be a dead end, an L or a T")]
+    NotAKind { junction: String, doors: &'static str },
     #[error("junction `{junction}` lies on hallway `{from}` - `{to}`, which does not end there")]
     OnHallway { junction: String, from: String, to: String },
     #[error("hallways `{}` - `{}` and `{}` - `{}` cross", .one[0], .one[1], .other[0], .other[1])]

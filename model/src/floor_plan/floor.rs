@@ -6,14 +6,11 @@ use crate::embedded_graph::Vertex;
 /// A rectangle along the axes, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// The corner with the least x and y.
     pub least: [f64; 2],
-    /// The corner with the greatest x and y.
     pub greatest: [f64; 2],
 }
 
 impl Rectangle {
-    /// The smallest rectangle that contains both positions.
     fn around(one: [f64; 2], other: [f64; 2]) -> Self {
         Self {
             least: [one[0].min(other[0]), one[1].min(other[1])],
@@ -21,7 +18,6 @@ impl Rectangle {
         }
     }
 
-    /// The rectangle that is larger by a margin on all sides.
     #[must_use]
     pub fn widened(self, margin: f64) -> Self {
         Self {
@@ -51,7 +47,6 @@ impl FloorPlan {
         self.hallways.iter().map(|&hallway| self.middle(hallway).widened(self.hallway_width / 2.0))
     }
 
-    /// The hallway's middle line, a rectangle without width.
     fn middle(&self, hallway: Hallway) -> Rectangle {
         Rectangle::around(self.position(hallway.from), self.position(hallway.to))
     }
@@ -77,12 +72,8 @@ fn junctions_off_foreign_hallways(plan: &FloorPlan) -> Result<(), FloorPlanError
         for (vertex, junction) in plan.graph.vertices().zip(&plan.junctions) {
             let ends_there = vertex == hallway.from || vertex == hallway.to;
             if !ends_there && floor.holds(junction.position) {
-                let [from, to] = plan.ends(hallway);
-                return Err(FloorPlanError::OnHallway {
-                    junction: junction.name.clone(),
-                    from,
-                    to,
-                });
+                let ([from, to], junction) = (plan.ends(hallway), junction.name.clone());
+                return Err(FloorPlanError::OnHallway { junction, from, to });
             }
         }
     }
@@ -97,9 +88,8 @@ fn floors_apart(plan: &FloorPlan) -> Result<(), FloorPlanError> {
         for &(earlier, earlier_floor) in &floors[..number] {
             // Hallways that share a junction leave it in different directions, so that their
             // floors share just the junction's square.
-            let shared = [hallway.from, hallway.to]
-                .iter()
-                .any(|&vertex| vertex == earlier.from || vertex == earlier.to);
+            let ends = [earlier.from, earlier.to];
+            let shared = ends.contains(&hallway.from) || ends.contains(&hallway.to);
             if !shared && floor.meets(&earlier_floor) {
                 let (one, other) = (plan.ends(earlier), plan.ends(hallway));
                 let cross = plan.middle(hallway).meets(&plan.middle(earlier));
@@ -121,12 +111,8 @@ fn junctions_apart(plan: &FloorPlan) -> Result<(), FloorPlanError> {
             let [x, y] = [0, 1].map(|axis| junction.position[axis] - earlier.position[axis]);
             let distance = x.hypot(y);
             if distance < least - TOLERANCE {
-                return Err(FloorPlanError::TooClose {
-                    one: earlier.name.clone(),
-                    other: junction.name.clone(),
-                    distance,
-                    least,
-                });
+                let (one, other) = (earlier.name.clone(), junction.name.clone());
+                return Err(FloorPlanError::TooClose { one, other, distance, least });
             }
         }
     }

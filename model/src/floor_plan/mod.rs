@@ -16,7 +16,7 @@ pub use walls::{BuildingWall, walls};
 use crate::{
     driving::visit::JunctionShape,
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    similar::SimilarName,
+    similar::similar_name,
 };
 
 /// The largest difference between equal lengths, in metres.
@@ -36,15 +36,9 @@ impl Direction {
     /// All four, clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
 
-    /// The way back.
     #[must_use]
     pub fn reversed(self) -> Self {
-        match self {
-            Self::North => Self::South,
-            Self::East => Self::West,
-            Self::South => Self::North,
-            Self::West => Self::East,
-        }
+        Self::ALL[(self as usize + 2) % 4]
     }
 
     /// The unit vector, x to the east and y to the north.
@@ -70,7 +64,6 @@ impl Direction {
     }
 }
 
-/// The three kinds of junctions.
 // paper: env.junction-types
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JunctionKind {
@@ -80,33 +73,26 @@ pub enum JunctionKind {
     T,
 }
 
-/// A place where hallways end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
     pub name: String,
     /// Where its turning point is, in metres, x to the east and y to the north.
     pub position: [f64; 2],
-    /// The number and arrangement of its doors.
     pub kind: JunctionKind,
 }
 
-/// A straight hallway between two junctions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hallway {
-    /// The junction that was named first.
     pub from: Vertex,
-    /// The other one.
     pub to: Vertex,
 }
 
-/// A valid floor plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorPlan {
     hallway_width: f64,
     junctions: Vec<Junction>,
     hallways: Vec<Hallway>,
     graph: EmbeddedGraph,
-    /// Where each dart leads.
     directions: Vec<Direction>,
 }
 
@@ -166,7 +152,6 @@ impl FloorPlan {
         &self.junctions
     }
 
-    /// The junction that is this vertex.
     pub fn junction(&self, vertex: Vertex) -> &Junction {
         &self.junctions[vertex.at()]
     }
@@ -204,12 +189,12 @@ fn between_known_junctions(
 ) -> Result<Vec<Hallway>, FloorPlanError> {
     let mut vertices = HashMap::new();
     for (number, (name, position)) in junctions.iter().enumerate() {
-        let junction = || name.clone();
+        let junction = name.clone();
         if !position.iter().all(|coordinate| coordinate.is_finite()) {
-            return Err(FloorPlanError::Position { junction: junction(), position: *position });
+            return Err(FloorPlanError::Position { junction, position: *position });
         }
         if vertices.insert(name, Vertex(number as u32)).is_some() {
-            return Err(FloorPlanError::JunctionTwice { junction: junction() });
+            return Err(FloorPlanError::JunctionTwice { junction });
         }
     }
     let known = |number, name| {
@@ -217,16 +202,14 @@ fn between_known_junctions(
         vertex.ok_or_else(|| FloorPlanError::UnknownJunction {
             number,
             junction: String::clone(name),
-            similar: SimilarName::of(name, junctions.iter().map(|(known, _)| known.as_str())),
+            similar: similar_name(name, junctions.iter().map(|(known, _)| known.as_str())),
         })
     };
-    hallways
-        .iter()
-        .enumerate()
-        .map(|(number, (from, to))| {
-            Ok(Hallway { from: known(number, from)?, to: known(number, to)? })
-        })
-        .collect()
+    let ends = hallways.iter().enumerate();
+    ends.map(|(number, (from, to))| {
+        Ok(Hallway { from: known(number, from)?, to: known(number, to)? })
+    })
+    .collect()
 }
 
 /// For each junction, the junction behind its door in each direction.
@@ -252,11 +235,8 @@ fn doors(
                     return Err(FloorPlanError::HallwayTwice { from: name(from), to: name(to) });
                 }
                 Some(earlier) => {
-                    return Err(FloorPlanError::SameDirection {
-                        junction: name(here),
-                        one: name(earlier),
-                        other: name(there),
-                    });
+                    let [junction, one, other] = [here, earlier, there].map(name);
+                    return Err(FloorPlanError::SameDirection { junction, one, other });
                 }
             }
         }
@@ -264,19 +244,16 @@ fn doors(
     Ok(doors)
 }
 
-/// The kind of junction with these doors.
 fn kind(name: &str, doors: &[Option<Vertex>; 4]) -> Result<JunctionKind, FloorPlanError> {
-    let junction = || name.to_owned();
-    match doors.iter().flatten().count() {
-        0 => Err(FloorPlanError::NoDoor { junction: junction() }),
-        1 => Ok(JunctionKind::DeadEnd),
-        2 if doors[0].is_some() == doors[2].is_some() => {
-            Err(FloorPlanError::StraightThrough { junction: junction() })
-        }
-        2 => Ok(JunctionKind::L),
-        3 => Ok(JunctionKind::T),
-        _ => Err(FloorPlanError::FourDoors { junction: junction() }),
-    }
+    let doors = match doors.iter().flatten().count() {
+        1 => return Ok(JunctionKind::DeadEnd),
+        2 if doors[0].is_some() != doors[2].is_some() => return Ok(JunctionKind::L),
+        3 => return Ok(JunctionKind::T),
+        0 => "no door",
+        2 => "two doors opposite each other",
+        _ => "four doors",
+    };
+    Err(FloorPlanError::NotAKind { junction: name.to_owned(), doors })
 }
 
 #[cfg(test)]

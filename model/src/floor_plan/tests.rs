@@ -85,9 +85,8 @@ fn the_hallway_width_is_positive_and_finite() {
 
 // paper: env.right-angles, env.junction-types
 #[test]
-fn each_fault_of_junctions_and_hallways_is_named() {
+fn each_fault_that_is_not_tested_with_its_place_in_a_file_is_named() {
     let (a, b) = (("a", [0.0, 0.0]), ("b", [4.0, 0.0]));
-    let askew = [a, ("b", [4.0, 0.01])];
     let line = [a, b, ("c", [8.0, 0.0])];
     let cross = [
         ("x", [0.0, 0.0]),
@@ -97,28 +96,18 @@ fn each_fault_of_junctions_and_hallways_is_named() {
         ("w", [-4.0, 0.0]),
     ];
     let ring = [cross[1], cross[3], cross[2], cross[4], ("sw", [-4.0, -4.0])];
-    let near = [a, ("b", [3.0, 0.0])];
     let on = [a, ("b", [8.0, 0.0]), ("c", [8.0, 4.0]), ("d", [4.0, 4.0]), ("e", [4.0, 0.5])];
-    let cases: [(&[_], &[_], _); 15] = [
-        (
-            &[("a", [f64::NAN, 1.0])],
-            &[],
-            "junction `a` is at (NaN, 1); both must be finite numbers of metres",
-        ),
+    let cases: [(&[_], &[_], _); 9] = [
         (&[a, a], &[], "junction `a` is listed twice"),
-        (&[a, b], &[("a", "b"), ("b", "q")], "there is no junction `q`"),
-        (&[a, b], &[("a", "b"), ("b", "a")], "hallway `b` - `a` is listed twice"),
-        (&askew, &[("a", "b")], "hallway `a` - `b` runs neither north-south nor east-west"),
-        (&askew, &[("a", "a")], "the hallway from `a` to `a` has no length"),
+        (
+            &[a, ("b", [4.0, 0.01])],
+            &[("a", "b")],
+            "hallway `a` - `b` runs neither north-south nor east-west",
+        ),
         (
             &cross,
             &[("x", "n"), ("x", "e"), ("x", "s"), ("x", "w")],
             "junction `x` has four doors; it must be a dead end, an L or a T",
-        ),
-        (
-            &cross,
-            &[("n", "x"), ("x", "s")],
-            "junction `x` has two doors opposite each other; it must be a dead end, an L or a T",
         ),
         (
             &cross,
@@ -136,11 +125,6 @@ fn each_fault_of_junctions_and_hallways_is_named() {
             "hallways `n` - `s` and `w` - `e` cross",
         ),
         (&line, &[("a", "b"), ("a", "c")], "hallways `a` - `b` and `a` - `c` overlap"),
-        (
-            &near,
-            &[("a", "b")],
-            "junctions `a` and `b` are 3.00 m apart; it must be two hallway widths, 3.20 m",
-        ),
         (
             &on,
             &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")],

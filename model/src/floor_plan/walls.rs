@@ -25,7 +25,6 @@ impl BuildingWall {
         self.span[1] - self.span[0]
     }
 
-    /// The point of its foot at this place along its axis.
     pub fn foot(&self, along: f64) -> [f64; 2] {
         if self.along == 0 { [along, self.plane] } else { [self.plane, along] }
     }
@@ -113,7 +112,6 @@ fn juts(wall: &BuildingWall, end: usize, floors: &[Rectangle]) -> bool {
     floors.iter().any(|floor| floor.holds(beyond))
 }
 
-/// Sorted, without duplicates.
 fn distinct(mut coordinates: Vec<f64>) -> Vec<f64> {
     coordinates.sort_by(f64::total_cmp);
     coordinates.dedup_by(|one, other| (*one - *other).abs() <= TOLERANCE);

@@ -20,7 +20,6 @@ use thiserror::Error;
 pub use typed::from_toml;
 pub use value::{DocumentEntry, DocumentTable, DocumentValue};
 
-/// A place in a document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextPosition {
     /// Line and column, both from 1, the column in characters. `None` for the document as a whole.
@@ -50,7 +49,6 @@ impl fmt::Display for TextPosition {
     }
 }
 
-/// What is wrong with a document, and where.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{position}{kind}")]
 pub struct DocumentError {
@@ -59,7 +57,6 @@ pub struct DocumentError {
     pub kind: DocumentErrorKind,
 }
 
-/// What can be wrong in any document.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DocumentErrorKind {
     #[error("the file is empty")]
@@ -86,7 +83,6 @@ impl DocumentErrorKind {
     }
 }
 
-/// A document that was parsed.
 #[derive(Debug)]
 pub struct Document<'t> {
     text: &'t str,

@@ -7,11 +7,10 @@ use crate::{
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
     marker::Marker,
-    similar::SimilarName,
+    similar::similar_name,
     world::State,
 };
 
-/// A world with names, as in a world file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedWorld {
     /// The name of the world; may be empty.
@@ -34,13 +33,12 @@ pub struct NamedWorld {
     pub plan: Option<FloorPlan>,
 }
 
-/// Why names do not give a start.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
     #[error("`{text}` is not a start; write `vertex:facing`")]
     NoColon { text: String },
     #[error("there is no vertex `{vertex}`{similar}")]
-    UnknownVertex { vertex: String, similar: SimilarName },
+    UnknownVertex { vertex: String, similar: String },
     #[error("vertex `{vertex}` has no neighbour `{facing}`; it has {listed}")]
     NoSuchNeighbour { vertex: String, facing: String, listed: String },
     #[error("no edge `{facing}` ends at vertex `{vertex}`; the edges there are {listed}")]
@@ -56,14 +54,8 @@ impl NamedWorld {
     /// in the order of their lower darts. Edges have names exactly if the graph is not simple.
     #[must_use]
     pub fn numbered(name: &str, about: &str, graph: EmbeddedGraph, start: Option<Dart>) -> Self {
-        let edge_names = (!graph.is_simple()).then(|| {
-            let mut names = vec![String::new(); graph.dart_count()];
-            for (edge, (dart, other)) in graph.edges().enumerate() {
-                names[dart.at()] = format!("e{edge}");
-                names[other.at()] = format!("e{edge}");
-            }
-            names
-        });
+        let edge_names = || graph.edge_numbers().iter().map(|edge| format!("e{edge}")).collect();
+        let edge_names = (!graph.is_simple()).then(edge_names);
         Self {
             name: name.to_owned(),
             about: about.to_owned(),
@@ -148,7 +140,7 @@ impl NamedWorld {
     pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
         let vertex = self.vertex_named(at).ok_or_else(|| StartError::UnknownVertex {
             vertex: shown(at),
-            similar: SimilarName::of(at, self.vertex_names.iter().map(String::as_str)),
+            similar: similar_name(at, self.vertex_names.iter().map(String::as_str)),
         })?;
         let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
         let mut bare_loop = false;
@@ -198,12 +190,10 @@ impl NamedWorld {
         }
     }
 
-    /// The name of the dart's vertex, as in a file's `at`.
     pub fn at_text(&self, dart: Dart) -> &str {
         &self.vertex_names[self.graph.vertex(dart).at()]
     }
 
-    /// The name of this dart, as in a file's `facing`.
     pub fn facing_text(&self, dart: Dart) -> String {
         let name = self.leads_to(dart);
         if self.is_named_loop(dart) {
@@ -227,7 +217,6 @@ impl NamedWorld {
             && self.graph.vertex(dart) == self.graph.vertex(self.graph.opposite(dart))
     }
 
-    /// The first few names that can be faced at a vertex, for a message.
     fn listed(&self, vertex: Vertex) -> String {
         const SHOWN: usize = 8;
         let darts = self.graph.darts_of(vertex);
@@ -237,7 +226,6 @@ impl NamedWorld {
     }
 }
 
-/// A text in one line, for a message.
 fn shown(text: &str) -> String {
     text.escape_debug().to_string()
 }
@@ -330,11 +318,8 @@ mod tests {
              b = ['4', '5', '6', '7', '8', '9']",
         );
         for (world, text, message) in [
-            (with_loop(), "u", "`u` is not a start; write `vertex:facing`"),
             (with_loop(), "\u{7}", "`\\u{7}` is not a start; write `vertex:facing`"),
-            (with_loop(), "w:a", "there is no vertex `w`"),
             (with_loop(), "w\n:a", "there is no vertex `w\\n`"),
-            (with_loop(), "u:a", "edge `a` is a loop; write `a:1` or `a:2` for one of its ends"),
             (
                 with_loop(),
                 "v:\u{1b}[1m",
@@ -345,7 +330,6 @@ mod tests {
                 "corne:tee",
                 "there is no vertex `corne`; did you mean `corner`?",
             ),
-            (path(["v0", "v1", "v2"]), "v1:v1", "vertex `v1` has no neighbour `v1`; it has v0, v2"),
             (
                 star,
                 "hub:q",

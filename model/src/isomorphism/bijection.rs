@@ -1,13 +1,10 @@
 //! The witness of an isomorphism: a bijection of darts, and its verifier.
 
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use crate::embedded_graph::{Dart, EmbeddedGraph, NO_DART};
 
 /// The image of each dart of one embedded graph in another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bijection(Vec<Dart>);
-
-/// The image of a dart that has none yet.
-const NONE: Dart = Dart(u32::MAX);
 
 impl Bijection {
     /// The given images, in the order of the darts' numbers. Whether they are an isomorphism is for
@@ -31,7 +28,6 @@ impl Bijection {
         self.0.get(dart.at()).copied()
     }
 
-    /// The image of each dart, in the order of their numbers.
     pub fn images(&self) -> &[Dart] {
         &self.0
     }
@@ -72,7 +68,7 @@ impl Candidate {
     ) -> &Bijection {
         let image = &mut self.bijection.0;
         image.clear();
-        image.resize(from.dart_count(), NONE);
+        image.resize(from.dart_count(), NO_DART);
         self.reached.clear();
         self.reached.push((facing, facing_image));
         // Vertex by vertex: all darts around it, and then the opposite of each.
@@ -80,10 +76,10 @@ impl Candidate {
         while let Some(&(entry, entry_image)) = self.reached.get(next) {
             next += 1;
             let (mut dart, mut at) = (entry, entry_image);
-            while image[dart.at()] == NONE {
+            while image[dart.at()] == NO_DART {
                 image[dart.at()] = at;
                 let far = from.opposite(dart);
-                if image[far.at()] == NONE {
+                if image[far.at()] == NO_DART {
                     self.reached.push((far, to.opposite(at)));
                 }
                 dart = from.clockwise(dart);

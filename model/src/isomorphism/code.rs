@@ -57,7 +57,6 @@ impl StartCode {
     }
 }
 
-/// The word for a vertex met for the first time.
 fn new_vertex(degree: u32) -> u32 {
     u32::MAX - degree
 }
@@ -88,7 +87,6 @@ pub fn discovery_order(graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
 /// The numbering of a graph's darts from a start, made one edge at a time. Can be begun again
 /// without clearing.
 pub(super) struct Numbering {
-    /// The darts in the order in which they are met.
     pub(super) order: Vec<Dart>,
     /// The number of each dart, valid where `stamp` is current.
     number: Vec<u32>,

@@ -1,26 +1,28 @@
 //! Compares two embedded graphs: they are isomorphic, mirror images, or there is a first difference.
 
-use std::fmt;
+use thiserror::Error;
 
 use super::{Bijection, Canonical, canonical};
 use crate::{
-    counts::{counted, grouped, vertices},
+    counts::{self, counted, grouped},
     embedded_graph::{Dart, EmbeddedGraph},
 };
 
 /// A difference that shows that two embedded graphs are not isomorphic.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Difference {
+    #[error("{} against {}", counted(*.0, "edge"), grouped(*.1 as u128))]
     Edges(usize, usize),
+    #[error("{} against {}", counts::vertices(*.0), grouped(*.1 as u128))]
     Vertices(usize, usize),
     /// Different numbers of vertices of some degree; the highest such degree.
-    Degrees {
-        degree: u32,
-        vertices: (usize, usize),
-    },
+    #[error("{} of degree {degree} against {}", counts::vertices(.vertices.0), grouped(.vertices.1 as u128))]
+    Degrees { degree: u32, vertices: (usize, usize) },
+    #[error("genus {0} against {1}")]
     Genus(usize, usize),
     /// All those numbers agree, but the orders around the vertices do not: no start of the one has
     /// the code of any start of the other.
+    #[error("the orders around the vertices differ")]
     Orders,
 }
 
@@ -52,54 +54,29 @@ impl Difference {
     }
 }
 
-impl fmt::Display for Difference {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Edges(one, other) => {
-                write!(out, "{} against {}", counted(*one, "edge"), grouped(*other as u128))
-            }
-            Self::Vertices(one, other) => {
-                write!(out, "{} against {}", vertices(*one), grouped(*other as u128))
-            }
-            Self::Degrees { degree, vertices: (one, other) } => {
-                let (one, other) = (vertices(*one), grouped(*other as u128));
-                write!(out, "{one} of degree {degree} against {other}")
-            }
-            Self::Genus(one, other) => write!(out, "genus {one} against {other}"),
-            Self::Orders => write!(out, "the orders around the vertices differ"),
-        }
-    }
-}
-
 /// The isomorphism of one embedded graph onto another, or the first difference.
 ///
 /// # Errors
 /// Returns the first [`Difference`] if they are not isomorphic.
 // paper: fig1.different
 pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijection, Difference> {
-    let different = || Difference::between(one, other);
-    match by_rare_darts(one, other) {
-        RareDartMatch::Same(bijection) => Ok(bijection),
-        RareDartMatch::Different => Err(different()),
-        RareDartMatch::TooManyCandidates => {
-            bijection(&canonical(one), &canonical(other)).ok_or_else(different)
-        }
-    }
+    by_rare_darts(one, other)
+        .unwrap_or_else(|TooManyCandidates| bijection(&canonical(one), &canonical(other)))
+        .ok_or_else(|| Difference::between(one, other))
 }
 
-/// The result of a comparison by rare darts.
-enum RareDartMatch {
-    Same(Bijection),
-    Different,
-    TooManyCandidates,
-}
+#[derive(Debug)]
+struct TooManyCandidates;
 
 /// The most candidates that are tried one by one, each in linear time.
 const CANDIDATES: usize = 16;
 
 /// Darts whose surroundings look alike have the same colour; an isomorphism keeps colours, so a dart
 /// of the rarest one can only go to the few others of it.
-fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDartMatch {
+fn by_rare_darts(
+    one: &EmbeddedGraph,
+    other: &EmbeddedGraph,
+) -> Result<Option<Bijection>, TooManyCandidates> {
     let (of_one, of_other) = (colours(one), colours(other));
     let sorted = |colours: &[u64]| {
         let mut sorted = colours.to_vec();
@@ -108,21 +85,16 @@ fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> RareDartMatch {
     };
     let all = sorted(&of_one);
     if all != sorted(&of_other) {
-        return RareDartMatch::Different;
+        return Ok(None);
     }
     let rarest = all.chunk_by(|a, b| a == b).min_by_key(|alike| alike.len());
-    let Some(alike) = rarest.filter(|alike| alike.len() <= CANDIDATES) else {
-        return RareDartMatch::TooManyCandidates;
-    };
+    let alike = rarest.filter(|alike| alike.len() <= CANDIDATES).ok_or(TooManyCandidates)?;
     let Some(from) = one.darts().find(|dart| of_one[dart.at()] == alike[0]) else {
-        return RareDartMatch::Different;
+        return Ok(None);
     };
-    other
-        .darts()
-        .filter(|dart| of_other[dart.at()] == alike[0])
-        .map(|to| Bijection::of_starts((one, from), (other, to)))
-        .find(|bijection| bijection.verify(one, other))
-        .map_or(RareDartMatch::Different, RareDartMatch::Same)
+    let candidates = other.darts().filter(|dart| of_other[dart.at()] == alike[0]);
+    let mut bijections = candidates.map(|to| Bijection::of_starts((one, from), (other, to)));
+    Ok(bijections.find(|bijection| bijection.verify(one, other)))
 }
 
 /// A number for each dart that depends only on its surroundings, a few steps deep.
@@ -176,16 +148,13 @@ mod tests {
     #[test]
     fn worlds_with_a_rare_dart_are_compared_by_it() {
         let graph = cycle_with_a_tail(30);
-        assert!(matches!(by_rare_darts(&graph, &graph), RareDartMatch::Same(_)));
-        assert!(matches!(by_rare_darts(&graph, &cycle_with_a_tail(31)), RareDartMatch::Different));
+        assert!(by_rare_darts(&graph, &graph).unwrap().is_some());
+        assert!(by_rare_darts(&graph, &cycle_with_a_tail(31)).unwrap().is_none());
         let lists = [("u", vec!["a", "b", "c"]), ("v", vec!["a", "b", "c"])];
         let theta = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&theta, &theta), RareDartMatch::Same(_)));
-        let name = |edge: usize| (edge % 30).to_string();
-        let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
-        let lists: Vec<_> = (0..30).map(around).collect();
-        let cycle = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        assert!(matches!(by_rare_darts(&cycle, &cycle), RareDartMatch::TooManyCandidates));
+        assert!(by_rare_darts(&theta, &theta).unwrap().is_some());
+        let cycle = EmbeddedGraph::cycle(30);
+        assert!(by_rare_darts(&cycle, &cycle).is_err());
         assert!(isomorphism(&cycle, &cycle).unwrap().verify(&cycle, &cycle));
     }
 }

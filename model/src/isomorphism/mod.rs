@@ -132,19 +132,9 @@ mod tests {
             let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
             EmbeddedGraph::from_edge_lists(&owned).unwrap()
         };
-        let difference = |one: &EmbeddedGraph, other: &EmbeddedGraph| {
-            isomorphism(one, other).unwrap_err().to_string()
-        };
-        let edge = graph(&[("u", &["a"]), ("v", &["a"])]);
-        let plane = graph(&[("u", &["a", "a", "b", "b"])]);
-        let torus = graph(&[("u", &["a", "b", "a", "b"])]);
         let path = graph(&[("u", &["a"]), ("v", &["a", "b"]), ("w", &["b"])]);
         let pan = graph(&[("u", &["a", "a", "b"]), ("v", &["b"])]);
         let two = graph(&[("u", &["a", "b"]), ("v", &["a", "b"])]);
-        assert_eq!(difference(&edge, &plane), "1 edge against 2");
-        assert_eq!(difference(&path, &two), "3 vertices against 2");
-        assert_eq!(difference(&pan, &two), "1 vertex of degree 3 against 0");
-        assert_eq!(difference(&plane, &torus), "genus 0 against 1");
         let left = graph(&[
             ("u", &["a", "b", "c"]),
             ("v", &["a"]),
@@ -154,9 +144,12 @@ mod tests {
             ("z", &["e", "f"]),
             ("t", &["f"]),
         ]);
-        assert_eq!(
-            difference(&left, &left.mirror_image()),
-            "the orders around the vertices differ"
-        );
+        for (one, other, difference) in [
+            (&path, &two, "3 vertices against 2"),
+            (&pan, &two, "1 vertex of degree 3 against 0"),
+            (&left, &left.mirror_image(), "the orders around the vertices differ"),
+        ] {
+            assert_eq!(isomorphism(one, other).unwrap_err().to_string(), difference);
+        }
     }
 }

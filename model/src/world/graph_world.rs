@@ -12,7 +12,6 @@ use crate::{
     percept::{Door, Percept, Sighting},
 };
 
-/// The error for an action that is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RefusedAction {
     #[error("door {} was taken at a vertex with {}", door.0, counted(*degree as usize, "door"))]
@@ -29,7 +28,6 @@ pub enum RefusedAction {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct State {
-    /// The dart by which the robot came in.
     pub pose: Dart,
     /// The facing dart that places the marker where it lies, the first of those alike; none while
     /// the robot carries it. Without a marker, dart 0.

@@ -170,7 +170,6 @@ impl DeadReckoning {
         self.stage == Stage::AtJunction
     }
 
-    /// The direction from which the robot comes, in the frame of odometry.
     pub(super) fn way_back(&self) -> f64 {
         match self.stage {
             Stage::OnTheWay => wrapped(self.leg + PI),
@@ -220,7 +219,6 @@ impl DeadReckoning {
     }
 }
 
-/// The angle from a direction to the nearest door.
 fn nearest(junction: &JunctionView, direction: f64) -> Option<f64> {
     let off = |door: &CentreLine| wrapped(door.direction - direction);
     junction.doors.iter().map(off).min_by(|one, other| one.abs().total_cmp(&other.abs()))

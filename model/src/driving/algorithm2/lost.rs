@@ -5,7 +5,6 @@ use thiserror::Error;
 use super::PathState;
 use crate::percept::Door;
 
-/// The robot no longer knows where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{why}; {}, {since_turn:.2} m after the last turn to a door", about(*state))]
 pub struct Lost {
@@ -15,7 +14,6 @@ pub struct Lost {
     pub since_turn: f64,
 }
 
-/// What makes a robot give up a path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LostReason {
     #[error("{images} images in a row do not show where the robot is")]

@@ -61,7 +61,6 @@ pub struct Command {
     pub forward: f64,
 }
 
-/// The result of one round of the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// Execute this command, then take the next image. The command may be empty.
@@ -81,7 +80,6 @@ pub struct Standing {
     pub entry: f64,
 }
 
-/// The execution of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathExecution<'a> {
     /// The doors that have not been taken.
@@ -94,7 +92,6 @@ pub struct PathExecution<'a> {
     reckoning: DeadReckoning,
 }
 
-/// The interpretation of a scene, given odometry.
 enum Seen {
     Hallway(HallwayView),
     /// The junction that the robot has just left.
@@ -105,7 +102,6 @@ enum Seen {
 }
 
 impl<'a> PathExecution<'a> {
-    /// A path from the end of the last one.
     // paper: drive.path
     #[must_use]
     pub fn new(queue: &'a [Door], from: &Standing) -> Self {

@@ -560,19 +560,6 @@ fn commands_are_neither_too_little_nor_too_large() {
 }
 
 #[test]
-fn a_path_is_given_up_in_words() {
-    let mut robot = Robot::in_hallway(NEXT);
-    for _ in 0..6 {
-        robot.sees(&unknown());
-    }
-    let lost = robot.round(&unknown()).unwrap_err();
-    let said = "7 images in a row do not show where the robot is; in a hallway, 2.00 m after the \
-                last turn to a door";
-    assert_eq!(lost.to_string(), said);
-    assert_near(lost.since_turn, robot.path.since_turn());
-}
-
-#[test]
 fn a_junction_to_which_the_robot_could_not_come_is_not_the_next_one() {
     let with_its_back_to_it = |path| Robot { path, odometry: Odometry::default() };
     // An obstacle stopped it 0.4 m before the turning point, and it has turned round.

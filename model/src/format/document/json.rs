@@ -6,7 +6,6 @@ use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Vis
 
 use super::{Content, DocumentError, DocumentErrorKind, Key, Node, TextPosition};
 
-/// The root of a JSON text.
 pub(super) fn parse(text: &str) -> Result<Node<'_>, DocumentError> {
     let bytes = text.as_bytes();
     let mut root: Node = serde_json::from_str(text).map_err(|error| {
@@ -71,7 +70,6 @@ impl JsonPlaces<'_> {
         self.at
     }
 
-    /// Goes past a text in quotes.
     fn skip_text(&mut self) {
         self.at += 1;
         loop {

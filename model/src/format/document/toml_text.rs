@@ -4,7 +4,6 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Content, DocumentError, DocumentErrorKind, Key, Node, TextPosition};
 
-/// The root of a TOML text.
 pub(super) fn parse(text: &str) -> Result<Node<'_>, DocumentError> {
     let wrong = |at, message| {
         DocumentErrorKind::Syntax(message).at(TextPosition::at_byte(text.as_bytes(), at))

@@ -5,15 +5,14 @@ use std::fmt;
 use serde::{
     Deserialize,
     de::{
-        DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, VariantAccess,
-        Visitor, value::StrDeserializer,
+        DeserializeSeed, Deserializer, Error as _, IntoDeserializer, MapAccess, Visitor,
+        value::{SeqDeserializer, StrDeserializer},
     },
     forward_to_deserialize_any,
 };
 
 use super::{
-    Content, Document, DocumentEntry, DocumentError, DocumentErrorKind, DocumentTable,
-    DocumentValue, TextPosition,
+    Content, Document, DocumentEntry, DocumentError, DocumentErrorKind, DocumentValue, TextPosition,
 };
 
 /// Reads a TOML file in which every key may be missing: the text may be empty.
@@ -22,7 +21,6 @@ pub fn from_toml<T: for<'d> Deserialize<'d>>(bytes: &[u8]) -> Result<T, Document
 }
 
 impl<'d> DocumentValue<'d> {
-    /// The value as a type that implements `Deserialize`.
     pub fn read<T: Deserialize<'d>>(self) -> Result<T, DocumentError> {
         T::deserialize(self)
     }
@@ -32,7 +30,6 @@ impl<'d> DocumentValue<'d> {
         result.map_err(|error| error.located(|| self.position()))
     }
 
-    /// A whole number that is not negative.
     fn count(self) -> Result<u64, DocumentError> {
         let whole = self.whole()?;
         u64::try_from(whole).map_err(|_| {
@@ -69,13 +66,22 @@ impl serde::de::Error for DocumentError {
     }
 }
 
+/// Methods that read a value as a number, a text, or true or false, and visit it.
+macro_rules! deserialize_scalars {
+    ($($method:ident: $visit:ident($read:ident),)*) => {$(
+        fn $method<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
+            self.located(visitor.$visit(self.$read()?))
+        }
+    )*};
+}
+
 impl<'d> Deserializer<'d> for DocumentValue<'d> {
     type Error = DocumentError;
 
     fn deserialize_any<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
         self.located(match &self.node.content {
-            Content::Table(_) => visitor.visit_map(Entries::from_table(self.any_table()?)),
-            Content::List(_) => visitor.visit_seq(Items(self.list("a list")?)),
+            Content::Table(_) => self.deserialize_map(visitor),
+            Content::List(_) => self.deserialize_seq(visitor),
             Content::Text(text) => visitor.visit_borrowed_str(text),
             Content::Whole(number) => visitor.visit_i64(*number),
             Content::Number(number) => visitor.visit_f64(*number),
@@ -85,36 +91,15 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
         })
     }
 
-    fn deserialize_bool<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_bool(self.truth()?))
-    }
-
-    fn deserialize_f32<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.deserialize_f64(visitor)
-    }
-
-    fn deserialize_f64<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_f64(self.number()?))
-    }
-
-    fn deserialize_i64<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_i64(self.whole()?))
-    }
-
-    fn deserialize_u32<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.deserialize_u64(visitor)
-    }
-
-    fn deserialize_u64<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_u64(self.count()?))
-    }
-
-    fn deserialize_str<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_borrowed_str(self.text()?))
-    }
-
-    fn deserialize_string<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.deserialize_str(visitor)
+    deserialize_scalars! {
+        deserialize_bool: visit_bool(truth),
+        deserialize_f32: visit_f64(number),
+        deserialize_f64: visit_f64(number),
+        deserialize_i64: visit_i64(whole),
+        deserialize_u32: visit_u64(count),
+        deserialize_u64: visit_u64(count),
+        deserialize_str: visit_borrowed_str(text),
+        deserialize_string: visit_borrowed_str(text),
     }
 
     fn deserialize_option<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
@@ -125,11 +110,12 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
     }
 
     fn deserialize_seq<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_seq(Items(self.list("a list")?)))
+        self.located(visitor.visit_seq(SeqDeserializer::new(self.list("a list")?)))
     }
 
     fn deserialize_map<V: Visitor<'d>>(self, visitor: V) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_map(Entries::from_table(self.any_table()?)))
+        let left = self.any_table()?.entries();
+        self.located(visitor.visit_map(Entries { left, read: None }))
     }
 
     fn deserialize_struct<V: Visitor<'d>>(
@@ -147,7 +133,7 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, DocumentError> {
-        self.located(visitor.visit_enum(Word(self.text()?)))
+        self.located(visitor.visit_enum(StrDeserializer::new(self.text()?)))
     }
 
     forward_to_deserialize_any! {
@@ -161,14 +147,6 @@ impl<'d> Deserializer<'d> for DocumentValue<'d> {
 struct Entries<'d, I> {
     left: I,
     read: Option<DocumentEntry<'d>>,
-}
-
-impl<'d> Entries<'d, ()> {
-    fn from_table(
-        table: DocumentTable<'d>,
-    ) -> Entries<'d, impl Iterator<Item = DocumentEntry<'d>>> {
-        Entries { left: table.entries(), read: None }
-    }
 }
 
 impl<'d, I: Iterator<Item = DocumentEntry<'d>>> MapAccess<'d> for Entries<'d, I> {
@@ -195,62 +173,12 @@ impl<'d, I: Iterator<Item = DocumentEntry<'d>>> MapAccess<'d> for Entries<'d, I>
     }
 }
 
-/// The items of a list that have not been read.
-struct Items<I>(I);
+impl<'d> IntoDeserializer<'d, DocumentError> for DocumentValue<'d> {
+    type Deserializer = Self;
 
-impl<'d, I: Iterator<Item = DocumentValue<'d>>> SeqAccess<'d> for Items<I> {
-    type Error = DocumentError;
-
-    fn next_element_seed<T: DeserializeSeed<'d>>(
-        &mut self,
-        seed: T,
-    ) -> Result<Option<T::Value>, DocumentError> {
-        self.0.next().map(|item| seed.deserialize(item)).transpose()
+    fn into_deserializer(self) -> Self {
+        self
     }
-}
-
-/// A text that is one of several words.
-struct Word<'d>(&'d str);
-
-impl<'d> EnumAccess<'d> for Word<'d> {
-    type Error = DocumentError;
-    type Variant = Self;
-
-    fn variant_seed<V: DeserializeSeed<'d>>(
-        self,
-        seed: V,
-    ) -> Result<(V::Value, Self), DocumentError> {
-        let word = seed.deserialize(StrDeserializer::<DocumentError>::new(self.0))?;
-        Ok((word, self))
-    }
-}
-
-impl<'d> VariantAccess<'d> for Word<'d> {
-    type Error = DocumentError;
-
-    fn unit_variant(self) -> Result<(), DocumentError> {
-        Ok(())
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'d>>(self, _: T) -> Result<T::Value, DocumentError> {
-        Err(only_words())
-    }
-
-    fn tuple_variant<V: Visitor<'d>>(self, _: usize, _: V) -> Result<V::Value, DocumentError> {
-        Err(only_words())
-    }
-
-    fn struct_variant<V: Visitor<'d>>(
-        self,
-        _: &'static [&'static str],
-        _: V,
-    ) -> Result<V::Value, DocumentError> {
-        Err(only_words())
-    }
-}
-
-fn only_words() -> DocumentError {
-    DocumentError::custom("this word has no content")
 }
 
 #[cfg(test)]

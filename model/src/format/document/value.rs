@@ -4,7 +4,6 @@ use std::{borrow::Cow, ops::RangeInclusive};
 
 use super::{Content, Document, DocumentError, DocumentErrorKind, Key, Node, TextPosition};
 
-/// A value of a document.
 #[derive(Clone, Copy, Debug)]
 pub struct DocumentValue<'d> {
     document: &'d Document<'d>,
@@ -24,7 +23,6 @@ impl<'d> DocumentValue<'d> {
         kind.at(self.position())
     }
 
-    /// The error that something else is expected here.
     pub fn expected(self, expected: impl Into<Cow<'static, str>>) -> DocumentError {
         let found = match &self.node.content {
             Content::Table(_) => "a table",
@@ -91,22 +89,12 @@ impl<'d> DocumentValue<'d> {
         }
     }
 
-    /// What one of several words stands for.
     pub fn word<T: Copy>(self, words: &[(&str, T)]) -> Result<T, DocumentError> {
-        let word = match &self.node.content {
-            Content::Text(text) => words.iter().find(|(word, _)| word == text),
-            _ => None,
-        };
-        word.map(|(_, meaning)| *meaning).ok_or_else(|| {
-            let quoted: Vec<_> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
-            let expected = quoted.join(" or ");
-            match self.node.content {
-                Content::Text(_) => self.error(DocumentErrorKind::WrongKind {
-                    expected: expected.into(),
-                    found: "another text",
-                }),
-                _ => self.expected(expected),
-            }
+        let quoted: Vec<_> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
+        let expected = Cow::from(quoted.join(" or "));
+        let Content::Text(text) = &self.node.content else { return Err(self.expected(expected)) };
+        words.iter().find(|(word, _)| word == text).map(|(_, meaning)| *meaning).ok_or_else(|| {
+            self.error(DocumentErrorKind::WrongKind { expected, found: "another text" })
         })
     }
 
@@ -163,14 +151,12 @@ impl<'d> DocumentValue<'d> {
     }
 }
 
-/// A table of a document.
 #[derive(Clone, Copy, Debug)]
 pub struct DocumentTable<'d> {
     value: DocumentValue<'d>,
     entries: &'d [(Key<'d>, Node<'d>)],
 }
 
-/// A key of a table, and its value.
 #[derive(Clone, Copy, Debug)]
 pub struct DocumentEntry<'d> {
     pub key: &'d str,
@@ -183,7 +169,6 @@ impl<'d> DocumentTable<'d> {
         self.value.position()
     }
 
-    /// Its entries in the order of the document.
     pub fn entries(&self) -> impl Iterator<Item = DocumentEntry<'d>> + use<'d> {
         let document = self.value.document;
         self.entries.iter().map(move |(key, node)| DocumentEntry {

@@ -11,7 +11,6 @@ enum ByteOrder {
     Unknown,
 }
 
-/// The headers with their meanings.
 const HEADERS: [(&[u8], PlantriCode, ByteOrder); 4] = [
     (b">>planar_code<<", PlantriCode::Planar, ByteOrder::Unknown),
     (b">>planar_code le<<", PlantriCode::Planar, ByteOrder::Little),
@@ -69,7 +68,6 @@ impl Iterator for Worlds<'_> {
     }
 }
 
-/// A byte, and what is wrong there.
 type Failure = (usize, PlantriErrorKind);
 
 impl Worlds<'_> {
@@ -127,8 +125,7 @@ impl Worlds<'_> {
                 let sizes = cursor.number(1, ByteOrder::Big)? as u8;
                 let (length_bytes, edge_bytes) = (sizes >> 4, sizes & 15);
                 if length_bytes == 0 || edge_bytes == 0 {
-                    let cause = PlantriErrorKind::Sizes { length_bytes, edge_bytes };
-                    return Err((sizes_at, cause));
+                    return Err((sizes_at, PlantriErrorKind::Sizes { length_bytes, edge_bytes }));
                 }
                 let length = cursor.number(length_bytes.into(), ByteOrder::Big)?;
                 (length, usize::from(edge_bytes))
@@ -145,7 +142,6 @@ impl Worlds<'_> {
     }
 }
 
-/// A place in the file.
 #[derive(Clone, Copy)]
 struct Cursor<'a> {
     bytes: &'a [u8],
@@ -189,9 +185,11 @@ fn planar_code(
                 break;
             }
             if neighbour > vertices {
-                let cause =
-                    PlantriErrorKind::UnknownNeighbour { vertex: vertex + 1, neighbour, vertices };
-                return Err((at, cause));
+                let vertex = vertex + 1;
+                return Err((
+                    at,
+                    PlantriErrorKind::UnknownNeighbour { vertex, neighbour, vertices },
+                ));
             }
             darts.push((vertex as u32, neighbour as u32 - 1));
         }
@@ -225,7 +223,6 @@ fn planar_code(
     Ok((graph(start, &opposite, &firsts)?, cursor.at))
 }
 
-/// A dart that is not yet known.
 const UNMET: u32 = u32::MAX;
 
 /// Reads the body of an `edge_code`, which reaches to the end of the cursor's bytes.

@@ -10,16 +10,8 @@ fn all(bytes: &[u8]) -> Result<Vec<EmbeddedGraph>, PlantriError> {
     read(bytes).collect()
 }
 
-/// A path with a number of vertices.
 fn path(vertices: usize) -> EmbeddedGraph {
-    let lists: Vec<(String, Vec<String>)> = (0..vertices)
-        .map(|vertex| {
-            let edges = [vertex.wrapping_sub(1), vertex];
-            let there = edges.iter().filter(|&&edge| edge < vertices - 1);
-            (vertex.to_string(), there.map(usize::to_string).collect())
-        })
-        .collect();
-    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+    EmbeddedGraph::chain(vertices - 1)
 }
 
 /// The example of plantri's source: the octahedron.

@@ -55,11 +55,7 @@ fn write_planar_code(worlds: &[EmbeddedGraph]) -> Result<Vec<u8>, PlantriWriteEr
 }
 
 fn push_edge_code(bytes: &mut Vec<u8>, graph: &EmbeddedGraph) {
-    let mut edge_of = vec![0; graph.dart_count()];
-    for (edge, (dart, other)) in graph.edges().enumerate() {
-        edge_of[dart.at()] = edge as u32;
-        edge_of[other.at()] = edge as u32;
-    }
+    let edge_of = graph.edge_numbers();
     let body = |edge_bytes: usize| edge_bytes * graph.dart_count() + graph.vertex_count() - 1;
     let edge_bytes = if body(1) <= 255 {
         bytes.push(body(1) as u8);

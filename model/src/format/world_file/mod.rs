@@ -2,13 +2,66 @@
 //! (`[clockwise]`), by edges (`[doors]`), or by a floor plan (`[floor]`, `[junctions]`,
 //! `[[hallways]]`), and the robot's start by `[start]`. Sections 2.1 and 2.4.
 
-mod error;
 mod read;
 mod write;
 
-pub use error::{WorldFileError, WorldFileErrorKind};
+use thiserror::Error;
+
 pub use read::{is_name, read};
 pub use write::{to_json, to_json_text, to_toml};
+
+use super::{
+    document::{DocumentError, DocumentErrorKind, TextPosition},
+    named_world::StartError,
+};
+use crate::{embedded_graph::ListError, floor_plan::FloorPlanError};
+
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{position}{kind}")]
+pub struct WorldFileError {
+    pub position: TextPosition,
+    #[source]
+    pub kind: WorldFileErrorKind,
+}
+
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum WorldFileErrorKind {
+    #[error(transparent)]
+    Document(DocumentErrorKind),
+    #[error(
+        "`{name}` is not a name; a name is printable, without quotes, / and \\, and without a space at its \
+             ends"
+    )]
+    NotAName { name: String },
+    #[error("there is no world; the file needs one of [clockwise], [doors] and [floor]")]
+    NoWorld,
+    #[error("there are both [{one}] and [{other}]; a world needs only one of them")]
+    TwoWorlds { one: &'static str, other: &'static str },
+    #[error("the vertex `{vertex}` has no position")]
+    NoPosition { vertex: String },
+    #[error("there is no vertex `{vertex}`")]
+    NoVertex { vertex: String },
+    #[error("a floor plan has its positions in [junctions]")]
+    PositionsOfPlan,
+    #[error(transparent)]
+    Lists(#[from] ListError),
+    #[error(transparent)]
+    Plan(#[from] Box<FloorPlanError>),
+    #[error(transparent)]
+    Start(#[from] StartError),
+}
+
+impl WorldFileErrorKind {
+    fn at(self, position: TextPosition) -> WorldFileError {
+        WorldFileError { position, kind: self }
+    }
+}
+
+impl From<DocumentError> for WorldFileError {
+    fn from(DocumentError { position, kind }: DocumentError) -> Self {
+        WorldFileErrorKind::Document(kind).at(position)
+    }
+}
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::error::{WorldFileError, WorldFileErrorKind};
+use super::{WorldFileError, WorldFileErrorKind};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, ListError},
     floor_plan::{FloorPlan, FloorPlanError},
@@ -131,7 +131,6 @@ fn by_plan(file: &DocumentTable<'_>) -> Result<NamedWorld, WorldFileError> {
     })
 }
 
-/// The position of each vertex.
 fn positions(
     world: &NamedWorld,
     table: &DocumentTable<'_>,
@@ -154,7 +153,6 @@ fn positions(
     given.collect()
 }
 
-/// The dart that `[start]` gives.
 fn start(world: &NamedWorld, start: &DocumentTable<'_>) -> Result<Dart, WorldFileError> {
     let (at, facing) = (start.need("at")?, start.need("facing")?);
     world.start_from_names(at.text()?, facing.text()?).map_err(|error| {
@@ -166,48 +164,30 @@ fn start(world: &NamedWorld, start: &DocumentTable<'_>) -> Result<Dart, WorldFil
     })
 }
 
-/// The kind of marker with this name.
 fn marker(name: DocumentValue<'_>) -> Result<&'static dyn Marker, DocumentError> {
     name.word(&MARKERS.map(|marker| (marker.name(), marker)))
 }
 
 fn unnamed(graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {
-    NamedWorld {
-        name: String::new(),
-        about: String::new(),
-        graph,
-        start: None,
-        marker: None,
-        vertex_names,
-        edge_names: None,
-        positions: None,
-        plan: None,
-    }
+    NamedWorld { vertex_names, ..NamedWorld::numbered("", "", graph, None) }
 }
 
 fn in_lists(table: &DocumentTable<'_>, error: ListError) -> WorldFileError {
-    let vertex = match &error {
-        ListError::VertexTwice { vertex }
-        | ListError::UnknownNeighbour { vertex, .. }
-        | ListError::OneSided { vertex, .. }
-        | ListError::RepeatedNeighbour { vertex, .. }
-        | ListError::OwnNeighbour { vertex }
-        | ListError::NotConnected { vertex, .. } => Some(vertex.as_str()),
-        ListError::NotTwoEnds { .. } | ListError::GraphError(_) => None,
-    };
-    // The first name of the list that is wrong.
-    let item = match &error {
+    // The vertex, and the wrong name in its list, after so many others like it.
+    let (vertex, name, skip) = match &error {
         ListError::UnknownNeighbour { vertex, neighbour, .. }
-        | ListError::OneSided { vertex, neighbour } => {
-            position_in_list(table, Some(vertex), neighbour, 0)
-        }
+        | ListError::OneSided { vertex, neighbour } => (Some(vertex.as_str()), Some(neighbour), 0),
         ListError::RepeatedNeighbour { vertex, neighbour } => {
-            position_in_list(table, Some(vertex), neighbour, 1)
+            (Some(vertex.as_str()), Some(neighbour), 1)
         }
-        ListError::OwnNeighbour { vertex } => position_in_list(table, Some(vertex), vertex, 0),
-        ListError::NotTwoEnds { edge, .. } => position_in_list(table, None, edge, 0),
-        _ => None,
+        ListError::OwnNeighbour { vertex } => (Some(vertex.as_str()), Some(vertex), 0),
+        ListError::VertexTwice { vertex } | ListError::NotConnected { vertex, .. } => {
+            (Some(vertex.as_str()), None, 0)
+        }
+        ListError::NotTwoEnds { edge, .. } => (None, Some(edge), 0),
+        ListError::GraphError(_) => (None, None, 0),
     };
+    let item = name.and_then(|name| position_in_list(table, vertex, name, skip));
     let position = item.unwrap_or_else(|| position_of_key(table, vertex));
     WorldFileErrorKind::from(error).at(position)
 }
@@ -236,9 +216,7 @@ fn in_plan(file: &DocumentTable<'_>, error: FloorPlanError) -> WorldFileError {
         FloorPlanError::Cross { other, .. } | FloorPlanError::FloorsMeet { other, .. } => {
             position_of_hallway(file, other.each_ref(), 0)
         }
-        FloorPlanError::NoDoor { junction }
-        | FloorPlanError::StraightThrough { junction }
-        | FloorPlanError::FourDoors { junction } => key_in("junctions", Some(junction)),
+        FloorPlanError::NotAKind { junction, .. } => key_in("junctions", Some(junction)),
         FloorPlanError::Graph(ListError::NotConnected { vertex, .. }) => {
             key_in("junctions", Some(vertex))
         }
@@ -282,7 +260,6 @@ fn position_of_key(table: &DocumentTable<'_>, key: Option<&str>) -> TextPosition
     entry.map_or_else(|| table.position(), |entry| entry.position())
 }
 
-/// The name of a world. It may be empty.
 fn world_name(value: DocumentValue<'_>) -> Result<&str, WorldFileError> {
     match value.text() {
         Ok("") => Ok(""),

@@ -29,7 +29,6 @@ pub fn to_json(world: &NamedWorld) -> Value {
     Value::Object(file)
 }
 
-/// The world as a TOML file.
 pub fn to_toml(world: &NamedWorld) -> String {
     let mut first = String::new();
     let mut tables = Vec::new();
@@ -60,7 +59,6 @@ fn toml_entry(key: &str, value: &Value) -> String {
     format!("{key} = {}\n", inline(value).replace('\x7f', "\\u007f"))
 }
 
-/// The world as a JSON file.
 pub fn to_json_text(world: &NamedWorld) -> String {
     let file = to_json(world);
     let entries: Vec<String> = object(&file)
@@ -106,13 +104,11 @@ fn object(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
 }
 
 fn start(world: &NamedWorld, dart: Dart) -> Value {
-    let mut start = Map::new();
-    start.insert("at".to_owned(), json!(world.at_text(dart)));
-    start.insert("facing".to_owned(), json!(world.facing_text(dart)));
+    let mut start = json!({ "at": world.at_text(dart), "facing": world.facing_text(dart) });
     if let Some(marker) = world.marker {
-        start.insert("marker".to_owned(), json!(marker.name()));
+        start["marker"] = json!(marker.name());
     }
-    Value::Object(start)
+    start
 }
 
 fn lists(world: &NamedWorld) -> Value {
@@ -136,9 +132,11 @@ fn plan_tables(plan: &FloorPlan) -> Map<String, Value> {
         .iter()
         .map(|hallway| json!({ "from": name(hallway.from), "to": name(hallway.to) }))
         .collect();
-    let mut tables = Map::new();
-    tables.insert("floor".to_owned(), json!({ "hallway_width": plan.hallway_width() }));
-    tables.insert("junctions".to_owned(), Value::Object(junctions));
-    tables.insert("hallways".to_owned(), Value::Array(hallways));
-    tables
+    let floor = json!({ "hallway_width": plan.hallway_width() });
+    let tables = [
+        ("floor", floor),
+        ("junctions", Value::Object(junctions)),
+        ("hallways", Value::Array(hallways)),
+    ];
+    tables.map(|(key, table)| (key.to_owned(), table)).into_iter().collect()
 }
