@@ -5,8 +5,8 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use toposlam_conform::{
-    CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld,
-    Quirks, RunDriver, RunEvents, extract, judge,
+    CheckedEvent, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld, Quirks,
+    RunDriver, RunEvents, extract, judge,
 };
 use toposlam_logs::{
     arrival_message, door_message,
@@ -30,12 +30,6 @@ use toposlam_model::{
 use toposlam_robot::budget::RunBudget;
 use toposlam_simulator::random_plan::random_plan_with;
 
-/// An arrival of which only this is known.
-fn arrival(percept: Percept, number: Option<u32>) -> Arrival {
-    let Percept { degree, sighting } = percept;
-    Arrival { number, degree, sighting: Some(sighting), form: None, entry: None }
-}
-
 fn main() {
     divan::main();
 }
@@ -56,19 +50,22 @@ fn trace(plan: &FloorPlan) -> Trace {
 }
 
 /// A run of Algorithm 1 in a known world, from any start.
-fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
-    let states = anywhere(plan.graph(), &Directional);
+fn in_known_world(plan: &FloorPlan) -> ConformConfig {
+    let graph = plan.graph().clone();
+    let states = anywhere(&graph, &Directional);
     ConformConfig {
-        world: Some(KnownWorld { graph: plan.graph(), states }),
+        world: Some(KnownWorld { graph, states }),
         marker: &Directional,
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
-        search,
+        search: SEARCH,
         dart_bound: 1000,
     }
 }
+
+/// The default limits.
+const SEARCH: WorldSearch =
+    WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
 
 /// Follows a run in a known world, with and without a known start.
 #[divan::bench(args = [12, 50, 100, 200], sample_count = 5)]
@@ -78,17 +75,13 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
     let event = |event: TraceEvent| CheckedEvent {
         source: EventSource { time: event.id as u64, ..EventSource::default() },
         kind: match event.kind {
-            TraceEventKind::Percept(percept) => CheckedKind::Arrival {
-                arrival: arrival(percept, None),
-                entry_off: None,
-                hallway: None,
-            },
-            TraceEventKind::Door(door) => CheckedKind::Door { door, number: None, off: None },
+            TraceEventKind::Percept(percept) => percept.into(),
+            TraceEventKind::Door(door) => door.into(),
         },
     };
     let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
-    let question = in_known_world(&plan);
-    bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
+    let config = in_known_world(&plan);
+    bencher.bench_local(|| judge(events.clone(), &config, &Quirks::default(), &()));
 }
 
 /// Opens, reads and follows a log of 10,000 events in memory.
@@ -101,8 +94,10 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         let (time, moves) = (event.id as u64 * 1_000_000_000, event.id as u32 / 2);
         let stamp = Stamp::of(time);
         match event.kind {
-            TraceEventKind::Percept(percept) => {
-                let message = arrival_message(stamp, &arrival(percept, Some(moves)));
+            TraceEventKind::Percept(Percept { degree, sighting }) => {
+                let (number, sighting) = (Some(moves), Some(sighting));
+                let arrival = Arrival { number, degree, sighting, form: None, entry: None };
+                let message = arrival_message(stamp, &arrival);
                 log.write(messages::Percept::TOPIC, time, &message).unwrap();
             }
             TraceEventKind::Door(door) => {
@@ -112,13 +107,13 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         }
     }
     let bytes = log.finish().unwrap();
-    let question = in_known_world(&plan);
+    let config = in_known_world(&plan);
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
-        let mapping = TopicMap::unambiguous(&log);
-        let config = ExtractConfig { marked: true, ..ExtractConfig::new(Evidence::Recorded) };
-        let gathered = extract(&log, &mapping, &config, &()).unwrap();
-        let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
+        let topics = TopicMap::unambiguous(&log);
+        let extraction = ExtractConfig { marked: true, ..ExtractConfig::new(Evidence::Recorded) };
+        let extracted = extract(&log, &topics, &extraction, &()).unwrap();
+        let judgement = judge(extracted.events, &config, &Quirks::default(), &()).unwrap();
         assert!(judgement.divergence.is_none() && judgement.trace.len() == 10_000);
     });
 }
@@ -129,8 +124,6 @@ fn the_smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
     let trail = fold(half.percepts(), half.doors()).unwrap();
-    bencher.bench_local(|| smallest_world(&trail, search, &()));
+    bencher.bench_local(|| smallest_world(&trail, SEARCH, &()));
 }

@@ -137,7 +137,7 @@ fn derived<'a>(
                 }
             }
             CheckedKind::Undecided(_) => undecided += 1,
-            CheckedKind::TurnedBack | CheckedKind::Aside { .. } => {}
+            CheckedKind::TurnedBack | CheckedKind::LeftBetweenDoors { .. } => {}
         }
     }
     (visits, undecided)

@@ -1,4 +1,4 @@
-//! A robot with a budget turns back before it is over: then it goes to its marker by the way by which it came.
+//! A robot with a budget turns back in time, and goes to its marker by the way by which it came.
 
 use toposlam_logs::record::RunEnding;
 use toposlam_model::{

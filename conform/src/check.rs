@@ -1,8 +1,6 @@
 //! Checks a log: infers its events, completes them with the marker, and judges them in the known world or in the
 //! smallest one. Sections 2 to 6.
 
-#![allow(missing_docs, reason = "the names of most fields and variants say what they are")]
-
 use thiserror::Error;
 use toposlam_logs::{
     messages::Run,
@@ -23,7 +21,7 @@ use super::{
     config::{ConformConfig, RunDriver},
     extract::{Evidence, ExtractConfig, ExtractError, ExtractedRun, extract},
     judgement::{JudgeError, Judgement, judge},
-    known_world::{Known, MarkerStart},
+    known_world::{Known, KnownWorld, MarkerStart},
     log_head::{LogHead, MarkerNotShown},
     marked_visits::{AddedMarker, MarkedVisitsError, assume_marker, mark_visits, marker_at_start},
     quirks::Quirks,
@@ -35,7 +33,6 @@ use super::{
 pub struct LogSource<'l> {
     pub log: &'l Log,
     pub topics: &'l TopicMap,
-    /// Its head, if it has one.
     pub head: Option<&'l Run>,
     /// Senses its images.
     pub sensor: Option<&'l Sensor>,
@@ -58,7 +55,6 @@ pub struct LogCheck<'w> {
     pub search: WorldSearch,
     /// The largest number of darts that the algorithm may know; without one, that of the log.
     pub max_darts: Option<usize>,
-    /// The known divergences to tolerate.
     pub quirks: &'w Quirks,
 }
 
@@ -86,16 +82,14 @@ pub enum DoorChooser {
 pub struct CheckedLog {
     pub extracted: ExtractedRun,
     pub judgement: Judgement,
+    pub config: ConformConfig,
     pub known: Option<Known>,
-    pub marker: &'static dyn Marker,
     /// Sightings that the log does not record as percepts.
     pub added: Option<AddedMarker>,
     /// Another world that the marker does not distinguish from the known one or the smallest.
     pub twin: Option<TwinWorld>,
-    pub driver: RunDriver,
-    pub settings: RecordedSettings,
-    pub search: WorldSearch,
-    pub dart_bound: usize,
+    /// Whether its robot went on from an earlier run.
+    pub is_resumed: bool,
     pub quirks: Quirks,
 }
 
@@ -155,35 +149,32 @@ impl LogCheck<'_> {
         let LogSource { log, topics, head, sensor } = *source;
         let head = LogHead(head);
         let marker = self.marker.map_or_else(|| head.marker(), Ok)?;
-        let settings = match self.doors {
+        let (settings, driver) = match self.doors {
             DoorChooser::Algorithm(algorithm) => {
-                head.settings(algorithm).map_err(CheckError::Algorithm)?
+                let settings = head.settings(algorithm).map_err(CheckError::Algorithm)?;
+                (settings, RunDriver::from(settings))
             }
-            DoorChooser::Anyone => RecordedSettings::default(),
+            DoorChooser::Anyone => (RecordedSettings::default(), RunDriver::Anyone),
         };
         let algorithm = settings.method.algorithm();
-        let driver = match self.doors {
-            DoorChooser::Algorithm(_) => RunDriver::from(settings),
-            DoorChooser::Anyone => RunDriver::Anyone,
-        };
         let marker_start = self.marker_start(topics)?;
-        let known = self.known((marker, marker_start), head, algorithm)?;
-        let marked = marker.name() != NoMarker.name();
-        let config = ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser };
-        let mut extracted = extract(log, topics, &config, watch)?;
-        let added = self.add_marker(topics, &mut extracted, marker)?;
-        if self.marker.is_none() && driver != RunDriver::Anyone {
-            head.check_marker(&extracted.events, algorithm)?;
-        }
-        let dart_bound = self.max_darts.unwrap_or(settings.dart_bound);
+        let (known, world) = self.known((marker, marker_start), head, algorithm)?.unzip();
         let config = ConformConfig {
-            world: known.as_ref().map(Known::config),
+            world,
             marker,
             driver,
             budget: settings.budget,
             search: self.search,
-            dart_bound,
+            dart_bound: self.max_darts.unwrap_or(settings.dart_bound),
         };
+        let marked = marker.name() != NoMarker.name();
+        let extraction =
+            ExtractConfig { evidence: self.evidence, sensor, marked, laser: self.laser };
+        let mut extracted = extract(log, topics, &extraction, watch)?;
+        let added = self.add_marker(topics, &mut extracted, marker)?;
+        if self.marker.is_none() && driver != RunDriver::Anyone {
+            head.check_marker(&extracted.events, algorithm)?;
+        }
         let mut events = extracted.events.clone();
         events.complete_sightings(marker).map_err(|error| CheckError::Judge(error.into()))?;
         // A robot that no algorithm drives may turn back between junctions.
@@ -191,42 +182,28 @@ impl LogCheck<'_> {
             events = events.without_excursions();
         }
         on_events();
-        let judgement = judge(events, &config, self.quirks, watch).map_err(|error| {
-            let ExtractedRun { images, scans, .. } = extracted;
-            match error {
-                JudgeError::Empty if images > 0 => {
-                    CheckError::NoVisit { count: images, frames: "images" }
-                }
-                JudgeError::Empty if scans > 0 => {
-                    CheckError::NoVisit { count: scans, frames: "laser scans" }
-                }
-                error => CheckError::Judge(error),
+        let judgement = judge(events, &config, self.quirks, watch);
+        let judgement = judgement.map_err(|error| match (error, &extracted) {
+            (JudgeError::Empty, &ExtractedRun { images: count @ 1.., .. }) => {
+                CheckError::NoVisit { count, frames: "images" }
             }
+            (JudgeError::Empty, &ExtractedRun { scans: count @ 1.., .. }) => {
+                CheckError::NoVisit { count, frames: "laser scans" }
+            }
+            (error, _) => CheckError::Judge(error),
         })?;
-        let twin = TwinWorld::find(&judgement, known.as_ref(), marker);
-        let (search, quirks) = (self.search, self.quirks.clone());
-        Ok(CheckedLog {
-            extracted,
-            judgement,
-            known,
-            marker,
-            added,
-            twin,
-            driver,
-            settings,
-            search,
-            dart_bound,
-            quirks,
-        })
+        let twin = TwinWorld::find(&judgement, &config);
+        let (is_resumed, quirks) = (settings.is_resumed, self.quirks.clone());
+        Ok(CheckedLog { extracted, judgement, config, known, added, twin, is_resumed, quirks })
     }
 
-    /// The known world with the robot's start.
+    /// The known world with the robot's start, and as it is compared.
     fn known(
         &self,
         marker: (&'static dyn Marker, MarkerStart),
         head: LogHead,
         algorithm: MappingAlgorithm,
-    ) -> Result<Option<Known>, CheckError> {
+    ) -> Result<Option<(Known, KnownWorld)>, CheckError> {
         let Some(world) = self.world else { return Ok(None) };
         // In a laser log bends of corridors are vertices only if that is asked for.
         let smooths = self.evidence == Evidence::Laser && !self.laser.corner.corners;
@@ -277,7 +254,7 @@ impl LogCheck<'_> {
             let MarkerPlace { position, .. } = place;
             return Ok(Some(AddedMarker::Assumed { position, heading, seen }));
         }
-        if topics.carrier(Role::Marker).is_none() || self.evidence != Evidence::Laser {
+        if topics.carrier(Role::Marker).is_none() {
             return Ok(None);
         }
         if marker.name() == NoMarker.name() {
@@ -286,27 +263,5 @@ impl LogCheck<'_> {
         let elsewhere =
             mark_visits(events, junctions, marker, sightings).map_err(CheckError::MarkedVisits)?;
         Ok(Some(AddedMarker::Fiducial { sightings: sightings.len(), elsewhere }))
-    }
-}
-
-impl CheckedLog {
-    /// What the run was checked against.
-    #[must_use]
-    pub fn config(&self) -> ConformConfig<'_> {
-        ConformConfig {
-            world: self.known.as_ref().map(Known::config),
-            marker: self.marker,
-            driver: self.driver,
-            budget: self.settings.budget,
-            search: self.search,
-            dart_bound: self.dart_bound,
-        }
-    }
-
-    /// Whether the doors were compared with the folding explorer.
-    #[must_use]
-    pub fn is_folding(&self) -> bool {
-        let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
-        compared == Some(MappingAlgorithm::Folding)
     }
 }

@@ -12,12 +12,9 @@ use super::{budget_check::within_budget, events::RunEvents, known_world::KnownWo
 
 /// What a run is checked against.
 #[derive(Clone, Debug)]
-pub struct ConformConfig<'w> {
-    /// The world, if it is known.
-    pub world: Option<KnownWorld<'w>>,
-    /// The kind of marker.
+pub struct ConformConfig {
+    pub world: Option<KnownWorld>,
     pub marker: &'static dyn Marker,
-    /// What chose the doors.
     pub driver: RunDriver,
     /// What the robot might spend.
     pub budget: RunBudget,
@@ -37,10 +34,22 @@ pub enum RunDriver {
     Anyone,
 }
 
-impl ConformConfig<'_> {
+impl ConformConfig {
     /// How far the algorithm follows the trace of these events, if one drives.
     pub(super) fn follow(&self, trace: &Trace, events: &RunEvents) -> Option<AlgorithmMatch> {
-        let followed = self.driver.follow(trace, events, self.dart_bound)?;
+        let RunDriver::Method(method) = self.driver else { return None };
+        let (claim, bound) = (events.claim(), self.dart_bound);
+        let followed = match method {
+            MappingMethod::By { algorithm, audits: 0 } => {
+                match_algorithm(algorithm, trace, claim, bound)
+            }
+            MappingMethod::By { algorithm, audits } => {
+                match_audited(algorithm, audits, trace, claim, bound)
+            }
+            MappingMethod::Recovering(config) => {
+                match_recovering(config, trace, &events.recorded_visits(trace), bound)
+            }
+        };
         Some(within_budget(followed, trace, events, self.budget))
     }
 }
@@ -51,8 +60,7 @@ impl From<MappingAlgorithm> for RunDriver {
     }
 }
 
-/// The algorithm that the doors of a log are compared with. The doors of a robot that went on from earlier runs
-/// depend on logs that are not known here.
+/// The doors of a robot that went on from earlier runs depend on logs that are not known here.
 impl From<RecordedSettings> for RunDriver {
     fn from(recorded: RecordedSettings) -> Self {
         if recorded.is_resumed { Self::Anyone } else { Self::Method(recorded.method) }
@@ -60,29 +68,10 @@ impl From<RecordedSettings> for RunDriver {
 }
 
 impl RunDriver {
-    /// The algorithm, if it is one.
-    #[must_use]
-    pub fn algorithm(self) -> Option<MappingAlgorithm> {
+    pub(crate) fn algorithm(self) -> Option<MappingAlgorithm> {
         match self {
             Self::Method(method) => Some(method.algorithm()),
             Self::Anyone => None,
         }
-    }
-
-    /// How far it follows the trace of these events, if it is an algorithm.
-    fn follow(self, trace: &Trace, events: &RunEvents, bound: usize) -> Option<AlgorithmMatch> {
-        let claim = events.claim();
-        let Self::Method(method) = self else { return None };
-        Some(match method {
-            MappingMethod::By { algorithm, audits: 0 } => {
-                match_algorithm(algorithm, trace, claim, bound)
-            }
-            MappingMethod::By { algorithm, audits } => {
-                match_audited(algorithm, audits, trace, claim, bound)
-            }
-            MappingMethod::Recovering(config) => {
-                match_recovering(config, trace, &events.recorded_visits(trace), bound)
-            }
-        })
     }
 }

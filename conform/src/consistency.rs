@@ -1,6 +1,6 @@
 //! Contradictions within a log: in single events, and in its end.
 
-use toposlam_logs::record::{Arrival, MapRecord, RunEnding};
+use toposlam_logs::record::{Arrival, RunEnding};
 use toposlam_model::{
     driving::visit::JunctionShape,
     embedded_graph::EmbeddedGraph,
@@ -42,20 +42,20 @@ impl RunEvents {
                         fault(DivergenceCause::Number { expected: moves, recorded });
                     }
                     // An event of its own follows if the robot took no door.
-                    let own = self.events.get(place + 1).map(|event| &event.kind);
-                    let reported = matches!(own, Some(CheckedKind::Aside { .. }));
+                    let next = self.events.get(place + 1).map(|event| &event.kind);
+                    let reported = matches!(next, Some(CheckedKind::LeftBetweenDoors { .. }));
                     if let Some(off) = off.filter(|&off| off > OFF && !reported) {
                         fault(DivergenceCause::Aside { off });
                     }
                 }
-                CheckedKind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
+                CheckedKind::LeftBetweenDoors { off } => {
+                    fault(DivergenceCause::Aside { off: *off });
+                }
                 CheckedKind::TurnedBack if !self.may_turn_back => {
                     fault(DivergenceCause::TurnedBack);
                 }
                 CheckedKind::TurnedBack => {
-                    if let Some(cause) = self.false_return(place) {
-                        fault(cause);
-                    }
+                    self.false_return(place).into_iter().for_each(fault);
                 }
                 CheckedKind::Undecided(cause) => fault(DivergenceCause::Undecided(*cause)),
             }
@@ -66,12 +66,8 @@ impl RunEvents {
     /// The contradiction between two percepts of a junction that the robot left, and entered again after it
     /// turned back at this event.
     fn false_return(&self, back: usize) -> Option<DivergenceCause> {
-        let arrival = |place: Option<usize>| match &self.events.get(place?)?.kind {
-            CheckedKind::Arrival { arrival, .. } => Some(arrival.degree),
-            _ => None,
-        };
-        let before = arrival(back.checked_sub(2))?;
-        let now = arrival(back.checked_add(1))?;
+        let degree = |place: usize| Some(self.events.get(place)?.arrival()?.degree);
+        let (before, now) = (degree(back.checked_sub(2)?)?, degree(back + 1)?);
         Some(DivergenceCause::Return { before, now })
     }
 
@@ -82,18 +78,15 @@ impl RunEvents {
         known: Option<&KnownWorld>,
     ) -> Vec<DivergenceCause> {
         let map = followed.run.map();
-        let mapped = self.is_said_whole();
         let mut faults = Vec::new();
         match (&followed.reached, map.complete()) {
-            (MatchEnd::EndOfTrace, _) if mapped => {
+            (MatchEnd::EndOfTrace, _) if self.is_mapped() => {
                 faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
             }
             (MatchEnd::Mapped, Some(graph)) => {
                 let code_of = |graph: &EmbeddedGraph| code(graph, FACING);
-                let is_other = |recorded: &MapRecord| {
-                    recorded.graph().as_ref().map(code_of) != Some(code_of(graph))
-                };
-                if self.map.as_ref().is_some_and(is_other) {
+                let recorded = self.map.as_ref().map(|map| map.graph().as_ref().map(code_of));
+                if recorded.is_some_and(|recorded| recorded != Some(code_of(graph))) {
                     faults.push(DivergenceCause::Map { algorithm: followed.algorithm });
                 }
                 if known.is_some_and(|known| !known.has(graph)) {
@@ -105,14 +98,13 @@ impl RunEvents {
         faults
     }
 
-    /// Whether the log says that the map is complete at its end.
-    fn is_said_whole(&self) -> bool {
+    /// Whether the log records that the map is complete at its end.
+    fn is_mapped(&self) -> bool {
         self.end.as_ref().is_some_and(|end| end.ending == RunEnding::Mapped)
     }
 
-    /// What the log claims to be.
     pub(super) fn claim(&self) -> TraceClaim {
-        if self.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part }
+        if self.is_mapped() { TraceClaim::Whole } else { TraceClaim::Part }
     }
 
     /// The recorded number of moves, if it is wrong. The door by which a robot left before it got lost is no move.
@@ -125,7 +117,7 @@ impl RunEvents {
     /// Whether the log has the whole run; if an algorithm drives, until its map is complete.
     pub(super) fn is_whole(&self, driven: bool) -> bool {
         let ended = match &self.end {
-            Some(_) => self.is_said_whole() || !driven,
+            Some(_) => self.is_mapped() || !driven,
             // Logs of other programs have neither a head nor an end.
             None => !self.has_head,
         };

@@ -5,9 +5,8 @@ use toposlam_model::{
     mapping::EarlierWalk,
     percept::{Door, Percept},
 };
-use toposlam_vision::laser::params::LaserParams;
 
-use crate::{CheckedKind, Evidence, ExtractConfig, ExtractError, extract};
+use crate::{CheckedKind, Evidence, ExtractConfig, ExtractError, RunEvents, extract};
 
 /// The walks that a log records: what the robot perceived, and the doors that it took. Where the robot got lost, another
 /// walk begins.
@@ -15,28 +14,24 @@ use crate::{CheckedKind, Evidence, ExtractConfig, ExtractError, extract};
 /// # Errors
 /// Returns an error if the log cannot be read, or records no percepts and doors.
 pub fn earlier_walks(log: &Log, topics: &TopicMap) -> Result<Vec<EarlierWalk>, ExtractError> {
-    let config = ExtractConfig {
-        evidence: Evidence::Recorded,
-        sensor: None,
-        marked: true,
-        laser: LaserParams::default(),
-    };
-    let extracted = extract(log, topics, &config, &())?;
+    let config = ExtractConfig { marked: true, ..ExtractConfig::new(Evidence::Recorded) };
+    Ok(walks_of(&extract(log, topics, &config, &())?.events))
+}
+
+fn walks_of(run: &RunEvents) -> Vec<EarlierWalk> {
     let mut walks = Walks::default();
-    let relocations: Vec<usize> = extracted.events.relocations().collect();
-    for (index, event) in extracted.events.events.iter().enumerate() {
+    let relocations: Vec<usize> = run.relocations().collect();
+    for (index, event) in run.events.iter().enumerate() {
         match &event.kind {
             CheckedKind::Arrival { arrival, .. } => {
                 walks.arrive(arrival, relocations.binary_search(&index).is_ok());
             }
             CheckedKind::Door { door, .. } => walks.leave(*door),
-            CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {
-                walks.end();
-            }
+            _ => walks.end(),
         }
     }
     walks.end();
-    Ok(walks.done)
+    walks.done
 }
 
 /// The walks so far.
@@ -85,40 +80,45 @@ mod tests {
     use toposlam_model::percept::Sighting;
 
     use super::*;
+    use crate::CheckedEvent;
+
+    fn percept(degree: u32) -> Percept {
+        Percept { degree, sighting: Sighting::Nothing }
+    }
+
+    /// The walks of a robot that comes to junctions of these degrees, and leaves each by door 1.
+    fn walks(junctions: &[(u32, bool)], change: impl Fn(usize, &mut Arrival)) -> Vec<EarlierWalk> {
+        let mut kinds = Vec::new();
+        for (index, &(degree, is_lost)) in junctions.iter().enumerate() {
+            let mut kind = CheckedKind::from(percept(degree));
+            if let CheckedKind::Arrival { arrival, .. } = &mut kind {
+                arrival.number = Some(index as u32).filter(|_| !is_lost);
+                change(index, arrival);
+            }
+            kinds.extend([kind, CheckedKind::from(Door(1))]);
+        }
+        let event = |kind| CheckedEvent { source: crate::EventSource::default(), kind };
+        let events = kinds.into_iter().map(event).collect();
+        walks_of(&RunEvents { events, has_head: true, ..RunEvents::default() })
+    }
+
+    fn walk(from: u32, to: u32, is_blocked: bool) -> EarlierWalk {
+        EarlierWalk::new(percept(from), [(Door(1), percept(to))], is_blocked)
+    }
 
     #[test]
     fn a_walk_to_an_obstacle_is_blocked() {
-        let sighting = Some(Sighting::Nothing);
-        let junction = Arrival { number: Some(0), degree: 2, sighting, form: None, entry: None };
-        let obstacle = Arrival { degree: 1, entry: Some(0.0), ..junction };
-        let walk = |far: &Arrival| {
-            let mut walks = Walks::default();
-            walks.arrive(&junction, false);
-            walks.leave(Door(1));
-            walks.arrive(far, false);
-            walks.end();
-            walks.done
+        let to = [(2, false), (1, false)];
+        assert_eq!(walks(&to, |_, _| {}), [walk(2, 1, false)]);
+        let at_obstacle = |index: usize, arrival: &mut Arrival| {
+            arrival.entry = Some(0.0).filter(|_| index == 1);
         };
-        for (far, is_blocked) in [(obstacle, true), (junction, false)] {
-            let percept = |arrival: &Arrival| arrival.percept().unwrap();
-            let moves = [(Door(1), percept(&far))];
-            let expected = EarlierWalk::new(percept(&junction), moves, is_blocked);
-            assert_eq!(walk(&far), [expected]);
-        }
+        assert_eq!(walks(&to, at_obstacle), [walk(2, 1, true)]);
     }
 
     #[test]
     fn where_a_robot_got_lost_another_walk_begins() {
-        let sighting = Some(Sighting::Nothing);
-        let arrival = |degree| Arrival { number: None, degree, sighting, form: None, entry: None };
-        let mut walks = Walks::default();
-        for (degree, is_lost) in [(2, false), (3, false), (2, true), (4, false)] {
-            walks.arrive(&arrival(degree), is_lost);
-            walks.leave(Door(1));
-        }
-        walks.end();
-        let percept = |degree| arrival(degree).percept().unwrap();
-        let walk = |from, to| EarlierWalk::new(percept(from), [(Door(1), percept(to))], false);
-        assert_eq!(walks.done, [walk(2, 3), walk(2, 4)]);
+        let lost = [(2, false), (3, false), (2, true), (4, false)];
+        assert_eq!(walks(&lost, |_, _| {}), [walk(2, 3, false), walk(2, 4, false)]);
     }
 }

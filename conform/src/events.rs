@@ -1,9 +1,5 @@
-//! The events of a recorded run that are checked: arrivals, doors, and what a robot should not do. The
-//! measurements stay beside their discrete values.
-//!
-//! They are no [events of a run](toposlam_logs::record::Event). Those are what a robot reports: frames, commands,
-//! odometry. The checked ones are concluded from them: some exist in no log, such as a visit that cannot be
-//! recognised or a robot that turned back, and each has what odometry measured on the way to it.
+//! The events of a recorded run that are checked. They are concluded from what the robot recorded: some exist in no
+//! log, such as a visit that is not recognised, and each has what odometry measured on the way to it.
 
 use thiserror::Error;
 use toposlam_logs::record::{Arrival, EventId, MapRecord, RunEnd};
@@ -20,7 +16,6 @@ use toposlam_model::{
 pub struct EventSource {
     /// When it was written, in nanoseconds.
     pub time: u64,
-    /// Its number.
     pub id: EventId,
     /// The offset of its record in the file, in bytes.
     pub offset: u64,
@@ -29,9 +24,7 @@ pub struct EventSource {
 /// An event that is checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedEvent {
-    /// Where it came from.
     pub source: EventSource,
-    /// What happened.
     pub kind: CheckedKind,
 }
 
@@ -40,7 +33,6 @@ pub struct CheckedEvent {
 pub enum CheckedKind {
     /// The robot stood at a junction.
     Arrival {
-        /// What it perceived.
         arrival: Arrival,
         /// The angle between the entry door and the direction that the robot came from by odometry, in
         /// radians; `None` if it is not known.
@@ -52,14 +44,13 @@ pub enum CheckedKind {
     Door {
         /// The number of the move in the log, counted from 1.
         number: Option<u32>,
-        /// The door.
         door: Door,
         /// The angle between the door and the direction in which the robot drove by odometry, in radians;
         /// `None` if it is not known.
         off: Option<f64>,
     },
     /// The robot left a junction in a direction without a door.
-    Aside {
+    LeftBetweenDoors {
         /// The angle to the nearest door, in radians.
         off: f64,
     },
@@ -83,15 +74,12 @@ pub enum UndecidedCause {
 /// The part of a run that is checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunEvents {
-    /// The events in order.
     pub events: Vec<CheckedEvent>,
-    /// Whether the log has a head.
     pub has_head: bool,
     /// How the run ended, if that is recorded.
     pub end: Option<RunEnd>,
     /// The last recorded map.
     pub map: Option<MapRecord>,
-    /// Whether the log is truncated.
     pub truncated: bool,
     /// Whether the robot may turn back between junctions. The excursions that fit are not among the events.
     pub may_turn_back: bool,
@@ -99,22 +87,16 @@ pub struct RunEvents {
     pub measurement_noise: MeasurementNoise,
 }
 
-/// An event that is earlier than the one before it.
+/// An event that is earlier than the one before it. Times are in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("the events are out of order: this one is at {:.3} s, the one before it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
 pub struct OutOfOrder {
-    /// Its time, in nanoseconds.
     pub time: u64,
-    /// The time of the event before it.
     pub before: u64,
 }
 
 impl OutOfOrder {
-    /// Checks that an event is not earlier than the one before it.
-    ///
-    /// # Errors
-    /// Returns an error if it is.
-    pub fn check(before: u64, time: u64) -> Result<(), Self> {
+    pub(crate) fn check(before: u64, time: u64) -> Result<(), Self> {
         if time < before { Err(Self { time, before }) } else { Ok(()) }
     }
 }
@@ -122,26 +104,62 @@ impl OutOfOrder {
 /// Why arrivals are not those of a robot with a marker of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SightingError {
-    /// An arrival does not record whether the robot saw its marker.
     #[error("its percepts do not record whether the robot saw its marker")]
     NotRecorded,
-    /// An arrival records a directional marker without its direction.
     #[error("its percepts do not record along which door the marker points")]
     NoDoor,
+}
+
+/// An arrival of which only the percept is known.
+impl From<Percept> for CheckedKind {
+    fn from(Percept { degree, sighting }: Percept) -> Self {
+        let sighting = Some(sighting);
+        let arrival = Arrival { number: None, degree, sighting, form: None, entry: None };
+        Self::Arrival { arrival, entry_off: None, hallway: None }
+    }
+}
+
+impl From<Door> for CheckedKind {
+    fn from(door: Door) -> Self {
+        Self::Door { door, number: None, off: None }
+    }
+}
+
+impl CheckedEvent {
+    /// What the robot perceived, if it stood at a junction.
+    #[must_use]
+    pub fn arrival(&self) -> Option<&Arrival> {
+        match &self.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn arrival_mut(&mut self) -> Option<&mut Arrival> {
+        match &mut self.kind {
+            CheckedKind::Arrival { arrival, .. } => Some(arrival),
+            _ => None,
+        }
+    }
+
+    /// The number of moves that the log records with it.
+    pub(crate) fn number_mut(&mut self) -> Option<&mut u32> {
+        match &mut self.kind {
+            CheckedKind::Arrival { arrival: Arrival { number, .. }, .. }
+            | CheckedKind::Door { number, .. } => number.as_mut(),
+            _ => None,
+        }
+    }
 }
 
 impl RunEvents {
     /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was. A door
     /// along which an undirected marker points is left out.
-    ///
-    /// # Errors
-    /// Returns an error if an arrival does not record what a robot with this marker sees.
-    pub fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
+    pub(crate) fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), SightingError> {
         let is = |other: &dyn Marker| marker.name() == other.name();
         let [is_none, is_directional, is_undirected] =
             [is(&NoMarker), is(&Directional), is(&Undirected)];
-        for event in &mut self.events {
-            let CheckedKind::Arrival { arrival, .. } = &mut event.kind else { continue };
+        for arrival in self.events.iter_mut().filter_map(CheckedEvent::arrival_mut) {
             match arrival.sighting {
                 None if is_none => arrival.sighting = Some(Sighting::Nothing),
                 None => return Err(SightingError::NotRecorded),
@@ -156,22 +174,14 @@ impl RunEvents {
     }
 
     /// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
-    #[must_use]
-    pub fn may_show_marker(&self) -> bool {
-        self.events.iter().any(|event| match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => {
-                arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
-            }
-            _ => false,
-        })
+    pub(crate) fn may_show_marker(&self) -> bool {
+        let mut sightings = self.events.iter().filter_map(|event| Some(event.arrival()?.sighting));
+        sightings.any(|sighting| sighting != Some(Sighting::Nothing))
     }
 
     /// The trace of the arrivals and doors. The id of an event is its index here. An arrival that does not
-    /// record whether the marker was seen counts as one without it.
-    ///
-    /// # Errors
-    /// Returns the first event that is out of turn.
-    pub fn trace(&self) -> Result<Trace, TraceOrderError> {
+    /// record whether the marker was seen counts as one without it. The error is the first event that is out of turn.
+    pub(crate) fn trace(&self) -> Result<Trace, TraceOrderError> {
         let event = |(id, event): (usize, &CheckedEvent)| {
             let kind = match &event.kind {
                 CheckedKind::Arrival { arrival: Arrival { degree, sighting, .. }, .. } => {
@@ -179,9 +189,7 @@ impl RunEvents {
                     TraceEventKind::Percept(Percept { degree: *degree, sighting })
                 }
                 CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
-                CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {
-                    return None;
-                }
+                _ => return None,
             };
             Some(TraceEvent { id, kind })
         };
@@ -192,10 +200,7 @@ impl RunEvents {
     /// The arrivals of a robot that got lost before, by their indices. A log of this project counts the moves to all
     /// others. In logs of other programs numbers may be missing.
     pub(crate) fn relocations(&self) -> impl Iterator<Item = usize> + '_ {
-        let number = |event: &CheckedEvent| match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => Some(arrival.number),
-            _ => None,
-        };
+        let number = |event: &CheckedEvent| event.arrival().map(|arrival| arrival.number);
         let is_counted =
             self.has_head && self.events.iter().any(|event| matches!(number(event), Some(Some(_))));
         let is_lost = move |event: &CheckedEvent| is_counted && number(event) == Some(None);
@@ -230,17 +235,11 @@ impl RunEvents {
         for event in &self.events {
             let mut event = event.clone();
             match (&mut event.kind, &events[..]) {
-                (
-                    CheckedKind::Arrival { arrival: again, .. },
-                    [
-                        ..,
-                        CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. },
-                        left,
-                        back,
-                    ],
-                ) => {
-                    if let CheckedKind::Door { door, .. } = left.kind
-                        && back.kind == CheckedKind::TurnedBack
+                (CheckedKind::Arrival { arrival: again, .. }, [.., before, left, back])
+                    if back.kind == CheckedKind::TurnedBack =>
+                {
+                    if let (Some(arrival), &CheckedKind::Door { door, .. }) =
+                        (before.arrival(), &left.kind)
                         && arrival.is_same_from(again, door)
                     {
                         turned = door;
@@ -250,21 +249,18 @@ impl RunEvents {
                     }
                     turned = Door::BACK;
                 }
-                (
-                    CheckedKind::Door { door, .. },
-                    [.., CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. }],
-                ) if door.0 < arrival.degree => {
+                (CheckedKind::Door { door, .. }, [.., before]) => {
                     let entry = std::mem::replace(&mut turned, Door::BACK);
-                    *door = door.seen_from(entry.inverse(arrival.degree), arrival.degree);
+                    if let Some(&Arrival { degree, .. }) = before.arrival()
+                        && door.0 < degree
+                    {
+                        *door = door.seen_from(entry.inverse(degree), degree);
+                    }
                 }
                 _ => turned = Door::BACK,
             }
-            match &mut event.kind {
-                CheckedKind::Arrival { arrival: Arrival { number: Some(number), .. }, .. }
-                | CheckedKind::Door { number: Some(number), .. } => {
-                    *number = number.saturating_sub(left_out);
-                }
-                _ => {}
+            if let Some(number) = event.number_mut() {
+                *number = number.saturating_sub(left_out);
             }
             events.push(event);
         }
@@ -274,9 +270,13 @@ impl RunEvents {
     }
 
     /// The events up to and including one, by its index.
-    #[must_use]
-    pub fn up_to(&self, index: usize) -> Self {
+    pub(crate) fn up_to(&self, index: usize) -> Self {
         let events = self.events.iter().take(index + 1).cloned().collect();
+        self.with_events(events)
+    }
+
+    /// Other events of the same robot, without an end.
+    pub(crate) fn with_events(&self, events: Vec<CheckedEvent>) -> Self {
         let Self { has_head, may_turn_back, measurement_noise, .. } = *self;
         Self { events, has_head, may_turn_back, measurement_noise, ..Self::default() }
     }

@@ -3,6 +3,8 @@
 //! cargo-fuzz runs each target from `fuzz/`, and `tests/fuzz.rs` runs it on stable Rust, on the
 //! seeds in `fuzz/corpus/` and on mutations of them. A target panics if its property is violated.
 
+#![expect(clippy::missing_panics_doc, reason = "a target panics if its property is violated")]
+
 use std::fmt;
 
 use toposlam_logs::{
@@ -18,7 +20,7 @@ use toposlam_model::{
     enumerate::Class,
     folding::WorldSearch,
     mapping::MappingAlgorithm,
-    marker::{Directional, NoMarker},
+    marker::{Directional, Marker, NoMarker},
 };
 use toposlam_robot::budget::RunBudget;
 
@@ -29,7 +31,6 @@ use crate::{
 /// A target and its name, which is also the name in `fuzz/` and of the folder of its seeds.
 pub type LogFuzzTarget = (&'static str, fn(&[u8]));
 
-/// All targets.
 pub const TARGETS: &[LogFuzzTarget] = &[
     ("bag", bag),
     ("mcap", mcap),
@@ -42,25 +43,12 @@ pub const TARGETS: &[LogFuzzTarget] = &[
     ("database_rows", database_rows),
 ];
 
-/// Any bytes are read as a ROS 1 bag, as in [`mcap()`].
-///
-/// # Panics
-/// Panics if the property is violated.
-pub fn bag(bytes: &[u8]) {
-    log(bytes);
-}
+pub use self::{log as bag, log as mcap, log as carmen, log as events};
 
-/// Any bytes are read as an MCAP file, whole or truncated. Its messages come in the order of their
-/// times with consecutive numbers, and the run in it can be read up to its end and judged; or there is
+/// Any bytes are read as a log of any format, whole or truncated, perhaps compressed. Its messages come in the order
+/// of their times with consecutive numbers, and the run in it can be read up to its end and judged; or there is
 /// one error message.
-///
-/// # Panics
-/// Panics if the property is violated.
-pub fn mcap(bytes: &[u8]) {
-    log(bytes);
-}
-
-fn log(bytes: &[u8]) {
+pub fn log(bytes: &[u8]) {
     let log = match Log::of_bytes(bytes.to_vec()) {
         Ok(log) => log,
         Err(error) => return assert_is_a_message(&error),
@@ -96,27 +84,8 @@ fn log(bytes: &[u8]) {
     judge_run(&log, &mapping);
 }
 
-/// Any bytes are read as a CARMEN log, perhaps compressed, as in [`mcap()`].
-///
-/// # Panics
-/// Panics if the property is violated.
-pub fn carmen(bytes: &[u8]) {
-    log(bytes);
-}
-
-/// Any bytes are read as events in JSON lines or CSV, as in [`mcap()`].
-///
-/// # Panics
-/// Panics if the property is violated.
-pub fn events(bytes: &[u8]) {
-    log(bytes);
-}
-
 /// Any bytes are the metadata of a rosbag2 folder: they name files in it, and no others; or there is one
 /// error message.
-///
-/// # Panics
-/// Panics if the property is violated.
 pub fn rosbag2_metadata(bytes: &[u8]) {
     match rosbag2::file_names(bytes) {
         Ok(names) => {
@@ -131,10 +100,7 @@ pub fn rosbag2_metadata(bytes: &[u8]) {
 }
 
 /// Any bytes are rows of the table of messages in a database of rosbag2: a number, a topic, a time and a
-/// length of a byte each, and the message. They are read as in [`mcap()`].
-///
-/// # Panics
-/// Panics if the property is violated.
+/// length of a byte each, and the message. They are read as in [`log`].
 pub fn database_rows(bytes: &[u8]) {
     #[cfg(feature = "sqlite")]
     match database::of_rows(bytes) {
@@ -148,7 +114,6 @@ pub fn database_rows(bytes: &[u8]) {
 #[cfg(feature = "sqlite")]
 pub mod database;
 
-/// Reads the run in a log, or returns the error.
 fn read_run(log: &Log, mapping: &TopicMap) {
     match mapping.bind(log) {
         Ok(bound) => {
@@ -169,20 +134,18 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
         Ok(run) => run,
         Err(error) => return assert_is_a_message(&error),
     };
-    let config = ConformConfig {
+    let by = |driver: RunDriver, marker: &'static dyn Marker| ConformConfig {
         world: None,
-        marker: &Directional,
-        driver: RunDriver::Anyone,
+        marker,
+        driver,
         budget: RunBudget::default(),
         search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100 },
         dart_bound: 50,
     };
-    let algorithm =
-        |algorithm| ConformConfig { driver: RunDriver::from(algorithm), ..config.clone() };
     for config in [
-        algorithm(MappingAlgorithm::Algorithm1),
-        algorithm(MappingAlgorithm::Folding),
-        ConformConfig { marker: &NoMarker, ..config.clone() },
+        by(MappingAlgorithm::Algorithm1.into(), &Directional),
+        by(MappingAlgorithm::Folding.into(), &Directional),
+        by(RunDriver::Anyone, &NoMarker),
     ] {
         match judge(events.clone(), &config, &Quirks::default(), &()) {
             Ok(judgement) => {
@@ -198,9 +161,6 @@ fn judge_run(log: &Log, mapping: &TopicMap) {
 
 /// Any bytes are a message definition and, after a zero byte, a message of it in the serialization
 /// of ROS 1. No prefix of the message is a message too. Or there is one error message.
-///
-/// # Panics
-/// Panics if the property is violated.
 pub fn ros1_message(bytes: &[u8]) {
     if let Some((definition, message)) = parts(Dialect::Ros1, bytes)
         && message_of(&definition, message)
@@ -211,9 +171,6 @@ pub fn ros1_message(bytes: &[u8]) {
 }
 
 /// The same for CDR.
-///
-/// # Panics
-/// Panics if the property is violated.
 pub fn cdr_message(bytes: &[u8]) {
     if let Some((definition, message)) = parts(Dialect::Ros2, bytes) {
         message_of(&definition, message);
@@ -258,9 +215,6 @@ const LOG: &[u8] = include_bytes!("../../fuzz/corpus/mcap/of-a-run");
 
 /// Any bytes are a topic map file. It is written so that it reads as the same, and fits a log or
 /// does not; or there is one error message.
-///
-/// # Panics
-/// Panics if the property is violated.
 pub fn log_mapping(bytes: &[u8]) {
     let mapping = match TopicMap::read(bytes) {
         Ok(mapping) => mapping,

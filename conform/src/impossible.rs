@@ -16,42 +16,25 @@ pub enum Impossibility {
     /// The walk contradicts itself.
     #[error(transparent)]
     Walk(#[from] ContradictionReason),
-    /// A marker was perceived by a robot without one.
     #[error("the robot has no marker, and perceived one")]
     Marker,
-    /// The vertex has more doors than a vertex of the class.
     #[error("in a world of class {class} a vertex has at most {} doors", .class.max_degree())]
-    Degree {
-        /// The class.
-        class: Class,
-    },
-    /// An edge would be a loop, or two edges would join the same vertices.
+    Degree { class: Class },
     #[error(
         "in a world of class {class} no hallway leads back to its own junction, and no two hallways join the \
          same two"
     )]
-    NotSimple {
-        /// The class.
-        class: Class,
-    },
-    /// The marker was seen at several junctions.
+    NotSimple { class: Class },
     #[error("the marker lies at one junction, and was seen at another one")]
     OnePlace,
     /// All worlds with these percepts are outside of the class.
     #[error("no world of class {class} explains it")]
-    Class {
-        /// The class.
-        class: Class,
-    },
+    Class { class: Class },
 }
 
 impl Impossibility {
-    /// Whether two events are impossible for the same reason, wherever they are.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
-        self.without_visits() == other.without_visits()
-    }
-
-    fn without_visits(&self) -> Self {
+    /// The same for events at any place.
+    pub(super) fn without_visits(&self) -> Self {
         use ContradictionReason::{Degree, Marker, OwnOpposite, Rotation};
         match *self {
             Self::Walk(Degree { degrees, .. }) => Self::Walk(Degree { visits: [0; 2], degrees }),
@@ -67,13 +50,13 @@ impl Impossibility {
 
 /// A trace, folded as far as some world explains it, and until the robot got lost.
 #[derive(Clone, Debug)]
-pub struct FoldedTrace {
+pub(crate) struct FoldedTrace {
     /// The folded trail up to the first impossible event or relocation; `None` if there is no event before it, or if the
     /// trail is too large.
-    pub trail: Option<FoldedTrail>,
+    pub(crate) trail: Option<FoldedTrail>,
     /// The index of the first event of the trace that no world of any size explains together with all
     /// before it, and why.
-    pub impossible: Option<(usize, Impossibility)>,
+    pub(crate) impossible: Option<(usize, Impossibility)>,
 }
 
 impl FoldedTrace {
@@ -82,8 +65,7 @@ impl FoldedTrace {
     ///
     /// Whether some world of the class explains the trace is exact, except that of a planar world only the
     /// degrees and the edges are compared here.
-    #[must_use]
-    pub fn new(trace: &Trace, marker: &dyn Marker, class: Class) -> Self {
+    pub(crate) fn new(trace: &Trace, marker: &dyn Marker, class: Class) -> Self {
         let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
         if kinds.iter().all(|kind| kind.name() != marker.name()) {
             return Self { trail: None, impossible: None };
@@ -96,15 +78,15 @@ impl FoldedTrace {
             }
             Err(FoldError::TooManyDarts { .. }) => (None, None),
         };
-        let first = |is: &dyn Fn(&Percept) -> bool| {
+        let first = |is: &dyn Fn(&Percept) -> bool, why| {
             let moves = trace.percepts().iter().position(is)?;
-            Some(WalkEvent::Percept(moves).index())
+            Some((WalkEvent::Percept(moves).index(), why))
         };
-        let bare = marker.name() == NoMarker.name();
-        let marked = first(&|percept| bare && percept.sighting != Sighting::Nothing);
-        let crowded = first(&|percept| percept.degree > class.max_degree());
-        let marked = marked.map(|event| (event, Impossibility::Marker));
-        let crowded = crowded.map(|event| (event, Impossibility::Degree { class }));
+        let is_unmarked = marker.name() == NoMarker.name();
+        let marked = |percept: &Percept| is_unmarked && percept.sighting != Sighting::Nothing;
+        let crowded = |percept: &Percept| percept.degree > class.max_degree();
+        let marked = first(&marked, Impossibility::Marker);
+        let crowded = first(&crowded, Impossibility::Degree { class });
         let mut impossible =
             [walk, marked, crowded].into_iter().flatten().min_by_key(|(event, _)| *event);
         if let Some((event, _)) = impossible {

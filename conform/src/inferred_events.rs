@@ -118,7 +118,7 @@ impl InferredEvents {
             self.exit = direction(form, entry, door);
             self.push(source, CheckedKind::Door { door, number: None, off: Some(off) });
             if off > SCENES.aside {
-                self.push(source, CheckedKind::Aside { off });
+                self.push(source, CheckedKind::LeftBetweenDoors { off });
             }
         } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
             self.push(source, CheckedKind::TurnedBack);
@@ -267,7 +267,7 @@ mod tests {
         let name = |event: &CheckedEvent| match event.kind {
             CheckedKind::Arrival { .. } => "percept",
             CheckedKind::Door { .. } => "door",
-            CheckedKind::Aside { .. } => "aside",
+            CheckedKind::LeftBetweenDoors { .. } => "aside",
             CheckedKind::TurnedBack => "turned back",
             CheckedKind::Undecided(_) => "undecided",
         };
@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(least.len(), 3);
         assert!(matches!(
             infer_events(least, false).last().unwrap().kind,
-            CheckedKind::Aside { .. }
+            CheckedKind::LeftBetweenDoors { .. }
         ));
         // A percept does not show in what was seen alone.
         assert_eq!(shorten_frames(&seen, &events[0]), None);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Serialize, Serializer};
+use serde::{Serialize, Serializer, ser::SerializeMap};
 use toposlam_model::{
     percept::Percept,
     trace::{AllowedStep, MisfitReason},
@@ -12,81 +12,60 @@ use super::{
     divergence::{DivergenceCause, FaultClass},
     events::CheckedKind,
     judgement::ConformVerdict,
-    report::{
-        Allowed, ConformReports, CoveredCase, DivergenceReport, Facts, Limit, LogReport,
-        MarkerSeen, MessagePlace,
-    },
+    report::{Allowed, ConformReports, CoveredCase, Facts, LogReport, MarkerSeen},
     words,
 };
 
-#[derive(Serialize)]
-struct LogLine<'r> {
-    log: &'r str,
-    verdict: ConformVerdict,
-    event: Option<usize>,
-    class: Option<FaultClass>,
-    events: usize,
-    matched: usize,
-    candidates: usize,
-    coverage: BTreeMap<&'r str, u64>,
-    unreachable: Vec<&'r str>,
-    cause: Option<&'static str>,
-    condition: Option<String>,
-    allowed: Vec<String>,
-    time: Option<f64>,
-    message: Option<u64>,
-    offset: Option<u64>,
-    offset_unit: Option<&'static str>,
-    #[serde(rename = "facts")]
-    fact_texts: BTreeMap<&'static str, String>,
-    remarks: Vec<String>,
-    limits: &'r [Limit],
-    tolerated: BTreeMap<&'r str, usize>,
-    shorter: Vec<String>,
-    divergence: Option<&'r DivergenceReport>,
-    shorter_events: &'r [CheckedKind],
-    command: Option<&'r str>,
-    #[serde(flatten)]
-    facts: &'r Facts,
+/// The fields of a log's line before those of [`Facts`].
+struct LogFields<'r>(&'r LogReport);
+
+impl Serialize for LogFields<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(report) = self;
+        let divergence = report.divergence.as_ref();
+        let place = divergence.and_then(|divergence| divergence.message);
+        let unreachable = report.coverage.iter().filter(|case| case.reachable == Some(false));
+        let tolerated = report.tolerated.iter().map(|quirk| (&*quirk.name, quirk.events.len()));
+        let mut line = serializer.serialize_map(None)?;
+        line.serialize_entry("log", &report.log)?;
+        line.serialize_entry("verdict", &report.verdict)?;
+        line.serialize_entry("event", &divergence.map(|divergence| divergence.event))?;
+        line.serialize_entry("class", &divergence.map(|divergence| divergence.fault))?;
+        line.serialize_entry("events", &report.events.len())?;
+        line.serialize_entry("matched", &report.matched)?;
+        line.serialize_entry("candidates", &report.candidates)?;
+        line.serialize_entry("coverage", &counts(&report.coverage))?;
+        line.serialize_entry("unreachable", &unreachable.map(|it| it.case).collect::<Vec<_>>())?;
+        line.serialize_entry("cause", &divergence.map(|divergence| divergence.cause.name()))?;
+        line.serialize_entry("condition", &divergence.map(|it| it.cause.to_string()))?;
+        line.serialize_entry("allowed", &divergence.map(words::allowed).unwrap_or_default())?;
+        line.serialize_entry("time", &divergence.and_then(|divergence| divergence.time))?;
+        line.serialize_entry("message", &place.map(|place| place.number))?;
+        line.serialize_entry("offset", &place.map(|place| place.offset))?;
+        line.serialize_entry("offset_unit", &place.map(|place| place.unit.name()))?;
+        line.serialize_entry("facts", &BTreeMap::from_iter(words::facts(report)))?;
+        line.serialize_entry("remarks", &words::remarks(report))?;
+        line.serialize_entry("limits", &report.limits)?;
+        line.serialize_entry("tolerated", &tolerated.collect::<BTreeMap<_, _>>())?;
+        let shorter: Vec<_> = report.shorter.iter().map(words::event).collect();
+        line.serialize_entry("shorter", &shorter)?;
+        line.serialize_entry("divergence", &divergence)?;
+        line.serialize_entry("shorter_events", &report.shorter)?;
+        line.serialize_entry("command", &report.command)?;
+        line.end()
+    }
 }
 
 impl Serialize for LogReport {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let divergence = self.divergence.as_ref();
-        let place = divergence.and_then(|divergence| divergence.message);
-        let unreachable = self.coverage.iter().filter(|covered| covered.reachable == Some(false));
-        let line = LogLine {
-            log: &self.log,
-            verdict: self.verdict,
-            event: divergence.map(|divergence| divergence.event),
-            class: divergence.map(|divergence| divergence.fault),
-            events: self.events.len(),
-            matched: self.matched,
-            candidates: self.candidates,
-            coverage: counts(&self.coverage),
-            unreachable: unreachable.map(|covered| covered.case).collect(),
-            cause: divergence.map(|divergence| divergence.cause.name()),
-            condition: divergence.map(|divergence| divergence.cause.to_string()),
-            allowed: divergence.map(words::allowed).unwrap_or_default(),
-            time: divergence.and_then(|divergence| divergence.time),
-            message: place.map(|MessagePlace { number, .. }| number),
-            offset: place.map(|MessagePlace { offset, .. }| offset),
-            offset_unit: place.map(|MessagePlace { unit, .. }| unit.name()),
-            fact_texts: words::facts(self).into_iter().collect(),
-            remarks: words::remarks(self),
-            limits: &self.limits,
-            tolerated: self
-                .tolerated
-                .iter()
-                .map(|quirk| (&*quirk.name, quirk.events.len()))
-                .collect(),
-            shorter: self.shorter.iter().map(words::event).collect(),
-            divergence,
-            shorter_events: &self.shorter,
-            command: self.command.as_deref(),
-            facts: &self.facts,
-        };
-        line.serialize(serializer)
+        #[derive(Serialize)]
+        struct LogLine<'r> {
+            #[serde(flatten)]
+            fields: LogFields<'r>,
+            #[serde(flatten)]
+            facts: &'r Facts,
+        }
+        LogLine { fields: LogFields(self), facts: &self.facts }.serialize(serializer)
     }
 }
 
@@ -107,7 +86,6 @@ pub struct LogsLine<'r> {
 }
 
 impl ConformReports {
-    /// The number of logs with a verdict.
     #[must_use]
     pub fn count(&self, verdict: ConformVerdict) -> usize {
         self.logs.iter().filter(|report| report.verdict == verdict).count()
@@ -141,13 +119,12 @@ struct Step {
 }
 
 impl CheckedKind {
-    /// Its name.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Arrival { .. } => "percept",
             Self::Door { .. } => "door",
-            Self::Aside { .. } => "aside",
+            Self::LeftBetweenDoors { .. } => "aside",
             Self::TurnedBack => "turned-back",
             Self::Undecided(_) => "undecided",
         }
@@ -209,60 +186,35 @@ impl Serialize for Allowed {
 }
 
 /// The numbers of a cause.
-#[derive(Default, Serialize)]
-struct CauseNumbers {
-    /// The expected number of moves, edge ends or doors, and the recorded one.
-    expected: Option<u64>,
-    recorded: Option<u64>,
-    /// The angle by which the robot missed a door, in radians.
-    off: Option<f64>,
-    /// The numbers of the events between which a measurement contradicts earlier ones, and of those between which
-    /// these were made.
-    between: Option<[usize; 2]>,
-    earlier: Option<[usize; 2]>,
-}
-
-impl CauseNumbers {
-    fn of(cause: &DivergenceCause) -> Self {
-        let counts = |expected: u64, recorded: u64| Self {
-            expected: Some(expected),
-            recorded: Some(recorded),
-            ..Self::default()
-        };
-        match *cause {
-            DivergenceCause::Number { expected, recorded } => {
-                counts(expected.into(), recorded.into())
-            }
-            DivergenceCause::Moves { made, recorded } => counts(made as u64, recorded),
-            DivergenceCause::Form { degree, doors } => counts(doors.into(), degree.into()),
-            DivergenceCause::Return { before, now } => counts(before.into(), now.into()),
-            DivergenceCause::Unfinished { unexplored } => counts(unexplored.into(), 0),
-            DivergenceCause::Aside { off } | DivergenceCause::Entry { off } => {
-                Self { off: Some(off), ..Self::default() }
-            }
-            DivergenceCause::Measurement { between, earlier, .. } => {
-                let [between, earlier] =
-                    [between, earlier].map(|events| Some(events.map(|event| event + 1)));
-                Self { between, earlier, ..Self::default() }
-            }
-            _ => Self::default(),
-        }
-    }
-}
-
-impl Serialize for DivergenceReport {
+impl Serialize for DivergenceCause {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields<'d> {
-            found: Option<&'d CheckedKind>,
-            allowed: &'d [Allowed],
-            allowed_total: usize,
-            #[serde(flatten)]
-            numbers: CauseNumbers,
-        }
-        let Self { found, allowed, allowed_total, cause, .. } = self;
-        let (found, allowed_total) = (found.as_ref(), *allowed_total);
-        let numbers = CauseNumbers::of(cause);
-        Fields { found, allowed, allowed_total, numbers }.serialize(serializer)
+        // The expected number of moves, edge ends or doors, and the recorded one.
+        let counts: Option<[u64; 2]> = match *self {
+            Self::Number { expected, recorded } => Some([expected.into(), recorded.into()]),
+            Self::Moves { made, recorded } => Some([made as u64, recorded]),
+            Self::Form { degree, doors } => Some([doors.into(), degree.into()]),
+            Self::Return { before, now } => Some([before.into(), now.into()]),
+            Self::Unfinished { unexplored } => Some([unexplored.into(), 0]),
+            _ => None,
+        };
+        // The angle by which the robot missed a door, in radians.
+        let off = match *self {
+            Self::Aside { off } | Self::Entry { off } => Some(off),
+            _ => None,
+        };
+        // The numbers of the events between which a measurement contradicts earlier ones, and of those between which
+        // these were made.
+        let events = match *self {
+            Self::Measurement { between, earlier, .. } => Some([between, earlier]),
+            _ => None,
+        };
+        let events = events.map(|events| events.map(|events| events.map(|event| event + 1)));
+        let mut numbers = serializer.serialize_map(Some(5))?;
+        numbers.serialize_entry("expected", &counts.map(|[expected, _]| expected))?;
+        numbers.serialize_entry("recorded", &counts.map(|[_, recorded]| recorded))?;
+        numbers.serialize_entry("off", &off)?;
+        numbers.serialize_entry("between", &events.map(|[between, _]| between))?;
+        numbers.serialize_entry("earlier", &events.map(|[_, earlier]| earlier))?;
+        numbers.end()
     }
 }

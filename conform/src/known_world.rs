@@ -23,9 +23,7 @@ use super::divergence::FaultClass;
 pub struct Known {
     /// The world, without the corners that the events do not have.
     pub world: NamedWorld,
-    /// The robot's start, if it is known.
     pub start: Option<Dart>,
-    states: Vec<State>,
     /// How often each case is reachable, over all starts.
     reachable: AlgorithmCoverage,
     /// A complete run, if the start is known.
@@ -37,7 +35,6 @@ pub struct Known {
 pub(super) enum MarkerStart {
     /// At the robot's start, along its entry door.
     Robot,
-    /// Anywhere.
     Anywhere,
 }
 
@@ -45,13 +42,14 @@ pub(super) enum MarkerStart {
 const MOST_STATES: usize = 1 << 20;
 
 impl Known {
-    /// A world, the robot's start in it, and its marker. `None` if there are too many possible states.
+    /// A world, the robot's start in it, and the world as a run with its marker is compared with it. `None` if there
+    /// are too many possible states at the start.
     pub(super) fn new(
         world: NamedWorld,
         start: Option<Dart>,
         (marker, lies): (&'static dyn Marker, MarkerStart),
         algorithm: MappingAlgorithm,
-    ) -> Option<Self> {
+    ) -> Option<(Self, KnownWorld)> {
         let graph = &world.graph;
         let states = match (lies, start) {
             (MarkerStart::Robot, None) => anywhere(graph, &marker),
@@ -73,12 +71,8 @@ impl Known {
         };
         let reachable = trace::reachable(graph);
         let expected = start.map(|start| ExpectedRun::new(algorithm, graph, start));
-        Some(Self { world, start, states, reachable, expected })
-    }
-
-    /// The world as a run is compared with it.
-    pub(super) fn config(&self) -> KnownWorld<'_> {
-        KnownWorld { graph: &self.world.graph, states: self.states.clone() }
+        let compared = KnownWorld { graph: graph.clone(), states };
+        Some((Self { world, start, reachable, expected }, compared))
     }
 
     /// Whether some run of Algorithm 1 has a case.
@@ -128,16 +122,14 @@ impl Observer<GraphWorld<'_>> for ExpectedRun {
     }
 }
 
-/// A known world, and the possible states at the start.
+/// A known world, and the possible states of the robot and the marker at the start.
 #[derive(Clone, Debug)]
-pub struct KnownWorld<'w> {
-    /// The embedded graph.
-    pub graph: &'w EmbeddedGraph,
-    /// The possible states of the robot and the marker at the start.
+pub struct KnownWorld {
+    pub graph: EmbeddedGraph,
     pub states: Vec<State>,
 }
 
-impl KnownWorld<'_> {
+impl KnownWorld {
     /// The fault class of a misfit. It is motion if the following events fit better from another pose than
     /// after one wrong percept.
     pub(super) fn fault(
@@ -164,13 +156,13 @@ impl KnownWorld<'_> {
 
     /// The number of events that fit.
     fn fitting(&self, trace: &Trace, states: &[State], marker: &'static dyn Marker) -> usize {
-        poses(self.graph, &marker, states, trace).left.len()
+        poses(&self.graph, &marker, states, trace).left.len()
     }
 
     /// Whether a map is this world from one of its starts.
     pub(super) fn has(&self, map: &EmbeddedGraph) -> bool {
         let of_map = code(map, FACING);
-        let is = |state: &State| state.placed.is_some_and(|dart| code(self.graph, dart) == of_map);
+        let is = |state: &State| state.placed.is_some_and(|dart| code(&self.graph, dart) == of_map);
         self.states.iter().any(is)
     }
 }

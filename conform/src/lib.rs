@@ -53,7 +53,7 @@ pub use events::{
 pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
 };
-pub use impossible::{FoldedTrace, Impossibility};
+pub use impossible::Impossibility;
 pub use inferred_events::InferredEvents;
 pub use json::LogsLine;
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
@@ -66,13 +66,13 @@ pub use marked_visits::{
 };
 pub use measured_hallways::MeasuredHallways;
 pub use placed_scenes::{SceneClockError, SensedScene};
-pub use quirks::{Quirk, QuirkError, QuirkErrorKind, Quirks};
+pub use quirks::Quirks;
 pub use recorded_events::RecordedEvents;
 pub use report::{
     Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
-    FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedEnding,
-    RecordedWorld, ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile,
-    ToleratedQuirk, UnreadLog, UnseenPlace, WorldFact, case_names,
+    FoldedReport, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RecordedWorld,
+    ReportedEvent, ReportedVisit, RequiredCoverage, SmallestFound, SourceFile, ToleratedQuirk,
+    UnreadLog, WorldFact, case_names,
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;

@@ -21,21 +21,16 @@ pub struct LogHead<'r>(pub Option<&'r Run>);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("no percept in it shows a marker, which {} needs", .algorithm.in_words())]
 pub struct MarkerNotShown {
-    /// The algorithm whose doors would be compared.
     pub algorithm: MappingAlgorithm,
 }
 
 impl LogHead<'_> {
-    /// The name of the marker, if it is recorded.
     fn marker_name(&self) -> Option<&str> {
         self.0.map(|run| run.marker.as_str()).filter(|name| !name.is_empty())
     }
 
     /// The marker of the robot: without a record, a directional one.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such marker.
-    pub fn marker(&self) -> Result<&'static dyn Marker, UnknownMarker> {
+    pub(crate) fn marker(&self) -> Result<&'static dyn Marker, UnknownMarker> {
         self.marker_name().map_or(Ok(&Directional), marker::named)
     }
 
@@ -48,41 +43,32 @@ impl LogHead<'_> {
         &self,
         algorithm: Option<MappingAlgorithm>,
     ) -> Result<RecordedSettings, String> {
-        let head = self.0.map_or("", |run| &run.algorithm);
-        let recorded = match head {
+        let recorded = match self.0.map_or("", |run| &run.algorithm) {
             "" => Ok(RecordedSettings::default()),
-            head => RecordedSettings::from_head(head),
+            head => RecordedSettings::from_head(head).map_err(|_| head.to_owned()),
         };
-        match (algorithm, recorded) {
-            (Some(algorithm), recorded) => {
-                Ok(recorded.unwrap_or_default().with_algorithm(algorithm))
-            }
-            (None, Ok(recorded)) => Ok(recorded),
-            (None, Err(_)) => Err(head.to_owned()),
+        match algorithm {
+            Some(algorithm) => Ok(recorded.unwrap_or_default().with_algorithm(algorithm)),
+            None => recorded,
         }
     }
 
     /// The start, if the log was recorded in this world.
-    #[must_use]
-    pub fn start(&self, world: &NamedWorld) -> Option<Dart> {
+    pub(crate) fn start(&self, world: &NamedWorld) -> Option<Dart> {
         let run = self.0?;
         let start = world.start_from_text(&run.start).ok()?;
         (world_hash(&world.graph, start) == run.world_hash).then_some(start)
     }
 
     /// Whether the log was recorded in another world.
-    #[must_use]
-    pub fn is_of_other_world(&self, graph: &EmbeddedGraph) -> bool {
+    pub(crate) fn is_of_other_world(&self, graph: &EmbeddedGraph) -> bool {
         let recorded = self.0.map_or("", |run| &run.world_hash);
         !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
     }
 
     /// Whether doors can be compared with an algorithm, which needs a marker: it is recorded, or a percept shows
     /// it, or may.
-    ///
-    /// # Errors
-    /// Returns an error if the marker is only assumed, and no percept shows it.
-    pub fn check_marker(
+    pub(crate) fn check_marker(
         &self,
         events: &RunEvents,
         algorithm: MappingAlgorithm,

@@ -2,11 +2,10 @@
 
 use std::mem::discriminant;
 
-use toposlam_logs::record::Arrival;
 use toposlam_model::{
     enumerate::Watch,
     folding::WorldSearch,
-    percept::{Percept, WalkEvent},
+    percept::WalkEvent,
     trace::{MisfitReason, Trace, TraceEvent, TraceEventKind, shortened},
 };
 
@@ -24,7 +23,6 @@ use super::{
 /// A shorter log with the same divergence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShortenedRun {
-    /// Its events.
     pub events: RunEvents,
     /// The index of the event that diverges.
     pub event: usize,
@@ -40,34 +38,32 @@ pub struct ShortenedRun {
 #[must_use]
 pub fn shorten_run(
     judgement: &Judgement,
-    question: &ConformConfig,
+    config: &ConformConfig,
     watch: &dyn Watch,
 ) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
     // A world that explains a shorter log is not a divergence.
-    let search = WorldSearch { steps: 0, ..question.search };
-    let question = &ConformConfig { search, ..question.clone() };
-    let anyone = question.clone().by_itself();
-    let judged = |events: &RunEvents, question: &ConformConfig| {
-        let judgement = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
-        judgement.divergence.filter(|found| found.is_like(divergence))
+    let search = WorldSearch { steps: 0, ..config.search };
+    let config = &ConformConfig { search, ..config.clone() };
+    let anyone = config.clone().by_itself();
+    let diverges_at = |events: &RunEvents, event: usize, config: &ConformConfig| {
+        let judgement = judge(events.clone(), config, &Quirks::default(), watch);
+        let found = judgement.ok().and_then(|judgement| judgement.divergence);
+        found.is_some_and(|found| found.is_like(divergence) && found.event == event)
     };
     match divergence.cause {
         DivergenceCause::World(_)
         | DivergenceCause::Algorithm(_)
         | DivergenceCause::NoWorld { .. } => {
             let last = trace_index(&judgement.trace, divergence.event)?;
-            let shows = |trace: &Trace| {
-                let events = of_trace(trace, &judgement.events);
-                let at = events.events.len() - 1;
-                judged(&events, question).is_some_and(|found| found.event == at)
+            let shown = |trace: &Trace| {
+                let events = events_of_trace(trace, &judgement.events);
+                let event = events.events.len() - 1;
+                let is_shown = diverges_at(&events, event, config);
+                is_shown.then_some(ShortenedRun { events, event, by_itself: false })
             };
             let cut = judgement.trace.up_to(last);
-            let short = shortened(&cut, shows);
-            let events = of_trace(&short, &judgement.events);
-            let event = events.events.len() - 1;
-            let found = judged(&events, question)?;
-            (found.event == event).then_some(ShortenedRun { events, event, by_itself: false })
+            shown(&shortened(&cut, |trace| shown(trace).is_some()))
         }
         DivergenceCause::Unfinished { .. }
         | DivergenceCause::Map { .. }
@@ -84,9 +80,9 @@ pub fn shorten_run(
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
             (0..=divergence.event).rev().find_map(|first| {
                 let events = judgement.events.from(first, last)?;
-                let found = judged(&events, &anyone)?;
                 let event = divergence.event - first;
-                (found.event == event).then_some(ShortenedRun { events, event, by_itself: true })
+                let is_shown = diverges_at(&events, event, &anyone);
+                is_shown.then_some(ShortenedRun { events, event, by_itself: true })
             })
         }
     }
@@ -101,14 +97,14 @@ pub fn shorten_frames<'s>(
 ) -> Option<&'s [SensedScene]> {
     let alone = matches!(
         event.kind,
-        CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_)
+        CheckedKind::LeftBetweenDoors { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_)
     );
     let end = seen.partition_point(|seen| seen.source <= event.source);
     let shows = |first: &usize| {
         let events = infer_events(&seen[*first..end], false);
         let is = |kind: &CheckedKind| discriminant(kind) == discriminant(&event.kind);
-        let stands = |event: &CheckedEvent| matches!(event.kind, CheckedKind::Arrival { .. });
-        events.last().is_some_and(|last| is(&last.kind)) && events.iter().any(stands)
+        let stands = events.iter().any(|event| event.arrival().is_some());
+        stands && events.last().is_some_and(|last| is(&last.kind))
     };
     let first = (0..end).rev().take(FAR).find(shows).filter(|_| alone)?;
     Some(&seen[first..end])
@@ -130,14 +126,14 @@ impl Divergence {
             (
                 DivergenceCause::NoWorld { why: one, .. },
                 DivergenceCause::NoWorld { why: other, .. },
-            ) => one.is_like(other),
+            ) => one.without_visits() == other.without_visits(),
             (one, other) => one.name() == other.name(),
         };
         same && self.fault == other.fault
     }
 }
 
-impl ConformConfig<'_> {
+impl ConformConfig {
     /// The same without what is outside of the log: in any world, with any driver.
     #[must_use]
     pub fn by_itself(self) -> Self {
@@ -146,26 +142,24 @@ impl ConformConfig<'_> {
 }
 
 /// Events of percepts and doors alone, a second apart, in a log like that of a whole run.
-fn of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
+fn events_of_trace(trace: &Trace, whole: &RunEvents) -> RunEvents {
     let event = |(index, event): (usize, TraceEvent)| {
         let moves = WalkEvent::at(index).moves();
         let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
-        let kind = match event.kind {
-            TraceEventKind::Percept(percept) => {
-                let Percept { degree, sighting } = percept;
-                let number = Some(moves as u32).filter(|_| !trace.is_relocation(moves));
-                let sighting = Some(sighting);
-                let arrival = Arrival { number, degree, sighting, form: None, entry: None };
-                CheckedKind::Arrival { arrival, entry_off: None, hallway: None }
-            }
-            TraceEventKind::Door(door) => {
-                CheckedKind::Door { door, number: Some(moves as u32 + 1), off: None }
-            }
+        let mut kind = match event.kind {
+            TraceEventKind::Percept(percept) => CheckedKind::from(percept),
+            TraceEventKind::Door(door) => CheckedKind::from(door),
         };
+        match &mut kind {
+            CheckedKind::Arrival { arrival, .. } if !trace.is_relocation(moves) => {
+                arrival.number = Some(moves as u32);
+            }
+            CheckedKind::Door { number, .. } => *number = Some(moves as u32 + 1),
+            _ => {}
+        }
         CheckedEvent { source, kind }
     };
-    let events = trace.events().enumerate().map(event).collect();
-    RunEvents { events, has_head: whole.has_head, ..RunEvents::default() }
+    whole.with_events(trace.events().enumerate().map(event).collect())
 }
 
 /// The index in a trace of the event with this id.
@@ -177,22 +171,16 @@ fn trace_index(trace: &Trace, id: usize) -> Option<usize> {
 impl RunEvents {
     /// The events from one to another, as if the run began there; `None` if it cannot begin there.
     fn from(&self, first: usize, last: usize) -> Option<Self> {
-        let CheckedKind::Arrival { arrival, .. } = &self.events.get(first)?.kind else {
-            return None;
-        };
-        let before = arrival.number.unwrap_or(0);
+        let before = self.events.get(first)?.arrival()?.number.unwrap_or(0);
         let mut events = self.events[first..=last].to_vec();
         for event in &mut events {
-            if let CheckedKind::Arrival { arrival: Arrival { number, .. }, .. }
-            | CheckedKind::Door { number, .. } = &mut event.kind
-            {
-                *number = number.map(|number| number.wrapping_sub(before));
+            if let Some(number) = event.number_mut() {
+                *number = number.wrapping_sub(before);
             }
             if let CheckedKind::Arrival { hallway, .. } = &mut event.kind {
                 *hallway = None;
             }
         }
-        let Self { has_head, may_turn_back, measurement_noise, .. } = *self;
-        Some(Self { events, has_head, may_turn_back, measurement_noise, ..Self::default() })
+        Some(self.with_events(events))
     }
 }

@@ -56,14 +56,14 @@ impl<'j> MeasuredWalk<'j> {
     /// whole walk does not have it by itself.
     pub(super) fn shortened(
         &self,
-        question: &ConformConfig,
+        config: &ConformConfig,
         watch: &dyn Watch,
     ) -> Option<(RunEvents, usize)> {
         let shows = |visits: &[usize]| {
             let mut visits = visits.to_vec();
             loop {
                 let events = self.events_of(&visits);
-                let judged = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
+                let judged = judge(events.clone(), config, &Quirks::default(), watch).ok()?;
                 let found = judged.divergence.filter(|found| self.is_shown_by(&visits, found))?;
                 if found.event + 1 == events.events.len() {
                     return Some((visits, events));
@@ -109,17 +109,13 @@ impl<'j> MeasuredWalk<'j> {
         }
     }
 
-    /// The arrival of a visit, by its index among the events.
     fn arrival(&self, visit: usize) -> usize {
         self.trace.percept_event(visit).id
     }
 
     /// The direction of the entry door of a visit, in the frame of odometry.
     fn entry(&self, visit: usize) -> Option<f64> {
-        match self.events.events.get(self.arrival(visit))?.kind {
-            CheckedKind::Arrival { arrival, .. } => arrival.entry,
-            _ => None,
-        }
+        self.events.events.get(self.arrival(visit))?.arrival()?.entry
     }
 
     /// The events of some visits, and of the move to each from the visit before it.
@@ -150,8 +146,7 @@ impl<'j> MeasuredWalk<'j> {
             }
             events.push(event);
         }
-        let RunEvents { has_head, measurement_noise, .. } = *self.events;
-        RunEvents { events, has_head, measurement_noise, ..RunEvents::default() }
+        self.events.with_events(events)
     }
 
     /// Whether a divergence of the events of some visits is that of the whole walk: between the same events, with the
@@ -161,8 +156,6 @@ impl<'j> MeasuredWalk<'j> {
         let whole = |event: usize| {
             visits.get(WalkEvent::at(event).moves()).map(|&visit| self.arrival(visit))
         };
-        let same_end =
-            |shorter: [usize; 2], longer: [usize; 2]| whole(shorter[1]) == Some(longer[1]);
         let (
             DivergenceCause::Measurement { between, earlier, measurement },
             DivergenceCause::Measurement {
@@ -187,8 +180,8 @@ impl<'j> MeasuredWalk<'j> {
             ) => quarters == other,
             (one, other) => discriminant(one) == discriminant(other),
         };
-        same_end(*between, *before_between)
-            && same_end(*earlier, *before_earlier)
+        whole(between[1]) == Some(before_between[1])
+            && whole(earlier[1]) == Some(before_earlier[1])
             && same_begin
             && same_measurement
             && found.fault == self.divergence.fault

@@ -18,7 +18,7 @@ use toposlam_model::{
     measurement::ContradictoryMeasurement,
     percept::{Door, Percept, Sighting},
     trace::anywhere,
-    world::GraphWorld,
+    world::{GraphWorld, World},
 };
 use toposlam_robot::{
     budget::RunBudget, measured_hallway::log_noise, robot::TimedOdometry, run_settings::RunSettings,
@@ -40,6 +40,24 @@ mod tolerance;
 mod verdicts;
 
 const DARTS: usize = 400;
+const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
+
+/// A floor plan, and where a run in it starts.
+type Place = (Arc<FloorPlan>, Dart);
+
+/// A floor plan of `worlds/`, and its first start.
+fn place_in(name: &str) -> Place {
+    let (_, plan) = plans().unwrap().into_iter().find(|(plan, _)| plan == name).unwrap();
+    let facing = starts_of(&plan)[0];
+    (plan, facing)
+}
+
+/// The place of most tests.
+fn place() -> Place {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let facing = starts_of(&plan)[0];
+    (plan, facing)
+}
 
 /// The content of a log of a simulated run.
 #[derive(Clone, Debug, Default)]
@@ -57,9 +75,9 @@ impl Log {
 
     fn recorded(&self) -> RunEvents {
         let mut recorded = RecordedEvents::default();
-        for (message, (reckoned, line)) in self.lines.iter().enumerate() {
-            let source = source(message, reckoned);
-            recorded.observe(source, &EventKind::Odometry(reckoned.odometry));
+        for (message, (timed, line)) in self.lines.iter().enumerate() {
+            let source = source(message, timed);
+            recorded.observe(source, &EventKind::Odometry(timed.odometry));
             recorded.observe(source, line);
         }
         let end = Some(RunEnd { moves: self.moves(), ending: RunEnding::Mapped });
@@ -74,17 +92,17 @@ impl Log {
 
     fn inferred(&self) -> Vec<CheckedEvent> {
         let mut inferred = InferredEvents::new(true);
-        for (message, (reckoned, line)) in self.lines.iter().enumerate() {
+        for (message, (timed, line)) in self.lines.iter().enumerate() {
             if let EventKind::Frame(Frame { scene: Some(scene), .. }) = line {
-                inferred.see(source(message, reckoned), scene, &reckoned.odometry);
+                inferred.see(source(message, timed), scene, &timed.odometry);
             }
         }
         inferred.finish()
     }
 }
 
-fn source(message: usize, reckoned: &TimedOdometry) -> EventSource {
-    let time = (reckoned.time * 1e9).round() as u64;
+fn source(message: usize, timed: &TimedOdometry) -> EventSource {
+    let time = (timed.time * 1e9).round() as u64;
     EventSource { time, id: EventId(message as u64 + 1), offset: 0 }
 }
 
@@ -95,64 +113,125 @@ impl RunObserver for Log {
             EventKind::Door { .. } | EventKind::Arrival(_) => {}
             _ => return,
         }
-        let reckoned = TimedOdometry { time: event.time as f64 / 1e9, odometry: self.odometry };
-        self.lines.push((reckoned, event.kind.clone()));
+        let timed = TimedOdometry { time: event.time as f64 / 1e9, odometry: self.odometry };
+        self.lines.push((timed, event.kind.clone()));
     }
 }
 
 /// A good run of Algorithm 1.
-fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
-    log_of(MappingAlgorithm::Algorithm1, plan, facing, seed)
+fn log(place: &Place, seed: u64) -> Log {
+    log_of(MappingAlgorithm::Algorithm1, place, seed)
 }
 
 /// A good run of a robot that maps.
-fn log_of(method: impl Into<MappingMethod>, plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
-    let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
+fn log_of(method: impl Into<MappingMethod>, (plan, facing): &Place, seed: u64) -> Log {
+    let robot = SimulationConfig::at_start(plan.clone(), *facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, facing, robot, NoSensor, &mut log, &RunSettings::new(method, DARTS));
+    let run = run(plan, *facing, robot, NoSensor, &mut log, &RunSettings::new(method, DARTS));
     assert_eq!(run.outcome(), toposlam_simulator::run::RunOutcome::Right);
     log
 }
 
-fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
-    let graph = plan.graph();
-    let states = match facing {
-        Some(facing) => vec![GraphWorld::new(graph, facing).state()],
-        None => anywhere(graph, &Directional),
-    };
-    let world = Some(KnownWorld { graph, states });
-    ConformConfig { world, ..without_world() }
+/// The good run of most tests.
+fn good_run() -> RunEvents {
+    log(&place(), 1).recorded()
 }
 
-fn without_world() -> ConformConfig<'static> {
-    let search = WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 };
+fn in_world(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig {
+    let graph = plan.graph().clone();
+    let states = match facing {
+        Some(facing) => vec![GraphWorld::new(&graph, facing).state()],
+        None => anywhere(&graph, &Directional),
+    };
+    ConformConfig { world: Some(KnownWorld { graph, states }), ..without_world() }
+}
+
+fn at_place((plan, facing): &Place) -> ConformConfig {
+    in_world(plan, Some(*facing))
+}
+
+fn without_world() -> ConformConfig {
     ConformConfig {
         world: None,
         marker: &Directional,
         driver: RunDriver::from(MappingAlgorithm::Algorithm1),
         budget: RunBudget::default(),
-        search,
+        search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 },
         dart_bound: DARTS,
     }
 }
 
-fn judged(events: &RunEvents, question: &ConformConfig) -> Judgement {
-    judge(events.clone(), question, &Quirks::default(), &()).unwrap()
+/// The log of a robot that may choose any door, in any world.
+fn by_anyone() -> ConformConfig {
+    ConformConfig { driver: RunDriver::Anyone, ..without_world() }
 }
+
+fn with_folding(config: ConformConfig) -> ConformConfig {
+    ConformConfig { driver: FOLDING.into(), ..config }
+}
+
+fn judged(events: &RunEvents, config: &ConformConfig) -> Judgement {
+    judge(events.clone(), config, &Quirks::default(), &()).unwrap()
+}
+
+fn divergence(events: &RunEvents, config: &ConformConfig) -> Divergence {
+    judged(events, config).divergence.unwrap()
+}
+
+/// The event of the first divergence, from 0, and the name of its cause.
+fn place_of(divergence: &Divergence) -> (usize, &'static str) {
+    (divergence.event, divergence.cause.name())
+}
+
+fn arrival_at(events: &mut RunEvents, at: usize) -> &mut Arrival {
+    events.events[at].arrival_mut().expect("an arrival")
+}
+
+/// The events with another number of doors at these arrivals.
+fn with_more_doors(events: &RunEvents, at: &[usize], more: u32) -> RunEvents {
+    let mut events = events.clone();
+    for &at in at {
+        let arrival = arrival_at(&mut events, at);
+        (arrival.degree, arrival.form) = (arrival.degree + more, None);
+    }
+    events
+}
+
+/// Events of other programs, without measurements.
+fn bare_events(kinds: impl IntoIterator<Item = CheckedKind>) -> RunEvents {
+    let event = |kind| CheckedEvent { source: EventSource::default(), kind };
+    RunEvents { events: kinds.into_iter().map(event).collect(), ..RunEvents::default() }
+}
+
+fn bare_arrival(degree: u32, sighting: Sighting) -> CheckedKind {
+    Percept { degree, sighting }.into()
+}
+
+fn bare_door(door: u32) -> CheckedKind {
+    Door(door).into()
+}
+
+/// The verdict and the first divergence of a good run.
+const GOOD: (ConformVerdict, Option<Divergence>) = (ConformVerdict::Conforms, None);
 
 #[test]
 fn good_logs_of_every_plan_conform() {
     for (name, plan) in plans().unwrap() {
         for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(2) {
-            let events = log(&plan, facing, seed as u64).recorded();
-            for question in [question(&plan, Some(facing)), question(&plan, None), without_world()]
-            {
-                let judgement = judged(&events, &question);
-                assert_eq!(
-                    (judgement.verdict(), &judgement.divergence),
-                    (ConformVerdict::Conforms, &None),
-                    "{name} from {facing:?}"
-                );
+            let events = log(&(plan.clone(), facing), seed as u64).recorded();
+            for config in [in_world(&plan, Some(facing)), in_world(&plan, None), without_world()] {
+                let judgement = judged(&events, &config);
+                let found = (judgement.verdict(), judgement.divergence);
+                assert_eq!(found, GOOD, "{name} from {facing:?}");
+            }
+        }
+        for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
+            let events = log_of(FOLDING, &(plan.clone(), facing), seed as u64).recorded();
+            for config in [in_world(&plan, Some(facing)), without_world()] {
+                let judgement = judged(&events, &with_folding(config));
+                assert_eq!(judgement.determines_world(), Some(true));
+                let found = (judgement.verdict(), judgement.divergence);
+                assert_eq!(found, GOOD, "{name} from {facing:?}, folding");
             }
         }
     }
@@ -172,14 +251,18 @@ fn bare(events: &[CheckedEvent]) -> Vec<(Option<Percept>, Option<Door>)> {
 fn inferred_percepts_and_doors_are_the_recorded_ones() {
     for (name, plan) in plans().unwrap() {
         for (seed, facing) in starts_of(&plan).into_iter().enumerate() {
-            let log = log(&plan, facing, seed as u64);
-            assert_eq!(
-                bare(&log.inferred()),
-                bare(&log.recorded().events),
-                "{name} from {facing:?}"
-            );
+            let log = log(&(plan.clone(), facing), seed as u64);
+            let recorded = bare(&log.recorded().events);
+            assert_eq!(bare(&log.inferred()), recorded, "{name} from {facing:?}");
         }
     }
+}
+
+/// A random plan with its first start, if it has one.
+fn random_place(seed: u64, junctions: usize) -> Option<Place> {
+    let plan = Arc::new(random_plan_with(seed, junctions).unwrap());
+    let facing = *starts_of(&plan).first()?;
+    Some((plan, facing))
 }
 
 proptest! {
@@ -187,11 +270,9 @@ proptest! {
 
     #[test]
     fn good_logs_of_random_plans_conform(seed in 0_u64..1000) {
-        let plan = Arc::new(random_plan_with(seed, 12).unwrap());
-        if let Some(&facing) = starts_of(&plan).first() {
-            let log = log(&plan, facing, seed);
-            let judgement = judged(&log.recorded(), &question(&plan, Some(facing)));
-            prop_assert_eq!(judgement.divergence, None);
+        if let Some(place) = random_place(seed, 12) {
+            let log = log(&place, seed);
+            prop_assert_eq!(judged(&log.recorded(), &at_place(&place)).divergence, None);
             prop_assert_eq!(bare(&log.inferred()), bare(&log.recorded().events));
         }
     }
@@ -325,10 +406,10 @@ impl Log {
 }
 
 /// The first event at which a log does not conform, from 0.
-fn divergence_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usize> {
+fn divergence_at(log: &Log, moves: u64, config: &ConformConfig) -> Option<usize> {
     let mut events = log.recorded();
     events.end.as_mut().unwrap().moves = moves;
-    match judge(events, question, &Quirks::default(), &()) {
+    match judge(events, config, &Quirks::default(), &()) {
         Err(JudgeError::OutOfOrder { event, .. }) => Some(event - 1),
         Err(JudgeError::Empty) => Some(0),
         Err(error) => panic!("{error}"),
@@ -336,11 +417,11 @@ fn divergence_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usiz
     }
 }
 
+/// A mutation of the shape may show as one of a junction that has another shape at another visit.
 #[track_caller]
 fn assert_mutation_is_found(
     good: &Log,
-    plan: &FloorPlan,
-    facing: Dart,
+    config: &ConformConfig,
     event: usize,
     how: (Mutation, u32),
 ) {
@@ -350,37 +431,33 @@ fn assert_mutation_is_found(
         Shows::Never(_) => None,
         Shows::NotOne => return,
     };
-    let question = question(plan, Some(facing));
-    let found = divergence_at(&log, good.moves(), &question);
-    if how.0 == Mutation::Form && found != expected && is_shape_of(&log, event, &question) {
+    let found = divergence_at(&log, good.moves(), config);
+    if how.0 == Mutation::Form && found != expected {
+        let found = divergence(&log.recorded(), config);
+        let shape = ContradictoryMeasurement::Shape;
+        assert!(
+            matches!(found.cause, DivergenceCause::Measurement { between, measurement, .. }
+                if between.contains(&event) && measurement == shape),
+            "{how:?} of event {event}: {found:?}"
+        );
         return;
     }
     assert_eq!(found, expected, "{how:?} of event {event}");
 }
 
-/// Whether a log diverges because a junction has another shape at an event than at another visit.
-fn is_shape_of(log: &Log, event: usize, question: &ConformConfig) -> bool {
-    let found = judged(&log.recorded(), question).divergence;
-    found.is_some_and(|found| match found.cause {
-        DivergenceCause::Measurement {
-            between,
-            measurement: ContradictoryMeasurement::Shape,
-            ..
-        } => between.contains(&event),
-        _ => false,
-    })
-}
-
 #[test]
 fn every_mutation_is_found_at_its_event_or_does_not_show() {
-    for (name, plan) in plans().unwrap().into_iter().take(3) {
-        println!("{name}");
+    let algorithm1 = plans().unwrap().into_iter().take(3).map(|(_, plan)| {
         let facing = starts_of(&plan)[0];
-        let good = log(&plan, facing, 1);
+        ((plan, facing), MappingAlgorithm::Algorithm1, 2)
+    });
+    for (place, algorithm, most) in algorithm1.chain([(place(), FOLDING, 1)]) {
+        let good = log_of(algorithm, &place, 1);
+        let config = ConformConfig { driver: algorithm.into(), ..at_place(&place) };
         for event in 0..good.places().len() {
             for mutation in MUTATIONS {
-                for by in 0..2 {
-                    assert_mutation_is_found(&good, &plan, facing, event, (mutation, by));
+                for by in 0..most {
+                    assert_mutation_is_found(&good, &config, event, (mutation, by));
                 }
             }
         }
@@ -389,12 +466,11 @@ fn every_mutation_is_found_at_its_event_or_does_not_show() {
 
 #[test]
 fn a_log_with_a_wrong_number_of_moves_or_a_wrong_map_diverges_at_its_end() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let good = log(&plan, facing, 1);
-    let question = question(&plan, Some(facing));
+    let place = place();
+    let good = log(&place, 1);
+    let config = at_place(&place);
     let end = good.places().len();
-    assert_eq!(divergence_at(&good, good.moves() + 1, &question), Some(end));
+    assert_eq!(divergence_at(&good, good.moves() + 1, &config), Some(end));
     let mut events = good.recorded();
     events.map = Some(MapRecord {
         moves: 0,
@@ -402,97 +478,73 @@ fn a_log_with_a_wrong_number_of_moves_or_a_wrong_map_diverges_at_its_end() {
         opposite: [1, 0].map(|dart| Some(Dart(dart))).to_vec(),
         robot: Dart(0),
     });
-    let divergence = judged(&events, &question).divergence.unwrap();
-    assert_eq!(
-        (divergence.event, divergence.cause),
-        (end, DivergenceCause::Map { algorithm: MappingAlgorithm::Algorithm1 })
-    );
-}
-
-#[test]
-fn half_a_run_is_incomplete_and_diverges_if_it_is_recorded_as_complete() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let good = log(&plan, facing, 1).recorded();
-    let question = question(&plan, Some(facing));
-    let half = good.up_to(4);
-    assert_eq!(judged(&half, &question).verdict(), ConformVerdict::Incomplete);
+    let algorithm = MappingAlgorithm::Algorithm1;
+    let found = divergence(&events, &config);
+    assert_eq!((found.event, found.cause), (end, DivergenceCause::Map { algorithm }));
+    // Half a run is incomplete, and diverges if it is recorded as complete.
+    let half = good.recorded().up_to(4);
+    assert_eq!(judged(&half, &config).verdict(), ConformVerdict::Incomplete);
     let end = RunEnd { moves: 2, ending: RunEnding::Mapped };
-    let whole = RunEvents { end: Some(end), ..half };
-    let divergence = judged(&whole, &question).divergence.unwrap();
-    assert!(matches!(divergence.cause, DivergenceCause::Unfinished { .. }), "{divergence:?}");
+    let found = divergence(&RunEvents { end: Some(end), ..half }, &config);
+    assert!(matches!(found.cause, DivergenceCause::Unfinished { .. }), "{found:?}");
 }
 
 #[test]
 fn a_wrong_percept_is_a_fault_of_perception_and_a_wrong_door_one_of_motion() {
     // In shape 8 every junction has a door 1.
-    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-8").unwrap();
-    let graph = plan.graph();
-    let facing = starts_of(&plan)[0];
+    let place = place_in("shape-8");
+    let graph = place.0.graph();
     let doors = [1; 8].map(Door);
     let walk = |made: &[Door]| {
-        let mut world = GraphWorld::new(graph, facing);
-        let mut kinds = vec![world.sensed()];
+        let mut world = GraphWorld::new(graph, place.1);
+        let mut percepts = vec![world.sensed()];
         for &door in made {
-            toposlam_model::world::World::traverse(&mut world, door).unwrap();
-            kinds.push(world.sensed());
+            world.traverse(door).unwrap();
+            percepts.push(world.sensed());
         }
-        kinds
+        percepts
     };
-    let events = |percepts: &[Percept]| {
-        let mut recorded = RecordedEvents::default();
-        let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
-        for (moves, &percept) in percepts.iter().enumerate() {
-            let number = Some(moves as u32);
-            let Percept { degree, sighting } = percept;
-            let sighting = Some(sighting);
-            let arrival = Arrival { number, degree, sighting, form: None, entry: None };
-            observe(EventKind::Arrival(arrival));
-            if let Some(&door) = doors.get(moves) {
-                observe(EventKind::Door { number: Some(moves as u32 + 1), door });
-            }
-        }
-        RunEvents { events: recorded.finish(), ..RunEvents::default() }
+    let config = ConformConfig { driver: RunDriver::Anyone, ..at_place(&place) };
+    let found = |percepts: &[Percept]| {
+        let mut doors = doors.iter();
+        let kinds = percepts.iter().flat_map(|&percept| {
+            [Some(percept.into()), doors.next().map(|&door| door.into())].into_iter().flatten()
+        });
+        let divergence = judged(&bare_events(kinds), &config).divergence;
+        divergence.map(|divergence| (divergence.event, divergence.fault))
     };
-    let question = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, Some(facing)) };
     let right = walk(&doors);
-    assert_eq!(judged(&events(&right), &question).divergence, None);
-    // One percept is false.
-    let mut false_percept = right.clone();
-    false_percept[3].degree = 5;
-    let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.fault), (6, FaultClass::Perception));
+    assert_eq!(found(&right), None);
+    let mut wrong = right.clone();
+    wrong[3].degree = 5;
+    assert_eq!(found(&wrong), Some((6, FaultClass::Perception)));
     // The last percept is false, although it would be true elsewhere.
-    let mut last = right.clone();
-    let degree = &mut last.last_mut().unwrap().degree;
-    *degree = if *degree == 2 { 3 } else { 2 };
-    let divergence = judged(&events(&last), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.fault), (16, FaultClass::Perception));
+    let mut wrong = right.clone();
+    wrong[8].degree = if wrong[8].degree == 2 { 3 } else { 2 };
+    assert_eq!(found(&wrong), Some((16, FaultClass::Perception)));
     // The robot takes another door than the recorded one: all later percepts are of another place.
     let mut made = doors;
     made[2] = Door(0);
-    let elsewhere = walk(&made);
-    let divergence = judged(&events(&elsewhere), &question).divergence.unwrap();
-    assert_eq!(divergence.fault, FaultClass::Motion);
+    assert_eq!(found(&walk(&made)).unwrap().1, FaultClass::Motion);
 }
 
 #[test]
 fn a_quirk_is_tolerated_and_counted() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let mut log = log(&plan, facing, 1);
-    let moves = log.moves();
-    let percept = log.places().len() - 1;
+    let place = place();
+    let mut log = log(&place, 1);
+    let (moves, percept) = (log.moves(), log.places().len() - 1);
     assert_eq!(log.mutate(percept, Mutation::Marker, 0), Shows::At(percept));
-    let question = question(&plan, Some(facing));
-    assert_eq!(divergence_at(&log, moves, &question), Some(percept));
+    let config = at_place(&place);
+    assert_eq!(divergence_at(&log, moves, &config), Some(percept));
     let text = "[[quirk]]\nname = \"glare\"\ncause = \"percept\"\nreason = \"the window\"";
-    let quirks = Quirks::read(text).unwrap();
-    let judgement = judge(log.recorded(), &question, &quirks, &()).unwrap();
-    assert_eq!((judgement.verdict(), judgement.tolerated.len()), (ConformVerdict::Conforms, 1));
-    let elsewhere = Quirks::read(&format!("{text}\nevent = 1")).unwrap();
-    let judgement = judge(log.recorded(), &question, &elsewhere, &()).unwrap();
-    assert_eq!(judgement.verdict(), ConformVerdict::Diverged);
+    for (text, verdict, count) in [
+        (text.to_owned(), ConformVerdict::Conforms, 1),
+        (format!("{text}\nevent = 1"), ConformVerdict::Diverged, 0),
+    ] {
+        let quirks = Quirks::read(&text).unwrap();
+        let judgement = judge(log.recorded(), &config, &quirks, &()).unwrap();
+        assert_eq!((judgement.verdict(), judgement.tolerated.len()), (verdict, count));
+    }
 }
 
 proptest! {
@@ -505,11 +557,10 @@ proptest! {
         mutation in prop::sample::select(MUTATIONS.to_vec()),
         by in 0_u32..3,
     ) {
-        let plan = Arc::new(random_plan_with(seed, 8).unwrap());
-        if let Some(&facing) = starts_of(&plan).first() {
-            let good = log(&plan, facing, seed);
+        if let Some(place) = random_place(seed, 8) {
+            let good = log(&place, seed);
             let event = event.index(good.places().len());
-            assert_mutation_is_found(&good, &plan, facing, event, (mutation, by));
+            assert_mutation_is_found(&good, &at_place(&place), event, (mutation, by));
         }
     }
 
@@ -519,21 +570,20 @@ proptest! {
         event in any::<prop::sample::Index>(),
         mutation in prop::sample::select(MUTATIONS.to_vec()),
     ) {
-        let plan = Arc::new(random_plan_with(seed, 8).unwrap());
-        let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
-        let mut log = log(&plan, facing, seed);
+        let Some(place) = random_place(seed, 8) else { return Ok(()) };
+        let mut log = log(&place, seed);
         let event = event.index(log.places().len());
         log.mutate(event, mutation, 1);
-        let question = question(&plan, Some(facing));
-        let Ok(judgement) = judge(log.recorded(), &question, &Quirks::default(), &()) else {
+        let config = at_place(&place);
+        let Ok(judgement) = judge(log.recorded(), &config, &Quirks::default(), &()) else {
             return Ok(());
         };
-        if let Some(shorter) = shorten_run(&judgement, &question, &()) {
+        if let Some(shorter) = shorten_run(&judgement, &config, &()) {
             let ShortenedRun { events: short, event, by_itself } = shorter;
-            let question = if by_itself { question.by_itself() } else { question };
+            let config = if by_itself { config.by_itself() } else { config };
             let divergence = judgement.divergence.unwrap();
             prop_assert!(short.events.len() <= divergence.event + 2);
-            let found = judged(&short, &question).divergence.unwrap();
+            let found = judged(&short, &config).divergence.unwrap();
             prop_assert_eq!(found.event, event);
             prop_assert!(found.is_like(&divergence), "{:?} {:?}", found, divergence);
         }

@@ -15,49 +15,33 @@ use toposlam_model::{
 use super::{
     config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause},
-    events::{CheckedEvent, CheckedKind, RunEvents},
+    events::{CheckedEvent, RunEvents},
     quirks::Quirks,
 };
 
 /// The divergences of a run that are tolerated so far.
 pub(super) struct Tolerance<'q> {
     quirks: &'q Quirks,
-    question: &'q ConformConfig<'q>,
+    config: &'q ConformConfig,
     recorded: RunEvents,
     /// With the expected events in place of the tolerated ones.
-    amended: RunEvents,
+    pub(super) amended: RunEvents,
     /// In the order of the events, each with the index of its quirk.
-    tolerated: Vec<(Divergence, usize)>,
-    noted: BTreeSet<(usize, &'static str)>,
+    pub(super) tolerated: Vec<(Divergence, usize)>,
+    /// The events that are tolerated, and the names of their causes.
+    pub(super) noted: BTreeSet<(usize, &'static str)>,
 }
 
 impl<'q> Tolerance<'q> {
-    pub(super) fn new(
-        recorded: RunEvents,
-        quirks: &'q Quirks,
-        question: &'q ConformConfig<'q>,
-    ) -> Self {
+    pub(super) fn new(recorded: RunEvents, quirks: &'q Quirks, config: &'q ConformConfig) -> Self {
         let amended = recorded.clone();
-        Self { quirks, question, recorded, amended, tolerated: Vec::new(), noted: BTreeSet::new() }
-    }
-
-    pub(super) fn events(&self) -> &RunEvents {
-        &self.amended
-    }
-
-    /// The events that are tolerated, and the names of their causes.
-    pub(super) fn noted(&self) -> &BTreeSet<(usize, &'static str)> {
-        &self.noted
-    }
-
-    pub(super) fn finish(self) -> Vec<(Divergence, usize)> {
-        self.tolerated
+        Self { quirks, config, recorded, amended, tolerated: Vec::new(), noted: BTreeSet::new() }
     }
 
     /// Tolerates the first divergence of these events, and those after it that can be found without
     /// another judgement. `false` if the judgement stands.
     pub(super) fn grows(&mut self, first: Option<&Divergence>) -> bool {
-        if self.tolerated.is_empty() && self.quirks.all().is_empty() {
+        if self.tolerated.is_empty() && self.quirks.quirks.is_empty() {
             return false;
         }
         // What was tolerated ahead of a judgement and lies after its divergence is not tolerated.
@@ -86,11 +70,8 @@ impl<'q> Tolerance<'q> {
         let quirk = self.quirks.tolerating(divergence)?;
         match &divergence.cause {
             DivergenceCause::World(_) | DivergenceCause::Algorithm(_) => {
-                let arrival = match &self.amended.events.get(divergence.event)?.kind {
-                    CheckedKind::Arrival { .. } => expected(&divergence.cause),
-                    _ => None,
-                };
-                arrival.map(|_| quirk)
+                self.amended.events.get(divergence.event)?.arrival()?;
+                expected(&divergence.cause).map(|_| quirk)
             }
             DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => None,
             // It is skipped.
@@ -98,21 +79,26 @@ impl<'q> Tolerance<'q> {
         }
     }
 
+    /// A divergence with its quirk, if it is tolerated.
+    fn tolerable(&self, event: usize, cause: DivergenceCause) -> Option<(Divergence, usize)> {
+        let divergence = Divergence { event, fault: cause.fault(), cause };
+        let quirk = self.quirk(&divergence)?;
+        Some((divergence, quirk))
+    }
+
     /// Replaces the tolerated events by the expected ones.
     fn amend(&mut self) {
         self.amended = self.recorded.clone();
         self.noted.clear();
-        for (divergence, _) in &self.tolerated {
-            self.noted.insert((divergence.event, divergence.cause.name()));
-            if let (Some(Percept { degree, sighting }), Some(CheckedEvent { kind, .. })) =
-                (expected(&divergence.cause), self.amended.events.get_mut(divergence.event))
-                && let CheckedKind::Arrival { arrival, .. } = kind
-            {
+        for (Divergence { event, cause, .. }, _) in &self.tolerated {
+            self.noted.insert((*event, cause.name()));
+            let found = self.amended.events.get_mut(*event).and_then(CheckedEvent::arrival_mut);
+            if let (Some(Percept { degree, sighting }), Some(arrival)) = (expected(cause), found) {
                 (arrival.degree, arrival.sighting) = (degree, Some(sighting));
                 // Its shape belongs to the tolerated percept.
                 arrival.form = None;
             }
-            self.amended.forget_measurement(&divergence.cause);
+            self.amended.forget_measurement(cause);
         }
     }
 
@@ -123,47 +109,40 @@ impl<'q> Tolerance<'q> {
             if self.noted.contains(&(event, cause.name())) {
                 continue;
             }
-            let divergence = Divergence { event, fault: cause.fault(), cause };
-            let Some(quirk) = self.quirk(&divergence) else { return event };
-            self.tolerated.push((divergence, quirk));
+            let Some(tolerated) = self.tolerable(event, cause) else { return event };
+            self.tolerated.push(tolerated);
         }
         usize::MAX
     }
 
     /// Tolerates the percepts before an event that do not fit the known world.
     fn misfits(&mut self, limit: usize) {
-        let Some(known) = &self.question.world else { return };
+        let Some(known) = &self.config.world else { return };
         let Ok(trace) = self.amended.trace() else { return };
         let mut tolerated = Vec::new();
         let amend = |misfit: &Misfit| {
-            let event = misfit.event.id;
-            let cause = DivergenceCause::World(misfit.clone());
-            let divergence = Divergence { event, fault: cause.fault(), cause };
-            let quirk = self.quirk(&divergence).filter(|_| event < limit)?;
-            tolerated.push((divergence, quirk));
+            let event = Some(misfit.event.id).filter(|&event| event < limit)?;
+            tolerated.push(self.tolerable(event, DivergenceCause::World(misfit.clone()))?);
             expected_by(misfit)
         };
-        let _ = poses_amended(known.graph, &self.question.marker, &known.states, &trace, amend);
+        let _ = poses_amended(&known.graph, &self.config.marker, &known.states, &trace, amend);
         self.tolerated.extend(tolerated);
     }
 
     /// Tolerates the percepts before an event that contradict the algorithm's map.
     fn contradictions(&mut self, limit: usize) {
-        let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) = self.question.driver
+        let RunDriver::Method(MappingMethod::By { algorithm, audits: 0 }) = self.config.driver
         else {
             return;
         };
         let Ok(trace) = self.amended.trace() else { return };
         let mut tolerated = Vec::new();
         let mut amend = |departure: &Departure| {
-            let event = departure.event.id;
-            let cause = DivergenceCause::Algorithm(departure.clone());
-            let divergence = Divergence { event, fault: cause.fault(), cause };
-            let quirk = self.quirk(&divergence).filter(|_| event < limit)?;
-            tolerated.push((divergence, quirk));
+            let event = Some(departure.event.id).filter(|&event| event < limit)?;
+            tolerated.push(self.tolerable(event, DivergenceCause::Algorithm(departure.clone()))?);
             expected_after(departure)
         };
-        let bound = self.question.dart_bound;
+        let bound = self.config.dart_bound;
         let _ = match_amended(algorithm, &trace, self.amended.claim(), bound, &mut amend);
         self.tolerated.extend(tolerated);
     }
@@ -215,16 +194,18 @@ mod tests {
     fn a_percept_is_expected_if_all_candidate_poses_expect_it() {
         let percept = |degree| Percept { degree, sighting: Sighting::Nothing };
         let at = |degree| MisfitReason::Percept { expected: percept(degree) };
-        let expected = |reasons: &[MisfitReason]| {
-            let state = State { pose: Dart(0), placed: Some(Dart(0)) };
+        let no_door = MisfitReason::NoSuchDoor { degree: 3 };
+        let state = State { pose: Dart(0), placed: Some(Dart(0)) };
+        let event = TraceEvent { id: 2, kind: TraceEventKind::Percept(percept(5)) };
+        for (reasons, expected) in [
+            (&[at(3)][..], Some(percept(3))),
+            (&[at(3), at(3)], Some(percept(3))),
+            (&[at(3), at(4)], None),
+            (&[at(3), no_door], None),
+            (&[], None),
+        ] {
             let candidates = reasons.iter().map(|reason| (state, *reason)).collect();
-            let event = TraceEvent { id: 2, kind: TraceEventKind::Percept(percept(5)) };
-            expected_by(&Misfit { event, moves: 1, candidates })
-        };
-        assert_eq!(expected(&[at(3)]), Some(percept(3)));
-        assert_eq!(expected(&[at(3), at(3)]), Some(percept(3)));
-        assert_eq!(expected(&[at(3), at(4)]), None);
-        assert_eq!(expected(&[at(3), MisfitReason::NoSuchDoor { degree: 3 }]), None);
-        assert_eq!(expected(&[]), None);
+            assert_eq!(expected_by(&Misfit { event, moves: 1, candidates }), expected);
+        }
     }
 }

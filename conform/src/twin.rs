@@ -1,10 +1,7 @@
 //! Another world that explains a log as well, because the marker does not distinguish it from the first one.
 //! Section 2.2, Figure 1.
 
-#![allow(missing_docs, reason = "the names of most fields and variants say what they are")]
-
-use serde::Serialize;
-use serde_json::Value;
+use serde::{Serialize, Serializer};
 use toposlam_model::{
     ambiguity::{self, Twins, twins},
     embedded_graph::{Dart, EmbeddedGraph},
@@ -16,7 +13,7 @@ use toposlam_model::{
     world::State,
 };
 
-use super::{judgement::Judgement, known_world::Known};
+use super::{config::ConformConfig, judgement::Judgement, known_world::KnownWorld};
 
 /// Another world that explains a log, and that no walk distinguishes from the first one.
 #[derive(Clone, Debug, Serialize)]
@@ -28,9 +25,7 @@ pub struct TwinWorld {
     pub figure: Option<&'static str>,
     /// The number of such worlds that were found.
     pub worlds: usize,
-    #[serde(rename = "world")]
-    file: Value,
-    #[serde(skip)]
+    #[serde(serialize_with = "world_json")]
     pub world: NamedWorld,
     #[serde(skip)]
     pub marker: &'static dyn Marker,
@@ -54,22 +49,17 @@ const FIGURES: [(&str, &str); 2] = [
 impl TwinWorld {
     /// A world that no walk distinguishes from the known world of a log, or from the smallest one that explains
     /// it; the log is judged in it again. A robot without a marker has too many.
-    pub(super) fn find(
-        judgement: &Judgement,
-        known: Option<&Known>,
-        marker: &'static dyn Marker,
-    ) -> Option<Self> {
+    pub(super) fn find(judgement: &Judgement, config: &ConformConfig) -> Option<Self> {
+        let marker = config.marker;
         if judgement.divergence.is_some() || marker.name() == NoMarker.name() {
             return None;
         }
         let fits = |graph: &EmbeddedGraph, start: State| {
             poses(graph, &marker, &[start], &judgement.trace).misfit.is_none()
         };
-        let (graph, start) = match (known, &judgement.smallest) {
-            (Some(known), _) => {
-                let graph = &known.world.graph;
-                let mut states = known.config().states.into_iter();
-                (graph, states.find(|&start| fits(graph, start))?)
+        let (graph, start) = match (&config.world, &judgement.smallest) {
+            (Some(KnownWorld { graph, states }), _) => {
+                (graph, *states.iter().find(|&&start| fits(graph, start))?)
             }
             (None, Some(SmallestWorld::World { graph, marker: placed, .. })) => {
                 (graph, State { pose: Dart(0), placed: Some((*placed)?) })
@@ -93,7 +83,6 @@ impl TwinWorld {
             genus: other.genus(),
             figure: figure(other),
             worlds: explaining.len(),
-            file: world_file::to_json(&world),
             world,
             marker,
             first_marker,
@@ -101,6 +90,10 @@ impl TwinWorld {
             may_be_more,
         })
     }
+}
+
+fn world_json<S: Serializer>(world: &NamedWorld, serializer: S) -> Result<S::Ok, S::Error> {
+    world_file::to_json(world).serialize(serializer)
 }
 
 /// What a world is in the paper, up to isomorphism.

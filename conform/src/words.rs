@@ -23,7 +23,7 @@ use super::{
     report::{
         Allowed, ComparedDoors, ConformReports, CoveredCase, DivergenceReport, EventPose, Facts,
         LISTED, Limit, LogReport, MapSize, MessagePlace, OpenDoor, PoseName, RequiredCoverage,
-        UnseenPlace, WorldFact,
+        WorldFact,
     },
     twin::TwinWorld,
 };
@@ -68,7 +68,6 @@ pub fn together(reports: &ConformReports) -> String {
     format!("{logs}: {conform} conform, {diverged} diverge, {incomplete} incomplete{unread}")
 }
 
-/// The class of a fault.
 #[must_use]
 pub fn fault(fault: FaultClass) -> &'static str {
     match fault {
@@ -104,7 +103,6 @@ pub fn times(count: usize) -> String {
     }
 }
 
-/// An event.
 #[must_use]
 pub fn event(kind: &CheckedKind) -> String {
     match kind {
@@ -117,7 +115,7 @@ pub fn event(kind: &CheckedKind) -> String {
             format!("percept: {}{shape}", Percept { degree, sighting })
         }
         CheckedKind::Door { door, .. } => format!("door {}", door.0),
-        CheckedKind::Aside { off } => {
+        CheckedKind::LeftBetweenDoors { off } => {
             format!("left {:.0} degrees off the nearest door", off.to_degrees())
         }
         CheckedKind::TurnedBack => "turned back".to_owned(),
@@ -144,7 +142,6 @@ fn pose_name(PoseName { vertex, from }: &PoseName) -> String {
     format!("at {vertex}, having come from {from}")
 }
 
-/// The event that diverges.
 #[must_use]
 pub fn found(divergence: &DivergenceReport) -> String {
     divergence.found.as_ref().map_or("end of the log".to_owned(), event)
@@ -195,7 +192,7 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
     remarks.extend(facts.truncated.as_ref().map(|truncation| format!("the log is {truncation}")));
     remarks.extend(skipped_lines(facts));
     remarks.extend(skipped_messages(facts.skipped_messages));
-    match facts.ending.as_ref().map(|ending| &ending.0) {
+    match &facts.ending {
         Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
         Some(RunEnding::GaveUp(cause)) => {
             let colon = if cause.is_empty() { "" } else { ": " };
@@ -220,12 +217,12 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
             remarks.push(cause.to_owned());
         }
     }
-    if let Some((event, place)) = facts.unrecognised {
-        let what = match place {
-            UnseenPlace::Way => {
+    if let Some((event, why)) = facts.unrecognised {
+        let what = match why {
+            UndecidedCause::UnseenWay => {
                 format!("at event {event} the robot drove where its scanner did not look")
             }
-            UnseenPlace::Junction => format!("the junction of event {event} was not recognised"),
+            _ => format!("the junction of event {event} was not recognised"),
         };
         remarks.push(format!("{what}: the events from there on are not checked"));
     }

@@ -118,7 +118,7 @@ fn checked(
         sensor: sensor.as_ref(),
     };
     let checked = check.run(&source, watcher, || ()).map_err(NotChecked::Check)?;
-    Ok((checked.report(&source, String::new()), checked.settings.is_resumed))
+    Ok((checked.report(&source, String::new()), checked.is_resumed))
 }
 
 /// The sensor for the images of a log, if it records a calibration and colours.

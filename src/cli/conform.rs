@@ -4,7 +4,7 @@ mod judged_log;
 mod laser_picture;
 mod minimise;
 mod origin;
-mod robot_marker;
+mod rerun;
 mod text;
 
 use std::{
@@ -14,15 +14,19 @@ use std::{
 
 use clap::{
     ValueEnum,
-    builder::{PossibleValuesParser, TypedValueParser},
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_conform::{
     ConformReports, ConformVerdict, DoorChooser, Evidence, LogReport, Quirks, RequiredCoverage,
     RobotStart, UnreadLog, case_names, words,
 };
 use toposlam_model::{
-    enumerate::Class, folding::WorldSearch, format::named_world::NamedWorld,
+    enumerate::Class,
+    folding::WorldSearch,
+    format::named_world::NamedWorld,
     mapping::MappingAlgorithm,
+    marker::{self, Directional, Marker, NoMarker, Undirected},
+    trace::AlgorithmCase,
 };
 
 use super::{
@@ -36,12 +40,10 @@ use super::{
     open_log::LogOptions,
     outcome::SeveralInputs,
     output,
-    rerun::Rerun,
     text::print_hanging,
 };
 use crate::page;
 use judged_log::JudgedLog;
-use robot_marker::RobotMarker;
 
 /// Check logs of runs against the specification
 ///
@@ -95,8 +97,8 @@ pub(super) struct ConformArguments {
     #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
     /// The robot's marker [default: from the log, or else directional]
-    #[arg(long, value_enum, value_name = "MARKER")]
-    marker: Option<RobotMarker>,
+    #[arg(long, value_name = "MARKER", value_parser = robot_marker())]
+    marker: Option<&'static dyn Marker>,
     /// For events inferred from laser scans: check the log as if a marker had lain at the place that --topics
     /// gives, or else at the first junction that the robot visited, along its entry door
     #[arg(long)]
@@ -180,6 +182,13 @@ enum EventSourceOption {
     Laser,
 }
 
+/// Parses the name of the marker of a robot whose log is checked.
+fn robot_marker() -> impl TypedValueParser<Value = &'static dyn Marker> {
+    let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
+    let kinds = kinds.map(|kind| PossibleValue::new(kind.name()).help(kind.about()));
+    PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
+}
+
 /// Parses the name of a case.
 fn cases() -> impl TypedValueParser<Value = String> {
     PossibleValuesParser::new(case_names())
@@ -222,9 +231,9 @@ impl ConformArguments {
                 let outcome = outcome(judged.checked.judgement.verdict());
                 (judged, outcome)
             });
-            let cause = judged.as_ref().err().map(|error| error.cause_in(path));
+            let cause =
+                judged.as_ref().map_or_else(|error| error.cause_in(path), |_| String::new());
             let Some(judged) = logs.add(judged) else {
-                let cause = cause.unwrap_or_default();
                 let unread = UnreadLog { log: path.display().to_string(), cause };
                 if self.json {
                     print_unread(out, &unread.log, &unread.cause)?;
@@ -245,7 +254,7 @@ impl ConformArguments {
             text::print_together(out, &reports)?;
         }
         if !self.require_coverage.is_empty() && !reports.logs.is_empty() {
-            let required = RequiredCoverage::of(&self.require_coverage, &reports.logs);
+            let required = RequiredCoverage::from_reports(&self.require_coverage, &reports.logs);
             let message = words::required(&required);
             if self.json {
                 print_line(out, "required-coverage", &required)?;
@@ -255,12 +264,8 @@ impl ConformArguments {
             let all_covered = required.not_covered.is_empty();
             let outcome = if all_covered { Outcome::Holds } else { Outcome::Incomplete };
             logs.add(Ok(((), outcome)));
-            cases.push(CiCase {
-                name: "required coverage".to_owned(),
-                outcome,
-                message,
-                file: None,
-            });
+            let name = "required coverage".to_owned();
+            cases.push(CiCase { name, outcome, message, file: None });
             reports.required = Some(required);
         }
         self.ci.write("conform", &cases)?;
@@ -268,21 +273,6 @@ impl ConformArguments {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
         logs.worst()
-    }
-
-    fn rerun(&self, out: &mut dyn Write) -> Result<Outcome, CliError> {
-        let [log] = &self.logs[..] else {
-            return Err(CliError::at("--rerun", "this needs exactly one log"));
-        };
-        let rerun = Rerun {
-            log,
-            sources: &self.sources,
-            algorithm: self.algorithm,
-            max_darts: self.max_darts,
-            map: self.map.as_deref(),
-            json: self.json,
-        };
-        rerun.run(out)
     }
 
     /// Prints the report of a log, and writes what belongs to it.
@@ -301,9 +291,9 @@ impl ConformArguments {
         }
         if self.html.is_some() {
             report.sources = origin::sources(path, self.world.as_deref())?;
-            let events = &checked.judgement.events.events;
-            let divergence = checked.judgement.divergence.as_ref();
-            let event = divergence.and_then(|found| events.get(found.event).or(events.last()));
+            let divergence = report.divergence.as_ref();
+            let event = divergence
+                .and_then(|found| report.events.get(found.event - 1).or(report.events.last()));
             report.image = event.and_then(|event| opened.image(event.source.id));
         }
         if self.json {
@@ -340,6 +330,36 @@ impl ConformArguments {
         for (option, path) in of_one {
             if path.is_some() && self.logs.len() > 1 {
                 return Err(CliError::at(option, "this needs exactly one log"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks the options about the marker and the driver.
+    fn check_marker(&self) -> Result<(), CliError> {
+        if let Some(marker) = self.marker.filter(|marker| marker.name() != Directional.name())
+            && self.driver == DriverOption::Algorithm
+        {
+            let cause = "the algorithms need the directional marker; add --driver anyone";
+            return Err(CliError::at(format!("--marker {}", marker.name()), cause));
+        }
+        let is_unmarked = self.marker.is_some_and(|marker| marker.name() == NoMarker.name());
+        if self.assume_marker && is_unmarked {
+            return Err(CliError::at("--assume-marker", "this needs another marker than none"));
+        }
+        if self.driver == DriverOption::Anyone {
+            let cause = "with --driver anyone the doors are compared with no algorithm";
+            if self.algorithm.is_some() {
+                return Err(CliError::at("--algorithm", cause));
+            }
+            if self.max_darts.is_some() {
+                return Err(CliError::at("--max-darts", cause));
+            }
+            let is_of_algorithm =
+                |name: &&String| AlgorithmCase::ALL.iter().any(|case| case.name() == name.as_str());
+            if let Some(case) = self.require_coverage.iter().find(is_of_algorithm) {
+                let cause = format!("{cause}, so that {case} is never covered");
+                return Err(CliError::at("--require-coverage", cause));
             }
         }
         Ok(())

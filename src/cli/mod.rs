@@ -20,7 +20,6 @@ mod old_names;
 mod open_log;
 mod play;
 mod proofs;
-mod rerun;
 mod run_options;
 mod safeguards;
 mod sense;

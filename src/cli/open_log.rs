@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_conform::{Evidence, ExtractError, LogHead, LogSource};
+use toposlam_conform::{Evidence, ExtractError, LogSource};
 use toposlam_logs::{
     entries::Content,
     messages::Run,
     reader::Log,
     record::{EventId, EventKind},
+    recorder::ANNOTATED,
     topic_map::{Role, TopicMap, TopicMapError},
 };
-use toposlam_model::mapping::MappingAlgorithm;
-use toposlam_robot::run_settings::RecordedSettings;
 use toposlam_vision::{
     annotate,
     camera::{Camera, calibration},
@@ -22,7 +21,7 @@ use toposlam_vision::{
 use super::{CliError, input};
 
 /// What the log itself may not contain.
-#[derive(Default, clap::Args)]
+#[derive(Clone, Default, clap::Args)]
 pub(super) struct LogOptions {
     /// What each topic carries [default: by the message types; see `toposlam info`]
     #[arg(long, value_name = "FILE")]
@@ -39,45 +38,38 @@ pub(super) struct LogOptions {
 pub(super) struct OpenLog {
     pub(super) log: Log,
     pub(super) topics: TopicMap,
-    topics_path: Option<PathBuf>,
-    calibration_path: Option<PathBuf>,
+    options: LogOptions,
     pub(super) run: Option<Run>,
     sensing: Option<(Camera, ColourModel)>,
 }
 
-/// The topic of annotated images in logs of this program.
-const ANNOTATED: &str = toposlam_logs::recorder::ANNOTATED;
-
 impl OpenLog {
-    pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, CliError> {
+    pub(super) fn new(path: &Path, options: &LogOptions) -> Result<Self, CliError> {
         let log = input::open_log(path)?;
-        let topics = match &sources.topics {
+        let topics = match &options.topics {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
                 .map_err(|error| CliError::in_file(file, error))?
                 .completed(&log),
         };
-        let topics_path = sources.topics.clone();
-        let calibration_path = sources.calibration.clone();
-        let mut opened =
-            Self { log, topics, topics_path, calibration_path, run: None, sensing: None };
+        let mut opened = Self { log, topics, options: options.clone(), run: None, sensing: None };
         let bound = opened.topics.bind(&opened.log);
         bound.map_err(|error| opened.wrong_topics(path, &error))?;
         opened.run = head(path, &opened.log, &opened.topics)?;
-        opened.check_used(path, sources)?;
-        opened.sensing =
-            opened.sensing(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
+        opened.check_used(path)?;
+        opened.sensing = opened.sensing(path)?;
         Ok(opened)
     }
 
     /// Returns an error for a calibration or colours without effect.
-    fn check_used(&self, path: &Path, sources: &LogOptions) -> Result<(), CliError> {
-        let given = [("--calibration", &sources.calibration), ("--colours", &sources.colours)];
+    fn check_used(&self, path: &Path) -> Result<(), CliError> {
+        let LogOptions { topics, calibration, colours } = &self.options;
+        let given = [("--calibration", calibration), ("--colours", colours)];
         let Some((option, _)) = given.into_iter().find(|(_, file)| file.is_some()) else {
             return Ok(());
         };
         // Of several topics one may carry images; then another error names them.
-        let ambiguous = self.topics_path.is_none() && TopicMap::from_log(&self.log).is_err();
+        let ambiguous = topics.is_none() && TopicMap::from_log(&self.log).is_err();
         if self.topics.carrier(Role::Image).is_none() && !ambiguous {
             let cause = format!("this is for images, and {} has none", path.display());
             return Err(CliError::at(option, cause));
@@ -99,7 +91,7 @@ impl OpenLog {
         if self.log.messages_total() == 0 {
             return Err(CliError::in_file(path, "the log is empty: it has no messages"));
         }
-        if self.topics_path.is_none() {
+        if self.options.topics.is_none() {
             TopicMap::from_log(&self.log).map_err(|error| CliError::in_file(path, error))?;
         }
         Err(CliError::in_file(path, ExtractError::NothingMapped))
@@ -113,15 +105,11 @@ impl OpenLog {
     }
 
     /// The camera and the colours: those that are given, or else those in the log.
-    fn sensing(
-        &self,
-        path: &Path,
-        calibration: Option<&Path>,
-        colours: Option<&Path>,
-    ) -> Result<Option<(Camera, ColourModel)>, CliError> {
+    fn sensing(&self, path: &Path) -> Result<Option<(Camera, ColourModel)>, CliError> {
         let recorded =
             |text: fn(&Run) -> &String| self.run.as_ref().map(text).filter(|text| !text.is_empty());
-        let camera = match (calibration, recorded(|run| &run.calibration)) {
+        let LogOptions { calibration: camera_file, colours, .. } = &self.options;
+        let camera = match (camera_file, recorded(|run| &run.calibration)) {
             (Some(path), _) => Some(input::read_camera(path)?),
             (None, Some(text)) => {
                 let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
@@ -153,22 +141,9 @@ impl OpenLog {
         self.sensing.as_ref().map(|(camera, colours)| Sensor::new(camera, colours))
     }
 
-    /// How the robot of the log mapped, and within which limits, by the algorithm that is asked for if one is; without
-    /// either by Algorithm 1.
-    pub(super) fn settings(
-        &self,
-        path: &Path,
-        option: Option<MappingAlgorithm>,
-    ) -> Result<RecordedSettings, CliError> {
-        let settings = LogHead(self.run.as_ref()).settings(option);
-        settings.map_err(|head| {
-            CliError::in_file(path, format!("its algorithm `{head}` is unknown; use --algorithm"))
-        })
-    }
-
     /// The error for a topic map that does not fit its log.
     pub(super) fn wrong_topics(&self, log: &Path, error: &TopicMapError) -> CliError {
-        match &self.topics_path {
+        match &self.options.topics {
             Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
             None => CliError::in_file(log, error),
         }
@@ -176,7 +151,7 @@ impl OpenLog {
 
     /// The error for a calibration that does not fit the images of its log.
     pub(super) fn wrong_calibration(&self, log: &Path, error: &WrongSize) -> CliError {
-        match &self.calibration_path {
+        match &self.options.calibration {
             Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
             None => CliError::in_file(log, format!("its calibration: {error}")),
         }

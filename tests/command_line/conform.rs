@@ -2,11 +2,11 @@
 //!
 //! The sentences are in `tests/snapshots/conform`.
 
-use std::{cell::Cell, f64::consts::PI, path::Path, process::Command};
+use std::{f64::consts::PI, fs, path::Path, process::Command};
 
 use serde_json::{Value, json};
 use toposlam_logs::{
-    messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
+    messages::{self, End, Percept, ProjectMessage, Scene, Stamp},
     recorder::ODOM,
     standard::{OdometryMessage, Twist},
     writer::LogWriter,
@@ -15,7 +15,7 @@ use toposlam_model::{counts::grouped, driving};
 
 use super::{
     Scratch,
-    containers::{rewritten, set_stamp, stamp},
+    containers::{rewritten, set_stamp},
     has, objects, read_world, stderr, stdout,
 };
 
@@ -43,42 +43,23 @@ fn judged(scratch: &Scratch, line: &str, code: i32) -> Value {
     lines.into_iter().find(|line| line["kind"] == "log").unwrap()
 }
 
-/// Runs the command that a report gives for its shorter log.
-fn again(scratch: &Scratch, report: &Value) -> Value {
+/// The report on a log that diverges, and that of the command that it gives for a shorter log.
+fn shortened(scratch: &Scratch, line: &str) -> [Value; 2] {
+    let report = judged(scratch, &format!("{line} --minimise short.mcap"), 1);
     let command = report["command"].as_str().unwrap().strip_prefix("toposlam ").unwrap();
-    scratch.last(command, 1)
+    let again = scratch.last(command, 1);
+    for fact in ["cause", "class"] {
+        assert_eq!(again[fact], report[fact], "{line}: {fact}");
+    }
+    [report, again]
 }
 
-/// Writes `walk.mcap`: percepts and doors of a robot without numbers, shapes and odometry.
+/// Writes `walk.jsonl`: percepts and doors of a robot without numbers, shapes and odometry.
 fn walk(scratch: &Scratch, steps: &[(u32, i32, Option<u32>)]) {
-    let log = written(None, steps);
-    scratch.write("walk.mcap", log);
-}
-
-fn written(head: Option<Run>, steps: &[(u32, i32, Option<u32>)]) -> Vec<u8> {
-    let mut writer = LogWriter::new(Vec::new()).unwrap();
-    if let Some(head) = head {
-        writer.write(Run::TOPIC, 0, &head).unwrap();
-    }
-    for (moves, &(degree, marker, door)) in steps.iter().enumerate() {
-        let time = 2 * moves as u64;
-        let stamp = |second| Stamp { sec: second as i32, nanosec: 0 };
-        let number = moves as u32;
-        let percept = Percept {
-            stamp: stamp(time),
-            r#move: number,
-            degree,
-            marker,
-            form: [false; 4],
-            entry: f64::NAN,
-        };
-        writer.write(Percept::TOPIC, time, &percept).unwrap();
-        if let Some(door) = door {
-            let message = Door { stamp: stamp(time + 1), r#move: number + 1, door };
-            writer.write(Door::TOPIC, time + 1, &message).unwrap();
-        }
-    }
-    writer.finish().unwrap()
+    let line = |&(degree, marker, door): &(u32, i32, Option<u32>)| {
+        format!("{}\n", json!({ "degree": degree, "marker": marker, "door": door }))
+    };
+    scratch.write("walk.jsonl", steps.iter().map(line).collect::<String>());
 }
 
 /// The junctions that the robot visited are the same, whether they are recorded or inferred.
@@ -113,27 +94,11 @@ fn a_correct_log_conforms_to_its_world_to_some_world_and_by_its_scenes() {
         ("--driver anyone", json!(0)),
     ] {
         let report = judged(&scratch, &format!("conform run.mcap {options}"), 0);
-        has(
-            &report,
-            &json!({
-                "verdict": "conforms", "event": null, "class": null, "candidates": 1, "events": 15,
-                "coverage.dead-end": 1, "coverage.confirmed": confirmed, "divergence": null,
-            }),
-            options,
-        );
-    }
-    // An undirected marker is seen with or without a direction.
-    let undirected = "--driver anyone --marker undirected";
-    for options in [
-        "--world worlds/shape-6.toml",
-        "--world worlds/shape-6.toml --start any",
-        "--world worlds/shape-6.toml --events scenes",
-        "--world worlds/shape-6.toml --events scenes --start any",
-        "",
-        "--events scenes",
-    ] {
-        let report = judged(&scratch, &format!("conform run.mcap {undirected} {options}"), 0);
-        assert_eq!(report["verdict"], "conforms", "{options} {report}");
+        let expected = json!({
+            "verdict": "conforms", "event": null, "class": null, "candidates": 1, "events": 15,
+            "coverage.dead-end": 1, "coverage.confirmed": confirmed, "divergence": null,
+        });
+        has(&report, &expected, options);
     }
     scratch.facts(&[
         (OF_SHAPE_6, 0, json!({
@@ -152,13 +117,10 @@ fn a_correct_log_conforms_to_its_world_to_some_world_and_by_its_scenes() {
             { "verdict": "conforms" }, { "not_covered": ["l-left", "rejected-on-the-way"] },
         ])),
     ]);
-    let files = "--html report.html --junit report.xml";
-    scratch.out(&format!("conform run.mcap --require-coverage confirmed,l-left {files}"), 3);
-    let [page, xml] = ["report.html", "report.xml"].map(|file| scratch.text(file));
-    assert!(page.contains("<p>2 required cases: not covered: l-left.</p>"), "{page}");
+    let required = "--require-coverage confirmed,l-left --junit report.xml";
+    scratch.out(&format!("conform run.mcap {required}"), 3);
+    let xml = scratch.text("report.xml");
     assert!(xml.contains("message=\"2 required cases: not covered: l-left\""), "{xml}");
-    scratch.out(&format!("{OF_SHAPE_8} --html report.html"), 1);
-    assert!(scratch.text("report.html").contains("recorded in another world, shape-6"));
 }
 
 #[test]
@@ -173,58 +135,39 @@ fn an_undirected_marker_is_written_in_lines_as_it_is_seen() {
         )
     };
     for (first, last, code) in
-        [("true", "true", 0), ("0", "0", 0), ("0", "true", 0), ("true", "-1", 1)]
+        [("0", "0", 0), ("0", "true", 0), ("true", "-1", 1), ("true", "true", 0)]
     {
         scratch.write("events.jsonl", walk(first, last));
         judged(&scratch, &format!("conform events.jsonl {undirected}"), code);
     }
-    scratch.write("events.jsonl", walk("true", "true"));
     let recorded = format!("conform events.jsonl --events recorded {undirected}");
     assert_eq!(scratch.lines(&recorded, 0)[0]["marker"], true);
     let message = scratch.error("conform events.jsonl --driver anyone");
     let expected = "its percepts do not record along which door the marker points; for an undirected \
                     marker add --driver anyone --marker undirected\n";
     assert!(message.ends_with(expected), "{message}");
-    // A shorter log has the sightings, too.
-    scratch.write("wrong.jsonl", walk("true", "true").replacen("true", "false", 1));
-    judged(&scratch, &format!("conform wrong.jsonl {undirected} --minimise short.mcap"), 1);
-    if scratch.path("short.mcap").exists() {
-        judged(&scratch, "conform short.mcap --driver anyone", 1);
-    }
 }
 
 #[test]
 fn a_log_of_another_world_diverges_and_so_does_a_shorter_log() {
     let scratch = logged("conform-other", SHAPE_6, "--seed 3");
     // After the first move there is a T, and after the second a corner instead of the other T.
-    let diverged = format!("{OF_SHAPE_8} --minimise short.mcap --html report.html");
-    let report = judged(&scratch, &diverged, 1);
-    has(
-        &report,
-        &json!({
-            "verdict": "diverged", "event": 5, "class": "perception", "matched": 4, "unique": null,
-            "allowed": ["at e, having come from w: 3 doors"], "shorter.#": 3, "shorter_events.#": 3,
-            "divergence.found.what": "percept", "divergence.allowed.#": 1,
-            "open_doors": null, "never_followed": null,
-        }),
-        &diverged,
-    );
-    assert!(report["divergence"]["allowed"][0]["vertex"].is_string(), "{report}");
-    has(&again(&scratch, &report), &json!({ "event": 3, "class": "perception" }), "short.mcap");
-    let page = scratch.text("report.html");
-    assert!(page.contains("diverge") && page.contains("at e, having come from w"), "no page");
+    let diverged = format!("{OF_SHAPE_8} --html report.html");
+    let [report, again] = shortened(&scratch, &diverged);
+    let expected = json!({
+        "verdict": "diverged", "event": 5, "class": "perception", "matched": 4, "unique": null,
+        "allowed": ["at e, having come from w: 3 doors"], "shorter.#": 3, "shorter_events.#": 3,
+        "divergence.found.what": "percept", "divergence.allowed.#": 1,
+        "divergence.allowed.0.vertex": "e", "divergence.allowed.0.from": "w",
+        "open_doors": null, "never_followed": null,
+    });
+    has(&report, &expected, &diverged);
+    assert_eq!(again["event"], 3);
+    assert!(scratch.text("report.html").contains("at e, having come from w"), "no page");
     // The command has the options that decide.
-    let other = format!("{OF_SHAPE_8} --start se:e --minimise short.mcap");
-    let report = judged(&scratch, &other, 1);
+    let [report, again] = shortened(&scratch, &format!("{OF_SHAPE_8} --start se:e"));
     assert!(report["command"].as_str().unwrap().ends_with(" --start se:e"), "{report}");
-    has(
-        &again(&scratch, &report),
-        &json!({
-            "cause": report["cause"], "class": report["class"],
-            "event": report["shorter"].as_array().unwrap().len(),
-        }),
-        &other,
-    );
+    assert_eq!(again["event"], report["shorter"].as_array().unwrap().len());
     // A quirk is tolerated and counted, and is not where it diverges.
     let quirk =
         "[[quirk]]\nname = \"rebuilt\"\ncause = \"percept\"\nreason = \"the wall is new\"\n";
@@ -235,10 +178,6 @@ fn a_log_of_another_world_diverges_and_so_does_a_shorter_log() {
     assert!(tolerated["tolerated"]["rebuilt"].as_u64() > Some(0), "{tolerated}");
     let without = judged(&scratch, &format!("{OF_SHAPE_8} --driver anyone"), 1);
     assert_ne!(tolerated["event"], without["event"]);
-    // What is divergent with other choices, or of the robot itself, has its step.
-    let any = judged(&scratch, &format!("{OF_SHAPE_8} --start any"), 1);
-    let what = if any["event"].as_u64().unwrap() % 2 == 1 { "percept" } else { "door" };
-    assert_eq!(any["divergence"]["found"]["what"], what, "{any}");
 }
 
 #[test]
@@ -258,6 +197,10 @@ fn a_truncated_log_and_a_run_that_was_given_up_are_incomplete() {
     assert!(page.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
     log(&scratch, SHAPE_6, "--fault lights-out@20");
     remark("the run was given up: ");
+    let [log, endless] = ["run.mcap", "endless.mcap"].map(|name| scratch.path(name));
+    rewritten(&log, &endless, |_, message| message.channel.topic != End::TOPIC);
+    fs::rename(endless, log).unwrap();
+    remark("the log does not record how the run ended");
 }
 
 #[test]
@@ -266,24 +209,17 @@ fn a_log_is_compared_with_the_algorithm_that_it_names_or_with_another() {
     for options in ["--world worlds/shape-6.toml", "", "--algorithm folding"] {
         let report = judged(&scratch, &format!("conform run.mcap {options}"), 0);
         // It has junctions, and not the cases of Algorithm 1.
-        has(
-            &report,
-            &json!({
-                "verdict": "conforms", "map.complete": true,
-                "doors": { "algorithm": "folding", "choices": "default", "from_event": null },
-                "coverage.dead-end": 1, "coverage.confirmed": null,
-            }),
-            options,
-        );
+        let expected = json!({
+            "verdict": "conforms", "map.complete": true,
+            "doors": { "algorithm": "folding", "choices": "default", "from_event": null },
+            "coverage.dead-end": 1, "coverage.confirmed": null,
+        });
+        has(&report, &expected, options);
     }
-    let limited = judged(&scratch, "conform run.mcap --max-darts 3", 3);
-    assert_eq!(limited["limits"][0]["option"], "--max-darts");
     let text = scratch.out("conform run.mcap --require-coverage confirmed,dead-end", 3);
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let cause = "the folding explorer does not have these cases of Algorithm 1: confirmed";
     assert!(text.contains(cause), "{text}");
-    scratch.out("conform run.mcap --html report.html", 0);
-    assert!(scratch.text("report.html").contains("those of the folding explorer"));
     // Algorithm 1 would come to a T from its other side too.
     log(&scratch, SHAPE_8, "--seed 3 --algorithm folding");
     scratch.out(&format!("{OF_SHAPE_8} --html report.html"), 0);
@@ -296,21 +232,17 @@ fn a_log_is_compared_with_the_algorithm_that_it_names_or_with_another() {
 fn a_log_of_algorithm_1_diverges_from_the_folding_explorer_at_a_door() {
     let scratch = logged("conform-not-folding", "worlds/building-12.toml", "--seed 3");
     scratch.out("conform run.mcap", 0);
-    let diverged = "conform run.mcap --algorithm folding --minimise short.mcap";
-    let report = judged(&scratch, diverged, 1);
-    has(
-        &report,
-        &json!({
-            "class": "algorithm", "cause": "door", "divergence.found.what": "door",
-            "condition": "the folding explorer does not take this door here",
-        }),
-        diverged,
-    );
+    let diverged = "conform run.mcap --algorithm folding";
+    let [report, _] = shortened(&scratch, diverged);
+    let expected = json!({
+        "class": "algorithm", "cause": "door", "divergence.found.what": "door",
+        "condition": "the folding explorer does not take this door here",
+    });
+    has(&report, &expected, diverged);
     let allowed = report["allowed"][0].as_str().unwrap();
     assert!(allowed.starts_with("door ") && allowed.contains("dart"), "{allowed}");
     assert!(report["divergence"]["allowed"][0]["purpose"].is_string(), "{report}");
     assert!(report["command"].as_str().unwrap().ends_with("--algorithm folding"), "{report}");
-    again(&scratch, &report);
 }
 
 #[test]
@@ -339,10 +271,8 @@ fn several_logs_are_reported_together_and_an_unreadable_one_does_not_hide_the_ot
         "conform",
     );
     assert_ne!(report[2]["cause"], "");
-    // So is it on the page, and in JUnit.
-    scratch.out("conform text.mcap run.mcap --html report.html --junit report.xml", 2);
-    let page = scratch.text("report.html");
-    assert!(page.contains("<title>2 logs: 1 conforms, 1 not checked</title>"), "{page}");
+    // So is it in JUnit.
+    scratch.out("conform text.mcap run.mcap --junit report.xml", 2);
     let junit = scratch.text("report.xml");
     assert!(junit.contains("tests=\"2\" failures=\"0\" errors=\"1\""), "{junit}");
     assert!(junit.contains("message=\"the log cannot be checked: "), "{junit}");
@@ -351,25 +281,9 @@ fn several_logs_are_reported_together_and_an_unreadable_one_does_not_hide_the_ot
     scratch.out(&format!("{OF_SHAPE_8} text.mcap"), 2);
     // What is not known has its reason.
     walk(&scratch, &[(3, 0, Some(1)), (1, -1, None)]);
-    scratch.out("conform walk.mcap --max-darts 1 --junit report.xml", 3);
+    scratch.out("conform walk.jsonl --max-darts 1 --junit report.xml", 3);
     let junit = scratch.text("report.xml");
     assert!(junit.contains("Algorithm 1 was followed up to event 1: "), "{junit}");
-}
-
-#[test]
-fn events_out_of_order_are_an_error() {
-    let scratch = Scratch::new("conform-order");
-    let mut writer = LogWriter::new(Vec::new()).unwrap();
-    let at = |second| Stamp { sec: second, nanosec: 0 };
-    let form = [true, false, false, false];
-    let percept = Percept { stamp: at(2), degree: 1, marker: 0, form, ..Percept::default() };
-    writer.write(Percept::TOPIC, 2, &percept).unwrap();
-    let door = Door { stamp: at(1), r#move: 1, door: 0 };
-    writer.write(Door::TOPIC, 3, &door).unwrap();
-    scratch.write("run.mcap", writer.finish().unwrap());
-    let message = scratch.error("conform run.mcap");
-    let cause = "message 2: the events are out of order: this one is at 1.000 s";
-    assert!(message.contains(cause), "{message}");
 }
 
 /// PyPI's `rosbags` makes a ROS 1 bag of a log.
@@ -422,18 +336,11 @@ fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
     see(21, -0.2, 0.0, &l);
     see(22, 0.9, PI / 4.0, &[]);
     scratch.write("run.mcap", writer.finish().unwrap());
-    let diverged = "conform run.mcap --driver anyone --minimise short.mcap";
-    let report = judged(&scratch, diverged, 1);
-    has(
-        &report,
-        &json!({
-            "class": "motion", "cause": "aside",
-            "condition": "the robot drove off 45 degrees from the door",
-        }),
-        diverged,
-    );
-    let shorter = json!({ "cause": report["cause"], "event": report["event"] });
-    has(&again(&scratch, &report), &shorter, "short.mcap");
+    let [report, again] = shortened(&scratch, "conform run.mcap --driver anyone");
+    let condition = "the robot drove off 45 degrees from the door";
+    let expected = json!({ "class": "motion", "cause": "aside", "condition": condition });
+    has(&report, &expected, "run.mcap");
+    assert_eq!(again["event"], report["event"]);
     assert!(scratch.bytes("short.mcap").len() < scratch.bytes("run.mcap").len());
 }
 
@@ -460,188 +367,102 @@ fn logs_without_evidence_are_an_error() {
 #[test]
 fn a_complete_run_determines_its_world_whatever_its_size() {
     let scratch = logged("conform-unique", "worlds/building-12.toml", "--start north-west:north");
-    let anyone = "conform run.mcap --driver anyone";
-    let limit = |option: &str, value: u32, event: Value| json!([{ "option": option, "value": value, "decides": true, "event": event }]);
-    scratch.facts(&[
-        // A complete folded trail needs no search.
-        (
-            &format!("{anyone} --max-steps 1 --map smallest.toml"),
-            0,
-            json!({
-                "verdict": "conforms", "unique": true, "open_doors": 0, "limits": [],
-                "smallest": { "vertices": 12, "edges": 14, "least": true }, "never_followed": [],
-            }),
-        ),
-        (
-            &format!("{anyone} --world smallest.toml"),
-            0,
-            json!({ "verdict": "conforms", "unique": true, "smallest": null }),
-        ),
-        // A limit is not a divergence.
-        (
-            &format!("{anyone} --max-edges 13"),
-            3,
-            json!({
-                "verdict": "incomplete", "event": null, "smallest": null,
-                "limits": limit("--max-edges", 13, Value::Null),
-            }),
-        ),
-        (&format!("{anyone} --max-edges 14"), 0, json!({ "limits": [] })),
-        // Few edge ends.
-        (
-            "conform run.mcap --max-darts 1",
-            3,
-            json!({
-                "verdict": "incomplete", "limits": limit("--max-darts", 1, 1.into()),
-            }),
-        ),
-    ]);
-}
-
-/// A robot goes from the marker at a junction with three doors to a dead end and back.
-#[test]
-fn doors_that_were_never_followed_are_listed() {
-    let scratch = Scratch::new("conform-open");
-    walk(&scratch, &[(3, 0, Some(1)), (1, -1, Some(0)), (3, 2, None)]);
-    // In a known world the doors have its names.
-    let star = "name = \"star\"\n[clockwise]\nhub = [\"a\", \"b\", \"c\"]\na = [\"hub\"]\n\
-                b = [\"hub\"]\nc = [\"hub\"]\n[start]\nat = \"hub\"\nfacing = \"a\"\n";
-    scratch.write("world.toml", star);
-    let anyone = "conform walk.mcap --driver anyone";
-    let door = |door| json!({ "vertex": "v0", "door": door, "toward": null });
-    scratch.facts(&[
-        // The two doors are the ends of one hallway, in the smallest world.
-        (
-            &format!("{anyone} --html open.html"),
-            0,
-            json!({
-                "verdict": "conforms", "unique": false, "open_doors": 2,
-                "smallest": { "vertices": 2, "edges": 2, "least": true },
-                "never_followed": [door(0), door(2)],
-            }),
-        ),
-        // In a class without loops there are two more dead ends.
-        (
-            &format!("{anyone} --class simple"),
-            0,
-            json!({ "smallest": { "vertices": 4, "edges": 3, "least": true } }),
-        ),
-        (
-            &format!("{anyone} --world world.toml"),
-            0,
-            json!({
-                "unique": false, "never_followed.#": 2, "never_followed.0.vertex": "hub",
-                "never_followed.0.toward": "a", "never_followed.1.toward": "c",
-            }),
-        ),
-    ]);
-    let page = scratch.text("open.html");
-    let words =
-        "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
-    assert!(page.contains(&format!("<p>{words}</p>")));
-    assert!(page.contains("What the log proves about its world"));
-    // Six doors: smaller worlds stay open if the search is limited, which does not decide.
-    walk(&scratch, &[(6, 0, None)]);
-    let limit = json!({ "option": "--max-steps", "value": 1, "decides": false, "event": null });
-    scratch.facts(&[
-        (
-            &format!("{anyone} --class simple --max-steps 1"),
-            0,
-            json!({
-                "verdict": "conforms", "smallest.least": false, "limits": [limit], "remarks.#": 1,
-            }),
-        ),
-        (&format!("{anyone} --class simple"), 0, json!({ "smallest.least": true, "limits": [] })),
-    ]);
-    // What was not searched does not matter to a log that diverges.
-    walk(&scratch, &[(3, 0, Some(1)), (3, 1, Some(0)), (4, -1, None)]);
-    scratch.facts(&[("conform walk.mcap --max-darts 1", 1, json!({ "remarks": [] }))]);
-}
-
-#[test]
-fn the_map_of_a_log_has_the_marker_where_the_robot_saw_it() {
-    let scratch = Scratch::new("conform-map-marker");
-    // From a dead end to a junction with three doors, where the marker lies along door 1.
-    walk(&scratch, &[(1, -1, Some(0)), (3, 1, None)]);
-    scratch.out("conform walk.mcap --driver anyone --map map.toml", 0);
-    let world = read_world(&scratch.path("map.toml"));
-    let facing = world.start.unwrap();
-    assert_eq!(world.graph.degree(world.graph.vertex(facing)), 3);
-    // The robot did not come by the dart of the marker.
-    assert_ne!(world.graph.degree(world.graph.vertex(world.graph.opposite(facing))), 1);
+    let facts = |options: &str, code, fields: Value| {
+        scratch.facts(&[(&format!("conform run.mcap --driver anyone {options}"), code, fields)]);
+    };
+    // A complete folded trail needs no search.
+    let smallest = json!({ "vertices": 12, "edges": 14, "least": true });
+    let whole = json!({ "unique": true, "open_doors": 0, "limits": [], "smallest": smallest });
+    facts("--max-steps 1 --map smallest.toml", 0, whole);
+    facts("--world smallest.toml", 0, json!({ "unique": true, "smallest": null }));
+    let limit = json!({ "option": "--max-edges", "value": 13, "decides": true, "event": null });
+    facts("--max-edges 13", 3, json!({ "event": null, "smallest": null, "limits": [limit] }));
+    facts("--max-edges 14", 0, json!({ "limits": [] }));
 }
 
 #[test]
 fn facts_of_short_walks() {
     let scratch = Scratch::new("conform-walks");
-    let facts = |steps: &[(u32, i32, Option<u32>)], line: &str, code: i32, fields: Value| {
+    let star = "name = \"star\"\n[clockwise]\nhub = [\"a\", \"b\", \"c\"]\na = [\"hub\"]\n\
+                b = [\"hub\"]\nc = [\"hub\"]\n[start]\nat = \"hub\"\nfacing = \"a\"\n";
+    scratch.write("star.toml", star);
+    let facts = |steps: &[(u32, i32, Option<u32>)], options: &str, code: i32, fields: Value| {
         walk(&scratch, steps);
-        scratch.facts(&[(&format!("conform walk.mcap {line}"), code, fields)]);
+        scratch.facts(&[(&format!("conform walk.jsonl {options}"), code, fields)]);
     };
-    let to_a_dead_end = [(3, 0, Some(0)), (1, -1, None)];
-    // Algorithm 1 would go on.
-    let remark = "the log ends before the map is complete";
-    facts(&to_a_dead_end, "", 0, json!({ "verdict": "conforms", "remarks": [remark] }));
-    facts(&to_a_dead_end, "--driver anyone", 0, json!({ "remarks": [] }));
+    let anyone = |steps: &[(u32, i32, Option<u32>)], options: &str, fields: Value| {
+        facts(steps, &format!("--driver anyone {options}"), 0, fields);
+    };
+    // From the marker at a junction with three doors to a dead end and back. The two doors that are open are the ends
+    // of one hallway, in the smallest world; in a class without loops there are two more dead ends.
+    let open = [(3, 0, Some(1)), (1, -1, Some(0)), (3, 2, None)];
+    let smallest = |vertices, edges| json!({ "vertices": vertices, "edges": edges, "least": true });
+    let door = |vertex, door, toward| json!({ "vertex": vertex, "door": door, "toward": toward });
+    let doors = [door("v0", 0, Value::Null), door("v0", 2, Value::Null)];
+    anyone(&open, "", json!({ "unique": false, "open_doors": 2, "never_followed": doors }));
+    anyone(&open, "", json!({ "verdict": "conforms", "smallest": smallest(2, 2) }));
+    anyone(&open, "--class simple", json!({ "smallest": smallest(4, 3) }));
+    // In a known world the doors have its names.
+    let doors = [door("hub", 0, "a".into()), door("hub", 2, "c".into())];
+    anyone(&open, "--world star.toml", json!({ "unique": false, "never_followed": doors }));
+    // Smaller worlds stay open if the search is limited, which does not decide.
+    let six_doors = [(6, 0, None)];
+    let limit = json!({ "option": "--max-steps", "value": 1, "decides": false, "event": null });
+    let limited = json!({ "smallest.least": false, "limits": [limit], "remarks.#": 1 });
+    anyone(&six_doors, "--class simple --max-steps 1", limited);
+    anyone(&six_doors, "--class simple", json!({ "smallest.least": true, "limits": [] }));
+    // What was not searched does not matter to a log that diverges.
+    let wrong = [(3, 0, Some(1)), (3, 1, Some(0)), (4, -1, None)];
+    facts(&wrong, "--max-darts 1", 1, json!({ "remarks": [] }));
     let remark = "the log ends with a door: where it led is not recorded";
-    let by_a_door = [(3, 0, Some(0)), (1, -1, Some(0))];
-    facts(&by_a_door, "--driver anyone", 0, json!({ "remarks": [remark] }));
-    // The default choice is door 0.
-    facts(
-        &[(3, 0, Some(2)), (1, -1, None)],
-        "",
-        0,
-        json!({
-            "doors": { "algorithm": "algorithm1", "choices": "other", "from_event": 2 },
-        }),
-    );
-    // A robot that should see its marker does not. Without --marker it may be one that has none.
-    let corridor = [(1, -1, Some(0)), (1, -1, None)];
-    facts(&corridor, "--marker directional", 1, json!({ "event": 1, "cause": "contradiction" }));
-    let message = scratch.error("conform walk.mcap");
-    assert!(message.contains("--driver anyone --marker none"), "{message}");
+    anyone(&[(3, 0, Some(0)), (1, -1, Some(0))], "", json!({ "remarks": [remark] }));
+    // The default choice is door 0. Algorithm 1 would go on.
+    let other_choice = [(3, 0, Some(2)), (1, -1, None)];
+    let doors = json!({ "algorithm": "algorithm1", "choices": "other", "from_event": 2 });
+    facts(&other_choice, "", 0, json!({ "doors": doors, "remarks.#": 1 }));
+    anyone(&other_choice, "", json!({ "remarks": [] }));
     let lengths = json!({ "moves": 2, "measured": 0, "compared": 0 });
     let there_and_back = [(1, -1, Some(0)), (3, 1, Some(0)), (1, -1, None)];
-    facts(&there_and_back, "--driver anyone", 0, json!({ "lengths": lengths }));
-    // A robot without a marker sees none, and the head of a shorter log says so.
-    walk(&scratch, &[(3, 0, Some(1)), (1, -1, None)]);
-    let unmarked = "conform walk.mcap --driver anyone --marker none --minimise short.mcap";
-    let report = judged(&scratch, unmarked, 1);
-    assert_eq!(report["event"], 1, "{report}");
-    again(&scratch, &report);
-    // A hallway that leads back to its own junction is impossible in some classes only.
-    walk(&scratch, &[(3, 0, Some(1)), (3, 1, None)]);
-    scratch.out("conform walk.mcap --driver anyone", 0);
-    let simple = "conform walk.mcap --driver anyone --class simple --minimise short.mcap";
-    let report = judged(&scratch, simple, 1);
-    assert_eq!(report["cause"], "no-world", "{report}");
-    assert_eq!(again(&scratch, &report)["condition"], report["condition"]);
-    // A head without an end.
-    let head = written(Some(Run::default()), &[(3, 0, Some(0)), (1, -1, None)]);
-    scratch.write("head.mcap", head);
-    let remark = "the log does not record how the run ended";
-    scratch.facts(&[(
-        "conform head.mcap",
-        3,
-        json!({ "verdict": "incomplete", "remarks": [remark] }),
-    )]);
+    anyone(&there_and_back, "", json!({ "lengths": lengths }));
+    // A robot that should see its marker does not.
+    let contradiction = json!({ "event": 1, "cause": "contradiction" });
+    facts(&[(1, -1, Some(0)), (1, -1, None)], "--marker directional", 1, contradiction);
+    // Without --marker it may be one that has none.
+    let message = scratch.error("conform walk.jsonl");
+    assert!(message.contains("--driver anyone --marker none"), "{message}");
+    // From a dead end to a junction with three doors, where the marker lies along door 1. The robot did not come by
+    // its dart.
+    walk(&scratch, &[(1, -1, Some(0)), (3, 1, None)]);
+    scratch.out("conform walk.jsonl --driver anyone --map map.toml", 0);
+    let world = read_world(&scratch.path("map.toml"));
+    let facing = world.start.unwrap();
+    assert_eq!(world.graph.degree(world.graph.vertex(facing)), 3);
+    assert_ne!(world.graph.degree(world.graph.vertex(world.graph.opposite(facing))), 1);
 }
 
 #[test]
 fn a_shorter_log_of_an_impossible_walk_diverges_for_the_same_reason() {
     let scratch = Scratch::new("conform-impossible");
+    let shortened_walk = |steps: &[(u32, i32, Option<u32>)], options: &str| {
+        walk(&scratch, steps);
+        shortened(&scratch, &format!("conform walk.jsonl --driver anyone {options}"))
+    };
+    // A robot without a marker sees none, and the head of a shorter log says so.
+    let [report, _] = shortened_walk(&[(3, 0, Some(1)), (1, -1, None)], "--marker none");
+    assert_eq!(report["event"], 1, "{report}");
+    // A hallway that leads back to its own junction is impossible in some classes only.
+    let [report, again] = shortened_walk(&[(3, 0, Some(1)), (3, 1, None)], "--class simple");
+    assert_eq!(report["cause"], "no-world", "{report}");
+    assert_eq!(again["condition"], report["condition"]);
+    scratch.out("conform walk.jsonl --driver anyone", 0);
     // There and back again, twice. In the end the first junction has another degree.
     let there = (3, -1, Some(0));
-    walk(&scratch, &[(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)]);
-    let diverged = "conform walk.mcap --driver anyone --minimise short.mcap";
-    let report = judged(&scratch, diverged, 1);
-    has(&report, &json!({ "cause": "no-world", "event": 9, "class": "perception" }), diverged);
-    let condition = report["condition"].as_str().unwrap();
-    assert!(condition.starts_with("no world of any size explains"), "{condition}");
+    let walk = [(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)];
+    let [report, again] = shortened_walk(&walk, "");
+    has(&report, &json!({ "cause": "no-world", "event": 9, "class": "perception" }), "walk");
     let events = report["shorter"].as_array().unwrap().len();
     assert!((3..9).contains(&events), "{report}");
-    let again = again(&scratch, &report);
-    has(&again, &json!({ "cause": report["cause"], "event": events }), "short.mcap");
+    assert_eq!(again["event"], events);
     let why = again["condition"].as_str().unwrap();
     assert!(why.ends_with("are the same one, with 3 doors and with 2"), "{why}");
 }
@@ -654,25 +475,12 @@ fn the_marker_is_asked_for_if_it_is_not_recorded() {
     scratch.write("mapping.toml", topics);
     let mapped = "conform run.mcap --topics mapping.toml";
     // Nothing is mapped as the marker: that is not a marker that was not seen.
-    for options in ["", "--driver anyone", "--world worlds/shape-6.toml"] {
-        let message = scratch.error(&format!("{mapped} {options}"));
-        assert!(message.contains("--driver anyone --marker none"), "{message}");
+    let message = scratch.error(mapped);
+    assert!(message.contains("--driver anyone --marker none"), "{message}");
+    let known = "--world worlds/shape-6.toml --start any";
+    for options in ["", known] {
+        scratch.out(&format!("{mapped} --driver anyone --marker none {options}"), 0);
     }
-    let without = "--driver anyone --marker none";
-    scratch.facts(&[
-        (&format!("{mapped} {without}"), 0, json!({ "verdict": "conforms" })),
-        (
-            &format!("{mapped} {without} --world worlds/shape-6.toml --start any"),
-            0,
-            json!({ "verdict": "conforms" }),
-        ),
-        // A marker that the log records is one that the robot has.
-        (
-            &format!("conform run.mcap {without}"),
-            1,
-            json!({ "event": 1, "cause": "no-world", "class": "perception" }),
-        ),
-    ]);
 }
 
 #[test]
@@ -701,48 +509,26 @@ fn the_page_shows_version_command_date_and_hashes() {
 }
 
 #[test]
-fn a_recorded_start_counts_only_in_the_world_of_the_log() {
-    let scratch = logged("conform-same-names", SHAPE_6, "--start ne:tee");
-    // Another world with the same names: the way in leads to another junction.
-    let text = scratch.text(SHAPE_6);
-    let text = text.replace("from = \"end\"\nto = \"corner\"", "from = \"end\"\nto = \"ne\"");
-    scratch.write("other.toml", text);
-    for (world, start) in [(SHAPE_6, "ne:tee"), ("other.toml", "corner:tee")] {
-        let output = scratch.run(&format!("conform run.mcap --json --world {world}"));
-        assert_eq!(objects(&stdout(&output))[0]["world"]["start"], start, "{world}");
-    }
-}
-
-#[test]
 fn a_robot_that_was_carried_was_moved_between_two_events() {
     let scratch = Scratch::new("conform-moved");
     let mut shorter = 0;
     for (seed, image) in [(0, 40), (1, 40), (2, 60)] {
         log(&scratch, SHAPE_6, &format!("--seed {seed} --fault carried@{image}"));
-        let moved = "conform run.mcap --driver anyone --minimise short.mcap --html moved.html";
-        let report = judged(&scratch, moved, 1);
+        let report = judged(&scratch, "conform run.mcap --driver anyone", 1);
         // Percepts may show it first.
         if report["cause"] != "moved" {
             continue;
         }
         assert_eq!(report["class"], "motion");
-        let condition = report["condition"].as_str().unwrap();
-        assert!(condition.starts_with("moved by hand or slipped between events "), "{condition}");
-        assert!(scratch.text("moved.html").contains("oved by hand or slipped between events "));
-        let again = again(&scratch, &report);
-        // It ends with the event that diverges.
+        // The shorter log ends with the event that diverges.
+        let [report, again] = shortened(&scratch, "conform run.mcap --driver anyone");
         let events = report["shorter"].as_array().unwrap().len();
-        has(
-            &again,
-            &json!({
-                "cause": report["cause"], "class": report["class"], "event": events, "events": events,
-            }),
-            "short.mcap",
-        );
+        has(&again, &json!({ "event": events, "events": events }), "short.mcap");
         let measured = |report: &Value| {
             let condition = report["condition"].as_str().unwrap();
+            let (begin, what) = condition.split_once(": ").unwrap();
+            assert!(begin.starts_with("moved by hand or slipped between events "), "{condition}");
             // The way of a closed walk is shorter; how far from its beginning it ends is not.
-            let what = condition.split_once(": ").unwrap().1;
             what.split_once(" ends ").map_or(what, |(_, off)| off).to_owned()
         };
         assert_eq!(measured(&again), measured(&report));
@@ -752,14 +538,6 @@ fn a_robot_that_was_carried_was_moved_between_two_events() {
         }
     }
     assert!(shorter > 0);
-    // A map of shape 8 that is wrong.
-    let carried = (0..20).find_map(|seed| {
-        log(&scratch, SHAPE_8, &format!("--seed {seed} --fault carried@30"));
-        let output = scratch.run(&format!("{OF_SHAPE_8} --json"));
-        (output.status.code() == Some(1)).then(|| objects(&stdout(&output)).remove(0))
-    });
-    let report = carried.unwrap();
-    assert!(["perception", "motion"].contains(&report["class"].as_str().unwrap()), "{report}");
 }
 
 #[test]
@@ -771,18 +549,12 @@ fn a_divergence_in_a_log_of_lines_has_a_line_and_no_time() {
     scratch.write("walk.jsonl", lines);
     // With stamps it has a time.
     scratch.write("stamped.jsonl", lines.replace('{', "{\"stamp\":7.5,"));
-    walk(&scratch, &[(3, -1, Some(1)), (1, -1, Some(0)), (2, -1, None)]);
     let anyone = "--driver anyone --marker none";
+    let place =
+        json!({ "event": 5, "message": 3, "offset": 4, "offset_unit": "line", "time": null });
     scratch.facts(&[
-        (
-            &format!("conform walk.jsonl {anyone} --html page.html"),
-            1,
-            json!({
-                "event": 5, "message": 3, "offset": 4, "offset_unit": "line", "time": null,
-            }),
-        ),
+        (&format!("conform walk.jsonl {anyone} --html page.html"), 1, place),
         (&format!("conform stamped.jsonl {anyone}"), 1, json!({ "time": 0.0 })),
-        (&format!("conform walk.mcap {anyone}"), 1, json!({ "event": 5, "offset_unit": "byte" })),
     ]);
     let page = scratch.text("page.html");
     assert!(page.contains("Event 5 of 5</a> \u{b7} message 3 of the log, at line 4 "), "no line");
@@ -794,60 +566,37 @@ fn a_scene_or_odometry_with_a_wrong_stamp_is_skipped_and_counted() {
     let before = judged(&scratch, &format!("{OF_SHAPE_6} --events scenes"), 0);
     let none = json!({"off_clock": 0, "scans_without_odometry": 0});
     assert_eq!(before["skipped_messages"], none);
-    // The stamps of these messages, by their numbers on a topic, become others.
-    let change = |topic: &str, seconds: &dyn Fn(usize, i32) -> i32| {
-        let mut number = 0;
+    // The stamps of these messages, by their numbers on a topic, are far from all others.
+    let far = 2_000_000_000;
+    let change = |topic: &str, is_far: &dyn Fn(usize) -> bool| {
+        let mut numbers = 0..;
         let [log, changed] = ["run.mcap", "changed.mcap"].map(|name| scratch.path(name));
         rewritten(&log, &changed, |_, message| {
-            if message.channel.topic == topic {
-                let other = seconds(number, stamp(message));
-                if other != stamp(message) {
-                    set_stamp(message, other);
-                }
-                number += 1;
+            if message.channel.topic == topic && numbers.next().is_some_and(is_far) {
+                set_stamp(message, far);
             }
             true
         });
     };
-    let far = 2_000_000_000;
     let of_changed = "conform changed.mcap --world worlds/shape-6.toml --events scenes";
     for topic in [ODOM, Scene::TOPIC] {
         // In the middle of a stretch of hallway, and at a junction.
-        change(topic, &|number, seconds| if [30, 50].contains(&number) { far } else { seconds });
+        change(topic, &|number| [30, 50].contains(&number));
         let after = judged(&scratch, of_changed, 0);
-        has(
-            &after,
-            &json!({
-                "skipped_messages": {"off_clock": 2, "scans_without_odometry": 0},
-                "remarks.0": "skipped messages: 2 whose time is far from that of all others",
-            }),
-            topic,
-        );
+        let skipped = json!({"off_clock": 2, "scans_without_odometry": 0});
+        let remark = "skipped messages: 2 whose time is far from that of all others";
+        has(&after, &json!({ "skipped_messages": skipped, "remarks.0": remark }), topic);
         for fact in ["verdict", "events", "candidates", "unique"] {
             assert_eq!(after[fact], before[fact], "{topic}: {fact}");
         }
     }
     // What cannot be skipped is an error: the time of a scene decides where the robot was.
-    change(Scene::TOPIC, &|number, seconds| if number >= 60 { far } else { seconds });
+    change(Scene::TOPIC, &|number| number >= 60);
     let message = scratch.error(of_changed);
-    for part in [
-        "its time, 2000000000.000 s, is more than an hour from that of all odometry",
-        "those of all 10 images or scenes from there on",
-    ] {
-        assert!(message.contains(part), "{message}");
-    }
-    for topic in [ODOM, Scene::TOPIC] {
-        let jumped = Cell::new(0);
-        change(topic, &|number, seconds| {
-            jumped.set(if number == 50 { seconds + 1000 } else { jumped.get() });
-            if number == 50 { jumped.get() } else { seconds }
-        });
-        let message = scratch.error(of_changed);
-        let back = format!("its clock goes back, from {}.000 s to ", jumped.get());
-        assert!(message.contains(&back), "{topic}: {message}");
-    }
+    let cause = "its time, 2000000000.000 s, is more than an hour from that of all odometry";
+    assert!(message.contains(cause), "{message}");
     // An event has its place in the order; without it the others mean something else.
-    change(Percept::TOPIC, &|number, seconds| if number == 2 { far } else { seconds });
+    change(Percept::TOPIC, &|number| number == 2);
     let message = scratch.error("conform changed.mcap");
     assert!(message.contains("the one before it at 2000000000.000 s"), "{message}");
 }
@@ -875,7 +624,7 @@ fn a_divergence_in_a_database_names_its_row() {
         |found| found.get::<_, String>(0),
     );
     let is_percept = line["event"].as_u64().unwrap() % 2 == 1;
-    assert_eq!(topic.unwrap(), if is_percept { Percept::TOPIC } else { Door::TOPIC });
+    assert_eq!(topic.unwrap(), if is_percept { Percept::TOPIC } else { messages::Door::TOPIC });
     let text = scratch.out(&format!("{other} --html page.html"), 1);
     let place = format!(", at row {}", grouped(u64::try_from(row).unwrap().into()));
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");

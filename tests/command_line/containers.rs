@@ -37,11 +37,6 @@ pub(super) fn set_stamp(message: &mut Message<'_>, seconds: i32) {
     data[8..12].fill(0);
 }
 
-/// The seconds of the stamp.
-pub(super) fn stamp(message: &Message<'_>) -> i32 {
-    i32::from_le_bytes(message.data[4..8].try_into().unwrap())
-}
-
 fn write_mcap(path: &Path, messages: &[Message<'_>]) {
     let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
     for message in messages {

@@ -40,66 +40,12 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     assert_ne!(output.status.code(), Some(2), "{output:?}");
 }
 
+/// The recorder of an MCAP file, a database of rosbag2 or a ROS 1 bag has a clock.
 #[test]
-fn laser_scans_without_a_time_or_a_place_are_skipped_and_counted() {
-    let scratch = logged("laser_skipped");
-    let [log, changed] = ["run.mcap", "changed.mcap"].map(|name| scratch.path(name));
-    let before = conform(&scratch, "run.mcap");
-    let none = json!({"off_clock": 0, "scans_without_odometry": 0});
-    assert_eq!(before["skipped_messages"], none);
-    let is_scan = |message: &Message| message.channel.topic == "/scan";
-    let is_odometry = |message: &Message| message.channel.topic == "/odom";
-
-    // The clock of the recorder jumps far ahead and back, three times.
-    let mut jumped = 0;
-    rewritten(&log, &changed, |index, message| {
-        let jumps = is_scan(message) && index > 500 * (jumped + 1) && jumped < 3;
-        if jumps {
-            jumped += 1;
-            message.log_time = FAR;
-        }
-        true
-    });
-    let after = conform(&scratch, "changed.mcap");
-    let remark = "skipped messages: 3 whose time is far from that of all others";
-    let remarks = [&[json!(remark)], &before["remarks"].as_array().unwrap()[..]].concat();
-    has(
-        &after,
-        &json!({
-            "skipped_messages": {"off_clock": 3, "scans_without_odometry": 0},
-            "scans": before["scans"].as_u64().unwrap() - 3,
-            "remarks": remarks,
-            "verdict": before["verdict"], "events": before["events"], "lengths": before["lengths"],
-        }),
-        "changed.mcap",
-    );
-    scratch.run(&format!("conform changed.mcap {LASER} --html page.html"));
-    let sentence = "<p>Skipped messages: 3 whose time is far from that of all others.</p>";
-    assert!(scratch.text("page.html").contains(sentence));
-
-    // The odometry begins late, or never. Of the scans before it, the last 50 wait for it.
-    let mut seen = 0;
-    rewritten(&log, &changed, |_, message| {
-        seen += usize::from(is_scan(message));
-        seen > 60 || !is_odometry(message)
-    });
-    let late = conform(&scratch, "changed.mcap");
-    let without = late["skipped_messages"]["scans_without_odometry"].as_u64().unwrap();
-    assert!((9..=11).contains(&without), "{late}");
-    let remark = format!("skipped messages: {without} scans without odometry");
-    has(&late, &json!({ "skipped_messages.off_clock": 0, "remarks.0": remark }), "late odometry");
-    // Topics that have no message carry no odometry.
-    rewritten(&log, &changed, |_, message| !is_odometry(message) && message.channel.topic != "/tf");
-    let message = scratch.error(&format!("conform changed.mcap {LASER}"));
-    assert!(message.contains("the log does not have what this needs"), "{message}");
-}
-
-/// The recorder of a database of rosbag2 or a ROS 1 bag has a clock, too.
-#[test]
-fn messages_off_the_clock_are_skipped_in_a_database_and_a_bag() {
+fn messages_off_the_clock_are_skipped_and_counted() {
     let scratch = logged("laser_containers");
     let log = scratch.path("run.mcap");
-    for (file, format) in [("run.db3", "db3"), ("run.bag", "bag")] {
+    for (file, format) in [("changed.mcap", "mcap"), ("run.db3", "db3"), ("run.bag", "bag")] {
         if format == "db3" && !cfg!(feature = "sqlite") {
             continue;
         }
@@ -112,16 +58,10 @@ fn messages_off_the_clock_are_skipped_in_a_database_and_a_bag() {
         });
         scratch.facts(&[(&format!("info {file}"), 0, json!({ "format": format }))]);
         let before = conform(&scratch, file);
-        has(
-            &before,
-            &json!({
-                "skipped_messages": {"off_clock": 0, "scans_without_odometry": 0}, "events": 10,
-            }),
-            file,
-        );
+        let none = json!({"off_clock": 0, "scans_without_odometry": 0});
+        has(&before, &json!({ "skipped_messages": none, "events": 10 }), file);
         // Two scans and an odometry far ahead, and a scan at the very beginning of time.
-        let mut scans = 0;
-        let mut odometry = 0;
+        let (mut scans, mut odometry) = (0, 0);
         rewritten(&log, &changed, |_, message| {
             message.log_time += begun;
             match &*message.channel.topic {
@@ -136,18 +76,35 @@ fn messages_off_the_clock_are_skipped_in_a_database_and_a_bag() {
             }
             true
         });
+        let remark = "skipped messages: 4 whose time is far from that of all others";
         has(
             &conform(&scratch, file),
             &json!({
                 "skipped_messages": {"off_clock": 4, "scans_without_odometry": 0},
-                "scans": before["scans"].as_u64().unwrap() - 3,
-                "remarks.0": "skipped messages: 4 whose time is far from that of all others",
+                "scans": before["scans"].as_u64().unwrap() - 3, "remarks.0": remark,
                 "verdict": before["verdict"], "events": before["events"], "event": before["event"],
-                "cause": before["cause"],
+                "cause": before["cause"], "lengths": before["lengths"],
             }),
             file,
         );
     }
+    // The odometry begins late, or never. Of the scans before it, the last 50 wait for it.
+    let changed = scratch.path("changed.mcap");
+    let is_odometry = |message: &Message| message.channel.topic == "/odom";
+    let mut seen = 0;
+    rewritten(&log, &changed, |_, message| {
+        seen += usize::from(message.channel.topic == "/scan");
+        seen > 60 || !is_odometry(message)
+    });
+    let late = conform(&scratch, "changed.mcap");
+    let without = late["skipped_messages"]["scans_without_odometry"].as_u64().unwrap();
+    assert!((9..=11).contains(&without), "{late}");
+    let remark = format!("skipped messages: {without} scans without odometry");
+    has(&late, &json!({ "skipped_messages.off_clock": 0, "remarks.0": remark }), "late odometry");
+    // Topics that have no message carry no odometry.
+    rewritten(&log, &changed, |_, message| !is_odometry(message) && message.channel.topic != "/tf");
+    let message = scratch.error(&format!("conform changed.mcap {LASER}"));
+    assert!(message.contains("the log does not have what this needs"), "{message}");
 }
 
 #[test]

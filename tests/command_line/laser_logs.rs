@@ -118,6 +118,17 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(text.contains(part.trim_end()), "{text}");
     }
+    scratch.write("flat.toml", "[marker]\nat = [0, 0]\n");
+    for (line, cause) in [
+        (
+            &*format!("{RING} --topics flat.toml --assume-marker"),
+            "[marker] at of --topics: a directional marker needs a heading: at = [x, y, heading]",
+        ),
+        ("sense ring.log --scans 9999", "--scans: the log has 2"),
+    ] {
+        let message = scratch.error(line);
+        assert!(message.contains(cause), "{message}");
+    }
     scratch.facts(&[
         // In the known building the marker may lie anywhere.
         (&format!(
@@ -126,58 +137,6 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
         // An undirected marker leaves open how the robot came back.
         (&format!("{RING} --assume-marker --marker undirected"), 0, json!({ "unique": false })),
     ]);
-}
-
-#[test]
-fn what_needs_other_scans_or_another_option_is_an_error() {
-    let scratch = ring("laser_usage");
-    for (file, text) in [
-        ("mapping.toml", "[marker]\nat = [0, 0, 3.14]\n"),
-        ("flat.toml", "[marker]\nat = [0, 0]\n"),
-        ("fiducial.toml", "[marker]\ntopic = \"/tag\"\n"),
-        ("lines.jsonl", "{\"degree\":3,\"door\":1}\n{\"degree\":3,\"door\":null}\n"),
-        ("params.toml", "[corner]\n[arm]\nmin = 2.0\n"),
-    ] {
-        scratch.write(file, text);
-    }
-    for (line, cause) in [
-        (
-            "conform ring.log --driver anyone --topics mapping.toml",
-            "[marker] at of --topics: the log has no marker there; to assume one, add --assume-marker",
-        ),
-        (
-            "conform ring.log --driver anyone --topics flat.toml --assume-marker",
-            "[marker] at of --topics: a directional marker needs a heading: at = [x, y, heading]",
-        ),
-        (
-            "conform ring.log --driver anyone --topics fiducial.toml",
-            "the log has no topic \"/tag\"; it has: FLASER",
-        ),
-        (
-            "conform ring.log --driver anyone --assume-marker --marker none",
-            "--assume-marker: this needs another marker than none",
-        ),
-        (
-            "conform lines.jsonl --driver anyone --assume-marker",
-            "--assume-marker: this is for events that are inferred from laser scans",
-        ),
-        (
-            "conform lines.jsonl --driver anyone --picture a.svg --marker none",
-            "--picture: this is for events that are inferred from laser scans",
-        ),
-        (
-            "conform ring.log --marker undirected --assume-marker",
-            "--marker undirected: the algorithms need the directional",
-        ),
-        (
-            "conform ring.log --laser-params params.toml",
-            "params.toml: line 3, column 1: arm.min: unknown key; expected one of: min_arm, ",
-        ),
-        ("sense ring.log --scans 9999", "--scans: the log has 2"),
-    ] {
-        let message = scratch.error(line);
-        assert!(message.contains(cause), "{line}: {message}");
-    }
 }
 
 #[test]

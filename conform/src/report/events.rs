@@ -28,7 +28,6 @@ pub struct ReportedEvent {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EventPose {
     At(PoseName),
-    /// The number of candidate poses.
     Candidates(usize),
 }
 
@@ -80,7 +79,6 @@ impl MarkerSeen {
 }
 
 impl Known {
-    /// The name of a pose.
     pub(super) fn pose_name(&self, pose: Dart) -> PoseName {
         let vertex = self.world.at_text(pose).to_owned();
         PoseName { vertex, from: self.world.leads_to(pose).to_owned() }
@@ -97,8 +95,7 @@ impl CheckedLog {
             let poses = judgement.poses.as_ref();
             let pose = poses.and_then(|poses| Some(poses.alone.get(place)?.as_ref()?.pose));
             // After a door it is not known where the robot is until it arrives.
-            let is_arrival = matches!(event.kind, CheckedKind::Arrival { .. });
-            let there = poses.zip(self.known.as_ref()).filter(|_| is_arrival);
+            let there = poses.zip(self.known.as_ref()).filter(|_| event.arrival().is_some());
             let there = there.and_then(|(poses, known)| {
                 let left = *poses.left.get(place)?;
                 Some(pose.map_or(EventPose::Candidates(left), |pose| {
@@ -145,7 +142,7 @@ impl ReportedVisit {
                     turned_back = true;
                     continue;
                 }
-                CheckedKind::Aside { .. } => continue,
+                CheckedKind::LeftBetweenDoors { .. } => continue,
             };
             visits.push(Self {
                 index: visits.len(),

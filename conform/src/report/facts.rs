@@ -1,6 +1,6 @@
 //! What was checked, and against what.
 
-use serde::{Serialize, Serializer};
+use serde::{Serialize, Serializer, ser::SerializeMap};
 use toposlam_logs::{SkippedLines, error::Truncation, record::RunEnding};
 use toposlam_model::{
     embedded_graph::Dart,
@@ -9,7 +9,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::{MappingAlgorithm, MappingMethod, PartialMap},
     percept::Door,
-    trace::{AlgorithmMatch, MatchEnd, MatchedChoices},
+    trace::{MatchEnd, MatchedChoices},
 };
 
 use super::super::{
@@ -33,10 +33,8 @@ pub struct Facts {
     /// A marker that is not recorded in percepts.
     #[serde(rename = "assumed_marker", serialize_with = "assumed_marker")]
     pub added_marker: Option<AddedMarker>,
-    /// The number of images that were sensed.
     pub images: u64,
     pub unreadable_images: u64,
-    /// The number of laser scans that were sensed.
     pub scans: u64,
     pub skipped_messages: SkippedMessages,
     pub truncated: Option<Truncation>,
@@ -44,13 +42,13 @@ pub struct Facts {
     #[serde(rename = "skipped")]
     pub skipped_lines: Option<SkippedLines>,
     pub recorded: Option<RecordedWorld>,
-    pub ending: Option<RecordedEnding>,
+    #[serde(serialize_with = "recorded_ending")]
+    pub ending: Option<RunEnding>,
     pub world: Option<WorldFact>,
     pub smallest: Option<SmallestFound>,
     pub lengths: MeasuredHallways,
     /// Whether no other world explains the log.
     pub unique: Option<bool>,
-    /// The number of doors that were never followed.
     pub open_doors: Option<usize>,
     pub never_followed: Option<Vec<OpenDoor>>,
     /// Another world that explains the log, and that no walk distinguishes from the known one or the smallest.
@@ -58,23 +56,20 @@ pub struct Facts {
     pub doors: Option<ComparedDoors>,
     pub map: Option<MapSize>,
 
-    /// Whether the log has a head.
     #[serde(skip)]
     pub has_head: bool,
     /// Whether the log has a head, but does not record how the run ended.
     #[serde(skip)]
     pub lacks_end: bool,
-    /// The number of the first visit to a junction that was not recognised, and whether the scanner did not look
-    /// there.
+    /// The number of the first visit to a junction that was not recognised, and why.
     #[serde(skip)]
-    pub unrecognised: Option<(usize, UnseenPlace)>,
+    pub unrecognised: Option<(usize, UndecidedCause)>,
     /// The number of the first event that is compared with no world, because the robot got lost before it.
     #[serde(skip)]
     pub lost: Option<usize>,
     /// The number of ways in which the visits of an undirected marker can be visits of one junction.
     #[serde(skip)]
     pub ways: usize,
-    /// The class of the worlds that were searched.
     #[serde(skip)]
     pub class: Option<Class>,
     /// The widest field of view of a scan, in radians.
@@ -83,14 +78,6 @@ pub struct Facts {
     /// The drift of the heading of the odometry in 10 m, in radians, if scans were matched because of it.
     #[serde(skip)]
     pub drift: Option<f64>,
-}
-
-/// Why a junction was not recognised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UnseenPlace {
-    Junction,
-    /// The robot drove where its scanner did not look.
-    Way,
 }
 
 /// What the log records about its world.
@@ -102,10 +89,6 @@ pub struct RecordedWorld {
     /// Whether it is the known world.
     pub same_world: Option<bool>,
 }
-
-/// The recorded end of the run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordedEnding(pub RunEnding);
 
 /// The known world.
 #[derive(Clone, Debug, Serialize)]
@@ -153,7 +136,6 @@ pub struct OpenDoor {
 pub struct ComparedDoors {
     pub algorithm: MappingAlgorithm,
     pub choices: MatchedChoices,
-    /// Whether the robot recovers.
     pub recovers: bool,
     /// The number of events before the first that the algorithm does not have.
     pub departs_after: Option<usize>,
@@ -167,7 +149,6 @@ pub struct MapSize {
     pub complete: bool,
     pub vertices: usize,
     pub edges: usize,
-    /// The number of unexplored edge ends.
     pub unexplored: usize,
 }
 
@@ -176,12 +157,13 @@ impl CheckedLog {
         let Self { extracted, judgement, known, .. } = self;
         let head = LogHead(source.head);
         let open = self.open_doors();
-        let way = CheckedKind::Undecided(UndecidedCause::UnseenWay);
-        let unrecognised = judgement.unrecognised.map(|event| {
-            let is_way = judgement.events.events.get(event).is_some_and(|found| found.kind == way);
-            (event + 1, if is_way { UnseenPlace::Way } else { UnseenPlace::Junction })
+        let unrecognised = judgement.unrecognised.and_then(|event| {
+            let found = judgement.events.events.get(event)?;
+            let CheckedKind::Undecided(why) = found.kind else { return None };
+            Some((event + 1, why))
         });
-        let ending = judgement.events.end.as_ref().map(|end| RecordedEnding(end.ending.clone()));
+        let ending = judgement.events.end.as_ref().map(|end| end.ending.clone());
+        let followed = judgement.algorithm.as_ref();
         Facts {
             evidence: extracted.evidence,
             added_marker: self.added,
@@ -208,17 +190,25 @@ impl CheckedLog {
             open_doors: open.as_ref().map(Vec::len),
             never_followed: open,
             twin: self.twin.clone(),
-            doors: judgement.algorithm.as_ref().map(|followed| {
-                let recovers =
-                    matches!(self.driver, RunDriver::Method(MappingMethod::Recovering(_)));
-                ComparedDoors::of(followed, recovers)
+            doors: followed.map(|followed| ComparedDoors {
+                algorithm: followed.algorithm,
+                choices: followed.choices,
+                recovers: matches!(
+                    self.config.driver,
+                    RunDriver::Method(MappingMethod::Recovering(_))
+                ),
+                departs_after: match &followed.reached {
+                    MatchEnd::Departure(departure) => Some(departure.event.id),
+                    _ => None,
+                },
+                is_cut: followed.reached == MatchEnd::EndOfTrace,
             }),
-            map: judgement.algorithm.as_ref().map(|followed| MapSize::of(followed.run.map())),
+            map: followed.map(|followed| MapSize::from(followed.run.map())),
             has_head: source.head.is_some(),
             unrecognised,
             lost: judgement.lost.map(|event| event + 1),
             ways: judgement.ways,
-            class: Some(self.search.class),
+            class: Some(self.config.search.class),
             field_of_view: extracted.field_of_view,
             drift: extracted.drift,
         }
@@ -248,7 +238,7 @@ impl CheckedLog {
             vertices: graph.vertex_count(),
             edges: graph.edge_count(),
             least: limit.is_none(),
-            world: NamedWorld { marker: Some(self.marker), ..world },
+            world: NamedWorld { marker: Some(self.config.marker), ..world },
         })
     }
 
@@ -298,23 +288,8 @@ fn known_poses(judgement: &Judgement, trail: &FoldedTrail) -> Vec<Option<(Dart, 
     poses
 }
 
-impl ComparedDoors {
-    fn of(followed: &AlgorithmMatch, recovers: bool) -> Self {
-        Self {
-            algorithm: followed.algorithm,
-            choices: followed.choices,
-            recovers,
-            departs_after: match &followed.reached {
-                MatchEnd::Departure(departure) => Some(departure.event.id),
-                _ => None,
-            },
-            is_cut: followed.reached == MatchEnd::EndOfTrace,
-        }
-    }
-}
-
-impl MapSize {
-    fn of(map: &PartialMap) -> Self {
+impl From<&PartialMap> for MapSize {
+    fn from(map: &PartialMap) -> Self {
         let unexplored = map.unexplored_count() as usize;
         Self {
             complete: map.complete().is_some(),
@@ -331,51 +306,44 @@ fn assumed_marker<S: Serializer>(
     added: &Option<AddedMarker>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Assumed {
-        position: [f64; 2],
-        heading: Option<f64>,
-        seen: usize,
-    }
-    let assumed = match *added {
-        Some(AddedMarker::Assumed { position, heading, seen }) => {
-            Some(Assumed { position, heading, seen })
-        }
-        _ => None,
+    let Some(AddedMarker::Assumed { position, heading, seen }) = added else {
+        return serializer.serialize_none();
     };
-    assumed.serialize(serializer)
+    let mut map = serializer.serialize_map(Some(3))?;
+    map.serialize_entry("position", position)?;
+    map.serialize_entry("heading", heading)?;
+    map.serialize_entry("seen", seen)?;
+    map.end()
 }
 
-impl Serialize for RecordedEnding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields<'e> {
-            how: &'static str,
-            cause: Option<&'e str>,
-        }
-        let (how, cause) = match &self.0 {
-            RunEnding::Mapped => ("mapped", None),
-            RunEnding::Stopped => ("stopped", None),
-            RunEnding::GaveUp(cause) => ("gave-up", Some(&**cause)),
-            RunEnding::OutOfBudget(cause) => ("out-of-budget", Some(&**cause)),
-        };
-        Fields { how, cause }.serialize(serializer)
-    }
+#[expect(clippy::ref_option, reason = "serde calls it with the field")]
+fn recorded_ending<S: Serializer>(
+    ending: &Option<RunEnding>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let (how, cause) = match ending {
+        None => return serializer.serialize_none(),
+        Some(RunEnding::Mapped) => ("mapped", None),
+        Some(RunEnding::Stopped) => ("stopped", None),
+        Some(RunEnding::GaveUp(cause)) => ("gave-up", Some(cause)),
+        Some(RunEnding::OutOfBudget(cause)) => ("out-of-budget", Some(cause)),
+    };
+    let mut map = serializer.serialize_map(Some(2))?;
+    map.serialize_entry("how", how)?;
+    map.serialize_entry("cause", &cause)?;
+    map.end()
 }
 
 impl Serialize for ComparedDoors {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields {
-            algorithm: &'static str,
-            choices: &'static str,
-            from_event: Option<usize>,
-        }
         let (choices, from) = match self.choices {
             MatchedChoices::Default => ("default", None),
             MatchedChoices::Other { from } => ("other", from),
         };
-        let from_event = from.map(|event| event + 1);
-        Fields { algorithm: self.algorithm.name(), choices, from_event }.serialize(serializer)
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("algorithm", self.algorithm.name())?;
+        map.serialize_entry("choices", choices)?;
+        map.serialize_entry("from_event", &from.map(|event| event + 1))?;
+        map.end()
     }
 }

@@ -1,7 +1,5 @@
 //! The report on a log as data. [`words`](super::words) makes sentences of it, [`json`](super::json) its JSON lines.
 
-#![allow(missing_docs, reason = "the names of most fields and variants say what they are")]
-
 mod events;
 mod facts;
 
@@ -11,19 +9,17 @@ use toposlam_model::{
     driving::visit::JUNCTION_SHAPES,
     embedded_graph::Dart,
     folding::{FoldedTrail, SearchLimit},
+    mapping::MappingAlgorithm,
     trace::{AlgorithmCase, AllowedStep, MatchedChoices, MisfitReason},
 };
 
 pub(super) use events::MarkerSeen;
 pub use events::{EventPose, PoseName, ReportedEvent, ReportedVisit};
-pub use facts::{
-    ComparedDoors, Facts, MapSize, OpenDoor, RecordedEnding, RecordedWorld, SmallestFound,
-    UnseenPlace, WorldFact,
-};
+pub use facts::{ComparedDoors, Facts, MapSize, OpenDoor, RecordedWorld, SmallestFound, WorldFact};
 
 use super::{
     check::{CheckedLog, LogSource},
-    config::RunDriver,
+    config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::CheckedKind,
     judgement::{ConformVerdict, ReachedLimit},
@@ -70,7 +66,6 @@ pub struct SourceFile {
 /// The report on a log. It is serialized as a line of `conform --json`.
 #[derive(Clone, Debug, Default)]
 pub struct LogReport {
-    /// The file of the log.
     pub log: String,
     pub verdict: ConformVerdict,
     pub events: Vec<ReportedEvent>,
@@ -89,7 +84,6 @@ pub struct LogReport {
     /// The command that checks it, if it was written.
     pub command: Option<String>,
     pub facts: Facts,
-    /// What chose the doors.
     pub driver: RunDriver,
     /// When the first message was recorded, in nanoseconds; `None` if there is none.
     pub begun: Option<u64>,
@@ -102,23 +96,27 @@ pub struct LogReport {
     pub folded: Option<FoldedReport>,
 }
 
-/// The first divergence.
-#[derive(Clone, Debug)]
+/// The first divergence. Its JSON has the event, what is allowed instead, and the numbers of the cause.
+#[derive(Clone, Debug, Serialize)]
 pub struct DivergenceReport {
     /// The number of the event, from 1; one more than there are if an event is missing at the end.
+    #[serde(skip)]
     pub event: usize,
     /// Seconds since the first message; `None` if the log has no times.
+    #[serde(skip)]
     pub time: Option<f64>,
     /// The message of the event; none at the end.
+    #[serde(skip)]
     pub message: Option<MessagePlace>,
+    #[serde(skip)]
     pub fault: FaultClass,
-    pub cause: DivergenceCause,
-    /// The event; `None` if one is missing at the end.
     pub found: Option<CheckedKind>,
     /// The first of what is allowed instead.
     pub allowed: Vec<Allowed>,
     /// The number of all that is allowed instead.
     pub allowed_total: usize,
+    #[serde(flatten)]
+    pub cause: DivergenceCause,
 }
 
 /// What is allowed instead of an event.
@@ -126,7 +124,6 @@ pub struct DivergenceReport {
 pub enum Allowed {
     /// In a pose of the known world.
     InWorld(PoseName, MisfitReason),
-    /// By the algorithm.
     Step(AllowedStep),
 }
 
@@ -137,7 +134,6 @@ pub struct MessagePlace {
     pub number: u64,
     /// Its offset in its file.
     pub offset: u64,
-    /// What the offset counts.
     pub unit: OffsetUnit,
 }
 
@@ -172,7 +168,6 @@ pub struct Limit {
 pub struct ToleratedQuirk {
     pub name: String,
     pub reason: String,
-    /// The numbers of the events, from 1.
     pub events: Vec<usize>,
 }
 
@@ -203,7 +198,7 @@ impl CheckedLog {
             limits: judgement.limits().into_iter().map(|limit| self.limit(limit)).collect(),
             tolerated: self.tolerated(),
             facts: self.facts(source),
-            driver: self.driver,
+            driver: self.config.driver,
             begun: source.log.start(),
             folded: self.folded(),
             events,
@@ -212,24 +207,25 @@ impl CheckedLog {
     }
 
     fn divergence_report(&self, source: &LogSource, divergence: &Divergence) -> DivergenceReport {
+        let Divergence { event: index, ref cause, fault } = *divergence;
         let events = &self.judgement.events.events;
         let begun = source.log.start().unwrap_or(0);
-        let event = events.get(divergence.event);
+        let event = events.get(index);
         let time = event.or(events.last()).map_or(begun, |event| event.source.time);
         // Lines need not have stamps.
         let has_times = source.log.format() != Format::Events
             || events.iter().any(|event| event.source.time > 0);
-        let (allowed, allowed_total) = self.allowed(&divergence.cause);
+        let (allowed, allowed_total) = self.allowed(cause);
         DivergenceReport {
-            event: divergence.event + 1,
+            event: index + 1,
             time: has_times.then(|| time.saturating_sub(begun) as f64 / 1e9),
             message: event.map(|event| MessagePlace {
                 number: event.source.id.0,
                 offset: event.source.offset,
                 unit: source.log.offset_unit(),
             }),
-            fault: divergence.fault,
-            cause: divergence.cause.clone(),
+            fault,
+            cause: cause.clone(),
             found: event.map(|event| event.kind.clone()),
             allowed,
             allowed_total,
@@ -262,7 +258,7 @@ impl CheckedLog {
         let shaped = run.filter(|_| !coverage.junctions.is_empty());
         let mut cases = Vec::new();
         // The folding explorer does not have the cases of Algorithm 1.
-        if !self.is_folding() {
+        if algorithm.as_ref().map(|it| it.algorithm) != Some(MappingAlgorithm::Folding) {
             cases.extend(AlgorithmCase::ALL.map(|case| CoveredCase {
                 case: case.name(),
                 count: coverage.algorithm.count(case),
@@ -281,27 +277,26 @@ impl CheckedLog {
 
     /// A limit that was reached, and the option that raises it.
     fn limit(&self, reached: ReachedLimit) -> Limit {
+        let ConformConfig { search, dart_bound, .. } = self.config;
         let none = Limit { option: None, value: None, decides: true, event: None, reached };
-        let of = |option, value| Limit { option: Some(option), value: Some(value), ..none };
-        let search = |limit| match limit {
-            SearchLimit::Edges => {
-                of("--max-edges", self.search.max_edges.unwrap_or_default() as u64)
-            }
-            SearchLimit::Steps => of("--max-steps", self.search.steps),
+        let raised = |option, value| Limit { option: Some(option), value: Some(value), ..none };
+        let of_search = |limit| match limit {
+            SearchLimit::Edges => raised("--max-edges", search.max_edges.unwrap_or(0) as u64),
+            SearchLimit::Steps => raised("--max-steps", search.steps),
             SearchLimit::Decisions | SearchLimit::Stopped => none,
         };
         match reached {
-            ReachedLimit::SmallerWorld(limit) => Limit { decides: false, ..search(limit) },
-            ReachedLimit::World(limit) => search(limit),
+            ReachedLimit::SmallerWorld(limit) => Limit { decides: false, ..of_search(limit) },
+            ReachedLimit::World(limit) => of_search(limit),
             ReachedLimit::Darts { event, bound, .. } => {
-                let option = (bound == self.dart_bound).then_some("--max-darts");
+                let option = (bound == dart_bound).then_some("--max-darts");
                 Limit { option, value: Some(bound as u64), event: Some(event + 1), ..none }
             }
         }
     }
 
     fn tolerated(&self) -> Vec<ToleratedQuirk> {
-        let tolerated = self.quirks.all().iter().enumerate().map(|(place, quirk)| {
+        let tolerated = self.quirks.quirks.iter().enumerate().map(|(place, quirk)| {
             let these = self.judgement.tolerated.iter().filter(|(_, of)| *of == place);
             ToleratedQuirk {
                 name: quirk.name.clone(),
@@ -345,7 +340,7 @@ impl LogReport {
 impl RequiredCoverage {
     /// Which required cases are not covered by these logs.
     #[must_use]
-    pub fn of(required: &[String], reports: &[LogReport]) -> Self {
+    pub fn from_reports(required: &[String], reports: &[LogReport]) -> Self {
         let all = LogReport::coverage_of(reports);
         let covers = |case: &String| all.iter().any(|known| known.case == case && known.count > 0);
         let not_covered: Vec<_> = required.iter().filter(|case| !covers(case)).cloned().collect();

@@ -175,13 +175,6 @@ fn scans_long_before_the_first_odometry_and_off_the_clock_are_counted() {
     // Fifty scans wait for their odometry.
     let skipped = SkippedMessages { off_clock: 1, scans_without_odometry: 3 };
     assert_eq!((run.scans, run.skipped), (70, skipped));
-    assert_eq!(
-        words::skipped_messages(run.skipped).unwrap(),
-        "skipped messages: 1 whose time is far from that of all others, 3 scans without odometry"
-    );
-    assert_eq!(words::skipped_messages(SkippedMessages::default()), None);
-    let one = SkippedMessages { off_clock: 0, scans_without_odometry: 1 };
-    assert_eq!(words::skipped_messages(one).unwrap(), "skipped messages: 1 scan without odometry");
     let nowhere = |write: fn(&mut Written)| {
         let mut log = Written::new();
         write(&mut log);
@@ -225,16 +218,4 @@ fn a_robot_that_turned_back_is_not_one_at_a_junction_that_was_not_recognised() {
     let turned = "{\"kind\":\"event\",\"degree\":null,\"door\":null,\"turned_back\":true}\n";
     assert_eq!(kinds(turned), [CheckedKind::TurnedBack, unclear.clone()]);
     assert_eq!(kinds("{\"kind\":\"event\",\"degree\":null,\"door\":null}\n"), [unclear]);
-}
-
-#[test]
-fn scans_without_any_odometry_are_an_error_with_their_number() {
-    let mut log = Written::new();
-    for _ in 0..3 {
-        log.scan();
-    }
-    let (log, mapping) = log.open();
-    let error = extract(&log, &mapping, &ExtractConfig::new(Evidence::Laser), &()).unwrap_err();
-    assert!(matches!(error, ExtractError::NoOdometry { scans: 3 }), "{error}");
-    assert_eq!(error.to_string(), "no odometry is recorded with its 3 laser scans");
 }

@@ -1,15 +1,11 @@
 //! Lengths and turns by odometry: logs of which a stretch was cut out, and logs that were spliced, diverge where
 //! that happened.
 
-use toposlam_logs::record::Frame;
-use toposlam_model::driving::scene::wrapped;
+use std::mem::discriminant;
+
+use toposlam_model::{driving::scene::wrapped, marker::NoMarker, measurement::HallwayMeasurement};
 
 use super::*;
-
-/// The log of a robot that may choose any door.
-fn by_anyone() -> ConformConfig<'static> {
-    ConformConfig { driver: RunDriver::Anyone, ..without_world() }
-}
 
 /// The first divergence of these lines, with moves that are counted again.
 fn divergence_of(mut lines: Vec<(TimedOdometry, EventKind)>) -> Option<Divergence> {
@@ -28,31 +24,22 @@ fn divergence_of(mut lines: Vec<(TimedOdometry, EventKind)>) -> Option<Divergenc
     judged(&log.recorded(), &by_anyone()).divergence
 }
 
-/// The events of a divergence between which the robot was moved, if it was, from 0.
-fn moved(found: &Divergence) -> Option<[usize; 2]> {
+/// Whether a measurement diverges, and if so whether this event is one of it, or one that it contradicts.
+fn is_at(found: &Divergence, event: usize) -> Option<bool> {
     match found.cause {
-        DivergenceCause::Measurement { between, .. } => Some(between),
+        DivergenceCause::Measurement { between, earlier, .. } => {
+            Some([between, earlier].iter().any(|[from, to]| (from..=to).contains(&&event)))
+        }
         _ => None,
     }
 }
 
-/// The event of a measurement, or one that it contradicts.
-fn is_at(found: &Divergence, event: usize) -> bool {
-    match found.cause {
-        DivergenceCause::Measurement { between, earlier, .. } => {
-            let has = |[from, to]: [usize; 2]| (from..=to).contains(&event);
-            has(between) || has(earlier)
-        }
-        _ => false,
-    }
-}
-
 /// Runs of the plans of `worlds/`.
-fn runs() -> Vec<(Arc<FloorPlan>, Dart, Log)> {
+fn runs() -> Vec<(Place, Log)> {
     let runs = plans().unwrap().into_iter().flat_map(|(_, plan)| {
         let starts = starts_of(&plan).into_iter().take(3);
-        let run = |facing| (plan.clone(), facing, log(&plan, facing, 7));
-        starts.map(run).collect::<Vec<_>>()
+        let places: Vec<Place> = starts.map(|facing| (plan.clone(), facing)).collect();
+        places.into_iter().map(|place| (place.clone(), log(&place, 7)))
     });
     runs.collect()
 }
@@ -61,26 +48,21 @@ fn runs() -> Vec<(Arc<FloorPlan>, Dart, Log)> {
 #[test]
 fn a_stretch_that_was_cut_out_shows_where_the_percepts_fit() {
     let (mut cuts, mut found_at_once, mut found_later, mut elsewhere) = (0, 0, 0, 0);
-    for (_, _, good) in runs() {
+    for (_, good) in runs() {
         let places = good.places();
         for arrival in (2..places.len().saturating_sub(1)).step_by(2) {
-            let cut = places[arrival]..=places[arrival + 1];
-            let keep = |(place, line): (usize, &(TimedOdometry, EventKind))| {
-                (!cut.contains(&place)).then(|| line.clone())
-            };
-            let lines: Vec<_> = good.lines.iter().enumerate().filter_map(keep).collect();
+            let mut lines = good.lines.clone();
+            lines.drain(places[arrival]..=places[arrival + 1]);
             let Some(found) = divergence_of(lines) else {
                 cuts += 1;
                 continue;
             };
             // The percepts, or the directions, may show it before or at the same event.
-            if moved(&found).is_none() {
-                continue;
-            }
+            let Some(is_at) = is_at(&found, arrival) else { continue };
             cuts += 1;
             assert!(found.event >= arrival, "{arrival}: {found:?}");
             // After a wrong percept other visits may be identified that are not one.
-            match is_at(&found, arrival) {
+            match is_at {
                 true if found.event == arrival => found_at_once += 1,
                 true => found_later += 1,
                 false => elsewhere += 1,
@@ -98,8 +80,8 @@ fn a_stretch_that_was_cut_out_shows_where_the_percepts_fit() {
 #[test]
 fn two_spliced_logs_diverge_at_the_splice() {
     let (mut splices, mut found_by_length) = (0, 0);
-    for (plan, facing, first) in runs() {
-        let second = log(&plan, facing, 8);
+    for (place, first) in runs() {
+        let second = log(&place, 8);
         let places = [first.places(), second.places()];
         assert_eq!(places[0].len(), places[1].len());
         for door in (1..places[0].len()).step_by(2) {
@@ -110,20 +92,19 @@ fn two_spliced_logs_diverge_at_the_splice() {
                 continue;
             }
             let begun = before[one].0.time;
-            let later = |(reckoned, line): &(TimedOdometry, EventKind)| {
-                let time = reckoned.time + begun;
-                (TimedOdometry { time, ..*reckoned }, line.clone())
+            let later = |(timed, line): &(TimedOdometry, EventKind)| {
+                let time = timed.time + begun;
+                (TimedOdometry { time, ..*timed }, line.clone())
             };
             let lines = before.iter().cloned().chain(after.iter().map(later)).collect();
             splices += 1;
             let Some(found) = divergence_of(lines) else { continue };
-            match moved(&found) {
-                Some(_) => {
-                    found_by_length += 1;
-                    assert!(is_at(&found, door + 1), "{door}: {found:?}");
-                }
+            if let Some(is_at) = is_at(&found, door + 1) {
+                found_by_length += 1;
+                assert!(is_at, "{door}: {found:?}");
+            } else {
                 // Its directions do not agree with the doors.
-                None => assert!((door..=door + 2).contains(&found.event), "{door}: {found:?}"),
+                assert!((door..=door + 2).contains(&found.event), "{door}: {found:?}");
             }
         }
     }
@@ -132,8 +113,7 @@ fn two_spliced_logs_diverge_at_the_splice() {
 
 #[test]
 fn a_log_without_odometry_is_not_compared() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let mut events = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let mut events = good_run();
     let measured = judged(&events, &by_anyone()).measured;
     assert_eq!(measured.measured, measured.moves);
     assert!(measured.compared > 0);
@@ -147,23 +127,31 @@ fn a_log_without_odometry_is_not_compared() {
     assert_eq!(judgement.verdict(), ConformVerdict::Conforms);
 }
 
+/// The measurement of the hallway before an arrival.
+fn hallway_before(events: &mut RunEvents, event: usize) -> &mut HallwayMeasurement {
+    match &mut events.events[event].kind {
+        CheckedKind::Arrival { hallway: Some(hallway), .. } => hallway,
+        other => panic!("{event}: {other:?}"),
+    }
+}
+
 /// The fault at an event, if the hallway before it is longer by this, in metres.
 fn with_longer_hallway(metres: f64, event: usize, quirks: &Quirks) -> Option<Divergence> {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let mut events = log(&plan, starts_of(&plan)[0], 1).recorded();
-    let CheckedKind::Arrival { hallway: Some(hallway), .. } = &mut events.events[event].kind else {
-        panic!("{event}")
-    };
-    hallway.length += metres;
+    let mut events = good_run();
+    hallway_before(&mut events, event).length += metres;
     judge(events, &by_anyone(), quirks, &()).unwrap().divergence
+}
+
+/// The first event at which a hallway that is longer by 6 m is found.
+fn first_found() -> (usize, Divergence) {
+    let found = |event| Some((event, with_longer_hallway(6.0, event, &Quirks::default())?));
+    (2..14).step_by(2).find_map(found).unwrap()
 }
 
 #[test]
 fn a_longer_hallway_is_found_and_can_be_tolerated() {
-    let found = |event| with_longer_hallway(6.0, event, &Quirks::default());
-    let (event, divergence) =
-        (2..14).step_by(2).find_map(|event| Some((event, found(event)?))).unwrap();
-    assert!(is_at(&divergence, event), "{event}: {divergence:?}");
+    let (event, divergence) = first_found();
+    assert_eq!(is_at(&divergence, event), Some(true), "{event}: {divergence:?}");
     assert_eq!(with_longer_hallway(0.2, event, &Quirks::default()), None);
     let text = "[[quirk]]\nname = \"ramp\"\ncause = \"moved\"\nreason = \"the wheels slip on it\"";
     assert_eq!(with_longer_hallway(6.0, event, &Quirks::read(text).unwrap()), None);
@@ -172,36 +160,29 @@ fn a_longer_hallway_is_found_and_can_be_tolerated() {
 /// A visit has the measurement of its event, and the darts of its junction.
 #[test]
 fn the_visits_of_a_run_are_identified_by_its_folded_trail() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let good = good_run();
     let visits = good.measured_visits().unwrap();
-    let arrivals: Vec<_> = (good.events.iter())
-        .filter_map(|event| match &event.kind {
-            CheckedKind::Arrival { arrival, hallway, .. } => Some((arrival.degree, *hallway)),
-            _ => None,
-        })
-        .collect();
+    let arrivals = good.events.iter().filter_map(|event| match &event.kind {
+        CheckedKind::Arrival { arrival, hallway, .. } => Some((arrival.degree, *hallway)),
+        _ => None,
+    });
+    let arrivals: Vec<_> = arrivals.collect();
     assert!(arrivals.len() > 5);
-    let of_visits: Vec<_> =
-        visits.iter().map(|visit| (visit.darts.len() as u32, visit.arrived)).collect();
-    assert_eq!(of_visits, arrivals);
+    let of_visits = visits.iter().map(|visit| (visit.darts.len() as u32, visit.arrived));
+    assert_eq!(of_visits.collect::<Vec<_>>(), arrivals);
     let mut junctions: Vec<_> = visits.iter().map(|visit| visit.darts.iter().min()).collect();
     junctions.sort_unstable();
     junctions.dedup();
     assert!(junctions.len() < visits.len(), "the robot came to a junction again");
     // No world explains a run in which a junction has another degree where the robot turns back to it.
-    let mut wrong = good.clone();
-    let last = wrong.events.len() - 1;
-    let CheckedKind::Arrival { arrival, .. } = &mut wrong.events[last].kind else { panic!() };
-    arrival.degree += 1;
-    assert_eq!(wrong.measured_visits(), None);
+    let last = good.events.len() - 1;
+    assert_eq!(with_more_doors(&good, &[last], 1).measured_visits(), None);
 }
 
-/// A tolerated length says nothing about the shape, nor a tolerated shape about the length.
+/// A tolerated length does not concern the shape, nor a tolerated shape the length.
 #[test]
 fn only_the_measurement_that_is_tolerated_is_forgotten() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let good = good_run();
     let forgotten = |measurement| {
         let cause = DivergenceCause::Measurement { between: [0, 2], earlier: [4, 6], measurement };
         let mut events = good.clone();
@@ -216,12 +197,7 @@ fn only_the_measurement_that_is_tolerated_is_forgotten() {
         is_left(2)
     };
     assert_eq!(forgotten(ContradictoryMeasurement::Shape), (false, true));
-    let found =
-        (2..14).step_by(2).find_map(|event| with_longer_hallway(6.0, event, &Quirks::default()));
-    let Some(DivergenceCause::Measurement { measurement, .. }) = found.map(|found| found.cause)
-    else {
-        panic!()
-    };
+    let DivergenceCause::Measurement { measurement, .. } = first_found().1.cause else { panic!() };
     assert_eq!(forgotten(measurement), (true, false));
     let mut events = good.clone();
     events.forget_measurement(&DivergenceCause::TurnedBack);
@@ -231,30 +207,24 @@ fn only_the_measurement_that_is_tolerated_is_forgotten() {
 /// In a known world the robot's pose identifies the hallways, without a marker too.
 #[test]
 fn in_a_known_world_hallways_are_compared_without_a_marker() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let mut events = log(&plan, facing, 1).recorded();
-    for event in &mut events.events {
-        if let CheckedKind::Arrival { arrival, .. } = &mut event.kind {
-            arrival.sighting = None;
-        }
+    let (plan, facing) = place();
+    let mut events = good_run();
+    for arrival in events.events.iter_mut().filter_map(CheckedEvent::arrival_mut) {
+        arrival.sighting = None;
     }
-    let marker = &toposlam_model::marker::NoMarker;
-    let unknown = ConformConfig { marker, ..by_anyone() };
-    let known = question(&plan, Some(facing)).world.map(|world| KnownWorld {
-        states: vec![GraphWorld::with_marker(world.graph, marker, facing).state()],
-        ..world
-    });
-    let known = ConformConfig { world: known, ..unknown.clone() };
-    let compared = |question: &ConformConfig| judged(&events, question).measured.compared;
-    assert!(compared(&known) > compared(&unknown), "{} {}", compared(&known), compared(&unknown));
+    let unknown = ConformConfig { marker: &NoMarker, ..by_anyone() };
+    let graph = plan.graph().clone();
+    let states = vec![GraphWorld::with_marker(&graph, &NoMarker, facing).state()];
+    let known = ConformConfig { world: Some(KnownWorld { graph, states }), ..unknown.clone() };
+    let [known, unknown] =
+        [known, unknown].map(|config| judged(&events, &config).measured.compared);
+    assert!(known > unknown, "{known} {unknown}");
 }
 
 /// Events that are inferred from scenes are measured, too.
 #[test]
 fn inferred_hallways_are_about_as_long_as_recorded_ones() {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let log = log(&plan, starts_of(&plan)[0], 1);
+    let log = log(&place(), 1);
     let lengths = |events: &[CheckedEvent]| {
         let length = |event: &CheckedEvent| match event.kind {
             CheckedKind::Arrival { hallway, .. } => Some(hallway.map(|hallway| hallway.length)),
@@ -267,94 +237,83 @@ fn inferred_hallways_are_about_as_long_as_recorded_ones() {
     for (one, other) in recorded.iter().zip(&inferred).skip(1) {
         assert!((one.unwrap() - other.unwrap()).abs() < 0.8, "{one:?} {other:?}");
     }
-    assert!(log.lines.iter().any(|(_, line)| matches!(line, EventKind::Frame(Frame { .. }))));
 }
 
 /// The closed walks that a contradiction does not need are left out. What is left has the same measurements.
 #[test]
 fn a_shorter_log_contradicts_itself_in_the_same_way() {
     let (mut shortened, mut kept, mut of) = (0, 0, 0);
-    for (_, _, good) in runs() {
+    for (_, good) in runs() {
         let good = good.recorded();
         for event in (2..good.events.len()).step_by(6) {
             let mut events = good.clone();
-            let CheckedKind::Arrival { hallway: Some(hallway), .. } =
-                &mut events.events[event].kind
-            else {
-                panic!("{event}")
-            };
-            hallway.length += 6.0;
+            hallway_before(&mut events, event).length += 6.0;
             // Odometry that drifts: on a walk that is removed, the robot's frame has turned.
             for (index, event) in events.events.iter_mut().enumerate() {
-                if let CheckedKind::Arrival { arrival, .. } = &mut event.kind {
-                    arrival.entry = arrival.entry.map(|entry| entry + 0.02 * index as f64);
+                if let Some(entry) = event.arrival_mut().and_then(|arrival| arrival.entry.as_mut())
+                {
+                    *entry += 0.02 * index as f64;
                 }
             }
-            let judgement = judge(events.clone(), &by_anyone(), &Quirks::default(), &()).unwrap();
+            let judgement = judged(&events, &by_anyone());
             let Some(whole) = judgement.divergence.clone() else { continue };
-            let DivergenceCause::Measurement { between, earlier, measurement } = whole.cause else {
-                panic!("{whole:?}")
-            };
             let short = shorten_run(&judgement, &by_anyone(), &()).unwrap();
             assert!(short.by_itself && short.event == short.events.events.len() - 1);
-            let again = judged(&short.events, &by_anyone()).divergence.unwrap();
+            let again = divergence(&short.events, &by_anyone());
             assert_eq!(again.event, short.event, "{event}");
-            let DivergenceCause::Measurement {
-                between: now_between,
-                earlier: now_earlier,
-                measurement: now,
-            } = again.cause
-            else {
-                panic!("{again:?}")
-            };
-            // The same visits end it.
-            let source = |events: &RunEvents, at: usize| events.events[at].source;
-            assert_eq!(source(&short.events, now_between[1]), source(&events, between[1]));
-            assert_eq!(source(&short.events, now_earlier[1]), source(&events, earlier[1]));
-            match (measurement, now) {
-                (
-                    ContradictoryMeasurement::Length { now: before, .. },
-                    ContradictoryMeasurement::Length { now, .. },
-                ) => assert!((before - now).abs() < 1e-9),
-                (one, other) => assert_eq!(
-                    std::mem::discriminant(&one),
-                    std::mem::discriminant(&other),
-                    "{one} {other}"
-                ),
-            }
-            let entry = |event: &CheckedEvent| match event.kind {
-                CheckedKind::Arrival { arrival, .. } => arrival.entry.unwrap(),
-                _ => panic!("{event:?}"),
-            };
-            for at in (2..short.events.events.len()).step_by(2) {
-                let whole = (events.events.iter())
-                    .position(|event| event.source == short.events.events[at].source);
-                let turns = [(&short.events, at), (&events, whole.unwrap())]
-                    .map(|(log, at)| entry(&log.events[at]) - entry(&log.events[at - 2]));
-                assert!(wrapped(turns[0] - turns[1]).abs() < 1e-9, "{event}: {turns:?}");
-            }
-            for CheckedEvent { source, kind } in &short.events.events {
-                let same = events.events.iter().find(|event| event.source == *source).unwrap();
-                match (kind, &same.kind) {
-                    (
-                        CheckedKind::Arrival { hallway: Some(now), .. },
-                        CheckedKind::Arrival { hallway: Some(before), .. },
-                    ) => assert_eq!(now, before),
-                    (
-                        CheckedKind::Arrival { hallway: None, arrival, .. },
-                        CheckedKind::Arrival { .. },
-                    ) => assert_eq!(arrival.number, Some(0)),
-                    (
-                        CheckedKind::Door { door: now, .. },
-                        CheckedKind::Door { door: before, .. },
-                    ) => assert_eq!(now, before),
-                    other => panic!("{other:?}"),
-                }
-            }
+            assert_same_measurement((&events, &whole), (&short.events, &again));
+            assert_same_events(&events.events, &short.events.events);
             shortened += 1;
             kept += short.events.events.len();
             of += whole.event + 1;
         }
     }
     assert!(shortened > 20 && 3 * kept < 2 * of, "{kept} of {of} events in {shortened} logs");
+}
+
+/// The same visits end it, and the same is measured.
+fn assert_same_measurement(
+    (events, whole): (&RunEvents, &Divergence),
+    (short, again): (&RunEvents, &Divergence),
+) {
+    let measured = |events: &RunEvents, found: &Divergence| match found.cause {
+        DivergenceCause::Measurement { between, earlier, measurement } => {
+            let ends = [between, earlier].map(|[_, end]| events.events[end].source);
+            (ends, measurement)
+        }
+        _ => panic!("{found:?}"),
+    };
+    let [one, other] = [measured(events, whole), measured(short, again)];
+    assert_eq!(one.0, other.0);
+    match (one.1, other.1) {
+        (
+            ContradictoryMeasurement::Length { now: before, .. },
+            ContradictoryMeasurement::Length { now, .. },
+        ) => assert!((before - now).abs() < 1e-9),
+        (one, other) => assert_eq!(discriminant(&one), discriminant(&other), "{one} {other}"),
+    }
+}
+
+/// The events that are left have the doors, lengths and turns that they had.
+fn assert_same_events(whole: &[CheckedEvent], short: &[CheckedEvent]) {
+    let place = |event: &CheckedEvent| whole.iter().position(|one| one.source == event.source);
+    let entry = |event: &CheckedEvent| event.arrival().unwrap().entry.unwrap();
+    for (at, event) in short.iter().enumerate() {
+        let before = place(event).unwrap();
+        match (&event.kind, &whole[before].kind) {
+            (CheckedKind::Arrival { hallway: None, arrival, .. }, CheckedKind::Arrival { .. }) => {
+                assert_eq!((at, arrival.number), (0, Some(0)))
+            }
+            (CheckedKind::Arrival { hallway: now, .. }, CheckedKind::Arrival { hallway, .. }) => {
+                assert_eq!(now, hallway);
+                let now = entry(event) - entry(&short[at - 2]);
+                let then = entry(&whole[before]) - entry(&whole[before - 2]);
+                assert!(wrapped(now - then).abs() < 1e-9, "{at}: {now} {then}");
+            }
+            (CheckedKind::Door { door: now, .. }, CheckedKind::Door { door, .. }) => {
+                assert_eq!(now, door);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
 }

@@ -20,8 +20,7 @@ use toposlam_model::{
 };
 
 /// A world with a robot in it.
-#[derive(Clone, Debug)]
-pub(super) struct Place<'g> {
+pub(super) struct Position<'g> {
     pub(super) graph: &'g EmbeddedGraph,
     /// The dart along which the marker lies, if there is one.
     pub(super) marker: Option<Dart>,
@@ -29,7 +28,7 @@ pub(super) struct Place<'g> {
     pub(super) pose: Dart,
 }
 
-impl Place<'_> {
+impl Position<'_> {
     /// Whether the walk of a trace from here has its percepts. The rules of motion and perception are
     /// written out here once more.
     pub(super) fn explains(&self, trace: &Trace) -> bool {
@@ -72,13 +71,9 @@ pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
     (1..=edges).any(|edges| {
         let mut visit = |found: EnumeratedGraph| {
             let graph = found.graph;
-            let place = |marker| Place { graph, marker, pose: Dart(0) };
-            let markers = graph.darts().map(Some).chain([None]);
-            if markers.map(place).any(|place| place.explains(trace)) {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            let mut markers = graph.darts().map(Some).chain([None]);
+            let explains = |marker| Position { graph, marker, pose: Dart(0) }.explains(trace);
+            if markers.any(explains) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
         all.for_each(&mut visit).is_break()
@@ -242,12 +237,10 @@ struct DoorsOf<'t, 'g> {
     doors: &'t [Door],
 }
 
-/// Why it goes no further.
+/// Why it goes no further: all doors were taken, or another door would be taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum DoorsEnd {
-    /// All doors were taken.
     All,
-    /// Another door would be taken.
     Other,
 }
 

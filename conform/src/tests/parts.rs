@@ -6,61 +6,38 @@ use toposlam_model::{format::named_world::NamedWorld, marker::NoMarker};
 
 use super::*;
 
-/// The good run of most tests, and where it starts.
-fn good_run() -> (Arc<FloorPlan>, Dart, Log) {
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let log = log(&plan, facing, 1);
-    (plan, facing, log)
-}
-
-fn arrival(number: u32, degree: u32, sighting: Option<Sighting>) -> CheckedEvent {
-    let arrival = Arrival { number: Some(number), degree, sighting, form: None, entry: None };
-    let kind = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
-    CheckedEvent { source: EventSource::default(), kind }
-}
-
-fn door(number: u32, door: u32) -> CheckedEvent {
-    let kind = CheckedKind::Door { door: Door(door), number: Some(number), off: None };
-    CheckedEvent { source: EventSource::default(), kind }
-}
-
-fn other(kind: CheckedKind) -> CheckedEvent {
-    CheckedEvent { source: EventSource::default(), kind }
-}
-
-fn of(events: Vec<CheckedEvent>) -> RunEvents {
-    RunEvents { events, ..RunEvents::default() }
-}
-
 #[test]
 fn a_log_may_show_a_marker_unless_it_records_that_none_was_seen() {
-    let shows = |sighting| of(vec![door(1, 0), arrival(1, 2, sighting)]).may_show_marker();
-    assert!(shows(None), "that is not recorded");
-    assert!(shows(Some(Sighting::Lying(1))));
-    assert!(!shows(Some(Sighting::Nothing)));
-    assert!(!of(vec![door(1, 0)]).may_show_marker());
-    // Without a marker in its head, such a log is compared with no algorithm.
-    let none = of(vec![arrival(0, 2, Some(Sighting::Nothing))]);
-    let algorithm = MappingAlgorithm::Folding;
-    let head = Run { marker: "directional".to_owned(), ..Run::default() };
-    assert_eq!(LogHead(None).check_marker(&none, algorithm), Err(MarkerNotShown { algorithm }));
-    assert_eq!(LogHead(Some(&Run::default())).check_marker(&none, algorithm).ok(), None);
-    assert_eq!(LogHead(Some(&head)).check_marker(&none, algorithm), Ok(()));
-    let unknown = of(vec![arrival(0, 2, None)]);
-    assert_eq!(LogHead(None).check_marker(&unknown, algorithm), Ok(()));
-}
-
-#[test]
-fn a_directional_marker_lies_along_a_door() {
-    let mut events = of(vec![arrival(0, 2, Some(Sighting::Lying(1)))]);
-    assert_eq!(events.complete_sightings(&Directional), Err(SightingError::NoDoor));
-    assert_eq!(events.complete_sightings(&NoMarker), Ok(()));
+    let events = |sighting| {
+        let mut events = bare_events([bare_door(0), bare_arrival(2, Sighting::Nothing)]);
+        arrival_at(&mut events, 1).sighting = sighting;
+        events
+    };
+    let [unknown, lying, none] =
+        [None, Some(Sighting::Lying(1)), Some(Sighting::Nothing)].map(events);
+    let shows = [&unknown, &lying, &none, &bare_events([bare_door(0)])];
+    assert_eq!(shows.map(RunEvents::may_show_marker), [true, true, false, false]);
+    // Without a marker in its head, a log that shows none is compared with no algorithm.
+    let (unmarked, marked) =
+        (Run::default(), Run { marker: "directional".to_owned(), ..Run::default() });
+    for (head, events, is_compared) in [
+        (None, &none, false),
+        (Some(&unmarked), &none, false),
+        (Some(&marked), &none, true),
+        (None, &unknown, true),
+    ] {
+        let found = LogHead(head).check_marker(events, FOLDING);
+        assert_eq!(found.is_ok(), is_compared, "{head:?}");
+    }
+    // A directional marker lies along a door.
+    let completed = |marker| lying.clone().complete_sightings(marker);
+    assert_eq!(completed(&Directional), Err(SightingError::NoDoor));
+    assert_eq!(completed(&NoMarker), Ok(()));
 }
 
 #[test]
 fn a_head_decides_the_marker_the_algorithm_the_start_and_the_world() {
-    let (plan, facing, _) = good_run();
+    let (plan, facing) = place();
     let world = NamedWorld {
         plan: Some((*plan).clone()),
         ..NamedWorld::numbered("here", "", plan.graph().clone(), Some(facing))
@@ -79,44 +56,42 @@ fn a_head_decides_the_marker_the_algorithm_the_start_and_the_world() {
     assert_eq!(head.settings(None).unwrap().budget.moves, Some(25));
     let unknown = Run { algorithm: "bold".to_owned(), ..run.clone() };
     assert_eq!(LogHead(Some(&unknown)).settings(None), Err("bold".to_owned()));
-    assert_eq!(head.start(&world), Some(facing));
-    assert!(!head.is_of_other_world(&world.graph));
-    // The same names in another world are other places.
-    let elsewhere = Run { world_hash: "0".repeat(64), ..run };
-    let head = LogHead(Some(&elsewhere));
-    assert_eq!((head.start(&world), head.is_of_other_world(&world.graph)), (None, true));
-    // A log without a hash may be of any world.
-    assert!(!LogHead(Some(&Run::default())).is_of_other_world(&world.graph));
+    // The same names in another world are other places. A log without a hash may be of any world.
+    let elsewhere = Run { world_hash: "0".repeat(64), ..run.clone() };
+    for (run, start, is_other) in
+        [(&run, Some(facing), false), (&elsewhere, None, true), (&Run::default(), None, false)]
+    {
+        let head = LogHead(Some(run));
+        let found = (head.start(&world), head.is_of_other_world(&world.graph));
+        assert_eq!(found, (start, is_other), "{run:?}");
+    }
 }
 
 #[test]
 fn what_comes_after_an_unrecognised_junction_is_not_checked() {
-    let (plan, facing, log) = good_run();
-    let question = question(&plan, Some(facing));
-    let good = log.recorded();
-    let unclear = |source| {
+    let config = at_place(&place());
+    let good = good_run();
+    let with_unclear = |at: usize| {
         let kind = CheckedKind::Undecided(UndecidedCause::Unclear);
-        CheckedEvent { source, kind }
+        let mut events = good.clone();
+        events.events.insert(at, CheckedEvent { source: good.events[at].source, kind });
+        events
     };
     for at in [4, 8] {
-        let mut events = good.clone();
-        events.events.insert(at, unclear(good.events[at].source));
         // What follows contradicts everything before.
-        if let CheckedKind::Arrival { arrival, .. } = &mut events.events[at + 1].kind {
-            arrival.degree += 5;
-        }
-        let judgement = judged(&events, &question);
+        let mut events = with_unclear(at);
+        arrival_at(&mut events, at + 1).degree += 5;
+        let judgement = judged(&events, &config);
         assert_eq!((judgement.unrecognised, &judgement.divergence), (Some(at), &None));
         assert_eq!(judgement.verdict(), ConformVerdict::Incomplete);
         assert_eq!(judgement.events, events);
-        let before = judged(&good.up_to(at - 1), &question);
+        let before = judged(&good.up_to(at - 1), &config);
         assert_eq!((judgement.trace, judgement.coverage), (before.trace, before.coverage));
     }
     // Of a run that begins with one, nothing is known.
-    let mut events = good.clone();
-    events.events.insert(0, unclear(EventSource::default()));
-    for question in [question, without_world()] {
-        let judgement = judged(&events, &question);
+    let events = with_unclear(0);
+    for config in [config, without_world()] {
+        let judgement = judged(&events, &config);
         assert_eq!((judgement.unrecognised, &judgement.divergence), (Some(0), &None));
         assert_eq!((judgement.determines_world(), judgement.candidates()), (None, 0));
         assert!(judgement.trail.is_none() && judgement.algorithm.is_none());
@@ -127,68 +102,45 @@ fn what_comes_after_an_unrecognised_junction_is_not_checked() {
 
 #[test]
 fn excursions_are_left_out_of_the_moves_and_turn_the_next_door() {
-    let nothing = Some(Sighting::Nothing);
-    let back = || other(CheckedKind::TurnedBack);
-    let events = of(vec![
-        arrival(0, 1, nothing),
-        door(1, 0),
-        arrival(1, 3, nothing),
-        door(2, 1),
-        back(),
-        arrival(2, 3, nothing),
-        // Seen from the door of the first excursion, the entry door is door 2.
-        door(3, 2),
-        back(),
-        arrival(3, 3, nothing),
-        door(4, 1),
-        arrival(4, 1, nothing),
-    ]);
-    let left = events.without_excursions();
-    let expected = [
-        arrival(0, 1, nothing),
-        door(1, 0),
-        arrival(1, 3, nothing),
-        door(2, 1),
-        arrival(2, 1, nothing),
-    ];
-    assert_eq!(left.events, expected);
-    assert!(left.may_turn_back);
-}
-
-#[test]
-fn the_first_events_of_a_run_have_its_uncertainty() {
-    let (_, _, log) = good_run();
-    let first = log.recorded().up_to(3);
-    assert_eq!(
-        (first.events.len(), first.measurement_noise, first.has_head),
-        (4, log_noise(), true)
-    );
-    assert_eq!(first.end, None);
+    let kinds = |steps: &[(u32, u32)]| {
+        let mut moves = 0;
+        let mut kinds = Vec::new();
+        for &(degree, door) in steps {
+            let mut arrival = bare_arrival(degree, Sighting::Nothing);
+            if let CheckedKind::Arrival { arrival, .. } = &mut arrival {
+                arrival.number = Some(moves);
+            }
+            moves += 1;
+            let door = CheckedKind::Door { door: Door(door), number: Some(moves), off: None };
+            kinds.extend([arrival, door]);
+        }
+        kinds
+    };
+    // Seen from the door of the first excursion, the entry door is door 2.
+    let mut walk = kinds(&[(1, 0), (3, 1), (3, 2), (3, 1), (1, 0)]);
+    walk.insert(6, CheckedKind::TurnedBack);
+    walk.insert(4, CheckedKind::TurnedBack);
+    let kept = bare_events(kinds(&[(1, 0), (3, 1), (1, 0)]));
+    let left = bare_events(walk).without_excursions();
+    assert_eq!(left, RunEvents { may_turn_back: true, ..kept });
 }
 
 #[test]
 fn a_run_begins_where_the_marker_lies() {
-    let (_, _, log) = good_run();
-    let mut events = log.recorded();
-    if let CheckedKind::Arrival { arrival, .. } = &mut events.events[0].kind {
-        arrival.sighting = Some(Sighting::Nothing);
-    }
-    let divergence = judged(&events, &without_world()).divergence.unwrap();
+    let mut events = good_run();
+    arrival_at(&mut events, 0).sighting = Some(Sighting::Nothing);
+    let found = divergence(&events, &without_world());
     let cause = "a run begins where the marker lies, directed along the entry door";
-    assert_eq!((divergence.event, divergence.cause.to_string().as_str()), (0, cause));
+    assert_eq!((found.event, found.cause.to_string().as_str()), (0, cause));
 }
 
 /// The shorter log of a run with a changed event, and the divergence of the run.
 fn shortened(event: usize, change: impl Fn(&mut Arrival)) -> (ShortenedRun, Divergence) {
-    let (plan, facing, log) = good_run();
-    let mut events = log.recorded();
-    match &mut events.events[event].kind {
-        CheckedKind::Arrival { arrival, .. } => change(arrival),
-        other => panic!("{other:?} is not an arrival"),
-    }
-    let question = question(&plan, Some(facing));
-    let judgement = judged(&events, &question);
-    let shorter = shorten_run(&judgement, &question, &()).unwrap();
+    let mut events = good_run();
+    change(arrival_at(&mut events, event));
+    let config = at_place(&place());
+    let judgement = judged(&events, &config);
+    let shorter = shorten_run(&judgement, &config, &()).unwrap();
     (shorter, judgement.divergence.unwrap())
 }
 
@@ -203,59 +155,49 @@ fn wrong_number(arrival: &mut Arrival) {
 
 #[test]
 fn a_shorter_log_of_a_wrong_percept_needs_its_world_and_few_events() {
-    let (_, _, good) = good_run();
-    let last = good.places().len() - 1;
-    let (ShortenedRun { events, event, by_itself }, divergence) = shortened(last, many_doors);
+    let last = good_run().events.len() - 1;
+    let (ShortenedRun { mut events, event, by_itself }, divergence) = shortened(last, many_doors);
     assert_eq!((divergence.event, event + 1, by_itself), (last, events.events.len(), false));
-    assert!(event < last, "{event}");
-    assert!(events.has_head);
+    assert!(event < last && events.has_head, "{event}");
     // Its events are a second apart, and its moves are counted from the first.
-    for (index, event) in events.events.iter().enumerate() {
+    for (index, event) in events.events.iter_mut().enumerate() {
         assert_eq!(event.source.time, index as u64 * 1_000_000_000);
-        let counted = match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => arrival.number,
-            CheckedKind::Door { number, .. } => *number,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(counted, Some(index.div_ceil(2) as u32));
+        assert_eq!(event.number_mut(), Some(&mut (index.div_ceil(2) as u32)));
     }
 }
 
 #[test]
 fn a_shorter_log_of_a_wrong_number_begins_at_the_arrival_before() {
     let (ShortenedRun { events, event, by_itself }, divergence) = shortened(6, wrong_number);
-    assert_eq!((divergence.event, divergence.cause.name()), (6, "number"));
+    assert_eq!(place_of(&divergence), (6, "number"));
     // Alone, the event would be the first, whose number counts from itself.
     assert_eq!((event, by_itself, events.events.len()), (2, true, 4));
-    assert!(events.has_head && !events.may_turn_back);
+    assert!(events.has_head && !events.may_turn_back && events.end.is_none());
     assert_eq!(events.measurement_noise, log_noise());
-    let CheckedKind::Arrival { arrival, hallway, .. } = &events.events[0].kind else {
+    let CheckedKind::Arrival { arrival, hallway: None, .. } = &events.events[0].kind else {
         panic!("{events:?}")
     };
-    assert_eq!((arrival.number, *hallway), (Some(0), None));
+    assert_eq!(arrival.number, Some(0));
 }
 
 #[test]
 fn a_wrong_end_has_no_shorter_log() {
-    let (plan, facing, log) = good_run();
-    let question = question(&plan, Some(facing));
-    let mut events = log.recorded();
+    let config = at_place(&place());
+    let mut events = good_run();
+    assert_eq!(shorten_run(&judged(&events, &config), &config, &()), None);
     events.end.as_mut().unwrap().moves += 1;
-    let judgement = judged(&events, &question);
+    let judgement = judged(&events, &config);
     assert_eq!(judgement.divergence.as_ref().unwrap().cause.name(), "moves");
-    assert_eq!(shorten_run(&judgement, &question, &()), None);
-    let good = judged(&log.recorded(), &question);
-    assert_eq!(shorten_run(&good, &question, &()), None);
+    assert_eq!(shorten_run(&judgement, &config, &()), None);
 }
 
 #[test]
 fn divergences_are_alike_if_cause_class_and_expectation_are() {
-    let (_, _, log) = good_run();
     let expected = |divergence: &Divergence| match &divergence.cause {
         DivergenceCause::World(misfit) => misfit.candidates[0].1,
         other => panic!("{other:?} at a junction with nine doors"),
     };
-    let arrivals = (2..log.places().len()).step_by(2);
+    let arrivals = (2..good_run().events.len()).step_by(2);
     let all: Vec<_> = arrivals.map(|event| shortened(event, many_doors).1).collect();
     let alike = |other: &Divergence| expected(&all[0]) == expected(other);
     assert!(all.iter().any(|other| !alike(other)), "all junctions are expected to be equal");

@@ -8,7 +8,7 @@ use toposlam_conform::{
 };
 use toposlam_model::{folding::WorldSearch, format::named_world::NamedWorld};
 
-use super::{ConformArguments, robot_marker::RobotMarker};
+use super::ConformArguments;
 use crate::cli::{CliError, open_log::OpenLog, progress::Progress};
 
 /// A log and its judgement.
@@ -17,20 +17,16 @@ pub(super) struct JudgedLog {
     pub(super) checked: CheckedLog,
 }
 
-/// The word for an unknown start.
-const ANY: &str = "any";
-
 /// The option for a run without a marker.
 const WITHOUT_MARKER: &str = "; for a run without a marker add --driver anyone --marker none";
 /// The option for a run with a marker that points nowhere.
 const WITHOUT_DOOR: &str = "; for an undirected marker add --driver anyone --marker undirected";
 
 impl ConformArguments {
-    /// Where the robot began.
     pub(super) fn robot_start(&self) -> RobotStart<'_> {
         match self.start.as_deref() {
             None => RobotStart::Recorded,
-            Some(ANY) => RobotStart::Anywhere,
+            Some("any") => RobotStart::Anywhere,
             Some(start) => RobotStart::At(start),
         }
     }
@@ -50,7 +46,7 @@ impl ConformArguments {
             laser: self.laser.params()?,
             world,
             start: self.robot_start(),
-            marker: self.marker.map(RobotMarker::marker),
+            marker: self.marker,
             assumes_marker: self.assume_marker,
             doors: self.driver.chooser(self.algorithm),
             search: WorldSearch {
@@ -67,7 +63,7 @@ impl ConformArguments {
         });
         progress.finish();
         let checked = checked.map_err(|error| not_checked(path, &opened, error))?;
-        if checked.settings.is_resumed {
+        if checked.is_resumed {
             remark!("{}: {RESUMED_REMARK}", path.display());
         }
         Ok(JudgedLog { opened, checked })

@@ -41,12 +41,10 @@ impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &JudgedLog) -> Result<Option<Minimised>, CliError> {
         let checked = &judged.checked;
-        let config = checked.config();
+        let config = checked.config.clone();
         let shorter = shorten_run(&checked.judgement, &config, &());
         let Some(path) = &self.minimise else {
-            return Ok(
-                shorter.map(|ShortenedRun { events, .. }| Minimised { events, command: None })
-            );
+            return Ok(shorter.map(|short| Minimised { events: short.events, command: None }));
         };
         let Some(divergence) = &checked.judgement.divergence else {
             not_written(path, "there is no divergence to show");
@@ -62,7 +60,7 @@ impl ConformArguments {
         let (bytes, evidence, at) = match seen {
             Some(seen) => {
                 // Its last event diverges.
-                let last = infer_events(seen, is_marked(checked)).len().saturating_sub(1);
+                let last = infer_events(seen, is_marked(&config)).len().saturating_sub(1);
                 (write_seen(seen, &head), Evidence::Scenes, last)
             }
             None => (write(&events, &head), Evidence::Recorded, event),
@@ -95,12 +93,11 @@ impl ConformArguments {
             words.extend(["--world".to_owned(), quoted(&world.display().to_string())]);
             words.extend(["--start".to_owned(), quoted(&start)]);
         }
-        if checked.driver == RunDriver::Anyone {
+        if checked.config.driver == RunDriver::Anyone {
             words.extend(["--driver", "anyone"].map(str::to_owned));
         }
-        if self.algorithm.is_some() {
-            let algorithm = checked.settings.method.algorithm();
-            words.extend(["--algorithm", algorithm.name()].map(str::to_owned));
+        if let Some(algorithm) = self.algorithm {
+            words.extend(["--algorithm", algorithm.directional().name()].map(str::to_owned));
         }
         words.join(" ")
     }
@@ -110,16 +107,15 @@ fn not_written(path: &Path, why: &str) {
     remark!("{}: not written: {why}", path.display());
 }
 
-fn is_marked(checked: &CheckedLog) -> bool {
-    checked.marker.name() != NoMarker.name()
+fn is_marked(config: &ConformConfig) -> bool {
+    config.marker.name() != NoMarker.name()
 }
 
 /// The first divergence of a written log.
 fn divergence_of(bytes: &[u8], evidence: Evidence, config: &ConformConfig) -> Option<Divergence> {
     let log = Log::of_bytes(bytes.to_vec()).ok()?;
     let mapping = TopicMap::unambiguous(&log);
-    let marked = config.marker.name() != NoMarker.name();
-    let extraction = ExtractConfig { marked, ..ExtractConfig::new(evidence) };
+    let extraction = ExtractConfig { marked: is_marked(config), ..ExtractConfig::new(evidence) };
     let run = extract(&log, &mapping, &extraction, &()).ok()?;
     judge(run.events, config, &Quirks::default(), &()).ok()?.divergence
 }
@@ -130,49 +126,45 @@ fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(head)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
-    let mut last = LastJunction::default();
+    let mut last: Option<Arrival> = None;
+    // The direction in which the robot left, by the recorded door and the angle by which it missed it.
+    let mut by_door = None;
     for CheckedEvent { source, kind } in &events.events {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
-        match kind {
-            CheckedKind::Arrival { arrival, entry_off, hallway: Some(hallway) } => {
+        match *kind {
+            CheckedKind::Arrival { arrival, entry_off, hallway } => {
                 // The robot leaves along the door, and comes in along the entry door.
-                let by_entry = arrival.entry.map(|entry| entry + entry_off.unwrap_or(0.0) + PI);
-                let by_door = last.left.map(|(leads, off)| leads + off);
-                let half = hallway.length / 2.0;
-                let ways =
-                    [by_door.or(by_entry), by_entry.or(by_door)].map(Option::unwrap_or_default);
-                log.write(ODOM, time, &odometry(stamp, &at))?;
-                for way in ways {
-                    at = Odometry { heading: way, ..at }.moved(0.0, half);
+                let ways = if let Some(hallway) = hallway {
+                    let by_entry = arrival.entry.map(|entry| entry + entry_off.unwrap_or(0.0) + PI);
+                    let ways = [by_door.or(by_entry), by_entry.or(by_door)];
+                    let half = hallway.length / 2.0;
+                    ways.map(|way| (way.unwrap_or_default(), half)).to_vec()
+                } else {
+                    // Odometry before and after the drive gives the direction of the entry door.
+                    let by_entry = arrival.entry.zip(entry_off);
+                    let by_entry = by_entry.map(|(entry, off)| entry + off + PI);
+                    by_door.or(by_entry).map(|way| (way, DISTANCE)).into_iter().collect()
+                };
+                if let Some(&(heading, _)) = ways.first() {
+                    let turned = Odometry { heading, ..at }.moved(0.0, 0.0);
+                    let there = if hallway.is_some() { at } else { turned };
+                    log.write(ODOM, time, &odometry(stamp, &there))?;
+                }
+                for (heading, length) in ways {
+                    at = Odometry { heading, ..at }.moved(0.0, length);
                     log.write(ODOM, time, &odometry(stamp, &at))?;
                 }
-                log.write(Percept::TOPIC, time, &arrival_message(stamp, arrival))?;
-                last = LastJunction { arrival: Some(*arrival), left: None };
-            }
-            CheckedKind::Arrival { arrival, entry_off, hallway: None } => {
-                if let Some(way) = last.way(arrival, *entry_off) {
-                    // Odometry before and after the drive gives the direction of the entry door.
-                    for forward in [0.0, DISTANCE] {
-                        let there =
-                            Odometry { position: at.position, heading: way }.moved(0.0, forward);
-                        log.write(ODOM, time, &odometry(stamp, &there))?;
-                        if forward > 0.0 {
-                            at = there;
-                        }
-                    }
-                }
-                log.write(Percept::TOPIC, time, &arrival_message(stamp, arrival))?;
-                last = LastJunction { arrival: Some(*arrival), left: None };
+                log.write(Percept::TOPIC, time, &arrival_message(stamp, &arrival))?;
+                (last, by_door) = (Some(arrival), None);
             }
             CheckedKind::Door { door, number, off } => {
-                log.write(Door::TOPIC, time, &door_message(stamp, *number, *door))?;
-                let entered =
-                    last.arrival.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
-                let leads = entered.and_then(|(form, entry)| direction(form, entry, *door));
-                last.left = leads.zip(*off);
+                log.write(Door::TOPIC, time, &door_message(stamp, number, door))?;
+                let entered = last.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
+                let leads = entered.and_then(|(form, entry)| direction(form, entry, door));
+                by_door = leads.zip(off).map(|(leads, off)| leads + off);
             }
-            CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided(_) => {}
+            _ => {}
         }
     }
     log.finish()
@@ -194,7 +186,7 @@ fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError
 /// The head of a shorter log, without the calibration and colours: it has no images.
 fn head(judged: &JudgedLog) -> Run {
     let run = judged.opened.run.clone().unwrap_or_default();
-    let marker = judged.checked.marker.name().to_owned();
+    let marker = judged.checked.config.marker.name().to_owned();
     Run { marker, calibration: String::new(), colours: String::new(), ..run }
 }
 
@@ -202,23 +194,6 @@ fn begin(head: &Run) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
     let mut log = LogWriter::new(Vec::new())?;
     log.write(Run::TOPIC, 0, head)?;
     Ok(log)
-}
-
-/// The last junction in the log.
-#[derive(Default)]
-struct LastJunction {
-    arrival: Option<Arrival>,
-    /// The direction of the recorded door, and the angle by which the robot missed it.
-    left: Option<(f64, f64)>,
-}
-
-impl LastJunction {
-    /// The direction in which the robot drove to an arrival; `None` if it does not matter.
-    fn way(&self, now: &Arrival, entry_off: Option<f64>) -> Option<f64> {
-        let by_door = self.left.map(|(leads, off)| leads + off);
-        let by_entry = now.entry.zip(entry_off).map(|(entry, off)| entry + off + PI);
-        by_door.or(by_entry)
-    }
 }
 
 fn odometry(stamp: Stamp, at: &Odometry) -> standard::OdometryMessage {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use toposlam_conform::{ConformVerdict, LogReport, ReportedEvent, words};
+use toposlam_conform::{ConformVerdict, DivergenceReport, LogReport, ReportedEvent, words};
 
-use super::{each, wording};
+use super::{each, sign};
 use crate::{
     moment::{clock, grouped},
     picture::escaped,
@@ -15,46 +15,34 @@ const BEFORE: usize = 3;
 /// The number of events in a table. The browser lays out only the tables on the screen.
 const LEAF: usize = 100;
 
-/// The events before the divergence, and the diverging one.
-pub(super) fn before(report: &LogReport) -> Option<String> {
-    let divergence = report.divergence.as_ref()?;
+/// The events before the divergence, and the diverging one; nothing without a divergence.
+pub(super) fn before(report: &LogReport, log: usize) -> String {
+    let Some(divergence) = &report.divergence else { return String::new() };
     let earlier = report.events.partition_point(|line| line.number < divergence.event);
-    let last = report.events.get(earlier.saturating_sub(BEFORE)..earlier)?;
-    let here = report.events.get(earlier).filter(|line| line.number == divergence.event);
-    let rows = each(last, |line| row(line, "", ""));
-    let time = here.map_or(divergence.time.unwrap_or(0.0), |line| line.time);
-    let what = words::found(divergence);
-    Some(table(&(rows + &diverging(divergence.event, time, &what, ""))))
+    let last = &report.events[earlier.saturating_sub(BEFORE)..earlier];
+    let rows = each(last, |line| row(line, "", "")) + &diverging(divergence, report, "");
+    let all = link(log, divergence.event, "among all events");
+    format!("{}<p class=\"faint\">{all}</p>\n", table(&rows))
 }
 
 /// All events, folded.
 pub(super) fn all(report: &LogReport, log: usize) -> String {
-    let off = report.divergence.as_ref().map(|divergence| divergence.event);
-    let let_pass: BTreeSet<_> =
+    let divergence = report.divergence.as_ref();
+    let tolerated: BTreeSet<_> =
         report.tolerated.iter().flat_map(|quirk| &quirk.events).copied().collect();
-    let row = |line: &ReportedEvent| {
-        if off == Some(line.number) {
-            let id = id(log, line.number);
-            return diverging(line.number, line.time, &words::event(&line.kind), &id);
+    let row = |line: &ReportedEvent| match divergence {
+        Some(divergence) if divergence.event == line.number => {
+            diverging(divergence, report, &id(log, line.number))
         }
-        if let_pass.contains(&line.number) {
-            return row(line, " class=let", &id(log, line.number));
-        }
-        row(line, "", "")
+        _ if tolerated.contains(&line.number) => row(line, " class=let", &id(log, line.number)),
+        _ => row(line, "", ""),
     };
     let leaf = |lines: &[ReportedEvent]| {
         format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)))
     };
     // An event that is missing at the end has no line.
-    let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
-    let missing = missing.map_or_else(String::new, |divergence| {
-        table(&diverging(
-            divergence.event,
-            divergence.time.unwrap_or(0.0),
-            &words::found(divergence),
-            &id(log, divergence.event),
-        ))
-    });
+    let missing = divergence.filter(|found| line_of(found, report).is_none());
+    let missing = each(missing, |found| table(&diverging(found, report, &id(log, found.event))));
     let summary = match report.events.len() {
         0 => "No event".to_owned(),
         1 => "The only event".to_owned(),
@@ -75,9 +63,9 @@ fn id(log: usize, event: usize) -> String {
     format!(" id=event-{log}-{event}")
 }
 
-fn has_divergence(report: &LogReport) -> bool {
-    let off = report.divergence.as_ref().map(|divergence| divergence.event);
-    report.events.iter().any(|line| off == Some(line.number))
+/// The line of the event that diverges; none if it is missing at the end.
+fn line_of<'r>(divergence: &DivergenceReport, report: &'r LogReport) -> Option<&'r ReportedEvent> {
+    report.events.iter().find(|line| line.number == divergence.event)
 }
 
 fn table(rows: &str) -> String {
@@ -99,11 +87,14 @@ fn row(line: &ReportedEvent, class: &str, id: &str) -> String {
     )
 }
 
-fn diverging(event: usize, time: f64, what: &str, id: &str) -> String {
+fn diverging(divergence: &DivergenceReport, report: &LogReport, id: &str) -> String {
+    let line = line_of(divergence, report);
+    let time = line.map_or(divergence.time.unwrap_or(0.0), |line| line.time);
     format!(
-        "<tr class=off{id}><td>{event}<td>{}<td>{}<td>{} does not fit\n",
+        "<tr class=off{id}><td>{}<td>{}<td>{}<td>{} does not fit\n",
+        divergence.event,
         clock(time),
-        escaped(what),
-        wording::sign(ConformVerdict::Diverged),
+        escaped(&words::found(divergence)),
+        sign(ConformVerdict::Diverged),
     )
 }

@@ -295,7 +295,7 @@ fn derived(walk: &LaserWalk, events: &[CheckedEvent]) -> Vec<Derived> {
                 }
             }
             CheckedKind::TurnedBack => turned_back = true,
-            CheckedKind::Aside { .. } => {}
+            CheckedKind::LeftBetweenDoors { .. } => {}
         }
     }
     all
