@@ -22,7 +22,7 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 41] = [
+const OUTPUTS: [OutputOption; 40] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
     output("check", "--failed", &[("w.toml", "check --explorer cat --from IN --failed OUT")]),
@@ -62,8 +62,6 @@ const OUTPUTS: [OutputOption; 41] = [
     output("simulate", "--svg", &[("w.svg", "simulate IN --by-scene --svg OUT")]),
     output("simulate", "--html", &[("w.html", "simulate IN --by-scene --html OUT")]),
     output("simulate", "--map", &[("w.toml", "simulate IN --by-scene --map OUT")]),
-    // The files in a folder have names of their own; see the test of `files.rs`.
-    output("simulate", "--frames", &[]),
     output("drive", "--log", &[]),
     output("drive", "--map", &[]),
     output(
@@ -144,7 +142,7 @@ const OUTPUTS: [OutputOption; 41] = [
 const INPUTS: [(&str, &[&str]); 8] = [
     ("check", &["--from"]),
     ("simulate", &["--calibration", "--colours", "--scanner"]),
-    ("drive", &["--calibration", "--colours", "--plan"]),
+    ("drive", &["--calibration", "--colours"]),
     ("draw", &["--calibration"]),
     ("camera calibrate", &["--initial"]),
     ("camera train", &["--images", "--labels", "--calibration"]),
