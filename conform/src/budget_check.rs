@@ -53,7 +53,7 @@ pub(super) fn within_budget(
 }
 
 fn spent(moves: usize) -> Spent {
-    Spent { moves: moves as u64, ..Spent::default() }
+    Spent::new(moves as f64, 0.0, 0.0)
 }
 
 /// The robot stands where it was after some moves.

@@ -8,5 +8,6 @@ pub mod moment;
 pub mod page;
 pub mod picture;
 pub mod run_page_data;
+pub mod scene;
 pub mod story;
 pub mod text;

@@ -1,6 +1,5 @@
 //! What the page and the picture of a simulated run show: every frame, every junction at which the robot
-//! arrived, the map as it grew, and the story of the mapping algorithm. It is made from the events of the run,
-//! and has its true poses and texts. Section 6, Figure 11.
+//! arrived, and every step of the mapping algorithm. Section 6, Figure 11.
 
 use std::sync::Arc;
 
@@ -8,32 +7,43 @@ use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState},
         pose::Pose,
+        scene::Scene,
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
-    mapping::PartialMap,
+    format::named_world::NamedWorld,
+    mapping::{MapWalk, MappingEvent, PartialMap},
     percept::{Door, Percept},
 };
 
 /// A run, as its page and its picture show it.
 #[derive(Clone, Debug)]
 pub struct RunPageData {
-    /// The plan's name.
-    pub name: String,
-    /// The plan.
+    pub world: NamedWorld,
     pub plan: Arc<FloorPlan>,
     /// The dart along which the marker lies. At the start the robot has its back to its hallway.
     pub facing: Dart,
-    /// The frames, in order.
     pub rounds: Vec<PageFrame>,
     /// The junctions that the robot came to, in order; the start first.
     pub calls: Vec<PageArrival>,
-    /// The story of the mapping algorithm, line by line.
-    pub story: Vec<String>,
-    /// The map whenever it grew, in order.
-    pub maps: Vec<PartialMap>,
+    pub steps: Vec<MappingStep>,
     /// How the run ended, in a sentence.
     pub ending: String,
+}
+
+impl RunPageData {
+    /// The map whenever it grew, up to a number of steps.
+    pub(crate) fn maps(&self, steps: usize) -> impl Iterator<Item = &PartialMap> {
+        let steps = self.steps.iter().take(steps);
+        steps.filter(|step| step.event.grows_map()).map(|step| step.walk.map())
+    }
+}
+
+/// A step of the mapping algorithm, and its state after it.
+#[derive(Clone, Debug)]
+pub struct MappingStep {
+    pub walk: MapWalk,
+    pub event: MappingEvent,
 }
 
 /// A frame, and the robot's answer to it.
@@ -47,16 +57,14 @@ pub struct PageFrame {
     pub moves: u64,
     /// The state of Algorithm 2 after it.
     pub state: PathState,
-    /// The scene, in words.
-    pub scene: String,
+    /// `None` if the robot looked around.
+    pub scene: Option<Scene>,
     /// What the robot did; `None` if a path ended.
     pub command: Option<Command>,
     /// The annotated image as a small JPEG file, if one was rendered.
     pub image: Option<Vec<u8>>,
-    /// The number of lines of the story before it.
-    pub story: usize,
-    /// The number of maps before it.
-    pub maps: usize,
+    /// The number of steps of the mapping algorithm before it.
+    pub steps: usize,
 }
 
 /// What the robot perceived at a junction.
@@ -68,7 +76,6 @@ pub struct PageArrival {
     pub pose: Pose,
     /// The door by which it left the junction before; `None` at the start.
     pub door: Option<Door>,
-    /// The percept.
     pub percept: Percept,
     /// Whether the robot was where it should be and perceived what it should.
     pub conforms: bool,

@@ -20,11 +20,12 @@ use toposlam_model::{
 
 use crate::{
     moment::grouped,
+    run_page_data::MappingStep,
     text::{counted, print_indented, vertices},
 };
 
-/// How much a story contains.
-#[derive(Clone, Copy, Debug)]
+/// How much a story contains; by default neither.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct StoryDetail {
     /// Every rejected candidate, and not only the first few of each round.
     pub every_hypothesis: bool,
@@ -37,7 +38,7 @@ const PRINTED_REJECTIONS: usize = 4;
 
 /// A line of a story, before it is wrapped.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct StoryLine {
+struct StoryLine {
     head: String,
     /// By how many columns the lines are indented that follow in a terminal.
     indent: usize,
@@ -91,6 +92,16 @@ impl Story {
         let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
         let lines = vec![StoryLine { text: head, ..StoryLine::default() }];
         Self { lines, detail, round: 0, actions, rejected, moves_not_printed, moves: 0 }
+    }
+
+    /// The lines of a whole story, and the number of them after each number of steps.
+    pub(crate) fn of_steps(mut self, steps: &[MappingStep]) -> (Vec<String>, Vec<usize>) {
+        let mut counts = vec![self.lines.len()];
+        for MappingStep { walk, event } in steps {
+            self.add_event(walk, *event);
+            counts.push(self.lines.len());
+        }
+        (self.lines.iter().map(StoryLine::to_string).collect(), counts)
     }
 
     /// An empty line and a paragraph.
@@ -255,19 +266,18 @@ impl<W: Write> PrintedStory<W> {
         Self { story, out, result: Ok(()) }
     }
 
-    /// Prints the lines since the last call, and returns them.
-    pub fn print(&mut self) -> Vec<StoryLine> {
+    /// Prints the lines since the last call.
+    pub fn print(&mut self) {
         let lines = mem::take(&mut self.story.lines);
         if let (Ok(()), Some(out)) = (&self.result, &mut self.out) {
             self.result = lines.iter().try_for_each(|line| line.print(out));
         }
-        lines
     }
 
-    /// Puts an event into words and prints them. Returns the new lines.
-    pub fn add(&mut self, journey: &MapWalk, event: MappingEvent) -> Vec<StoryLine> {
+    /// Puts an event into words and prints them.
+    pub fn add(&mut self, journey: &MapWalk, event: MappingEvent) {
         self.story.add_event(journey, event);
-        self.print()
+        self.print();
     }
 
     /// The output, after the last event.

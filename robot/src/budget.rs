@@ -5,38 +5,29 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
 use toposlam_model::percept::{Door, Percept, Sighting};
 
 /// What a run may spend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunBudget {
-    /// Moves.
     pub moves: Option<u64>,
-    /// Seconds by the robot's clock.
+    /// By the robot's clock.
     pub seconds: Option<f64>,
-    /// Metres, as far as the battery lasts.
+    /// As far as the battery lasts.
     pub metres: Option<f64>,
 }
 
-/// What a run has spent, or a part of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spent {
-    /// Moves.
-    pub moves: u64,
-    /// Seconds by the robot's clock.
-    pub seconds: f64,
-    /// Metres by odometry.
-    pub metres: f64,
-}
+/// What a run, or a part of it, has spent: moves, seconds by the robot's clock, metres by odometry.
+pub type Spent = Vector3<f64>;
 
 /// The limit of a budget that the run comes near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BudgetLimit {
-    /// The number of moves.
     Moves(u64),
-    /// The time, in seconds.
+    /// In seconds.
     Time(f64),
-    /// The way, in metres.
+    /// In metres.
     Way(f64),
 }
 
@@ -51,49 +42,18 @@ impl fmt::Display for BudgetLimit {
     }
 }
 
-impl Spent {
-    fn since(self, earlier: Self) -> Self {
-        Self {
-            moves: self.moves - earlier.moves,
-            seconds: self.seconds - earlier.seconds,
-            metres: self.metres - earlier.metres,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            moves: self.moves + other.moves,
-            seconds: self.seconds + other.seconds,
-            metres: self.metres + other.metres,
-        }
-    }
-
-    fn greatest(self, other: Self) -> Self {
-        Self {
-            moves: self.moves.max(other.moves),
-            seconds: self.seconds.max(other.seconds),
-            metres: self.metres.max(other.metres),
-        }
-    }
-
-    /// More time and way, but not more moves.
-    fn times(self, factor: f64) -> Self {
-        Self { moves: self.moves, seconds: factor * self.seconds, metres: factor * self.metres }
-    }
-
-    /// The limit that this exceeds.
-    fn exceeded(self, budget: RunBudget) -> Option<BudgetLimit> {
-        let moves = budget.moves.filter(|&most| self.moves > most).map(BudgetLimit::Moves);
-        let time = budget.seconds.filter(|&most| self.seconds > most).map(BudgetLimit::Time);
-        let way = budget.metres.filter(|&most| self.metres > most).map(BudgetLimit::Way);
-        moves.or(time).or(way)
-    }
+fn exceeded(spent: Spent, budget: RunBudget) -> Option<BudgetLimit> {
+    let moves = budget.moves.filter(|&most| spent.x > most as f64).map(BudgetLimit::Moves);
+    let time = budget.seconds.filter(|&most| spent.y > most).map(BudgetLimit::Time);
+    let way = budget.metres.filter(|&most| spent.z > most).map(BudgetLimit::Way);
+    moves.or(time).or(way)
 }
 
 /// A hallway that takes this is expected at first.
-const FIRST: Spent = Spent { moves: 1, seconds: 180.0, metres: 30.0 };
-/// Each hallway may take so many times as much as the longest so far, and so may the way back.
-const MARGIN: f64 = 1.5;
+const FIRST: Spent = Spent::new(1.0, 180.0, 30.0);
+/// A hallway may take this many times as much as the longest so far, in time and way; the way back, as what it took
+/// so far.
+const MARGIN: Spent = Spent::new(1.0, 1.5, 1.5);
 
 /// A hallway on the way from the marker.
 #[derive(Clone, Copy, Debug)]
@@ -112,11 +72,8 @@ pub struct Allowance {
     legs: Vec<Leg>,
     /// The door by which the robot has come in, counted from the one by which it first came in.
     entry: u32,
-    /// The number of doors where it is.
     degree: u32,
-    /// The hallway in which it is.
     leaving: Option<Leaving>,
-    /// Whether it knows its way back.
     knows_way: bool,
 }
 
@@ -129,12 +86,11 @@ enum Leaving {
 }
 
 impl Allowance {
-    /// The allowance of a robot that begins.
     #[must_use]
     pub fn new(budget: RunBudget) -> Self {
         Self {
             budget,
-            spent: Spent::default(),
+            spent: Spent::zeros(),
             longest: None,
             legs: Vec::new(),
             entry: 0,
@@ -145,8 +101,7 @@ impl Allowance {
     }
 
     fn way_back(&self) -> Spent {
-        let legs = self.legs.iter().fold(Spent::default(), |sum, leg| sum.plus(leg.cost));
-        legs.times(MARGIN)
+        self.legs.iter().map(|leg| leg.cost).sum::<Spent>().component_mul(&MARGIN)
     }
 
     fn door(&self, door: Door) -> u32 {
@@ -159,9 +114,8 @@ impl Allowance {
         if !self.legs.is_empty() && self.door(door) == 0 {
             return None;
         }
-        let there = self.longest.map_or(FIRST, |longest| longest.times(MARGIN));
-        let all = spent.plus(there).plus(there).plus(self.way_back());
-        all.exceeded(self.budget)
+        let there = self.longest.map_or(FIRST, |longest| longest.component_mul(&MARGIN));
+        exceeded(spent + 2.0 * there + self.way_back(), self.budget)
     }
 
     /// The robot takes a door.
@@ -174,15 +128,12 @@ impl Allowance {
 
     /// The robot has come to the next junction, and perceives it.
     pub fn perceive(&mut self, Percept { degree, sighting }: Percept, spent: Spent) {
-        self.arrive(degree, matches!(sighting, Sighting::Pointing(_)), spent);
-    }
-
-    /// The robot has come to the next junction.
-    pub fn arrive(&mut self, degree: u32, sees_marker: bool, spent: Spent) {
-        let cost = Spent { moves: 1, ..spent.since(self.spent) };
+        // A recovery may have made more moves.
+        let mut cost = spent - self.spent;
+        cost.x = 1.0;
         let leaving = self.leaving.take();
         if leaving.is_some() {
-            self.longest = Some(self.longest.map_or(cost, |longest| longest.greatest(cost)));
+            self.longest = Some(self.longest.map_or(cost, |longest| longest.sup(&cost)));
         }
         match (leaving, self.legs.last().copied()) {
             (Some(Leaving::Back), Some(leg)) => {
@@ -197,7 +148,7 @@ impl Allowance {
             _ => self.knows_way = false,
         }
         self.degree = degree;
-        if sees_marker {
+        if matches!(sighting, Sighting::Pointing(_)) {
             self.legs.clear();
             (self.entry, self.knows_way) = (0, true);
         }
@@ -251,20 +202,12 @@ mod tests {
         let mut world = GraphWorld::new(&graph, Dart(0));
         let mut allowance = Allowance::new(budget);
         // Each move takes 10 s and 5 m.
-        let spent = |world: &GraphWorld| {
-            let moves = world.moves();
-            Spent { moves, seconds: 10.0 * moves as f64, metres: 5.0 * moves as f64 }
-        };
-        let look = |world: &mut GraphWorld, allowance: &mut Allowance| {
-            let percept = world.percept().unwrap();
-            let sees = matches!(percept.sighting, Sighting::Pointing(_));
-            allowance.arrive(percept.degree, sees, spent(world));
-        };
-        look(&mut world, &mut allowance);
+        let spent = |world: &GraphWorld| world.moves() as f64 * Spent::new(1.0, 10.0, 5.0);
+        allowance.perceive(world.sensed(), spent(&world));
         let go = |world: &mut GraphWorld, door: Door, allowance: &mut Allowance| {
             allowance.leave(door, spent(world));
             world.traverse(door).unwrap();
-            look(world, allowance);
+            allowance.perceive(world.sensed(), spent(world));
         };
         let mut limit = None;
         for &door in doors {
@@ -307,29 +250,25 @@ mod tests {
         let limited = |budget| moves(&doors, budget).1;
         let none = RunBudget::default();
         assert_eq!(limited(none), None);
-        let (seconds, metres) = (Some(400.0), Some(90.0));
-        assert_eq!(limited(RunBudget { seconds, ..none }), None);
-        assert_eq!(
-            limited(RunBudget { seconds: Some(359.0), ..none }),
-            Some(BudgetLimit::Time(359.0))
-        );
-        assert_eq!(limited(RunBudget { metres, ..none }), None);
-        assert_eq!(limited(RunBudget { metres: Some(59.0), ..none }), Some(BudgetLimit::Way(59.0)));
+        let seconds = |most| limited(RunBudget { seconds: Some(most), ..none });
+        assert_eq!((seconds(400.0), seconds(359.0)), (None, Some(BudgetLimit::Time(359.0))));
+        let metres = |most| limited(RunBudget { metres: Some(most), ..none });
+        assert_eq!((metres(90.0), metres(59.0)), (None, Some(BudgetLimit::Way(59.0))));
     }
 
     /// Far from the marker, with 10 s for each hallway: the way back may take half as much again.
     #[test]
     fn the_way_back_has_a_margin() {
-        let at =
-            |legs: u32| Spent { moves: legs.into(), seconds: 10.0 * f64::from(legs), metres: 0.0 };
+        let at = |legs: u32| f64::from(legs) * Spent::new(1.0, 10.0, 0.0);
         let mut allowance =
             Allowance::new(RunBudget { seconds: Some(380.0), ..RunBudget::default() });
         let mut legs = 0;
-        allowance.arrive(2, true, at(0));
+        let sees = |sighting| Percept { degree: 2, sighting };
+        allowance.perceive(sees(Sighting::Pointing(Door(0))), at(0));
         while allowance.forbids(Door(1), at(legs)).is_none() {
             allowance.leave(Door(1), at(legs));
             legs += 1;
-            allowance.arrive(2, false, at(legs));
+            allowance.perceive(sees(Sighting::Nothing), at(legs));
         }
         // 10 s for each hallway so far, 15 s for each on the way back, and 30 s for the next one, twice.
         assert_eq!(legs, (1..100).find(|legs| 25 * legs + 30 > 380).unwrap());

@@ -28,9 +28,8 @@ use crate::{
 };
 
 pub use error::ExplorerError;
-use obstacle::{DEAD_END, Obstacles, Stall, turning_point};
+use obstacle::{DEAD_END, Stall, turning_point};
 
-/// Where the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Standpoint {
     /// At the turning point of a junction.
@@ -55,7 +54,8 @@ pub struct RobotExplorer<R, S, O = ()> {
     /// The number of moves that ended at a junction or before an obstacle.
     moves: u64,
     door: Option<Door>,
-    obstacles: Obstacles,
+    /// Whether it returns at an obstacle that it cannot pass, as from a dead end, and does not give up.
+    returns_at_obstacles: bool,
     /// Where an obstacle stopped it, since it last stood at a junction.
     stall: Option<Stall>,
     /// Whether the robot may stand anywhere at its start, and not only at an L.
@@ -66,9 +66,7 @@ pub struct RobotExplorer<R, S, O = ()> {
     /// The hallway since the last junction, and what was measured on the way to it.
     hallway: Option<MeasuredHallway>,
     measured: ArrivalMeasurement,
-    /// The last frame that was used.
     last: Option<Frame>,
-    /// The number of events so far.
     events: u64,
     /// The number of samples of the robot's track that were reported, and the time of the last.
     samples: usize,
@@ -94,14 +92,13 @@ enum Unusable {
 const RETAKES: u32 = 6;
 
 impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
-    /// A robot, its sensing, and its observer.
     pub fn new(robot: R, sensor: S, observer: O) -> Self {
         Self {
             robot,
             sensor,
             observer,
             place: None,
-            obstacles: Obstacles::Fail,
+            returns_at_obstacles: false,
             stall: None,
             begins_anywhere: false,
             allowance: Allowance::new(RunBudget::default()),
@@ -125,11 +122,6 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self
     }
 
-    /// The robot.
-    pub fn robot(&self) -> &R {
-        &self.robot
-    }
-
     /// The moves that ended at a junction or before an obstacle, with those of recoveries and audits. A move on which the
     /// robot got lost is not counted.
     #[must_use]
@@ -137,13 +129,11 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.moves
     }
 
-    /// Whether the robot stands before an obstacle.
     #[must_use]
     pub fn is_at_obstacle(&self) -> bool {
         matches!(self.place, Some(Standpoint::Obstacle { .. }))
     }
 
-    /// The robot and the observer.
     pub fn into_parts(self) -> (R, O) {
         (self.robot, self.observer)
     }
@@ -159,9 +149,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     ) -> (MapWalk, Result<MappedWorld, MappingError<ExplorerError>>) {
         let RunSettings { method, dart_bound, budget, ref earlier } = *settings;
         self.allowance = Allowance::new(budget);
-        if method.recovers() {
-            self.obstacles = Obstacles::DeadEnds;
-        }
+        self.returns_at_obstacles |= method.recovers();
         self.begins_anywhere = !earlier.is_empty();
         let mut observer = |explorer: &mut Self, journey: &MapWalk, event: MappingEvent| {
             explorer.mapping_event(journey, event);
@@ -197,10 +185,8 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         ExplorerError::Budget { moves: self.last_move, limit, is_at_marker }
     }
 
-    /// What the run has spent.
     fn spent(&self) -> Spent {
-        let seconds = self.robot.odometry().time;
-        Spent { moves: self.last_move, seconds, metres: self.metres }
+        Spent::new(self.last_move as f64, self.robot.odometry().time, self.metres)
     }
 
     fn mapping_event(&mut self, journey: &MapWalk, event: MappingEvent) {
@@ -360,17 +346,13 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         if !self.begins_anywhere && !standing.form.is_l() {
             return Err(ExplorerError::NotAnL { degree: standing.form.degree() });
         }
-        self.arrive(standing);
+        self.stand(standing, Arrival::new(self.last_move, &standing));
         Ok(standing)
     }
 
     fn allow_for(&mut self, percept: Percept) {
         let spent = self.spent();
         self.allowance.perceive(percept, spent);
-    }
-
-    fn arrive(&mut self, standing: Standing) {
-        self.stand(standing, Arrival::new(self.last_move, &standing));
     }
 
     /// A robot that was lost has come to a junction. How many moves lead there is not known.
@@ -434,9 +416,9 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> 
         match driven {
             Ok(standing) => {
                 self.moves += 1;
-                self.arrive(standing);
+                self.stand(standing, Arrival::new(self.last_move, &standing));
             }
-            Err(error) if self.obstacles == Obstacles::DeadEnds && error.is_stalled() => {
+            Err(error) if self.returns_at_obstacles && error.is_stalled() => {
                 self.stand_at_obstacle();
             }
             Err(error) => {
@@ -499,7 +481,7 @@ mod tests {
         let robot = Still { images: images.to_vec(), asked: 0 };
         let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         let percept = explorer.percept();
-        (percept, explorer.robot().asked)
+        (percept, explorer.into_parts().0.asked)
     }
 
     // paper: hardware.capture

@@ -4,10 +4,8 @@
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
-pub mod bound;
 pub mod budget;
 pub mod explorer;
-pub mod false_percepts;
 pub mod measured_hallway;
 pub mod recording;
 pub mod replay;

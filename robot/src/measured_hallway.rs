@@ -42,12 +42,10 @@ impl MeasuredHallway {
         hallway
     }
 
-    /// It leaves in this direction, if it is known.
     pub fn leave(&mut self, direction: Option<f64>) {
         self.exit = direction;
     }
 
-    /// The next odometry.
     pub fn add(&mut self, odometry: Odometry) {
         self.way.add(odometry);
         self.moved = true;

@@ -20,23 +20,22 @@ use toposlam_vision::sensing::{Sensor, WrongSize};
 
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
-    robot::{Robot, RobotError, TimedOdometry},
+    recording::RecordedRobot,
     run_settings::RunSettings,
 };
 
-/// The number of recorded results that were reproduced.
+/// How many of the recorded results were reproduced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
-    /// Those that were reproduced.
     pub agree: u64,
-    /// All of them.
     pub of: u64,
 }
 
 impl Agreement {
-    fn note(&mut self, agrees: bool) {
+    fn note(&mut self, agrees: bool) -> bool {
         self.of += 1;
         self.agree += u64::from(agrees);
+        agrees
     }
 
     /// Whether all were reproduced.
@@ -46,22 +45,14 @@ impl Agreement {
     }
 }
 
-impl fmt::Display for Agreement {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "{} of {}", self.agree, self.of)
-    }
-}
-
 /// The result of the off-line version on a log.
 #[derive(Debug)]
 pub struct Replay {
-    /// The map, and the robot's pose in it.
     pub mapping: MapWalk,
     /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
-    /// How it compares with the recorded run.
     pub comparison: ReplayComparison,
-    /// How long the recorded run took, in seconds.
+    /// How long the recorded run took.
     pub recorded_seconds: f64,
     /// The recorded frames that were used: images, scenes, or scenes of laser scans.
     pub frames: Role,
@@ -72,13 +63,9 @@ pub struct Replay {
 pub struct ReplayComparison {
     /// The number of frames that were used.
     pub frames: u64,
-    /// Scenes that were reproduced.
     pub scenes: Agreement,
-    /// Commands of Algorithm 2.
     pub commands: Agreement,
-    /// Percepts.
     pub percepts: Agreement,
-    /// Doors.
     pub doors: Agreement,
     /// Whether the map is the last recorded one; `None` if none was recorded, or if the replay reached the
     /// bound on darts.
@@ -94,30 +81,22 @@ pub struct ReplayDifference {
     pub frame: u64,
     /// When it was taken, in seconds since the first message of the log.
     pub time: f64,
-    /// What differs.
     pub what: &'static str,
-    /// The recorded result.
     pub recorded: String,
-    /// The result of the replay.
     pub found: String,
 }
 
 /// Why a log cannot be replayed.
 #[derive(Debug, Error)]
 pub enum ReplayError {
-    /// It cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The topic map does not fit it.
     #[error(transparent)]
     TopicMap(#[from] TopicMapError),
-    /// The calibration is that of another camera.
     #[error("the calibration is not that of its camera: {0}")]
     Calibration(#[from] WrongSize),
-    /// There are images, and no calibration or no colours.
     #[error("sensing its images needs --calibration and --colours: the log does not have both")]
     NoSensor,
-    /// There is nothing to replay.
     #[error(
         "it has neither images nor scenes together with odometry and the commands of Algorithm 2; \
          check the run of another robot with `toposlam conform`"
@@ -146,33 +125,30 @@ pub fn replay(
         [frames, Role::Scene, Role::Odometry, Role::Command, Role::Percept, Role::Door, Role::Map];
     let bound = topics.only(&roles).bind(log)?;
     let start = log.start().unwrap_or(0);
-    let mut robot = ReplayedRobot {
+    let robot = RecordedRobot::new(LogFrames {
         entries: log.entries(&bound),
-        frames,
-        next: None,
+        of_images: frames == Role::Image,
+        last: 0,
         recorded: RecordedResults::default(),
         failure: None,
-    };
-    robot.advance();
+    });
     if let Some(image) = robot.next.as_ref().and_then(|frame| frame.image.as_ref()) {
         check_size(sensor.as_ref().ok_or(ReplayError::NoSensor)?, image)?;
     }
     let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
     let (mapping, mapped) = explorer.map(settings);
     let error = mapped.err();
-    let (mut robot, results) = explorer.into_parts();
+    let (RecordedRobot { frames: mut rest, .. }, results) = explorer.into_parts();
     // The results after the last frame that was used are compared, too.
-    while robot.failure.is_none() && robot.next.is_some() {
-        robot.advance();
+    rest.by_ref().for_each(drop);
+    if let Some(failure) = rest.failure {
+        return Err(failure.into());
     }
-    if let Some(failure) = robot.failure {
-        return Err(failure);
-    }
-    let mut comparison = robot.recorded.compare(&results.0);
+    let mut comparison = rest.recorded.compare(&results.0);
     let map = MapRecord::of(&mapping);
     // A map that may not grow any more is not compared with the recorded one.
     let ended = !matches!(error, Some(MappingError::Bound { .. }));
-    let recorded = robot.recorded.map.filter(|_| ended);
+    let recorded = rest.recorded.map.filter(|_| ended);
     comparison.map = recorded.map(|recorded| recorded.same_map(&map));
     let length = log.end().unwrap_or(0).saturating_sub(start);
     let frames = if frames == Role::Scene && has(Role::Scan) { Role::Scan } else { frames };
@@ -186,41 +162,40 @@ fn check_size(sensor: &Sensor, image: &CameraImage) -> Result<(), WrongSize> {
     if found == expected { Ok(()) } else { Err(WrongSize { found, expected }) }
 }
 
-/// A robot that returns the recorded frames one after the other, and collects the recorded results.
-struct ReplayedRobot<'l> {
+/// The frames of a log. Collects the recorded results between them.
+struct LogFrames<'l> {
     entries: Entries<'l>,
-    /// What frames are made of: images or scenes.
-    frames: Role,
-    next: Option<Frame>,
+    /// Whether frames are made of images, and not of scenes.
+    of_images: bool,
+    /// The last frame: what follows it is its result.
+    last: u64,
     recorded: RecordedResults,
-    failure: Option<ReplayError>,
+    failure: Option<LogError>,
 }
 
-impl ReplayedRobot<'_> {
-    /// Reads to the next frame. Results before it belong to the frame before.
-    fn advance(&mut self) {
-        let last = self.next.take().map_or(0, |frame| frame.id);
-        for entry in self.entries.by_ref() {
-            let entry = match entry {
+impl Iterator for LogFrames<'_> {
+    type Item = Frame;
+
+    fn next(&mut self) -> Option<Frame> {
+        while self.failure.is_none() {
+            let entry = match self.entries.next()? {
                 Ok(entry) => entry,
                 Err(error) => {
-                    self.failure = Some(error.into());
-                    return;
+                    self.failure = Some(error);
+                    return None;
                 }
             };
             let Content::Event(kind) = entry.content else { continue };
             match kind {
-                EventKind::Frame(frame)
-                    if frame.image.is_some() == (self.frames == Role::Image) =>
-                {
-                    self.next = Some(frame);
-                    return;
+                EventKind::Frame(frame) if frame.image.is_some() == self.of_images => {
+                    self.last = frame.id;
+                    return Some(frame);
                 }
                 EventKind::Frame(Frame { scene: Some(scene), .. }) => {
-                    self.recorded.scenes.insert(last, scene);
+                    self.recorded.scenes.insert(self.last, scene);
                 }
                 EventKind::Command { command: Some(command), .. } => {
-                    self.recorded.commands.insert(last, command);
+                    self.recorded.commands.insert(self.last, command);
                 }
                 EventKind::Arrival(arrival) => self.recorded.arrivals.push(arrival),
                 EventKind::Door { door, .. } => self.recorded.doors.push(door),
@@ -228,31 +203,7 @@ impl ReplayedRobot<'_> {
                 _ => {}
             }
         }
-    }
-}
-
-impl Robot for ReplayedRobot<'_> {
-    fn capture(&mut self) -> Result<Frame, RobotError> {
-        let frame = self.next.clone().filter(|_| self.failure.is_none());
-        let frame = frame.ok_or(RobotError::EndOfLog)?;
-        self.advance();
-        Ok(frame)
-    }
-
-    fn turn(&mut self, _: f64) -> Result<(), RobotError> {
-        Ok(())
-    }
-
-    fn forward(&mut self, _: f64) -> Result<(), RobotError> {
-        Ok(())
-    }
-
-    fn odometry(&self) -> TimedOdometry {
-        let next = self.next.as_ref();
-        next.map_or(TimedOdometry::default(), |frame| TimedOdometry {
-            time: frame.taken,
-            odometry: frame.odometry,
-        })
+        None
     }
 }
 
@@ -270,7 +221,6 @@ impl RunObserver for Results {
     }
 }
 
-/// The recorded results.
 #[derive(Default)]
 struct RecordedResults {
     /// By the frame before.
@@ -294,8 +244,7 @@ impl RecordedResults {
                     to.frames += 1;
                     (id, time) = (frame.id, frame.taken);
                     if let (Some(recorded), Some(found)) = (self.scenes.get(&id), &frame.scene) {
-                        let same = recorded == found;
-                        to.scenes.note(same);
+                        let same = to.scenes.note(recorded == found);
                         to.differs(same, time, "scene", recorded, found);
                     }
                 }
@@ -303,21 +252,20 @@ impl RecordedResults {
                     if let Some(recorded) = self.commands.get(&id) {
                         let same = (recorded.turn - found.turn).abs() <= SAME
                             && (recorded.forward - found.forward).abs() <= SAME;
-                        to.commands.note(same);
+                        let same = to.commands.note(same);
                         to.differs(same, time, "command", recorded, found);
                     }
                 }
                 EventKind::Door { door: found, .. } => {
                     let recorded = self.doors.get(to.doors.of as usize);
-                    let same = recorded == Some(found);
-                    to.doors.note(same);
+                    let same = to.doors.note(recorded == Some(found));
                     to.differs(same, time, "door", &recorded, found);
                 }
                 EventKind::Arrival(arrival) => {
                     let Some(percept) = arrival.percept() else { continue };
                     let recorded = self.arrivals.get(to.percepts.of as usize);
                     let same = recorded.is_some_and(|recorded| recorded.agrees(&percept));
-                    to.percepts.note(same);
+                    let same = to.percepts.note(same);
                     // What is not recorded cannot differ.
                     let recorded = recorded.map(|recorded| Percept {
                         degree: recorded.degree,

@@ -4,26 +4,18 @@ use thiserror::Error;
 use toposlam_logs::record::Frame;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose};
 
-/// A robot with a camera. An action may fail, be late, or be inexact; odometry reports its result.
+/// A robot with a camera or a laser scanner. An action may fail, be late, or be inexact; odometry reports its result.
+/// An error means that the robot cannot go on.
+#[expect(clippy::missing_errors_doc, reason = "they are above")]
 pub trait Robot {
-    /// Takes a frame.
-    ///
-    /// # Errors
-    /// Returns [`RobotError::NoImage`] or [`RobotError::StaleImage`] if the next attempt may succeed,
-    /// another error if the robot cannot go on.
+    /// Takes a frame. After [`RobotError::NoImage`] or [`RobotError::StaleImage`] the next attempt may succeed.
     // paper: hardware.capture
     fn capture(&mut self) -> Result<Frame, RobotError>;
 
     /// Turns on the spot, by an angle in radians counter-clockwise.
-    ///
-    /// # Errors
-    /// Returns an error if the robot cannot go on.
     fn turn(&mut self, angle: f64) -> Result<(), RobotError>;
 
     /// Goes straight ahead, by a distance in metres.
-    ///
-    /// # Errors
-    /// Returns an error if the robot cannot go on.
     fn forward(&mut self, distance: f64) -> Result<(), RobotError>;
 
     /// Where the robot is by its wheels, and when.
@@ -48,74 +40,35 @@ pub struct Sample {
     pub speed: f64,
     /// Radians a second, counter-clockwise.
     pub turning: f64,
-    /// The odometry after it.
     pub reckoned: TimedOdometry,
 }
 
-/// The odometry at some time.
+/// Where the robot is by its wheels, and when, in seconds since it was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimedOdometry {
-    /// In seconds since the robot was switched on.
     pub time: f64,
-    /// Where the robot is by its wheels.
     pub odometry: Odometry,
 }
 
 /// Why a robot fails.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RobotError {
-    /// The camera gave no image; the next may come.
     #[error("the camera gives no image")]
     NoImage,
-    /// There are no more images in the log.
     #[error("the log has no more images")]
     EndOfLog,
-    /// A recorded robot got a command that is not the recorded one.
-    #[error("entry {entry} of the recording is {recorded}, but the robot is asked for {asked}")]
-    NotRecorded {
-        /// The number of the entry, counted from 1.
-        entry: usize,
-        /// The recorded command.
-        recorded: String,
-        /// The present command.
-        asked: String,
-    },
-    /// The ROS master does not answer.
     #[error("no ROS master at {master}: {cause}")]
-    Unreachable {
-        /// The address.
-        master: String,
-        /// What happened.
-        cause: String,
-    },
-    /// The robot sends nothing any more.
+    Unreachable { master: String, cause: String },
+    /// `unread` counts the messages of another type.
     #[error("no message on {topic} for {seconds} s{}", unreadable(*.unread))]
-    Silent {
-        /// The silent topic.
-        topic: String,
-        /// For how long, in seconds.
-        seconds: f64,
-        /// The number of messages of another type.
-        unread: u64,
-    },
-    /// The connection is closed.
+    Silent { topic: String, seconds: f64, unread: u64 },
     #[error("the connection to {topic} is closed")]
-    Closed {
-        /// The topic.
-        topic: String,
-    },
-    /// All images were taken before the robot stood still.
+    Closed { topic: String },
+    /// All images were taken before the robot stood still, this one `behind` seconds before.
     #[error("the last image is {behind:.3} s older than the end of the last motion")]
-    StaleImage {
-        /// By how much, in seconds.
-        behind: f64,
-    },
-    /// The robot did not stop.
+    StaleImage { behind: f64 },
     #[error("the odometry still moves {seconds} s after the stop command")]
-    StillMoving {
-        /// For how long, in seconds.
-        seconds: f64,
-    },
+    StillMoving { seconds: f64 },
     /// The user ended the run.
     #[error("the run was ended")]
     Stopped,

@@ -12,11 +12,9 @@ pub const DEFAULT_MAX_DARTS: usize = 1000;
 /// What a robot does in a run.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
-    /// How it maps.
     pub method: MappingMethod,
     /// The most darts of its map.
     pub dart_bound: usize,
-    /// What it may spend.
     pub budget: RunBudget,
     /// The walks of earlier runs from which it goes on. Without any, it starts at its marker.
     pub earlier: Vec<EarlierWalk>,
@@ -34,9 +32,7 @@ impl RunSettings {
 /// The settings in the head of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedSettings {
-    /// How the robot maps.
     pub method: MappingMethod,
-    /// What it may spend.
     pub budget: RunBudget,
     /// Whether it goes on from earlier runs.
     pub is_resumed: bool,

@@ -9,7 +9,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     robot::{RobotError, Sample, TimedOdometry},
-    superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
+    superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelSpeeds, along_arc},
 };
 
 use super::surroundings::Surroundings;
@@ -69,7 +69,7 @@ pub struct SimulatedBase {
     chance: Xoshiro256PlusPlus,
     /// The number of commands that will be ignored.
     deaf: u32,
-    reading: WheelReading,
+    reading: TimedOdometry,
     /// The recorded wheel speeds, if they are recorded.
     track: Option<Vec<Sample>>,
 }
@@ -98,7 +98,7 @@ impl SimulatedBase {
             odometry,
             chance,
             deaf: 0,
-            reading: WheelReading { time: 0.0, odometry: odometer.reading() },
+            reading: TimedOdometry { time: 0.0, odometry: odometer.reading() },
             track: None,
         }
     }
@@ -128,10 +128,8 @@ impl SimulatedBase {
 
     fn sample(&mut self) {
         if let Some(track) = &mut self.track {
-            let WheelReading { time, odometry } = self.reading;
-            let reckoned = TimedOdometry { time, odometry };
             let (speed, turning) = (self.wheels.speed(), self.wheels.turn_rate());
-            track.push(Sample { speed, turning, reckoned });
+            track.push(Sample { speed, turning, reckoned: self.reading });
         }
     }
 
@@ -229,12 +227,12 @@ impl SimulatedBase {
     }
 
     fn read(&mut self) {
-        self.reading = WheelReading { time: self.time, odometry: self.odometer.reading() };
+        self.reading = TimedOdometry { time: self.time, odometry: self.odometer.reading() };
     }
 }
 
 impl Base for SimulatedBase {
-    fn drive(&mut self, wheels: WheelSpeeds) -> Result<WheelReading, RobotError> {
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<TimedOdometry, RobotError> {
         self.wheels = wheels;
         self.silent = PERIOD;
         self.advance(PERIOD);
@@ -243,7 +241,7 @@ impl Base for SimulatedBase {
         Ok(self.reading)
     }
 
-    fn reading(&self) -> WheelReading {
+    fn reading(&self) -> TimedOdometry {
         self.reading
     }
 

@@ -222,8 +222,7 @@ impl Robot for SimulatedRobot {
     }
 
     fn odometry(&self) -> TimedOdometry {
-        let reading = self.base.reading();
-        TimedOdometry { time: reading.time, odometry: reading.odometry }
+        self.base.reading()
     }
 
     fn track(&self) -> &[Sample] {

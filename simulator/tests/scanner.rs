@@ -135,9 +135,11 @@ fn a_run_with_a_look_around_is_repeated_from_its_recording() {
     let mut recording = Recording::default();
     let run = run(&plan, Dart(0), robot, sensor.clone(), &mut recording, &settings);
     assert_eq!(run.outcome(), RunOutcome::Right);
-    assert_eq!(recording.len() as u64, run.frames);
-    let again = offline(&recording, sensor, (), &settings).unwrap();
+    assert_eq!(recording.frames.len() as u64, run.frames);
+    let mut repeated = Recording::default();
+    let again = offline(&recording, sensor, &mut repeated, &settings).unwrap();
     assert_eq!(again.map(), run.mapping.map());
+    assert!(repeated.commands == recording.commands, "other commands");
 }
 
 #[test]

@@ -224,7 +224,7 @@ impl ConformArguments {
             input::start_of(world, Some(start))?;
         }
         let mut reports = ConformReports::default();
-        let mut logs = SeveralInputs::new();
+        let mut logs = SeveralInputs::default();
         let mut cases = Vec::new();
         for path in &self.logs {
             let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {

@@ -2,8 +2,6 @@
 
 #[cfg(feature = "ros1")]
 mod live;
-#[cfg(feature = "ros1")]
-mod result;
 
 use std::path::PathBuf;
 
@@ -13,7 +11,7 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     robot_sensor::{SensorChoice, one_sensor},
-    run_options::RunOptions,
+    run_options::{GivenOptions, RunOptions},
 };
 
 /// Let a live SuperScout map its building by its camera or its laser scanner
@@ -49,6 +47,8 @@ toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
 )]
 #[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
 pub(super) struct DriveArguments {
+    #[command(flatten)]
+    given: GivenOptions,
     /// The ROS 1 master, as in http://127.0.0.1:11311
     #[arg(long, value_name = "URI")]
     ros: String,
@@ -61,29 +61,11 @@ pub(super) struct DriveArguments {
     /// The colours of the building, as `toposlam camera train` writes them
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
-    #[command(flatten)]
-    options: RunOptions,
     /// Use another topic (repeatable); the topics are listed below
     #[arg(long, value_name = "WHAT=TOPIC", value_parser = topic)]
     topic: Vec<(&'static str, String)>,
-    /// Stop if the robot sends nothing for this long, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = patience)]
-    patience: f64,
-    /// The floor plan, if it is known; only named in the log
-    #[arg(long, value_name = "FILE")]
-    plan: Option<PathBuf>,
-    /// Where the robot stands in the plan, and the door behind it [default: the plan's own start]
-    #[arg(long, value_name = "VERTEX:FACING", requires = "plan")]
-    start: Option<String>,
-    /// Write a log of the run, .mcap
-    #[arg(long, value_name = "FILE")]
-    log: Option<PathBuf>,
-    /// Write the map: .toml, .json, .dot, or plantri's .ec
-    #[arg(long, value_name = "FILE")]
-    map: Option<PathBuf>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    options: RunOptions,
 }
 
 /// What each topic carries, its usual name and its type.
@@ -105,12 +87,6 @@ fn topic(text: &str) -> Result<(&'static str, String), String> {
     known.ok_or_else(|| format!("write WHAT=TOPIC, as in images=/camera; WHAT is one of {names}"))
 }
 
-/// Parses the time without messages.
-fn patience(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| (0.1..=60.0).contains(seconds));
-    seconds.ok_or_else(|| "expected a number of seconds from 0.1 to 60".to_owned())
-}
-
 impl DriveArguments {
     #[cfg(not(feature = "ros1"))]
     #[expect(clippy::unused_self, reason = "with the feature it is used")]
@@ -127,7 +103,7 @@ fn notes() -> String {
 }
 
 const NOTES: &str =
-    "The run is not checked against --plan while the robot drives. Check its log with toposlam conform.
+    "The run is not checked while the robot drives. Check its log with toposlam conform.
 
 This command needs a build with ROS 1: cargo build --release --features ros1
 

@@ -1,15 +1,13 @@
 //! `toposlam info LOG...`: the contents of logs. Sections 5 and 6.
 
 use std::{
-    collections::BTreeMap,
     io::Write,
     path::{Path, PathBuf},
 };
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use toposlam_logs::{
     FileCompression, Format,
-    error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
     topic_map::{RoleGuess, TopicMap, guess},
@@ -71,7 +69,7 @@ pub(super) struct InfoArguments {
 
 /// What `--json` prints for a log.
 #[derive(Serialize)]
-struct InfoLine<'l> {
+struct LogReport<'l> {
     log: String,
     format: &'static str,
     compression: Option<&'static str>,
@@ -83,50 +81,57 @@ struct InfoLine<'l> {
     duration: Option<f64>,
     messages: u64,
     truncated: Option<TruncatedLine>,
-    /// Whether it has an index.
     indexed: bool,
     skipped: Option<SkippedLinesFields<'l>>,
-    verification: Option<VerificationLine>,
-    topics: Vec<TopicLine<'l>>,
+    verification: Option<VerificationReport>,
+    topics: Vec<TopicReport<'l>>,
     /// For each role, the topics that could carry it, or the one in the topics file.
-    mapping: BTreeMap<&'static str, Vec<&'l str>>,
+    #[serde(serialize_with = "as_map")]
+    mapping: Carriers<'l>,
 }
 
 /// With `--verify`.
 #[derive(Serialize)]
-struct VerificationLine {
+struct VerificationReport {
     chunks: u64,
     messages: u64,
     /// The number of bytes that a checksum covers.
     covered_bytes: u64,
     complete: bool,
-    damage: Vec<DamageLine>,
+    damage: Vec<DamageReport>,
     verdict: &'static str,
     holds: bool,
 }
 
 #[derive(Serialize)]
-struct DamageLine {
+struct DamageReport {
     offset: u64,
     cause: String,
 }
 
 /// What `--json` prints for a log that is too damaged to be listed.
 #[derive(Serialize)]
-struct DamagedLine {
+struct DamagedLogReport {
     log: String,
-    verification: VerificationLine,
+    verification: VerificationReport,
 }
 
 #[derive(Serialize)]
-struct TopicLine<'l> {
+struct TopicReport<'l> {
     name: &'l str,
     r#type: &'l str,
     encoding: &'l str,
     messages: u64,
-    /// Messages a second.
+    /// Messages a second; not of a log that is shorter than a second.
     rate: Option<f64>,
     undecodable: Option<String>,
+}
+
+/// For each role, the names of topics.
+type Carriers<'l> = Vec<(&'static str, Vec<&'l str>)>;
+
+fn as_map<S: Serializer>(carriers: &Carriers, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(carriers.iter().map(|(role, topics)| (role, topics)))
 }
 
 impl InfoArguments {
@@ -144,32 +149,40 @@ impl InfoArguments {
                 Some((path, read.map_err(|error| CliError::in_file(path, error))?))
             }
         };
-        let mut inputs = SeveralInputs::new();
+        let mut inputs = SeveralInputs::default();
         for path in &self.logs {
             let shown = self.show(out, path, topics.as_ref());
             if let (true, Err(error @ CliError::Input(_))) = (self.json, &shown) {
                 print_unread(out, &path.display().to_string(), &error.cause_in(path))?;
             }
-            let read = inputs.add(shown);
-            if read == Some(ReadTo::Interruption) {
+            if inputs.add(shown) == Some(true) {
                 break;
             }
         }
         inputs.worst()
     }
 
-    /// Shows one log.
+    /// Shows one log. Returns whether its verification was interrupted.
     fn show(
         &self,
         out: &mut dyn Write,
         path: &Path,
         topics: Option<&(&PathBuf, TopicMap)>,
-    ) -> Result<(ReadTo, Outcome), CliError> {
+    ) -> Result<(bool, Outcome), CliError> {
         let log = match input::log_or_cause(path)? {
             Ok(log) => log,
             Err(error) if self.verify && error.cause.is_damage() => {
-                self.print_damaged(out, path, error)?;
-                return Ok((ReadTo::End, Outcome::Violated));
+                let found = Verification { damage: vec![error], ..Verification::default() };
+                let log = path.display().to_string();
+                let verification = VerificationReport::new(&found, Outcome::Violated);
+                if self.json {
+                    let report = DamagedLogReport { log, verification };
+                    print_line(out, "damaged-log", &report)?;
+                } else {
+                    writeln!(out, "{log}: damaged, and not read further")?;
+                    print_damage(out, &found)?;
+                }
+                return Ok((false, Outcome::Violated));
             }
             Err(error) => return Err(CliError::in_file(path, error)),
         };
@@ -183,42 +196,24 @@ impl InfoArguments {
             write_topics(target, &log, &carriers)?;
         }
         let verification = if self.verify { Some(verify(path, &log)?) } else { None };
+        let is_interrupted = verification.as_ref().is_some_and(|found| !found.complete);
+        let outcome = match &verification {
+            Some(found) if !found.damage.is_empty() => Outcome::Violated,
+            _ if is_interrupted || log.truncation().is_some() => Outcome::Incomplete,
+            _ => Outcome::Holds,
+        };
+        let report = LogReport::new(path, &log, verification.as_ref(), outcome, carriers);
         if self.json {
-            print_line(out, "log", &line(path, &log, verification.as_ref(), carriers))?;
+            print_line(out, "log", &report)?;
         } else {
-            print(out, path, &log, verification.as_ref(), &carriers)?;
+            report.print(out, &log, verification.as_ref())?;
         }
-        let unread = verification.as_ref().is_some_and(|found| !found.complete);
-        let outcome = outcome(Some(&log), verification.as_ref());
-        Ok((if unread { ReadTo::Interruption } else { ReadTo::End }, outcome))
+        Ok((is_interrupted, outcome))
     }
-
-    /// Prints the damage of a log that cannot be listed.
-    fn print_damaged(
-        &self,
-        out: &mut dyn Write,
-        path: &Path,
-        error: LogError,
-    ) -> Result<(), CliError> {
-        let found = Verification { damage: vec![error], ..Verification::default() };
-        if self.json {
-            let (log, verification) = (path.display().to_string(), verification_line(None, &found));
-            return print_line(out, "damaged-log", &DamagedLine { log, verification });
-        }
-        writeln!(out, "{}: damaged, and not read further", path.display())?;
-        print_damage(out, &found)
-    }
-}
-
-/// How far a log was read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ReadTo {
-    End,
-    Interruption,
 }
 
 /// For each role, the names of the topics that carry it or could carry it.
-fn carriers<'l>(log: &'l Log, topics: Option<&'l TopicMap>) -> Vec<(&'static str, Vec<&'l str>)> {
+fn carriers<'l>(log: &'l Log, topics: Option<&'l TopicMap>) -> Carriers<'l> {
     if let Some(topics) = topics {
         let carriers = topics.carriers();
         return carriers.map(|(role, carrier)| (role.name(), vec![&*carrier.topic])).collect();
@@ -238,31 +233,20 @@ fn verify(path: &Path, log: &Log) -> Result<Verification, CliError> {
     found
 }
 
-/// The result of a log: damage, or what was not read.
-fn outcome(log: Option<&Log>, verification: Option<&Verification>) -> Outcome {
-    let damaged = verification.is_some_and(|found| !found.damage.is_empty());
-    let unread = verification.is_some_and(|found| !found.complete);
-    match () {
-        () if damaged => Outcome::Violated,
-        () if unread || log.is_some_and(|log| log.truncation().is_some()) => Outcome::Incomplete,
-        () => Outcome::Holds,
-    }
-}
-
-fn verification_line(log: Option<&Log>, found: &Verification) -> VerificationLine {
-    let outcome = outcome(log, Some(found));
-    let damage = found
-        .damage
-        .iter()
-        .map(|error| DamageLine { offset: error.offset, cause: error.cause.to_string() });
-    VerificationLine {
-        chunks: found.chunks,
-        messages: found.messages,
-        covered_bytes: found.covered,
-        complete: found.complete,
-        damage: damage.collect(),
-        verdict: outcome.verdict(),
-        holds: outcome == Outcome::Holds,
+impl VerificationReport {
+    fn new(found: &Verification, outcome: Outcome) -> Self {
+        let damage = found.damage.iter();
+        Self {
+            chunks: found.chunks,
+            messages: found.messages,
+            covered_bytes: found.covered,
+            complete: found.complete,
+            damage: damage
+                .map(|error| DamageReport { offset: error.offset, cause: error.cause.to_string() })
+                .collect(),
+            verdict: outcome.verdict(),
+            holds: outcome == Outcome::Holds,
+        }
     }
 }
 
@@ -273,95 +257,15 @@ fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliErro
     Ok(())
 }
 
-/// Whether a log has an index. Lines have none: all of them are read.
-fn has_index(log: &Log) -> bool {
-    !matches!(log.format(), Format::Carmen | Format::Events) && log.is_indexed()
-}
-
-/// What is known of the contents of a log.
-fn contents(log: &Log, verification: Option<&Verification>) -> String {
-    let index = if has_index(log) { "an index" } else { "no index" };
-    match verification {
-        None => format!("has {index}, contents not verified"),
-        Some(found) if !found.damage.is_empty() => format!("has {index}, contents damaged:"),
-        Some(found) if !found.complete => format!("has {index}, verification interrupted"),
-        Some(found) => {
-            let [covered, size] = [found.covered, log.size()].map(|bytes| grouped(bytes.into()));
-            let messages = counted(found.messages as usize, "message");
-            let chunks = counted(found.chunks as usize, "chunk");
-            format!(
-                "has {index}, contents verified: {messages}, {chunks}, checksums of {covered} of \
-                 {size} bytes"
-            )
-        }
-    }
-}
-
-fn format(log: &Log) -> &'static str {
+/// The name of a log's format, and what it is called in words.
+fn format(log: &Log) -> [&'static str; 2] {
     match log.format() {
-        Format::Bag => "bag",
-        Format::Mcap => "mcap",
-        Format::Carmen => "carmen",
-        Format::Events => "events",
-        Format::Database => "db3",
-        Format::Folder => "rosbag2",
-    }
-}
-
-/// The time from the first to the last message, in seconds.
-fn duration(log: &Log) -> Option<f64> {
-    Some(log.end()?.saturating_sub(log.start()?) as f64 / 1e9)
-}
-
-/// A number a second, with three digits or more.
-fn rate_text(rate: f64) -> String {
-    if rate < 100.0 { format!("{rate:.2}") } else { grouped(rate.round() as u128) }
-}
-
-/// The number of messages a second on a topic. A log that is shorter than a second has none.
-fn rate(log: &Log, topic: &Topic) -> Option<f64> {
-    let duration = duration(log).filter(|duration| *duration >= 1.0)?;
-    Some(topic.messages as f64 / duration)
-}
-
-fn line<'l>(
-    path: &Path,
-    log: &'l Log,
-    verification: Option<&Verification>,
-    carriers: Vec<(&'static str, Vec<&'l str>)>,
-) -> InfoLine<'l> {
-    InfoLine {
-        log: path.display().to_string(),
-        format: format(log),
-        compression: log.compression().map(FileCompression::name),
-        bytes: log.size(),
-        start: log.start(),
-        end: log.end(),
-        duration: duration(log),
-        messages: log.messages_total(),
-        truncated: log.truncation().map(TruncatedLine::from),
-        indexed: has_index(log),
-        skipped: log.skipped().map(SkippedLinesFields::from),
-        verification: verification.map(|found| verification_line(Some(log), found)),
-        topics: log
-            .topics()
-            .iter()
-            .map(|topic| TopicLine {
-                name: &topic.name,
-                r#type: &topic.type_name,
-                encoding: match &topic.encoding {
-                    Encoding::Ros1 => "ros1",
-                    Encoding::Cdr => "cdr",
-                    Encoding::Carmen => "carmen",
-                    Encoding::Event => "event",
-                    Encoding::Other(other) => other,
-                },
-                messages: topic.messages,
-                rate: rate(log, topic),
-                undecodable: topic.definition.as_ref().err().map(ToString::to_string),
-            })
-            .collect(),
-        mapping: carriers.into_iter().collect(),
+        Format::Bag => ["bag", "ROS 1 bag"],
+        Format::Mcap => ["mcap", "MCAP"],
+        Format::Carmen => ["carmen", "CARMEN log"],
+        Format::Events => ["events", "events"],
+        Format::Database => ["db3", "rosbag2 database"],
+        Format::Folder => ["rosbag2", "rosbag2 folder"],
     }
 }
 
@@ -370,86 +274,137 @@ fn shown(name: &str) -> String {
     name.escape_debug().to_string()
 }
 
-fn print(
-    out: &mut dyn Write,
-    path: &Path,
-    log: &Log,
-    verification: Option<&Verification>,
-    carriers: &[(&str, Vec<&str>)],
-) -> Result<(), CliError> {
-    let format = match log.format() {
-        Format::Bag => "ROS 1 bag",
-        Format::Mcap => "MCAP",
-        Format::Carmen => "CARMEN log",
-        Format::Events => "events",
-        Format::Database => "rosbag2 database",
-        Format::Folder => "rosbag2 folder",
-    };
-    let compression = log.compression();
-    let compression = compression.map_or(String::new(), |known| format!(", {}", known.name()));
-    let size = grouped(log.size().into());
-    writeln!(out, "{}: {format}{compression}, {size} bytes", path.display())?;
-    if let Some(truncation) = log.truncation() {
-        print_hanging(out, "", &truncation.to_string())?;
+impl<'l> LogReport<'l> {
+    fn new(
+        path: &Path,
+        log: &'l Log,
+        verification: Option<&Verification>,
+        outcome: Outcome,
+        mapping: Carriers<'l>,
+    ) -> Self {
+        let duration = log.start().zip(log.end());
+        let duration = duration.map(|(start, end)| end.saturating_sub(start) as f64 / 1e9);
+        let whole_seconds = duration.filter(|duration| *duration >= 1.0);
+        let topic = |topic: &'l Topic| TopicReport {
+            name: &topic.name,
+            r#type: &topic.type_name,
+            encoding: match &topic.encoding {
+                Encoding::Ros1 => "ros1",
+                Encoding::Cdr => "cdr",
+                Encoding::Carmen => "carmen",
+                Encoding::Event => "event",
+                Encoding::Other(other) => other,
+            },
+            messages: topic.messages,
+            rate: whole_seconds.map(|duration| topic.messages as f64 / duration),
+            undecodable: topic.definition.as_ref().err().map(ToString::to_string),
+        };
+        Self {
+            log: path.display().to_string(),
+            format: format(log)[0],
+            compression: log.compression().map(FileCompression::name),
+            bytes: log.size(),
+            start: log.start(),
+            end: log.end(),
+            duration,
+            messages: log.messages_total(),
+            truncated: log.truncation().map(TruncatedLine::from),
+            // Lines have none: all of them are read.
+            indexed: !matches!(log.format(), Format::Carmen | Format::Events) && log.is_indexed(),
+            skipped: log.skipped().map(SkippedLinesFields::from),
+            verification: verification.map(|found| VerificationReport::new(found, outcome)),
+            topics: log.topics().iter().map(topic).collect(),
+            mapping,
+        }
     }
-    print_hanging(out, "", &contents(log, verification))?;
-    if let Some(found) = verification {
-        print_damage(out, found)?;
+
+    /// What is known of the contents.
+    fn contents(&self) -> String {
+        let index = if self.indexed { "an index" } else { "no index" };
+        match &self.verification {
+            None => format!("has {index}, contents not verified"),
+            Some(found) if !found.damage.is_empty() => format!("has {index}, contents damaged:"),
+            Some(found) if !found.complete => format!("has {index}, verification interrupted"),
+            Some(found) => {
+                let [covered, size] =
+                    [found.covered_bytes, self.bytes].map(|bytes| grouped(bytes.into()));
+                let messages = counted(found.messages as usize, "message");
+                let chunks = counted(found.chunks as usize, "chunk");
+                format!(
+                    "has {index}, contents verified: {messages}, {chunks}, checksums of {covered} \
+                     of {size} bytes"
+                )
+            }
+        }
     }
-    if let (Some(start), Some(duration)) = (log.start(), duration(log)) {
-        let exact = format!("{duration:.3} s");
-        let duration = if duration < 60.0 { exact } else { duration_text(duration) };
-        writeln!(out, "from {}, for {duration}", moment(start))?;
-    }
-    writeln!(out, "{}", counted(log.messages_total() as usize, "message"))?;
-    if let Some(skipped) = log.skipped() {
-        print_hanging(out, "", &format!("skipped {skipped}"))?;
-    }
-    writeln!(out)?;
-    let rows: Vec<_> = log
-        .topics()
-        .iter()
-        .map(|topic| {
-            let rate = rate(log, topic).map_or(String::new(), rate_text);
-            let why = topic.definition.as_ref().err().map(|why| shown(&why.to_string()));
+
+    fn print(
+        &self,
+        out: &mut dyn Write,
+        log: &Log,
+        verification: Option<&Verification>,
+    ) -> Result<(), CliError> {
+        let compression = self.compression.map_or(String::new(), |known| format!(", {known}"));
+        let size = grouped(self.bytes.into());
+        writeln!(out, "{}: {}{compression}, {size} bytes", self.log, format(log)[1])?;
+        if let Some(truncation) = log.truncation() {
+            print_hanging(out, "", &truncation.to_string())?;
+        }
+        print_hanging(out, "", &self.contents())?;
+        if let Some(found) = verification {
+            print_damage(out, found)?;
+        }
+        if let (Some(start), Some(duration)) = (self.start, self.duration) {
+            let exact = format!("{duration:.3} s");
+            let duration = if duration < 60.0 { exact } else { duration_text(duration) };
+            writeln!(out, "from {}, for {duration}", moment(start))?;
+        }
+        writeln!(out, "{}", counted(self.messages as usize, "message"))?;
+        if let Some(skipped) = log.skipped() {
+            print_hanging(out, "", &format!("skipped {skipped}"))?;
+        }
+        writeln!(out)?;
+        let row = |topic: &TopicReport| {
+            let rate = match topic.rate {
+                None => String::new(),
+                Some(rate) if rate < 100.0 => format!("{rate:.2}"),
+                Some(rate) => grouped(rate.round() as u128),
+            };
             [
                 format!("{:>10}", grouped(topic.messages.into())),
                 format!("{rate:>8}"),
-                shown(&topic.name),
-                shown(&topic.type_name),
-                why.unwrap_or_default(),
+                shown(topic.name),
+                shown(topic.r#type),
+                topic.undecodable.as_deref().map(shown).unwrap_or_default(),
             ]
-        })
-        .collect();
-    print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
-    writeln!(out)?;
-    if carriers.is_empty() {
-        writeln!(out, "No topic of a run is recognised; select topics with a topics file.")?;
+        };
+        let rows: Vec<_> = self.topics.iter().map(row).collect();
+        print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
+        writeln!(out)?;
+        if self.mapping.is_empty() {
+            writeln!(out, "No topic of a run is recognised; select topics with a topics file.")?;
+            return Ok(());
+        }
+        let row = |(role, topics): &(&str, Vec<&str>)| [(*role).to_owned(), any_of(topics)];
+        let rows: Vec<_> = self.mapping.iter().map(row).collect();
+        Ok(print_rows(out, ["role", "topic"], &rows)?)
     }
-    let rows: Vec<_> = carriers
-        .iter()
-        .map(|(role, topics)| {
-            let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
-            [(*role).to_owned(), topics.join(" or ")]
-        })
-        .collect();
-    if !rows.is_empty() {
-        print_rows(out, ["role", "topic"], &rows)?;
-    }
-    Ok(())
+}
+
+/// The names of topics that could carry one role.
+fn any_of(topics: &[&str]) -> String {
+    topics.iter().map(|topic| shown(topic)).collect::<Vec<_>>().join(" or ")
 }
 
 /// Writes the roles with one possible topic; those with several are comments.
-fn write_topics(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), CliError> {
+fn write_topics(path: &Path, log: &Log, carriers: &Carriers) -> Result<(), CliError> {
     let topics = TopicMap::unambiguous(log);
     if topics.is_empty() {
         return Err(CliError::in_file(path, "no role has exactly one possible topic"));
     }
     let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
-    let comments = several.map(|(role, topics)| {
-        let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
-        format!("\n# [{role}]\n# topic = {}\n", topics.join(" or "))
-    });
+    let comments =
+        several.map(|(role, topics)| format!("\n# [{role}]\n# topic = {}\n", any_of(topics)));
     let text = topics.to_toml() + &comments.collect::<String>();
     output::write_whole(path, text.as_bytes())
 }

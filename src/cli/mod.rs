@@ -1,6 +1,5 @@
 //! The verbs of the command line, and what they share: exit codes, errors, text output.
 
-mod budget_options;
 mod camera;
 mod certificate_cost;
 mod check;
@@ -20,8 +19,9 @@ mod old_names;
 mod open_log;
 mod play;
 mod proofs;
+mod run_capture;
 mod run_options;
-mod safeguards;
+mod run_report;
 mod sense;
 mod simulate;
 mod skipped_lines;

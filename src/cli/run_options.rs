@@ -1,18 +1,29 @@
-//! The options of a robot's run: how it maps, what it may spend, and from where it goes on.
+//! The options of a robot's run, simulated or live, and its files.
 
-use std::path::PathBuf;
+use std::{fs::File, path::PathBuf};
 
-use toposlam_model::mapping::{MappingMethod, RecoveryConfig};
-use toposlam_robot::run_settings::{DEFAULT_MAX_DARTS, RunSettings};
-
-use super::{
-    CliError,
-    budget_options::BudgetOptions,
-    earlier_logs::earlier_walks_of,
-    method_options::{MethodOptions, words_of},
+use clap::{ArgMatches, Command, FromArgMatches, Id, parser::ValueSource};
+use toposlam_logs::{messages, recorder::Recorder, world_hash, writer::LogWriteError};
+use toposlam_model::{
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    mapping::{MappingMethod, RecoveryConfig},
+};
+use toposlam_robot::{
+    budget::RunBudget,
+    run_settings::{DEFAULT_MAX_DARTS, RunSettings},
+};
+use toposlam_vision::{
+    camera::{Camera, calibration},
+    colour::ColourModel,
 };
 
-/// How a robot maps, what it may spend, and from where it goes on.
+use super::{
+    CliError, earlier_logs::earlier_walks_of, method_options::MethodOptions, output, text::quoted,
+    version,
+};
+
+/// How a robot maps, what it may spend, from where it goes on, and what is written.
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct RunOptions {
     #[command(flatten)]
@@ -22,63 +33,185 @@ pub(super) struct RunOptions {
     retry_blocked: bool,
     /// With --recover: a map that is complete but for blocked doors is enough for exit code 0
     #[arg(long, requires = "recover")]
-    allow_blocked: bool,
-    #[command(flatten)]
-    budget: BudgetOptions,
+    pub(super) allow_blocked: bool,
+    /// Return to the marker before this number of moves is over
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_moves: Option<u64>,
+    /// Return to the marker before this time is over, in minutes of the robot's clock
+    #[arg(long, value_name = "MINUTES", allow_hyphen_values = true, value_parser = positive)]
+    max_minutes: Option<f64>,
+    /// Return to the marker before the battery is empty: the part of it that one metre takes, as in 0.001
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = share)]
+    battery_per_metre: Option<f64>,
     /// With --recover: go on from the log of an earlier run, .mcap, wherever the robot stands (repeatable)
     #[arg(long, value_name = "LOG", requires = "recover")]
     resume: Vec<PathBuf>,
     /// Stop if the map has more darts
     #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_DARTS)]
     max_darts: usize,
+    /// Write a log of the run, .mcap
+    #[arg(long, value_name = "FILE")]
+    pub(super) log: Option<PathBuf>,
+    /// Write the map: .toml, .json, .dot, or plantri's .ec; of a floor plan also .pc
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "expected a number greater than 0".to_owned())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| "expected a number greater than 0, and at most 1".to_owned())
 }
 
 impl RunOptions {
-    /// How the robot maps.
+    /// What the robot does. If the world is known, the earlier logs must be of it.
     ///
     /// # Errors
-    /// Returns an error if Algorithm 1 is to recover.
-    pub(super) fn method(&self) -> Result<MappingMethod, CliError> {
-        Ok(match self.method.method()? {
+    /// Returns an error if Algorithm 1 is to recover, or if the robot cannot go on from an earlier log.
+    pub(super) fn settings(&self, world_hash: Option<&str>) -> Result<RunSettings, CliError> {
+        let method = match self.method.method()? {
             MappingMethod::Recovering(config) => MappingMethod::Recovering(RecoveryConfig {
                 retries_blocked: self.retry_blocked,
                 ..config
             }),
             method @ MappingMethod::By { .. } => method,
-        })
+        };
+        let budget = RunBudget {
+            moves: self.max_moves,
+            seconds: self.max_minutes.map(|minutes| 60.0 * minutes),
+            metres: self.battery_per_metre.map(|share| 1.0 / share),
+        };
+        let earlier = earlier_walks_of(&self.resume, world_hash)?;
+        Ok(RunSettings { budget, earlier, ..RunSettings::new(method, self.max_darts) })
     }
 
-    /// All settings. If the world is known, the earlier logs must be of it.
-    ///
-    /// # Errors
-    /// Returns an error if Algorithm 1 is to recover, or if the robot cannot go on from an earlier log.
-    pub(super) fn settings(&self, world_hash: Option<&str>) -> Result<RunSettings, CliError> {
-        Ok(RunSettings {
-            budget: self.budget.budget(),
-            earlier: earlier_walks_of(&self.resume, world_hash)?,
-            ..RunSettings::new(self.method()?, self.max_darts)
-        })
-    }
-
-    /// Whether a map may lack what is behind blocked doors.
-    pub(super) fn allows_blocked(&self) -> bool {
-        self.allow_blocked
-    }
-
-    /// The options that give the same settings again. They do not say whether blocked doors are allowed, which
-    /// changes no run.
-    ///
-    /// # Errors
-    /// Returns an error if Algorithm 1 is to recover.
-    pub(super) fn words(&self) -> Result<Vec<String>, CliError> {
-        let mut words = words_of(self.method()?);
-        words.extend(self.budget.words());
-        for log in &self.resume {
-            words.extend(["--resume".to_owned(), log.display().to_string()]);
+    /// Checks the places of the log and the map, before long work begins.
+    pub(super) fn check_places(&self, is_simple: bool) -> Result<(), CliError> {
+        if let Some(path) = &self.log {
+            output::check_place(path, &["mcap"])?;
         }
-        if self.max_darts != DEFAULT_MAX_DARTS {
-            words.extend(["--max-darts".to_owned(), self.max_darts.to_string()]);
+        self.map.as_ref().map_or(Ok(()), |path| output::check_world_place(path, is_simple))
+    }
+
+    /// Opens the log, if one is wanted. Its head has the world, the camera and the colours, if they are known.
+    pub(super) fn recorder(
+        &self,
+        command: String,
+        settings: &RunSettings,
+        world: Option<(&NamedWorld, Dart)>,
+        seed: u64,
+        eyes: Option<&(Camera, ColourModel)>,
+    ) -> Result<Option<Recorder<File>>, CliError> {
+        let Some(path) = &self.log else { return Ok(None) };
+        let known = world.map(|(world, facing)| {
+            let hash = world_hash(&world.graph, facing);
+            (world.name.clone(), hash, world.start_text(facing))
+        });
+        let (world, world_hash, start) = known.unwrap_or_default();
+        let run = messages::Run {
+            stamp: messages::Stamp::default(),
+            version: version::version().to_owned(),
+            world,
+            world_hash,
+            start,
+            marker: "directional".to_owned(),
+            seed,
+            calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
+            colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
+            command,
+            algorithm: settings.recorded().to_string(),
+        };
+        let camera = eyes.map(|(camera, _)| camera.clone());
+        let recorder = Recorder::new(output::create_growing(path)?, &run, camera);
+        recorder.map(Some).map_err(|error| self.unwritten(&error))
+    }
+
+    /// The failure if the log cannot be written.
+    pub(super) fn unwritten(&self, error: &LogWriteError) -> CliError {
+        let path = self.log.clone().unwrap_or_default();
+        CliError::in_file(&path, format!("cannot be written: {error}"))
+    }
+
+    /// Writes the map, if it is wanted and complete.
+    pub(super) fn write_map(&self, map: Option<&NamedWorld>) -> Result<(), CliError> {
+        match (&self.map, map) {
+            (Some(path), Some(map)) => output::write_world(path, map)?,
+            (Some(_), None) => remark!("the map is not written: the run ended early"),
+            (None, _) => {}
         }
-        Ok(words)
+        Ok(())
+    }
+}
+
+/// The options on the command line and their values, by name. It must be the first field of its arguments: the
+/// others take theirs out of the matches.
+#[derive(Clone, Debug)]
+pub(super) struct GivenOptions(Vec<(String, Vec<String>)>);
+
+/// The options that change no run.
+const OUTPUTS: [&str; 8] = ["allow-blocked", "color", "html", "json", "log", "map", "quiet", "svg"];
+/// The options that are repeated although they are not given: their defaults may change.
+const WITH_DEFAULTS: [&str; 2] = ["algorithm", "seed"];
+
+impl GivenOptions {
+    pub(super) fn has(&self, option: &str) -> bool {
+        self.0.iter().any(|(name, _)| name == option)
+    }
+
+    /// The command that repeats the run, without the options for its outputs.
+    pub(super) fn command(&self, head: &[&str]) -> String {
+        let mut words: Vec<String> = head.iter().map(|word| (*word).to_owned()).collect();
+        for (name, values) in self.0.iter().filter(|(name, _)| !OUTPUTS.contains(&&**name)) {
+            match &**name {
+                _ if values.is_empty() => words.push(format!("--{name}")),
+                "audit" => words.extend(values.iter().map(|value| format!("--{name}={value}"))),
+                _ => words
+                    .extend(values.iter().flat_map(|value| [format!("--{name}"), value.clone()])),
+            }
+        }
+        words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl FromArgMatches for GivenOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        // The names of positional arguments and of groups begin with a capital.
+        let is_option = |id: &&Id| !id.as_str().starts_with(char::is_uppercase);
+        let is_given = |id: &&Id| {
+            matches.value_source(id.as_str()) == Some(ValueSource::CommandLine)
+                || WITH_DEFAULTS.contains(&id.as_str())
+        };
+        let option = |id: &Id| {
+            let is_flag = matches.try_get_one::<bool>(id.as_str()).is_ok();
+            let values = matches.get_raw(id.as_str()).into_iter().flatten();
+            let values = values.filter(|_| !is_flag).map(|value| value.to_string_lossy());
+            (id.as_str().replace('_', "-"), values.map(Into::into).collect())
+        };
+        let mut options: Vec<_> =
+            matches.ids().filter(is_option).filter(is_given).map(option).collect();
+        options.sort();
+        Ok(Self(options))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl clap::Args for GivenOptions {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
     }
 }

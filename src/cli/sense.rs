@@ -83,9 +83,9 @@ pub(super) struct SenseArguments {
     out: Option<PathBuf>,
 }
 
-/// The JSON line of an image.
+/// What `--json` prints of an image.
 #[derive(Serialize)]
-struct ImageLine {
+struct ImageReport {
     image: String,
     #[serde(flatten)]
     scene: SceneLine,
@@ -109,45 +109,42 @@ impl SenseArguments {
         let mut eye = camera
             .zip(colours.as_ref())
             .map(|(camera, colours)| (camera, Sensor::new(camera, colours)));
-        match &self.out {
-            None => self.sense_all(&mut eye, &names, out)?.worst(),
-            Some(path) => {
-                let mut text = Vec::new();
-                let inputs = self.sense_all(&mut eye, &names, &mut text)?;
-                // Without any scene there is nothing to write.
-                if !text.is_empty() {
-                    output::write_whole(path, &text)?;
-                }
-                inputs.worst()
-            }
+        let Some(path) = &self.out else {
+            return self.sense_all(&mut eye, &names, out)?.worst();
+        };
+        let mut text = Vec::new();
+        let inputs = self.sense_all(&mut eye, &names, &mut text)?;
+        // Without any scene there is nothing to write.
+        if !text.is_empty() {
+            output::write_whole(path, &text)?;
         }
+        inputs.worst()
     }
 
     /// Returns an error for an option that is missing, or has no effect.
     fn check_options(&self) -> Result<(), CliError> {
         let any_image = self.files.iter().any(|path| is_image(path));
         let any_log = self.files.iter().any(|path| !is_image(path));
-        for (option, is_given) in
-            [("--calibration", self.calibration.is_some()), ("--colours", self.colours.is_some())]
-        {
-            if any_image && !is_given {
-                return Err(CliError::at(option, "this is needed for images"));
+        let for_images =
+            [("--calibration", self.calibration.is_some()), ("--colours", self.colours.is_some())];
+        let wrong = for_images.into_iter().find(|(_, is_given)| *is_given != any_image);
+        let for_logs = self.scans.map(|_| "--scans");
+        let for_logs = for_logs.or(self.topics.as_ref().map(|_| "--topics")).or(self.laser.given());
+        match (wrong, for_logs) {
+            (Some((option, false)), _) => Err(CliError::at(option, "this is needed for images")),
+            (Some((option, true)), _) => {
+                Err(CliError::at(option, "this is for images, and no input is an image"))
             }
-            if is_given && !any_image {
-                return Err(CliError::at(option, "this is for images, and no input is an image"));
+            (None, Some(option)) if !any_log => {
+                Err(CliError::at(option, "this is for laser scans, and no input is a log"))
             }
+            _ if any_log && self.stages.is_some() && self.scans.is_none() => {
+                let cause =
+                    "for a log this needs --scans: there is a picture for each step of each scan";
+                Err(CliError::at("--stages", cause))
+            }
+            _ => Ok(()),
         }
-        let for_logs = [("--scans", self.scans.is_some()), ("--topics", self.topics.is_some())];
-        let given = for_logs.into_iter().find(|&(_, is_given)| is_given).map(|(option, _)| option);
-        if let Some(option) = given.or(self.laser.given()).filter(|_| !any_log) {
-            return Err(CliError::at(option, "this is for laser scans, and no input is a log"));
-        }
-        if any_log && self.stages.is_some() && self.scans.is_none() {
-            let cause =
-                "for a log this needs --scans: there is a picture for each step of each scan";
-            return Err(CliError::at("--stages", cause));
-        }
-        Ok(())
     }
 
     /// Senses all files and prints what is seen. A file that cannot be used is reported.
@@ -157,7 +154,7 @@ impl SenseArguments {
         names: &[OsString],
         out: &mut dyn Write,
     ) -> Result<SeveralInputs, CliError> {
-        let mut inputs = SeveralInputs::new();
+        let mut inputs = SeveralInputs::default();
         for (path, name) in self.files.iter().zip(names) {
             if must_stop() {
                 inputs.add::<()>(Err(CliError::Interrupted));
@@ -190,7 +187,11 @@ impl SenseArguments {
         let scene = self.scene(camera, sensor, path, name)?;
         if self.json {
             let image = path.display().to_string();
-            return print_line(out, "image", &ImageLine { image, scene: SceneLine::from(&scene) });
+            return print_line(
+                out,
+                "image",
+                &ImageReport { image, scene: SceneLine::from(&scene) },
+            );
         }
         writeln!(out, "{}", path.display())?;
         for (label, text) in rows(&scene) {

@@ -1,40 +1,22 @@
 //! `toposlam simulate PLAN`: a simulated SuperScout maps a floor plan. Sections 5 and 6.
 
 mod feasible;
-mod laser;
-mod log;
-#[cfg(feature = "ros1")]
-mod node;
-mod result;
-mod run_capture;
 
-use std::{
-    fs::File,
-    io::{self, IsTerminal, Write},
-    path::{Path, PathBuf},
-    sync::Arc,
-    time::Instant,
-};
+use std::{io::Write, path::PathBuf, sync::Arc, time::Instant};
 
-use result::SimulationResult;
-use run_capture::{KeptImages, RunCapture};
 use toposlam_logs::{
     record::{RobotSensor, StoppedBy},
-    recorder::Recorder,
     world_hash,
 };
 use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
-use toposlam_robot::{
-    false_percepts::FalsePercepts, recording::Recording, run_settings::RunSettings,
-};
+use toposlam_robot::{recording::Recording, run_settings::RunSettings};
 use toposlam_simulator::{
-    Effects, FAULTS, FOR_EVER, IMAGE_TIME, LearnedSensors, LearningError, RobotFault,
-    SimulatedRobot, SimulationConfig,
-    run::{offline, run},
+    FAULTS, FOR_EVER, LearnedSensors, LearningError, RobotFault, SimulatedRobot, SimulationConfig,
+    run::{Run, RunOutcome, offline, run},
 };
-use toposlam_vision::camera::Camera;
+use toposlam_vision::{camera::Camera, colour::ColourModel};
 
 use super::{
     CliError, Outcome,
@@ -42,23 +24,21 @@ use super::{
     exit_codes::help_end,
     input, noise, output,
     progress::{Progress, StopSignal},
-    robot_sensor::SensorChoice,
-    run_options::RunOptions,
-    text::capital,
+    robot_sensor::{SensorChoice, needs_camera},
+    run_capture::RunCapture,
+    run_options::{GivenOptions, RunOptions},
+    run_report::{EndedRun, RobotReport, RunReport},
+    text::{capital, grouped},
 };
-use crate::{
-    page, picture,
-    run_page_data::RunPageData,
-    story::{PrintedStory, Story, StoryDetail},
-};
+use crate::{page, picture, story};
 
 /// Let a simulated SuperScout map a floor plan by its camera or its laser scanner
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
 /// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L.
 /// Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and the folding
-/// explorer makes the map, or with --algorithm algorithm1 Algorithm 1, which needs more moves. Each move, each percept and the map are checked against the floor
-/// plan's embedded graph.
+/// explorer makes the map; `--algorithm algorithm1` uses Algorithm 1, which needs more moves. Each move, each
+/// percept and the map are checked against the floor plan's embedded graph.
 ///
 /// With --recover the robot goes on after a contradiction, and if it gets lost. A hallway that it cannot pass
 /// is a dead end: it maps everything else, and reports the doors that are blocked.
@@ -68,13 +48,14 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(super) struct SimulateArguments {
+    #[command(flatten)]
+    given: GivenOptions,
     /// The floor plan
+    #[arg(id = "PLAN")]
     plan: PathBuf,
     /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    #[command(flatten)]
-    options: RunOptions,
     /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
@@ -107,47 +88,44 @@ pub(super) struct SimulateArguments {
     /// Noise of wheels and odometry, as a multiple of the default
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise, allow_hyphen_values = true)]
     noise: f64,
-    /// Time to take an image, in seconds
-    #[arg(long, default_value_t = IMAGE_TIME, value_name = "SECONDS", value_parser = seconds)]
-    image_time: f64,
     /// Inject a fault when the robot takes this image (repeatable)
     #[arg(long, value_name = "NAME@IMAGE[:COUNT]")]
     fault: Vec<RobotFault>,
-    /// Write a log of the run, .mcap
-    #[arg(long, value_name = "FILE")]
-    log: Option<PathBuf>,
     /// Write a picture of the run, .svg: the plan, the path, and the junctions as the robot saw them
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// Write a page that shows the run step by step, .html
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Write the annotated images to this folder
-    #[arg(long, value_name = "DIR")]
-    frames: Option<PathBuf>,
-    /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
-    #[arg(long, value_name = "FILE")]
-    map: Option<PathBuf>,
     /// Do not explore: serve the robot through ROS 1 topics at this master
     #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
     ros: Option<String>,
-    /// With --ros: how fast simulated time passes, as a multiple of real time [default: 1]
-    #[arg(long, value_name = "TIMES", value_parser = speed)]
-    speed: Option<f64>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
+    /// With --ros: how fast simulated time passes, as a multiple of real time
+    #[arg(
+        long,
+        value_name = "TIMES",
+        default_value_t = 1.0,
+        value_parser = speed,
+        requires = "ros",
+        conflicts_with_all = NOT_DRIVEN
+    )]
+    speed: f64,
+    #[command(flatten)]
+    options: RunOptions,
 }
 
-/// Options of rendered images, which --by-scene does not make.
-const OF_IMAGES: [&str; 7] =
-    ["calibration", "size", "colours", "frames", "look", "effects", "effect"];
+/// Options of rendered images, which neither --by-scene nor --sensor laser makes.
+const OF_IMAGES: [&str; 6] = ["calibration", "size", "colours", "look", "effects", "effect"];
 
-/// Options that need a run; --ros serves the robot instead.
-const NOT_DRIVEN: [&str; 14] = [
+/// Options that need a run; --ros serves the robot instead. All are named: clap drops the requirement of an option
+/// that conflicts.
+const NOT_DRIVEN: [&str; 16] = [
     "algorithm",
     "audit",
     "recover",
+    "retry_blocked",
+    "allow_blocked",
+    "resume",
     "max_moves",
     "max_minutes",
     "battery_per_metre",
@@ -155,7 +133,6 @@ const NOT_DRIVEN: [&str; 14] = [
     "log",
     "svg",
     "html",
-    "frames",
     "map",
     "json",
     "max_darts",
@@ -166,10 +143,13 @@ struct Simulation {
     world: NamedWorld,
     plan: Arc<FloorPlan>,
     facing: Dart,
-    setting: SimulationConfig,
     settings: RunSettings,
-    /// Before colours were learned.
-    begun: Instant,
+    robot: SimulatedRobot,
+    /// `None` if the frames are scenes.
+    sensor: Option<RobotSensor>,
+    /// With a camera that takes images.
+    eyes: Option<(Camera, ColourModel)>,
+    frame_kind: &'static str,
 }
 
 impl SimulateArguments {
@@ -178,63 +158,64 @@ impl SimulateArguments {
         if self.ros.is_some() {
             return Err(super::without_ros());
         }
-        if self.speed.is_some() && self.ros.is_none() {
-            return Err(CliError::at("--speed", "this needs --ros"));
-        }
-        self.options.method()?;
-        let scanner = self.scanner_params()?;
-        self.check_places()?;
         let begun = Instant::now();
+        let simulation = self.prepare()?;
+        #[cfg(feature = "ros1")]
+        if let Some(master) = &self.ros {
+            return serve(simulation.robot, master, self.speed, out);
+        }
+        self.simulate(simulation, begun, out)
+    }
+
+    /// Checks the options, reads the inputs and learns the colours.
+    fn prepare(&self) -> Result<Simulation, CliError> {
+        let scanner = self.sensor.scanner(self.scanner.as_deref())?;
+        if self.sensor == SensorChoice::Laser {
+            let mut of_images = ["by-scene"].into_iter().chain(OF_IMAGES);
+            if let Some(option) = of_images.find(|option| self.given.has(option)) {
+                return Err(needs_camera(&format!("--{option}")));
+            }
+        }
+        for (path, endings) in [(&self.svg, &["svg"][..]), (&self.html, &["html", "htm"])] {
+            path.as_ref().map_or(Ok(()), |path| output::check_place(path, endings))?;
+        }
+        // The map of a floor plan is simple.
+        self.options.check_places(true)?;
         let world = input::read_world(&self.plan)?;
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
         let settings = self.options.settings(Some(&world_hash(&world.graph, facing)))?;
-        let setting = SimulationConfig {
+        let config = SimulationConfig {
             noise: self.noise,
-            image_time: self.image_time,
-            keeps_track: self.log.is_some(),
+            keeps_track: self.options.log.is_some(),
             faults: self.fault.clone(),
             ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
-        let simulation = Simulation { world, plan, facing, setting, settings, begun };
-        if let (SensorChoice::Laser, Some(scanner)) = (self.sensor, &scanner) {
-            let robot = simulation.setting.by_laser(scanner);
-            #[cfg(feature = "ros1")]
-            if let Some(master) = &self.ros {
-                return node::run(robot, master, self.speed.unwrap_or(1.0), out);
+        let (robot, sensor, eyes, frame_kind) = match (&scanner, self.by_scene) {
+            (Some(scanner), _) if self.sensor == SensorChoice::Laser => {
+                let sensor = RobotSensor::Laser(Box::default());
+                (config.by_laser(scanner), Some(sensor), None, "scans")
             }
-            let sensor = RobotSensor::Laser(Box::default());
-            let log = self.recorder(&simulation, None)?;
-            return self.simulate(&simulation, robot, Some(sensor), KeptImages::None, log, out);
-        }
-        let equipped = |robot: SimulatedRobot| match &scanner {
-            Some(scanner) => robot.with_scanner(simulation.setting.scanner(scanner)),
-            None => robot,
+            (_, true) => (config.by_scene(), None, None, "scenes"),
+            (_, false) => {
+                let look = self.appearance.look;
+                let effects = self.appearance.effects(self.seed)?;
+                let camera = camera_with(&effects, &self.camera()?)?;
+                let eyes = self.eyes(&camera)?;
+                feasible::check_marker(&plan, facing, &eyes, look)?;
+                let robot = config.with_images(eyes.rig(), look, &effects);
+                let sensor = RobotSensor::Camera(Box::new(eyes.sensor(look)));
+                (robot, Some(sensor), Some((camera, eyes.colours(look).clone())), "images")
+            }
         };
-        if self.by_scene {
-            let robot = equipped(simulation.setting.by_scene());
-            let log = self.recorder(&simulation, None)?;
-            return self.simulate(&simulation, robot, None, KeptImages::None, log, out);
-        }
-        let effects = self.appearance.effects(self.seed)?;
-        let camera = camera_with(&effects, &self.camera()?)?;
-        let eyes = self.eyes(&camera)?;
-        feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
-        let robot = equipped(simulation.robot(&eyes, &self.appearance, &effects));
-        #[cfg(feature = "ros1")]
-        if let Some(master) = &self.ros {
-            return node::run(robot, master, self.speed.unwrap_or(1.0), out);
-        }
-        let sensor = RobotSensor::Camera(Box::new(eyes.sensor(self.appearance.look)));
-        let log =
-            self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
-        let images = match (&self.frames, &self.html) {
-            (Some(folder), _) => KeptImages::Files { camera, folder: folder.clone() },
-            (None, Some(_)) => KeptImages::Small { camera },
-            (None, None) => KeptImages::None,
+        let robot = match &scanner {
+            Some(scanner) if self.sensor == SensorChoice::Both => {
+                robot.with_scanner(config.scanner(scanner))
+            }
+            _ => robot,
         };
-        self.simulate(&simulation, robot, Some(sensor), images, log, out)
+        Ok(Simulation { world, plan, facing, settings, robot, sensor, eyes, frame_kind })
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
@@ -248,24 +229,6 @@ impl SimulateArguments {
             world.at_text(facing),
         );
         Ok(nearest)
-    }
-
-    fn check_places(&self) -> Result<(), CliError> {
-        let places: [(&Option<PathBuf>, &[&str]); 3] =
-            [(&self.log, &["mcap"]), (&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
-        for (path, endings) in places {
-            if let Some(path) = path {
-                output::check_place(path, endings)?;
-            }
-        }
-        if let Some(map) = &self.map {
-            // The map of a floor plan is simple.
-            output::check_world_place(map, true)?;
-        }
-        match &self.frames {
-            Some(folder) => output::make_folder(folder),
-            None => Ok(()),
-        }
     }
 
     fn camera(&self) -> Result<Camera, CliError> {
@@ -290,109 +253,153 @@ impl SimulateArguments {
         })
     }
 
-    /// What the robot takes before each command.
-    fn frame_kind(&self) -> &'static str {
-        match self.sensor {
-            SensorChoice::Laser => "scans",
-            _ if self.by_scene => "scenes",
-            _ => "images",
-        }
-    }
-
     /// Runs the simulation, prints its result and writes its files.
     fn simulate(
         &self,
-        simulation: &Simulation,
-        robot: SimulatedRobot,
-        sensor: Option<RobotSensor>,
-        images: KeptImages,
-        mut log: Option<Recorder<File>>,
+        simulation: Simulation,
+        begun: Instant,
         out: &mut dyn Write,
     ) -> Result<Outcome, CliError> {
-        let Simulation { world, plan, facing, settings, .. } = simulation;
-        let facing = *facing;
-        let progress = Progress::endless("exploring", self.frame_kind())?;
-        // On a terminal the story shows how far the run is.
-        let hidden = !self.json && io::stdout().is_terminal();
-        let progress = if hidden { progress.hidden() } else { progress };
-        let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
-        let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = PrintedStory::new(Story::new(world, facing, detail), terminal);
-        let mut capture = RunCapture::new(story, progress, images);
+        let Simulation { world, plan, facing, settings, robot, sensor, eyes, frame_kind } =
+            simulation;
+        let command = self.given.command(&["toposlam", "simulate", &self.plan.to_string_lossy()]);
+        let in_world = Some((&world, facing));
+        let mut log =
+            self.options.recorder(command, &settings, in_world, self.seed, eyes.as_ref())?;
+        let story_out: Option<&mut dyn Write> =
+            if self.options.json { None } else { Some(&mut *out) };
+        let camera = eyes.filter(|_| self.html.is_some()).map(|(camera, _)| camera);
+        let head = story::head(&world, facing);
+        let mut capture = RunCapture::new(head, story_out, frame_kind, camera)?;
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
-        let run = run(plan, facing, robot, sensor.clone(), observer, settings);
-        let logged = log.map_or(Ok(()), Recorder::finish);
-        let mut run_data = capture.finish(&world.name, plan, facing, &run)?;
-        logged.map_err(|error| self.unwritten(&error))?;
+        let run = run(&plan, facing, robot, sensor.clone(), observer, &settings);
+        let logged = log.map_or(Ok(()), |log| log.finish());
+        let mut page_data = capture.page_data(&world, &plan, facing, &run);
+        capture.finish()?;
+        logged.map_err(|error| self.options.unwritten(&error))?;
         let computed = Instant::now();
-        let stop = StoppedBy(&StopSignal);
-        let replayed = offline(&recording, sensor, stop, settings);
+        // A run that ended early ends early again.
+        let _ = offline(&recording, sensor, StoppedBy(&StopSignal), &settings);
         let compute_seconds = computed.elapsed().as_secs_f64();
-        let result = SimulationResult {
-            world,
-            facing,
-            seed: self.seed,
-            allows_blocked: self.options.allows_blocked(),
-            percepts: match self.sensor {
-                SensorChoice::Laser => FalsePercepts::BY_LASER,
-                _ if self.by_scene => FalsePercepts::BY_SCENE,
-                _ => FalsePercepts::BY_IMAGE,
-            },
-            frame_kind: self.frame_kind(),
-            run: &run,
-            missed: self.fault.iter().filter(|fault| fault.frame > run.frames).collect(),
-            replayed: replayed.ok(),
-            compute_seconds,
-            wall_seconds: simulation.begun.elapsed().as_secs_f64(),
+        let missed: Vec<_> = self.fault.iter().filter(|fault| fault.frame > run.frames).collect();
+        let ended = EndedRun {
+            method: run.method,
+            mapping: &run.mapping,
+            mapped: run.mapped.as_ref(),
+            error: run.error.as_ref(),
+            moves: run.moves,
+            seconds: run.seconds,
+            frames: run.frames,
+            frame_kind,
         };
-        if self.json {
-            result.print_json(out)?;
+        let report = self.report(&world, facing, &run, &ended, &missed, compute_seconds);
+        let mut ending = vec![in_words(&run, &ended)];
+        page_data.ending = capital(&ending[0]);
+        if self.options.json {
+            report.print_json(out)?;
         } else {
-            result.print(out)?;
+            ending
+                .extend(run.divergence().filter(|_| run.error.is_some()).map(|it| it.to_string()));
+            ending.extend(missed.iter().map(|fault| {
+                let frames = grouped(run.frames.into());
+                format!(
+                    "the fault {fault} did not happen: the run ended after {frames} {frame_kind}"
+                )
+            }));
+            report.print(out, &ended, &ending)?;
+            remark!("{:.1} s", begun.elapsed().as_secs_f64());
         }
-        run_data.ending = capital(&result.in_words());
-        self.write_files(&run_data, &result)?;
-        Ok(result.outcome())
-    }
-
-    fn write_files(
-        &self,
-        run_data: &RunPageData,
-        result: &SimulationResult,
-    ) -> Result<(), CliError> {
-        if let Some(path) = &self.map {
-            match result.map() {
-                Some(map) => output::write_world(path, &map)?,
-                None => remark!("the map is not written: the run ended early"),
-            }
-        }
-        let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
+        let about = format!("The map of {}, made by a simulated robot", world.name);
+        self.options.write_map(ended.map(&format!("{}-map", world.name), &about).as_ref())?;
         if let Some(path) = &self.svg {
-            write(path, picture::run_svg(run_data))?;
+            output::write_whole(path, picture::run_svg(&page_data).as_bytes())?;
         }
         if let Some(path) = &self.html {
-            write(path, page::run_page(run_data))?;
+            output::write_whole(path, page::run_page(&page_data).as_bytes())?;
         }
-        Ok(())
+        Ok(match (run.outcome(), ended.outcome(self.options.allow_blocked)) {
+            (RunOutcome::Wrong(_), _) => Outcome::Violated,
+            (RunOutcome::Right, Outcome::Holds) if !missed.is_empty() => Outcome::Incomplete,
+            (_, outcome) => outcome,
+        })
     }
-}
 
-impl Simulation {
-    fn robot(
+    fn report(
         &self,
-        eyes: &LearnedSensors,
-        appearance: &Appearance,
-        effects: &Effects,
-    ) -> SimulatedRobot {
-        self.setting.with_images(eyes.rig(), appearance.look, effects)
+        world: &NamedWorld,
+        facing: Dart,
+        run: &Run,
+        ended: &EndedRun,
+        missed: &[&RobotFault],
+        compute_seconds: f64,
+    ) -> RunReport {
+        let divergence = run.divergence();
+        let is_right = run.outcome() == RunOutcome::Right;
+        let certificate = ended.certificate(&world.graph, facing, is_right);
+        let robot = RobotReport::Simulated {
+            plan: world.name.clone(),
+            start: world.start_text(facing),
+            seed: self.seed,
+            algorithm: run.method.algorithm().name(),
+            edges: world.graph.edge_count(),
+            explore_moves: run.explore_moves,
+            isomorphic: run.isomorphic(),
+            pose_true: run.pose_true(),
+            conforms: divergence.is_none(),
+            divergence: divergence.as_ref().map(ToString::to_string),
+            divergence_move: divergence.as_ref().map(|divergence| divergence.moves),
+            faults_missed: missed.iter().map(ToString::to_string).collect(),
+            // The control loop counts in quarters of a second, an image in tenths.
+            simulated_seconds: (run.seconds * 1e3).round() / 1e3,
+            compute_seconds,
+        };
+        RunReport::new(ended, Some(certificate), robot)
     }
 }
 
-/// Parses the time of an image.
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| (0.0..=60.0).contains(seconds));
-    seconds.ok_or_else(|| "expected a number of seconds from 0 to 60".to_owned())
+fn in_words(run: &Run, ended: &EndedRun) -> String {
+    match run.outcome() {
+        RunOutcome::Wrong(why) => why,
+        RunOutcome::Right if ended.blocked().is_empty() && !run.method.recovers() => {
+            ended.ending("right", "") + ", all as specified"
+        }
+        _ => ended.ending("right", "right, and complete"),
+    }
+}
+
+/// Serves the robot through ROS 1 topics until Ctrl-C: another program drives it.
+#[cfg(feature = "ros1")]
+fn serve(
+    robot: SimulatedRobot,
+    master: &str,
+    speed: f64,
+    out: &mut dyn Write,
+) -> Result<Outcome, CliError> {
+    use toposlam_robot::ros1::RobotTopics;
+    use toposlam_simulator::ros1::{ServeSummary, serve};
+
+    use super::progress::{must_stop, watch_for_interrupt};
+
+    watch_for_interrupt()?;
+    let topics = RobotTopics::usual(master);
+    let RobotTopics { wheels, odometry, images, scans, marker, .. } = &topics;
+    writeln!(out, "A simulated robot at {master}. Ctrl-C ends it.")?;
+    writeln!(out, "  subscribes to  {wheels}")?;
+    writeln!(out, "  publishes      {odometry}, /tf, {images}, {scans}, {marker}")?;
+    out.flush()?;
+    let served = serve(robot, &topics, speed, must_stop);
+    let ServeSummary { seconds, real_seconds, frames } =
+        served.map_err(|error| CliError::at("--ros", error))?;
+    writeln!(
+        out,
+        "{seconds:.0} s of simulated time in {real_seconds:.0} s ({:.1} times real time), \
+         {} images ({:.1} a second)",
+        seconds / real_seconds,
+        grouped(frames.into()),
+        frames as f64 / real_seconds
+    )?;
+    Ok(Outcome::Holds)
 }
 
 /// Parses the speed of simulated time. At a higher speed a motion is over before the program sees it.
@@ -438,4 +445,41 @@ Examples:
             (3, "ended by Ctrl-C or at --max-darts, a door is blocked, or a fault did not happen"),
         ],
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: SimulateArguments,
+    }
+
+    #[test]
+    fn the_command_repeats_the_run_without_the_options_for_its_outputs() {
+        for (line, command) in [
+            (
+                "a.toml --log run.mcap --json --by-scene --noise 0.5",
+                "a.toml --algorithm folding --by-scene --noise 0.5 --seed 0",
+            ),
+            (
+                "a.toml --seed 7 --fault carried@40 --audit --fault dropped@3:9 --size 1280x960 \
+                 --effects none --effect noise=0.25 --algorithm algorithm1 --max-darts 20",
+                "a.toml --algorithm algorithm1 --audit=1 --effect noise=0.25 --effects none \
+                 --fault carried@40 --fault dropped@3:9 --max-darts 20 --seed 7 --size 1280x960",
+            ),
+            (
+                "a.toml --scanner it's.toml --sensor laser",
+                r"a.toml --algorithm folding --scanner 'it'\''s.toml' --seed 0 --sensor laser",
+            ),
+        ] {
+            let words = ["simulate"].into_iter().chain(line.split_whitespace());
+            let given = Line::try_parse_from(words).unwrap().arguments.given;
+            assert_eq!(given.command(&["a.toml"]), command, "{line}");
+        }
+    }
 }

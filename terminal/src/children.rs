@@ -24,7 +24,6 @@ pub struct RunningProgram {
 }
 
 /// The other ends of a program's standard streams.
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ProgramStreams {
     pub stdin: ChildStdin,
     pub stdout: ChildStdout,

@@ -7,8 +7,6 @@ use std::{ops::RangeInclusive, str::FromStr};
 pub struct EdgeRange(RangeInclusive<usize>);
 
 impl EdgeRange {
-    /// The numbers.
-    #[must_use]
     #[expect(clippy::iter_without_into_iter, reason = "it is an argument, not a collection")]
     pub fn iter(&self) -> RangeInclusive<usize> {
         self.0.clone()

@@ -4,7 +4,6 @@ use super::text::print_hanging;
 
 /// Notes and examples, and after them the exit codes that a verb can return, each with its meaning for
 /// this verb.
-#[must_use]
 pub fn help_end(notes: &str, codes: &[(u8, &str)]) -> String {
     let mut text = notes.trim_end().as_bytes().to_vec();
     text.extend(b"\n\nExit codes:\n");

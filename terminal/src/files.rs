@@ -11,9 +11,6 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-use thiserror::Error;
-
-/// The files of this process.
 static FILES: Mutex<CallFiles> = Mutex::new(CallFiles::new());
 
 /// The files of this process, one thread at a time.
@@ -21,38 +18,14 @@ pub fn files() -> MutexGuard<'static, CallFiles> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Why a file cannot be used as an output.
-#[allow(missing_docs, reason = "the names say it")]
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum FileConflict {
-    /// It is an input.
-    #[error(
-        "{}: this output would replace the input {}; choose another name",
-        output.display(), input.display()
-    )]
-    Input { output: PathBuf, input: PathBuf },
-    /// It is another output.
-    #[error(
-        "{}: this is the same file as the output {}; choose another name",
-        output.display(), other.display()
-    )]
-    Output { output: PathBuf, other: PathBuf },
-    /// It would become a part of an input.
-    #[error(
-        "{}: this output would be in the folder {}, which is an input; choose another folder",
-        output.display(), folder.display()
-    )]
-    Folder { output: PathBuf, folder: PathBuf },
-}
-
-/// The use of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FileUse {
+pub enum FileUse {
     Input,
     /// An output that is not written yet.
     Planned,
     /// An output that grows until the call ends.
     Growing,
+    /// An output that replaces the file.
     Written,
 }
 
@@ -67,7 +40,6 @@ pub struct CallFiles {
     by_number: BTreeMap<[u64; 2], usize>,
     /// The folders that are inputs as a whole: absolute paths, and as they were given.
     input_folders: Vec<[PathBuf; 2]>,
-    /// Whether files are written into a folder.
     fills_folder: bool,
 }
 
@@ -82,82 +54,45 @@ impl CallFiles {
         }
     }
 
-    /// Registers a file that is read. From now on it is not written.
-    ///
-    /// # Errors
-    /// Returns an error if it is an output.
-    pub fn read(&mut self, path: &Path) -> Result<(), FileConflict> {
+    /// Registers a file that is read: from now on it is not written. It is an error if it is an output.
+    pub fn read(&mut self, path: &Path) -> Result<(), String> {
         match self.entry(path, FileUse::Input) {
             Some((output, found)) if *found != FileUse::Input => {
                 *found = FileUse::Input;
-                Err(FileConflict::Input { output: output.clone(), input: path.to_owned() })
+                Err(replaces_input(output, path))
             }
             _ => Ok(()),
         }
     }
 
-    /// Registers a folder that is an input as a whole. From now on nothing is written into it.
-    ///
-    /// # Errors
-    /// Returns an error if an output is in it.
-    pub fn read_folder(&mut self, path: &Path) -> Result<(), FileConflict> {
+    /// Registers a folder that is an input as a whole: from now on nothing is written into it. It is an error if an
+    /// output is in it.
+    pub fn read_folder(&mut self, path: &Path) -> Result<(), String> {
         let real = real_path(path);
         let mut inside = self.by_path.iter().filter(|(file, _)| file.starts_with(&real));
         if let Some((output, _)) = inside
             .find_map(|(_, &entry)| self.entries.get(entry).filter(|(_, is)| *is != FileUse::Input))
         {
-            return Err(FileConflict::Folder { output: output.clone(), folder: path.to_owned() });
+            return Err(is_in_input(output, path));
         }
         self.input_folders.push([real, path.to_owned()]);
         Ok(())
     }
 
-    /// Checks that an output is in no folder that is an input.
-    fn check_folder(&self, output: &Path) -> Result<(), FileConflict> {
-        let real = real_path(output);
-        match self.input_folders.iter().find(|[folder, _]| real.starts_with(folder)) {
-            Some([_, folder]) => {
-                Err(FileConflict::Folder { output: output.to_owned(), folder: folder.clone() })
-            }
-            None => Ok(()),
+    /// Registers an output. It is an error if it is an input, in a folder that is one, or another output. A planned
+    /// one may be written once.
+    pub fn write(&mut self, path: &Path, now: FileUse) -> Result<(), String> {
+        let real = real_path(path);
+        let is_around = |[folder, _]: &&[PathBuf; 2]| real.starts_with(folder);
+        if let Some([_, folder]) = self.input_folders.iter().find(is_around) {
+            return Err(is_in_input(path, folder));
         }
-    }
-
-    /// Registers a file that is written later.
-    ///
-    /// # Errors
-    /// Returns an error if it is an input or another output.
-    pub fn plan(&mut self, path: &Path) -> Result<(), FileConflict> {
-        self.check_folder(path)?;
-        match self.entry(path, FileUse::Planned) {
-            Some((other, found)) => Err(conflict(path, other, *found)),
-            None => Ok(()),
-        }
-    }
-
-    /// Registers a file that is replaced now; it may be planned.
-    ///
-    /// # Errors
-    /// Returns an error if it is an input, or was written before.
-    pub fn write(&mut self, path: &Path) -> Result<(), FileConflict> {
-        self.begin(path, FileUse::Written)
-    }
-
-    /// Registers a file that is created now and grows; it may be planned.
-    ///
-    /// # Errors
-    /// Returns an error if it is an input, or was written before.
-    pub fn grow(&mut self, path: &Path) -> Result<(), FileConflict> {
-        self.begin(path, FileUse::Growing)
-    }
-
-    fn begin(&mut self, path: &Path, now: FileUse) -> Result<(), FileConflict> {
-        self.check_folder(path)?;
         let number = number(path);
         match self.entry(path, now) {
-            Some((_, found @ FileUse::Planned)) => *found = now,
-            Some((other, found)) => return Err(conflict(path, other, *found)),
             None => {}
+            Some((_, found @ FileUse::Planned)) if now != FileUse::Planned => *found = now,
+            Some((input, FileUse::Input)) => return Err(replaces_input(path, input)),
+            Some((other, _)) => return Err(is_other_output(path, other)),
         }
         // The file with this number is replaced, and another one may get the number.
         if let Some(number) = number.filter(|_| now == FileUse::Written) {
@@ -166,13 +101,11 @@ impl CallFiles {
         Ok(())
     }
 
-    /// Registers that files are written into a folder.
     pub fn fill_folder(&mut self) {
         self.fills_folder = true;
     }
 
     /// Whether an output is not complete yet.
-    #[must_use]
     pub fn has_open_outputs(&self) -> bool {
         let is_open =
             |(_, found): &(_, FileUse)| matches!(found, FileUse::Planned | FileUse::Growing);
@@ -199,12 +132,22 @@ impl CallFiles {
     }
 }
 
-fn conflict(output: &Path, other: &Path, found: FileUse) -> FileConflict {
-    let (output, other) = (output.to_owned(), other.to_owned());
-    match found {
-        FileUse::Input => FileConflict::Input { output, input: other },
-        _ => FileConflict::Output { output, other },
-    }
+fn replaces_input(output: &Path, input: &Path) -> String {
+    let [output, input] = [output, input].map(Path::display);
+    format!("{output}: this output would replace the input {input}; choose another name")
+}
+
+fn is_other_output(output: &Path, other: &Path) -> String {
+    let [output, other] = [output, other].map(Path::display);
+    format!("{output}: this is the same file as the output {other}; choose another name")
+}
+
+fn is_in_input(output: &Path, folder: &Path) -> String {
+    let [output, folder] = [output, folder].map(Path::display);
+    format!(
+        "{output}: this output would be in the folder {folder}, which is an input; choose another \
+         folder"
+    )
 }
 
 /// The absolute path without symbolic links. For a file that does not exist, that of its folder, with its
@@ -239,90 +182,76 @@ fn number(_: &Path) -> Option<[u64; 2]> {
 mod tests {
     use super::*;
 
-    /// An empty folder for a test.
-    fn folder(name: &str) -> PathBuf {
-        let folder =
-            std::env::temp_dir().join(format!("toposlam-files-{}-{name}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        folder
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().unwrap()
     }
 
-    type Step = fn(&mut CallFiles, &Path) -> Result<(), FileConflict>;
+    const OUTPUTS: [FileUse; 3] = [FileUse::Planned, FileUse::Written, FileUse::Growing];
 
     #[test]
     fn an_input_is_not_an_output_whichever_is_registered_first() {
-        let folder = folder("either_order");
-        let file = folder.join("file");
+        let folder = folder();
+        let file = folder.path().join("file");
         fs::write(&file, "x").unwrap();
-        let dotted = folder.join(".").join("file");
-        for output in [CallFiles::plan as Step, CallFiles::write, CallFiles::grow] {
+        let dotted = folder.path().join(".").join("file");
+        for output in OUTPUTS {
             let mut files = CallFiles::new();
             files.read(&file).unwrap();
             files.read(&dotted).unwrap();
-            let conflict = FileConflict::Input { output: dotted.clone(), input: file.clone() };
-            assert_eq!(output(&mut files, &dotted), Err(conflict));
+            assert_eq!(files.write(&dotted, output), Err(replaces_input(&dotted, &file)));
             let mut files = CallFiles::new();
-            output(&mut files, &dotted).unwrap();
-            let conflict = FileConflict::Input { output: dotted.clone(), input: file.clone() };
-            assert_eq!(files.read(&file), Err(conflict.clone()));
+            files.write(&dotted, output).unwrap();
+            assert_eq!(files.read(&file), Err(replaces_input(&dotted, &file)));
             // Also a verb that goes on with other inputs does not write it.
-            let conflict = FileConflict::Input { output: file.clone(), input: dotted.clone() };
-            assert_eq!(files.write(&file), Err(conflict));
+            assert_eq!(files.write(&file, FileUse::Written), Err(replaces_input(&file, &dotted)));
         }
-        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]
     fn an_input_folder_gets_no_output() {
-        let folder = folder("input_folder");
-        let (inside, other) = (folder.join("new.mcap"), folder.with_extension("other"));
-        let conflict = FileConflict::Folder { output: inside.clone(), folder: folder.clone() };
-        for output in [CallFiles::plan as Step, CallFiles::write, CallFiles::grow] {
+        let [folder, other] = [folder(), folder()];
+        let (inside, other) = (folder.path().join("new.mcap"), other.path().join("new.mcap"));
+        for output in OUTPUTS {
             let mut files = CallFiles::new();
-            files.read_folder(&folder).unwrap();
-            assert_eq!(output(&mut files, &inside), Err(conflict.clone()));
-            output(&mut files, &other).unwrap();
+            files.read_folder(folder.path()).unwrap();
+            assert_eq!(files.write(&inside, output), Err(is_in_input(&inside, folder.path())));
+            files.write(&other, output).unwrap();
             let mut files = CallFiles::new();
-            output(&mut files, &inside).unwrap();
-            assert_eq!(files.read_folder(&folder), Err(conflict.clone()));
+            files.write(&inside, output).unwrap();
+            assert_eq!(files.read_folder(folder.path()), Err(is_in_input(&inside, folder.path())));
         }
     }
 
     #[test]
     fn a_planned_output_is_written_once() {
-        let folder = folder("once");
-        let (file, other) = (folder.join("new"), folder.join("other"));
+        let folder = folder();
+        let [file, other, log] = ["new", "other", "log"].map(|name| folder.path().join(name));
         let mut files = CallFiles::new();
-        files.plan(&file).unwrap();
+        files.write(&file, FileUse::Planned).unwrap();
         assert!(files.has_open_outputs());
-        let same = FileConflict::Output { output: file.clone(), other: file.clone() };
-        assert_eq!(files.plan(&file), Err(same.clone()));
-        files.write(&file).unwrap();
+        assert_eq!(files.write(&file, FileUse::Planned), Err(is_other_output(&file, &file)));
+        files.write(&file, FileUse::Written).unwrap();
         assert!(!files.has_open_outputs());
-        assert_eq!(files.write(&file), Err(same));
-        files.write(&other).unwrap();
+        assert_eq!(files.write(&file, FileUse::Written), Err(is_other_output(&file, &file)));
+        files.write(&other, FileUse::Written).unwrap();
         assert!(!files.has_open_outputs());
-        files.grow(&folder.join("log")).unwrap();
+        files.write(&log, FileUse::Growing).unwrap();
         assert!(files.has_open_outputs());
-        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[cfg(unix)]
     #[test]
     fn links_are_recognised() {
-        let folder = folder("links");
-        let file = folder.join("file");
+        let folder = folder();
+        let [file, soft, hard] = ["file", "soft", "hard"].map(|name| folder.path().join(name));
         fs::write(&file, "x").unwrap();
-        let (soft, hard) = (folder.join("soft"), folder.join("hard"));
         std::os::unix::fs::symlink("file", &soft).unwrap();
         fs::hard_link(&file, &hard).unwrap();
         for link in [soft, hard] {
             let mut files = CallFiles::new();
             files.read(&file).unwrap();
-            assert!(matches!(files.plan(&link), Err(FileConflict::Input { .. })));
+            assert_eq!(files.write(&link, FileUse::Planned), Err(replaces_input(&link, &file)));
         }
-        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[cfg(unix)]
@@ -331,9 +260,8 @@ mod tests {
         let device = Path::new("/dev/null");
         let mut files = CallFiles::new();
         files.read(device).unwrap();
-        for _ in 0..2 {
-            files.plan(device).unwrap();
-            files.write(device).unwrap();
+        for output in [FileUse::Planned, FileUse::Written].repeat(2) {
+            files.write(device, output).unwrap();
         }
         assert!(!files.has_open_outputs());
     }

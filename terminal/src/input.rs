@@ -24,9 +24,6 @@ use super::{CliError, files::files};
 
 /// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
 /// no name, the world gets the name of the file.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     let bytes = read_at_most(path, MOST_WORLDS)?;
     let mut world = match plantri::PlantriCode::of_file(path, &bytes) {
@@ -51,27 +48,16 @@ pub fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     Ok(world)
 }
 
-/// Reads the colours of a building.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read_colours(path: &Path) -> Result<ColourModel, CliError> {
     ColourModel::read(&read(path)?).map_err(|error| CliError::in_file(path, error))
 }
 
-/// The floor plan of a world.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, CliError> {
     let cause = "this world is not a floor plan: it has no [floor]";
     world.plan.as_ref().ok_or_else(|| CliError::in_file(path, cause))
 }
 
 /// Reads the camera of a calibration file. Paths in the file are relative to its folder.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read_camera(path: &Path) -> Result<Camera, CliError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let beside = &mut |name: &str| {
@@ -83,9 +69,6 @@ pub fn read_camera(path: &Path) -> Result<Camera, CliError> {
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, CliError> {
     match start {
         Some(text) => world.start_from_text(text).map_err(|error| CliError::at("--start", error)),
@@ -94,9 +77,6 @@ pub fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, CliErro
 }
 
 /// Reads the embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
     let bytes = read_at_most(path, MOST_WORLDS)?;
     if let Some(code) = plantri::PlantriCode::of_file(path, &bytes) {
@@ -122,44 +102,33 @@ fn read_plantri(
 }
 
 /// Registers files that are read later, so that an output among them is refused before the work.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn register(paths: &[PathBuf]) -> Result<(), CliError> {
     let mut files_of_paths = paths.iter().filter(|path| !is_standard(path));
-    Ok(files_of_paths.try_for_each(|path| files().read(path))?)
+    files_of_paths.try_for_each(|path| files().read(path)).map_err(CliError::Input)
 }
 
 /// The name of a file without its ending.
-#[must_use]
 pub fn stem(path: &Path) -> OsString {
     let stem =
         if is_standard(path) { "stdin".as_ref() } else { path.file_stem().unwrap_or_default() };
     stem.to_owned()
 }
 
-/// Opens a log.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn open_log(path: &Path) -> Result<Log, CliError> {
     log_or_cause(path)?.map_err(|error| CliError::in_file(path, error))
 }
 
 /// Opens a log, or returns why it cannot be read.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, CliError> {
     if is_standard(path) {
         return Ok(Log::new(Cursor::new(standard_input(MOST_LOG)?)));
     }
-    files().read(path)?;
+    files().read(path).map_err(CliError::Input)?;
     if path.is_dir() {
-        files().read_folder(path)?;
+        files().read_folder(path).map_err(CliError::Input)?;
     }
     for file in folder_files(path).unwrap_or_default() {
-        files().read(&file)?;
+        files().read(&file).map_err(CliError::Input)?;
     }
     Ok(Log::open(path))
 }
@@ -178,9 +147,6 @@ fn folder_files(path: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// Opens a file that was read before, to read it in pieces. A folder is its files, one after the other.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn open_again(path: &Path) -> io::Result<Box<dyn Read>> {
     match STANDARD_INPUT.get().filter(|_| is_standard(path)) {
         Some(bytes) => Ok(Box::new(Cursor::new(bytes.clone()))),
@@ -203,9 +169,6 @@ const MOST_LOG: u64 = 1 << 31;
 const MOST: u64 = 1 << 28;
 
 /// Reads a file that is neither of worlds nor a log.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read(path: &Path) -> Result<Vec<u8>, CliError> {
     read_at_most(path, MOST)
 }
@@ -214,7 +177,7 @@ fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, CliError> {
     if is_standard(path) {
         return Ok(standard_input(most)?.to_vec());
     }
-    files().read(path)?;
+    files().read(path).map_err(CliError::Input)?;
     let file = fs::File::open(path);
     let bytes = file.and_then(|file| {
         let size = file.metadata()?.len();
@@ -237,11 +200,9 @@ fn too_large(most: u64) -> io::Error {
 /// The content of standard input, once it was read.
 static STANDARD_INPUT: OnceLock<Arc<[u8]>> = OnceLock::new();
 
-/// The path of standard input.
 const STANDARD: &str = "-";
 
 /// Whether a path is that of standard input.
-#[must_use]
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new(STANDARD)
 }

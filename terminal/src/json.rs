@@ -10,7 +10,6 @@ use toposlam_model::{percept::Percept, world::Action};
 
 use super::CliError;
 
-/// The version of the lines.
 const SCHEMA: u32 = 1;
 
 /// A line: its version, its kind and its content.
@@ -27,9 +26,6 @@ fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String>
 }
 
 /// Prints an object on a line of its own, after its version and its kind.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn print_line(
     out: &mut dyn Write,
     kind: &'static str,
@@ -39,9 +35,6 @@ pub fn print_line(
 }
 
 /// Prints the beginning of a line, up to the comma after its kind.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn begin_line(out: &mut dyn Write, kind: &'static str) -> io::Result<()> {
     let empty = line_text(kind, &())?;
     write!(out, "{},", empty.strip_suffix('}').unwrap_or(&empty))
@@ -68,15 +61,11 @@ struct UnreadLine<'f> {
 }
 
 /// Prints that one of several inputs could not be used.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn print_unread(out: &mut dyn Write, file: &str, cause: &str) -> Result<(), CliError> {
     print_line(out, "unread", &UnreadLine { file, cause })
 }
 
 /// A door is a number, another action is a word.
-#[must_use]
 pub fn action_json(action: Action) -> Value {
     match action {
         Action::Take(door) => json!(door.0),
@@ -85,7 +74,6 @@ pub fn action_json(action: Action) -> Value {
 }
 
 /// The degree, and the sighting in words.
-#[must_use]
 pub fn percept_json(percept: Percept) -> Value {
     json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() })
 }

@@ -1,6 +1,8 @@
 //! What programs on the command line share: messages and progress on standard error, exit codes, tables and JSON lines,
 //! input and output files, and the options of how a robot maps.
 
+#![allow(clippy::missing_errors_doc, reason = "each error names its place and its cause")]
+#![allow(clippy::must_use_candidate, reason = "programs use this crate, not libraries")]
 #![warn(clippy::print_stderr, reason = "--quiet is obeyed in `terminal.rs`")]
 
 /// Prints a remark on standard error, unless `--quiet` is given.
@@ -29,9 +31,6 @@ pub mod text;
 pub use outcome::{CliError, Outcome};
 
 /// Sets the number of threads, if one is given.
-///
-/// # Errors
-/// Returns an error if the threads cannot be started.
 pub fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
     let Some(threads) = threads else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());

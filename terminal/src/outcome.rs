@@ -4,7 +4,7 @@ use std::{fmt::Display, io, path::Path, process::ExitCode};
 
 use toposlam_model::enumerate::Interrupted;
 
-use super::{files::FileConflict, report_output, terminal};
+use super::{report_output, terminal};
 
 /// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,6 @@ pub enum Outcome {
 
 impl Outcome {
     /// The field `verdict` of `--json`.
-    #[must_use]
     pub fn verdict(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -58,13 +57,11 @@ impl CliError {
         Self::Input(format!("{place}: {cause}"))
     }
 
-    /// A failure in a file.
     pub fn in_file(path: &Path, cause: impl Display) -> Self {
         Self::at(path.display(), cause)
     }
 
     /// Why one of several inputs could not be used, without its path.
-    #[must_use]
     pub fn cause_in(&self, path: &Path) -> String {
         match self {
             Self::Input(message) => {
@@ -78,7 +75,6 @@ impl CliError {
     }
 
     /// Prints the message and returns the exit code.
-    #[expect(clippy::must_use_candidate, reason = "the message counts")]
     pub fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {
@@ -102,10 +98,7 @@ impl CliError {
 
 /// The worse of two results. Bad input is worse than a violation, that is worse than work that is not
 /// finished, and that is worse than a result that holds: exit codes 2, 1, 3, 0.
-///
-/// # Errors
-/// Returns an error with its place and cause.
-pub fn worse(
+fn worse(
     one: Result<Outcome, CliError>,
     other: Result<Outcome, CliError>,
 ) -> Result<Outcome, CliError> {
@@ -123,17 +116,11 @@ pub struct SeveralInputs(Result<Outcome, CliError>);
 
 impl Default for SeveralInputs {
     fn default() -> Self {
-        Self::new()
+        Self(Ok(Outcome::Holds))
     }
 }
 
 impl SeveralInputs {
-    /// The result without any input.
-    #[must_use]
-    pub fn new() -> Self {
-        Self(Ok(Outcome::Holds))
-    }
-
     /// Adds the result of one input, and prints its failure. Returns the value, if there is one.
     pub fn add<T>(&mut self, result: Result<(T, Outcome), CliError>) -> Option<T> {
         let (value, result) = match result {
@@ -150,9 +137,6 @@ impl SeveralInputs {
     }
 
     /// The worst result of all inputs.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn worst(self) -> Result<Outcome, CliError> {
         self.0
     }
@@ -161,12 +145,6 @@ impl SeveralInputs {
 impl From<io::Error> for CliError {
     fn from(error: io::Error) -> Self {
         Self::at("standard output", error)
-    }
-}
-
-impl From<FileConflict> for CliError {
-    fn from(conflict: FileConflict) -> Self {
-        Self::Input(conflict.to_string())
     }
 }
 
@@ -213,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_bad_input_does_not_hide_the_others() {
-        let mut inputs = SeveralInputs::new();
+        let mut inputs = SeveralInputs::default();
         assert_eq!(inputs.add(Ok((1, Outcome::Violated))), Some(1));
         assert_eq!(inputs.add::<u8>(Err(CliError::Input("x".to_owned()))), None);
         assert_eq!(inputs.add(Ok((3, Outcome::Holds))), Some(3));

@@ -12,7 +12,11 @@ use std::{
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
-use super::{CliError, children, files::files, input, temporary_folder};
+use super::{
+    CliError, children,
+    files::{FileUse, files},
+    input, temporary_folder,
+};
 
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
@@ -27,14 +31,11 @@ pub fn exit_between_files(code: i32) -> ! {
 
 /// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
 /// renamed.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     let Some(name) = path.file_name() else {
         return Err(CliError::in_file(path, "this is not a file name"));
     };
-    files().write(path)?;
+    files().write(path, FileUse::Written).map_err(CliError::Input)?;
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     // A device or a pipe is not replaced.
     if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
@@ -53,20 +54,14 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
 
 /// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
 /// killed.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn create_growing(path: &Path) -> Result<fs::File, CliError> {
-    files().grow(path)?;
+    files().write(path, FileUse::Growing).map_err(CliError::Input)?;
     fs::File::create(path).map_err(|error| not_writable(path, &error))
 }
 
 /// Opens a file to append to, or creates it, and returns what it contains. It is locked until it is closed.
-///
-/// # Errors
-/// Returns an error if it is not a file, if another process has locked it, or if it cannot be written.
 pub fn open_growing_alone(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> {
-    files().grow(path)?;
+    files().write(path, FileUse::Growing).map_err(CliError::Input)?;
     if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         return Err(CliError::in_file(path, "this is not a file"));
     }
@@ -87,9 +82,6 @@ pub fn open_growing_alone(path: &Path) -> Result<(fs::File, Vec<u8>), CliError> 
 }
 
 /// Creates the folder if it does not exist.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn make_folder(folder: &Path) -> Result<(), CliError> {
     files().fill_folder();
     fs::create_dir_all(folder).map_err(|error| {
@@ -97,11 +89,8 @@ pub fn make_folder(folder: &Path) -> Result<(), CliError> {
     })
 }
 
-/// Checks that a file can be written to a path, before long work begins.
-///
-/// # Errors
-/// Returns an error if the path is a folder, an input or another output, if its folder does not exist, or
-/// if its extension is not in the list.
+/// Checks, before long work begins, that a file can be written to a path: it is no folder, no input and no other
+/// output, its folder exists, and its extension is in the list.
 pub fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
     if path.is_dir() {
         return Err(CliError::in_file(path, "this is a folder, not a file"));
@@ -124,16 +113,13 @@ pub fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
         let cause = format!("the name must end in {}", extensions.join(" or "));
         return Err(CliError::in_file(path, cause));
     }
-    Ok(files().plan(path)?)
+    files().write(path, FileUse::Planned).map_err(CliError::Input)
 }
 
 /// The extensions of plantri's `planar_code`, which is for simple graphs only.
 const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
 
 /// Does [`check_place`] for a world that may or may not be simple.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn check_world_place(path: &Path, simple: bool) -> Result<(), CliError> {
     let extensions = ["toml", "json", "dot", "ec", "edge_code"];
     if simple {
@@ -145,9 +131,6 @@ pub fn check_world_place(path: &Path, simple: bool) -> Result<(), CliError> {
 
 /// Writes a world in the format of the file's extension: `.toml`, `.json`, Graphviz's `.dot`, plantri's
 /// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn write_world(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
     let graph = std::slice::from_ref(&world.graph);
     let coded = |code| plantri::write(graph, code).map_err(|error| CliError::in_file(path, error));

@@ -46,6 +46,11 @@ pub fn must_stop() -> bool {
     interrupted || report_output::is_useless()
 }
 
+/// From now on a second Ctrl-C, too, waits for the work to stop: otherwise a robot would be left on its way.
+pub fn always_stop_gracefully() {
+    ALWAYS_GRACEFUL.store(true, Ordering::Relaxed);
+}
+
 /// Stops work when [`must_stop`], without a bar.
 pub struct StopSignal;
 
@@ -63,15 +68,10 @@ pub struct Progress {
     /// Whether the length of the work is unknown: then the bar shows the time.
     is_endless: bool,
     cases: AtomicU64,
-    parts: AtomicU64,
-    parts_done: AtomicU64,
 }
 
 impl Progress {
     /// Shows a bar for work on cases.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn new(work: &str, unit: &'static str) -> Result<Self, CliError> {
         watch_for_interrupt()?;
         let bar = if terminal::has_colors() { "{bar:12.cyan/blue}" } else { "{bar:12}" };
@@ -84,14 +84,10 @@ impl Progress {
         if terminal::is_quiet() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        let [cases, parts, parts_done] = std::array::from_fn(|_| AtomicU64::new(0));
-        Ok(Self { bar, unit, is_endless: false, cases, parts, parts_done })
+        Ok(Self { bar, unit, is_endless: false, cases: AtomicU64::new(0) })
     }
 
     /// Shows the time of work of unknown length. It moves even if no part is done for long.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn endless(work: &str, unit: &'static str) -> Result<Self, CliError> {
         let progress = Self::new(work, unit)?;
         let style = ProgressStyle::with_template("{prefix} {spinner}  {time}  {wide_msg}")
@@ -115,26 +111,12 @@ impl Progress {
         self.bar.reset_elapsed();
     }
 
-    /// Also a second Ctrl-C waits for the work to stop: otherwise a robot would be left on its way.
-    #[must_use]
-    pub fn always_graceful(self) -> Self {
-        ALWAYS_GRACEFUL.store(true, Ordering::Relaxed);
-        self
-    }
-
-    /// Removes the bar. Others may still ask whether the work must stop.
-    pub fn clear(&self) {
-        self.bar.finish_and_clear();
-    }
-
     /// Shows no bar: the work prints its own progress.
-    #[must_use]
     pub fn hidden(self) -> Self {
         self.bar.set_draw_target(ProgressDrawTarget::hidden());
         self
     }
 
-    /// Removes the bar.
     pub fn finish(self) {
         self.bar.finish_and_clear();
     }
@@ -142,8 +124,6 @@ impl Progress {
 
 impl Watch for Progress {
     fn parts(&self, count: usize) {
-        self.parts.store(count as u64, Ordering::Relaxed);
-        self.parts_done.store(0, Ordering::Relaxed);
         self.bar.set_position(0);
         // All of nothing would be 100 %.
         self.bar.set_length(count.max(1) as u64);
@@ -151,13 +131,15 @@ impl Watch for Progress {
 
     fn part_done(&self, cases: u64) {
         let cases = self.cases.fetch_add(cases, Ordering::Relaxed) + cases;
-        let done = self.parts_done.fetch_add(1, Ordering::Relaxed) + 1;
         if !self.bar.is_hidden() {
-            let (seconds, parts) =
-                (self.bar.elapsed().as_secs_f64(), self.parts.load(Ordering::Relaxed));
-            let time = Some(time_text(seconds, [done, parts])).filter(|_| !self.is_endless);
+            let seconds = self.bar.elapsed().as_secs_f64();
+            let parts = [self.bar.position() + 1, self.bar.length().unwrap_or(0)];
             let rate = rate_text(seconds, cases, self.unit);
-            self.bar.set_message(time.map_or(rate.clone(), |time| format!("{time}  {rate}")));
+            self.bar.set_message(if self.is_endless {
+                rate
+            } else {
+                format!("{}  {rate}", time_text(seconds, parts))
+            });
         }
         self.bar.inc(1);
     }
@@ -196,9 +178,6 @@ fn rate_text(seconds: f64, cases: u64, unit: &str) -> String {
 
 /// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed. Work that
 /// does not ask whether to stop is ended.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn watch_for_interrupt() -> Result<(), CliError> {
     static SET: Once = Once::new();
     let mut result = Ok(());
@@ -321,12 +300,5 @@ mod tests {
             assert!(lines.iter().all(|line| !line.contains("0 s left")), "{lines:#?}");
             progress.finish();
         }
-    }
-
-    #[test]
-    fn a_bar_begins_at_0_percent() {
-        let Progress { bar, .. } = Progress::new("6 edges", "starts").unwrap();
-        // Of no length: indicatif shows 100 % of length 0.
-        assert_eq!((bar.position(), bar.length()), (0, None));
     }
 }

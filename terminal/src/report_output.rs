@@ -74,7 +74,6 @@ mod tests {
         }
     }
 
-    /// A full disk.
     struct Full;
 
     impl Write for Full {

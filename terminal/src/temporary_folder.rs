@@ -17,10 +17,6 @@ static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 pub struct TemporaryFolder(TempDir);
 
 impl TemporaryFolder {
-    /// Creates a folder.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn new() -> Result<Self, String> {
         let mut folders = FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::Builder::new().prefix("toposlam-").tempdir().map_err(|error| {
@@ -31,8 +27,6 @@ impl TemporaryFolder {
         Ok(Self(folder))
     }
 
-    /// The folder.
-    #[must_use]
     pub fn directory(&self) -> &TempDir {
         &self.0
     }

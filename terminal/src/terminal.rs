@@ -37,11 +37,9 @@ pub struct TerminalOptions {
     color: ColorChoice,
 }
 
-/// Set by `--quiet`.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 impl TerminalOptions {
-    /// Applies the options to this process.
     pub fn apply(&self) {
         QUIET.store(self.quiet, Ordering::Relaxed);
         match self.color {
@@ -70,13 +68,10 @@ pub fn color_choice(arguments: impl IntoIterator<Item = OsString>) -> ColorChoic
     choice
 }
 
-/// Whether remarks and progress are left out.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Whether standard error has colours.
-#[must_use]
 pub fn has_colors() -> bool {
     AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never
 }
@@ -88,7 +83,6 @@ pub fn remark(text: impl Display) {
     }
 }
 
-/// Prints an error.
 pub fn error(message: &str) {
     const LABEL: &str = "error:";
     let style = Styles::styled();

@@ -10,7 +10,6 @@ pub use toposlam_draw::{
 };
 
 /// The three finite numbers in a text, with commas between them.
-#[must_use]
 pub fn three_numbers(text: &str) -> Option<[f64; 3]> {
     let number = |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
     let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
@@ -18,18 +17,12 @@ pub fn three_numbers(text: &str) -> Option<[f64; 3]> {
 }
 
 /// Prints a command. A line that is too long continues after a backslash, as in a shell.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn print_command(out: &mut dyn Write, head: &str, command: &str) -> io::Result<()> {
     let lines = wrapped(*WIDTH - 2, head, display_width(head) + 2, command);
     writeln!(out, "{}", lines.join(" \\\n"))
 }
 
 /// Prints short texts in columns, row by row, each line indented by two columns.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn print_columns(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
     let widest = texts.iter().map(|text| display_width(text)).max().unwrap_or_default();
     for row in texts.chunks((*WIDTH / (widest + 2)).max(1)) {
@@ -40,9 +33,6 @@ pub fn print_columns(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
 }
 
 /// Prints rows below their heads. Each column is as wide as its widest cell; the last one is wrapped.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn print_rows<const COLUMNS: usize>(
     out: &mut dyn Write,
     heads: [&str; COLUMNS],
@@ -67,7 +57,6 @@ fn cell(text: &str, width: usize) -> String {
 }
 
 /// A duration in words, as in "9 s", "2 min 5 s", "1 h 20 min".
-#[must_use]
 pub fn duration_text(seconds: f64) -> String {
     let seconds = seconds.round() as u64;
     match (seconds / 3600, seconds / 60 % 60, seconds % 60) {
@@ -78,7 +67,6 @@ pub fn duration_text(seconds: f64) -> String {
 }
 
 /// A number to two digits, as in "0.31", "8.4", "1,200", "57 million".
-#[must_use]
 pub fn rough(number: f64) -> String {
     let places = if number < 1.0 { 2 } else { usize::from(number < 10.0) };
     if number < 100.0 {
@@ -92,20 +80,17 @@ pub fn rough(number: f64) -> String {
 }
 
 /// Starts with a capital and ends with a full stop, or with its own question mark.
-#[must_use]
 pub fn sentence(words: &str) -> String {
     let stop = if words.ends_with('?') { "" } else { "." };
     format!("{}{stop}", capital(words))
 }
 
-/// Starts with a capital.
 pub fn capital(words: &str) -> String {
     let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
     format!("{}{rest}", first.to_uppercase())
 }
 
 /// A word as a shell reads it.
-#[must_use]
 pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./:=,@+%".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {

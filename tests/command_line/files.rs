@@ -22,7 +22,7 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 38] = [
+const OUTPUTS: [OutputOption; 37] = [
     // Not with --from, so there is no input that it could replace.
     output("check", "--journal", &[]),
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
@@ -59,8 +59,6 @@ const OUTPUTS: [OutputOption; 38] = [
     output("simulate", "--svg", &[("w.svg", "simulate IN --by-scene --svg OUT")]),
     output("simulate", "--html", &[("w.html", "simulate IN --by-scene --html OUT")]),
     output("simulate", "--map", &[("w.toml", "simulate IN --by-scene --map OUT")]),
-    // The files in a folder have names of their own; see the test of `files.rs`.
-    output("simulate", "--frames", &[]),
     output("drive", "--log", &[]),
     output("drive", "--map", &[]),
     output(
@@ -141,7 +139,7 @@ const OUTPUTS: [OutputOption; 38] = [
 const INPUTS: [(&str, &[&str]); 8] = [
     ("check", &["--from"]),
     ("simulate", &["--calibration", "--colours", "--scanner"]),
-    ("drive", &["--calibration", "--colours", "--plan"]),
+    ("drive", &["--calibration", "--colours"]),
     ("draw", &["--calibration"]),
     ("camera calibrate", &["--initial"]),
     ("camera train", &["--images", "--labels", "--calibration"]),

@@ -85,7 +85,7 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
     if let Some(report) = by_python(&scratch.path("one.mcap")) {
         agree(&report, &line);
         let command =
-            "toposlam simulate worlds/shape-6.toml --algorithm folding --seed 3 --by-scene";
+            "toposlam simulate worlds/shape-6.toml --algorithm folding --by-scene --seed 3";
         has(
             &report,
             &json!({

@@ -135,10 +135,10 @@ fn every_class_of_a_rendered_building_is_recognized() {
 #[test]
 fn the_text_is_a_table() {
     let set = all("train-table");
-    let text = set.out(&format!("{TRAIN} --folds 7 --stripe wall --stripe-width 0.1"), 0);
+    let text = set.out(&format!("{TRAIN} --stripe wall --stripe-width 0.1"), 0);
     assert_eq!(model(&set).stripe, Stripe { kind: StripeKind::OnWall, width: 0.1 });
     assert!(text.starts_with("stripe  a baseboard on the wall, 0.1 m wide\nimages  7\n"), "{text}");
-    assert!(text.contains("\nCross-validation in 7 parts:\n"), "{text}");
+    assert!(text.contains("\nCross-validation in 5 parts:\n"), "{text}");
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let table: Vec<_> = text.lines().skip(5).map(words).collect();
     assert_eq!(table[0].join(" "), "class images pixels right");
@@ -162,8 +162,6 @@ fn what_cannot_be_cross_validated_is_reported() {
     set.facts(&[(TRAIN, 0, json!({
         "images": 1, "folds": null, "not_validated": why, "confusion": null, "classes.0.recall": null,
     }))]);
-    let cause = "error: --folds: 1 image cannot be divided; there must be at least 2\n";
-    assert_eq!(set.error(&format!("{TRAIN} --folds 2")), cause);
     // One of the two images has no stripe, so that neither part can be classified from the other.
     let set = copied("train-parts", |name| name.starts_with(['6', '7']));
     let whole = set.bytes("labels/7.png");
@@ -171,7 +169,6 @@ fn what_cannot_be_cross_validated_is_reported() {
     set.write("labels/7.png", whole);
     let why = "without part 2 of the images no pixel within 3 m is labelled as stripe\n";
     assert!(set.out(TRAIN, 0).ends_with(&format!("\nnot cross-validated: {why}")));
-    assert_eq!(set.error(&format!("{TRAIN} --folds 2")), format!("error: --folds: {why}"));
 }
 
 #[test]
@@ -322,9 +319,7 @@ fn invalid_options_are_refused_with_the_allowed_values() {
     let set = all("train-arguments");
     let width = "is out of range; the width of a stripe in metres lies between 0.005 and 0.5";
     for (options, cause) in [
-        ("--folds 1", "--folds: 7 images cannot be divided into 1; there can be from 2 to 7 parts"),
-        ("--folds 8", "--folds: 7 images cannot be divided into 8; there can be from 2 to 7 parts"),
-        ("--stripe-width 5", &format!("--stripe-width: 5 {width}")),
+        ("--stripe-width 5", &*format!("--stripe-width: 5 {width}")),
         ("--stripe-width nan", "--stripe-width: NaN is out of range"),
         ("--stripe-width=-1", "--stripe-width: -1 is out of range"),
         ("--stripe-width 0", "--stripe-width: 0 is out of range"),

@@ -2,10 +2,10 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use toposlam_draw::run_page_data::{PageArrival, PageFrame, RunPageData};
+use toposlam_draw::run_page_data::{MappingStep, PageArrival, PageFrame, RunPageData};
 use toposlam_logs::record::{Event, EventKind, NoSensor, RunObserver};
 use toposlam_model::{
-    driving::{algorithm2::PathState, scene::Place},
+    driving::algorithm2::PathState,
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
@@ -37,11 +37,10 @@ impl RunObserver for Keeper {
                     pose,
                     moves: self.moves,
                     state: PathState::Unknown,
-                    scene: in_words(&frame.scene.as_ref().unwrap().place),
+                    scene: frame.scene.clone(),
                     command: None,
                     image: self.images.get(turn).cloned(),
-                    story: run_data.story.len(),
-                    maps: run_data.maps.len(),
+                    steps: run_data.steps.len(),
                 });
             }
             EventKind::Command { state, command } => {
@@ -62,29 +61,7 @@ impl RunObserver for Keeper {
     }
 
     fn mapping(&mut self, journey: &MapWalk, event: MappingEvent) {
-        self.run_data.story.push(format!("{event:?}"));
-        if event.grows_map() {
-            self.run_data.maps.push(journey.map().clone());
-        }
-    }
-}
-
-fn in_words(place: &Place) -> String {
-    match place {
-        Place::Hallway(hallway) => {
-            format!(
-                "a hallway, {:.2} m to the left, {:.2} m to the right",
-                hallway.left, hallway.right
-            )
-        }
-        Place::Junction(junction) => {
-            format!(
-                "a junction with {} doors, {:.2} m ahead",
-                junction.doors.len(),
-                junction.distance()
-            )
-        }
-        Place::Unknown(reason) => format!("nothing that can be made out: {reason}"),
+        self.run_data.steps.push(MappingStep { walk: journey.clone(), event });
     }
 }
 
@@ -92,17 +69,16 @@ fn in_words(place: &Place) -> String {
 pub(crate) fn run_page_data(world: &str, images: Vec<Vec<u8>>) -> RunPageData {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(format!("{world}.toml"));
     let world = world_file::read(&fs::read(path).unwrap()).unwrap();
-    let plan = Arc::new(world.plan.unwrap());
+    let plan = Arc::new(world.plan.clone().unwrap());
     let is_l = |dart: &Dart| plan.junction(plan.graph().vertex(*dart)).kind == JunctionKind::L;
     let facing = world.start.filter(is_l).or_else(|| plan.graph().darts().find(is_l)).unwrap();
     let run_data = RunPageData {
-        name: world.name,
+        world,
         plan: plan.clone(),
         facing,
         rounds: Vec::new(),
         calls: Vec::new(),
-        story: Vec::new(),
-        maps: Vec::new(),
+        steps: Vec::new(),
         ending: String::new(),
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();

@@ -16,17 +16,7 @@ use toposlam_model::{
 use super::{ExplorerError, RobotExplorer, Standpoint};
 use crate::robot::Robot;
 
-/// The percept at an obstacle.
 pub(super) const DEAD_END: Percept = Percept { degree: 1, sighting: Sighting::Nothing };
-
-/// What a robot does at an obstacle that it cannot pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Obstacles {
-    /// It gives up.
-    Fail,
-    /// It returns, as from a dead end.
-    DeadEnds,
-}
 
 /// Where a robot was stopped by an obstacle, in the frame of odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]

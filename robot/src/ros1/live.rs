@@ -6,20 +6,18 @@ use toposlam_logs::{
     record::{CameraImage, Frame},
     standard::Twist,
 };
+use toposlam_model::driving::scene::MarkerView;
+use toposlam_vision::laser::scan::Scan;
 
 use super::{
     RobotTopics,
     base::LiveBase,
-    messages::{
-        LiveImage, LiveMarker, LiveScan, Nanoseconds, read_image, read_marker, read_odometry,
-        read_scan,
-    },
+    messages::{Nanoseconds, Stamped, read_image, read_marker, read_odometry, read_scan},
     node::{Node, Subscription},
-    wheels::Wheels,
 };
 use crate::{
     robot::{Robot, RobotError, Sample, TimedOdometry},
-    superscout::{Base, Drive, WheelReading},
+    superscout::{Base, Drive},
 };
 
 /// A robot behind the topics of ROS 1.
@@ -42,7 +40,6 @@ pub struct LiveRobot {
 /// What a live robot senses with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LiveSensor {
-    /// A camera.
     Camera,
     /// A laser scanner, and a detector of the marker.
     Laser,
@@ -50,8 +47,8 @@ pub enum LiveSensor {
 
 /// The topics of a sensor.
 enum SensorTopics {
-    Camera(Subscription<LiveImage>),
-    Laser { scans: Subscription<LiveScan>, markers: Subscription<LiveMarker> },
+    Camera(Subscription<Stamped<Vec<u8>>>),
+    Laser { scans: Subscription<Stamped<Scan>>, markers: Subscription<Stamped<MarkerView>> },
 }
 
 impl LiveRobot {
@@ -66,7 +63,7 @@ impl LiveRobot {
         topics: &RobotTopics,
         sensor: LiveSensor,
         patience: Duration,
-        stop: impl Fn() -> bool + 'static,
+        stop: fn() -> bool,
     ) -> Result<Self, RobotError> {
         let node = Node::new(&topics.master, "/toposlam")?;
         let odometry = node.subscribe(&topics.odometry, read_odometry)?;
@@ -77,14 +74,14 @@ impl LiveRobot {
                 markers: node.subscribe(&topics.marker, read_marker)?,
             },
         };
-        let wheels = Wheels::new(node.advertise::<Twist>(&topics.wheels)?, odometry.clone());
-        let base = LiveBase::new(wheels, odometry, patience.max(FIRST), Box::new(stop))?;
+        let wheels = node.advertise::<Twist>(&topics.wheels)?;
         let first = patience.max(FIRST);
+        let mut base = LiveBase::new(wheels, odometry, first, stop)?;
         match &sensor {
-            SensorTopics::Camera(images) => images.wait(first, base.stop(), |_| Some(()))?,
-            SensorTopics::Laser { scans, .. } => scans.wait(first, base.stop(), |_| Some(()))?,
+            SensorTopics::Camera(images) => images.wait(first, stop, |_| Some(()))?,
+            SensorTopics::Laser { scans, .. } => scans.wait(first, stop, |_| Some(()))?,
         }
-        let base = base.patient(patience);
+        base.patience = patience;
         Ok(Self { base, sensor, asked: 0, _node: node })
     }
 
@@ -95,7 +92,7 @@ impl LiveRobot {
     }
 
     fn frame(&mut self) -> Result<Frame, RobotError> {
-        let WheelReading { time: ended, odometry } = self.base.reading();
+        let TimedOdometry { time: ended, odometry } = self.base.reading();
         let id = self.asked;
         let mut behind = None;
         let base = &self.base;
@@ -106,22 +103,21 @@ impl LiveRobot {
         };
         let frame = match &self.sensor {
             SensorTopics::Camera(images) => {
-                images.wait(base.patience(), base.stop(), |photograph| {
-                    let image = Some(CameraImage::encoded(photograph.file));
-                    Some(Frame { image, ..is_fresh(photograph.stamp)? })
+                images.wait(base.patience, base.stop, |Stamped { stamp, content }| {
+                    let image = Some(CameraImage::encoded(content));
+                    Some(Frame { image, ..is_fresh(stamp)? })
                 })
             }
             SensorTopics::Laser { scans, markers } => {
-                let scanned =
-                    scans.wait(base.patience(), base.stop(), |LiveScan { stamp, scan }| {
-                        Some(Frame { scan: Some(Arc::new(scan)), ..is_fresh(stamp)? })
-                    });
+                let scanned = scans.wait(base.patience, base.stop, |Stamped { stamp, content }| {
+                    Some(Frame { scan: Some(Arc::new(content)), ..is_fresh(stamp)? })
+                });
                 // The marker is reported only where it is seen.
                 scanned.and_then(|frame| {
-                    let seen = |LiveMarker { stamp, marker }| {
-                        (base.seconds(stamp) > ended).then_some(marker)
+                    let seen = |Stamped { stamp, content }| {
+                        (base.seconds(stamp) > ended).then_some(content)
                     };
-                    match markers.wait(MARKER_DELAY, base.stop(), seen) {
+                    match markers.wait(MARKER_DELAY, base.stop, seen) {
                         Ok(marker) => Ok(Frame { marker: Some(marker), ..frame }),
                         Err(RobotError::Silent { .. }) => Ok(frame),
                         Err(error) => Err(error),
@@ -162,11 +158,10 @@ impl Robot for LiveRobot {
     }
 
     fn odometry(&self) -> TimedOdometry {
-        let reading = self.base.reading();
-        TimedOdometry { time: reading.time, odometry: reading.odometry }
+        self.base.reading()
     }
 
     fn track(&self) -> &[Sample] {
-        self.base.track()
+        &self.base.track
     }
 }

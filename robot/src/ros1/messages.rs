@@ -42,25 +42,11 @@ pub struct Reckoning {
     pub wheels: WheelSpeeds,
 }
 
-/// What is read of an image.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct LiveImage {
-    pub(super) stamp: Nanoseconds,
-    pub(super) file: Vec<u8>,
-}
-
-/// What is read of a scan.
+/// What is read of another message, and its stamp.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LiveScan {
+pub(super) struct Stamped<T> {
     pub(super) stamp: Nanoseconds,
-    pub(super) scan: Scan,
-}
-
-/// What is read of the marker's pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LiveMarker {
-    pub(super) stamp: Nanoseconds,
-    pub(super) marker: MarkerView,
+    pub(super) content: T,
 }
 
 /// A message that begins with a header. In ROS 1 a header begins with a sequence number.
@@ -140,10 +126,10 @@ pub fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
 }
 
 /// An image; `None` if it is no such message.
-pub(super) fn read_image(bytes: &[u8]) -> Option<LiveImage> {
+pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<Vec<u8>>> {
     let (_, CompressedImage { header, data: Bytes(file), .. }) =
         read::<Numbered<CompressedImage<Bytes, Bytes>>>(bytes)?;
-    Some(LiveImage { stamp: nanoseconds(header.stamp), file })
+    Some(Stamped { stamp: nanoseconds(header.stamp), content: file })
 }
 
 /// The body of a scan.
@@ -153,7 +139,7 @@ pub fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
 }
 
 /// A scan; `None` if it is no such message, or no scan.
-pub(super) fn read_scan(bytes: &[u8]) -> Option<LiveScan> {
+pub(super) fn read_scan(bytes: &[u8]) -> Option<Stamped<Scan>> {
     let (_, message) = read::<Numbered<LaserScanMessage<Vec<f32>, Bytes>>>(bytes)?;
     let geometry = ScanGeometry {
         angle_min: message.angle_min.into(),
@@ -162,7 +148,7 @@ pub(super) fn read_scan(bytes: &[u8]) -> Option<LiveScan> {
         range_max: message.range_max.into(),
     };
     let scan = Scan::new(geometry, message.ranges, nalgebra::Isometry2::identity()).ok()?;
-    Some(LiveScan { stamp: nanoseconds(message.header.stamp), scan })
+    Some(Stamped { stamp: nanoseconds(message.header.stamp), content: scan })
 }
 
 /// The body of the marker's pose in the robot's frame.
@@ -174,11 +160,11 @@ pub fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
 }
 
 /// The marker; `None` if it is no such message, or a number in it is not finite.
-pub(super) fn read_marker(bytes: &[u8]) -> Option<LiveMarker> {
+pub(super) fn read_marker(bytes: &[u8]) -> Option<Stamped<MarkerView>> {
     let (_, PoseStamped { header, pose }) = read::<Numbered<PoseStamped<Bytes>>>(bytes)?;
     let odometry::Odometry { position, heading } = pose.to_floor()?;
     let marker = MarkerView { position, axis: undirected(heading), door: None };
-    Some(LiveMarker { stamp: nanoseconds(header.stamp), marker })
+    Some(Stamped { stamp: nanoseconds(header.stamp), content: marker })
 }
 
 /// A time. In ROS 1 the seconds have no sign.
@@ -223,9 +209,9 @@ mod tests {
         assert!((read.at.heading - 2.5).abs() < 1e-12, "{read:?}");
         let wheels = read_twist(&twist(reckoning().wheels)).unwrap();
         assert!((wheels.speed() - 0.1).abs() < 1e-12 && (wheels.turn_rate() - 0.2).abs() < 1e-12);
-        let taken = LiveImage { stamp: 5, file: vec![0xff, 0xd8, 1] };
-        assert_eq!(read_image(&image(1, 5, &taken.file)), Some(taken));
-        let late = LiveImage { stamp: u64::from(u32::MAX) * SECOND + 1, file: Vec::new() };
+        let taken = Stamped { stamp: 5, content: vec![0xff, 0xd8, 1] };
+        assert_eq!(read_image(&image(1, 5, &taken.content)), Some(taken));
+        let late = Stamped { stamp: u64::from(u32::MAX) * SECOND + 1, content: Vec::new() };
         assert_eq!(read_image(&image(1, late.stamp, &[])), Some(late));
         let geometry = ScanGeometry {
             angle_min: -0.5,
@@ -235,12 +221,12 @@ mod tests {
         };
         let sweep =
             Scan::new(geometry, vec![1.0, f32::INFINITY, 2.5], nalgebra::Isometry2::identity());
-        let sweep = LiveScan { stamp: 7, scan: sweep.unwrap() };
-        assert_eq!(read_scan(&scan(1, 7, &sweep.scan)), Some(sweep));
+        let sweep = Stamped { stamp: 7, content: sweep.unwrap() };
+        assert_eq!(read_scan(&scan(1, 7, &sweep.content)), Some(sweep));
         let found = MarkerView { position: [0.5, -0.25], axis: 1.0, door: None };
         let read = read_marker(&marker(1, 9, &found)).unwrap();
-        assert_eq!((read.stamp, read.marker.position), (9, found.position));
-        assert!((read.marker.axis - 1.0).abs() < 1e-12, "{read:?}");
+        assert_eq!((read.stamp, read.content.position), (9, found.position));
+        assert!((read.content.axis - 1.0).abs() < 1e-12, "{read:?}");
     }
 
     #[test]

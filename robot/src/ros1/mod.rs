@@ -9,26 +9,24 @@ mod definition;
 mod live;
 pub mod messages;
 pub mod node;
-mod wheels;
 
 pub use live::{LiveRobot, LiveSensor};
 
 use toposlam_logs::recorder;
 
-/// The master and the topics of a robot.
+/// The address of the master, as in `http://127.0.0.1:11311`, and the topics of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotTopics {
-    /// Address of the master, as in `http://127.0.0.1:11311`.
     pub master: String,
-    /// Topic of the images, `sensor_msgs/CompressedImage`.
+    /// `sensor_msgs/CompressedImage`.
     pub images: String,
-    /// Topic of the scans of a laser scanner in the robot's centre, `sensor_msgs/LaserScan`.
+    /// Of a laser scanner in the robot's centre, `sensor_msgs/LaserScan`.
     pub scans: String,
-    /// Topic of the marker in the robot's frame, x along it, `geometry_msgs/PoseStamped`.
+    /// In the robot's frame, x along it, `geometry_msgs/PoseStamped`.
     pub marker: String,
-    /// Topic of the odometry, `nav_msgs/Odometry`.
+    /// `nav_msgs/Odometry`.
     pub odometry: String,
-    /// Topic of the wheel speeds, `geometry_msgs/Twist`.
+    /// `geometry_msgs/Twist`.
     pub wheels: String,
 }
 

@@ -1,6 +1,8 @@
 //! A ROS 1 node for blocking programs: topics to which it publishes, and the last message of each
 //! topic to which it subscribes.
 
+#![allow(clippy::missing_errors_doc, reason = "stated once, at the node")]
+
 use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
     thread::sleep,
@@ -27,7 +29,7 @@ const UNDER_WAY: usize = 16;
 const LENGTH: usize = 4;
 
 /// A node. When it is dropped, it unregisters from the master. Its publishers must be dropped
-/// before it.
+/// before it. An error means that the master or the connection fails.
 pub struct Node {
     handle: Option<NodeHandle>,
     /// `None` once it is dropped.
@@ -38,60 +40,37 @@ pub struct Node {
 
 impl Node {
     /// A node of this master. The process number is added to the name.
-    ///
-    /// # Errors
-    /// Returns an error if the master or the connection fails.
     pub fn new(master: &str, name: &str) -> Result<Self, RobotError> {
         let unreachable =
             |cause: String| RobotError::Unreachable { master: master.to_owned(), cause };
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build();
         let runtime = runtime.map_err(|error| unreachable(error.to_string()))?;
         let name = format!("{name}_{}", std::process::id());
-        let joined = async { timeout(ANSWER, NodeHandle::new(master, &name)).await };
-        let handle = match runtime.block_on(joined) {
-            Ok(Ok(handle)) => handle,
-            Ok(Err(error)) => return Err(unreachable(error.to_string())),
-            Err(_) => return Err(unreachable("it does not answer".to_owned())),
-        };
+        let joined = answered(runtime.handle(), NodeHandle::new(master, &name));
+        let handle = joined.map_err(unreachable)?;
         let runner = runtime.handle().clone();
         let master = master.to_owned();
         Ok(Self { handle: Some(handle), runtime: Some(runtime), runner, master })
     }
 
     /// Advertises a topic.
-    ///
-    /// # Errors
-    /// Returns an error if the master or the connection fails.
     pub fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
-        let advertised = async {
-            let (name, text) = (type_name::<M>(), definition::<M>());
-            timeout(ANSWER, handle.advertise_any(topic, &name, &text, UNDER_WAY, false)).await
-        };
-        let publisher = match self.runner.block_on(advertised) {
-            Ok(Ok(publisher)) => publisher,
-            Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
-            Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
-        };
-        Ok(Publisher { sender: publisher, runner: self.runner.clone(), topic: topic.to_owned() })
+        let (name, text) = (type_name::<M>(), definition::<M>());
+        let advertised = handle.advertise_any(topic, &name, &text, UNDER_WAY, false);
+        let sender = answered(&self.runner, advertised).map_err(|cause| self.unreachable(cause))?;
+        Ok(Publisher { sender, runner: self.runner.clone(), topic: topic.to_owned() })
     }
 
     /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
-    ///
-    /// # Errors
-    /// Returns an error if the master or the connection fails.
     pub fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
         read: fn(&[u8]) -> Option<T>,
     ) -> Result<Subscription<T>, RobotError> {
         let handle = self.handle(topic)?;
-        let subscribed = async { timeout(ANSWER, handle.subscribe_any(topic, UNDER_WAY)).await };
-        let mut subscriber = match self.runner.block_on(subscribed) {
-            Ok(Ok(subscriber)) => subscriber,
-            Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
-            Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
-        };
+        let subscribed = answered(&self.runner, handle.subscribe_any(topic, UNDER_WAY));
+        let mut subscriber = subscribed.map_err(|cause| self.unreachable(cause))?;
         let last = Last { message: None, unread: 0, closed: false };
         let shared = Arc::new(Shared { last: Mutex::new(last), news: Condvar::new() });
         let subscription = Subscription { shared: shared.clone(), topic: topic.to_owned() };
@@ -120,6 +99,18 @@ impl Node {
     }
 }
 
+/// Waits for an answer of the master, or returns why there is none.
+fn answered<T, E: ToString>(
+    runner: &tokio::runtime::Handle,
+    asked: impl Future<Output = Result<T, E>>,
+) -> Result<T, String> {
+    // The timer needs the runtime when it is made.
+    match runner.block_on(async { timeout(ANSWER, asked).await }) {
+        Ok(answer) => answer.map_err(|error| error.to_string()),
+        Err(_) => Err("it does not answer".to_owned()),
+    }
+}
+
 impl Drop for Node {
     fn drop(&mut self) {
         sleep(LEAVE);
@@ -143,9 +134,6 @@ pub struct Publisher {
 
 impl Publisher {
     /// Publishes the body of a message.
-    ///
-    /// # Errors
-    /// Returns an error if the master or the connection fails.
     pub fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
         let message = [&length[..], body].concat();
@@ -211,7 +199,7 @@ impl<T> Subscription<T> {
     pub fn wait<W>(
         &self,
         patience: Duration,
-        stop: &dyn Fn() -> bool,
+        stop: fn() -> bool,
         mut wanted: impl FnMut(T) -> Option<W>,
     ) -> Result<W, RobotError> {
         let until = Instant::now() + patience;

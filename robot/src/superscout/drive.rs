@@ -1,9 +1,9 @@
 //! Turning by an angle and going a distance, in a control loop on odometry. Section 2.5.
 
-use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use toposlam_model::driving::scene::wrapped;
 
 use super::{CLEARANCE, COMMAND, PERIOD, SONARS, SPEED, TURN_RATE, WheelSpeeds, sonar_direction};
-use crate::robot::RobotError;
+use crate::robot::{RobotError, TimedOdometry};
 
 /// The wheels, their odometry and the sonars of a simulated or a real robot.
 pub trait Base {
@@ -11,10 +11,9 @@ pub trait Base {
     ///
     /// # Errors
     /// Returns an error if the base does not answer.
-    fn drive(&mut self, wheels: WheelSpeeds) -> Result<WheelReading, RobotError>;
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<TimedOdometry, RobotError>;
 
-    /// The last reading.
-    fn reading(&self) -> WheelReading;
+    fn reading(&self) -> TimedOdometry;
 
     /// How long a command acts after its period, in seconds. Readings are this old, and the last step of
     /// a motion is shorter by as much.
@@ -24,15 +23,6 @@ pub trait Base {
 
     /// The range that a sonar measures from the robot's body, in metres; infinite if there is no echo.
     fn sonar(&self, sonar: usize) -> f64;
-}
-
-/// A reading of the odometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WheelReading {
-    /// In seconds since it was switched on.
-    pub time: f64,
-    /// Where the robot is by its wheels.
-    pub odometry: Odometry,
 }
 
 /// Motions of a base, within its limits and a time limit.

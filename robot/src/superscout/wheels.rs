@@ -5,9 +5,7 @@ use super::{SPEED, TURN_RATE, WHEEL_BASE};
 /// The speed of the ground under each wheel, in metres a second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelSpeeds {
-    /// Under the left wheel.
     pub left: f64,
-    /// Under the right wheel.
     pub right: f64,
 }
 

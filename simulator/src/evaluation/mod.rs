@@ -1,5 +1,6 @@
 //! Compares sensing, driving and whole runs with the floor plan and the specification.
 
+pub mod bound;
 pub mod calibration;
 pub mod clutter;
 pub mod failure_groups;

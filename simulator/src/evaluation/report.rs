@@ -6,9 +6,9 @@ use toposlam_model::{
     driving::scene::{HallwayView, JunctionView, Place},
     percept::Sighting,
 };
-use toposlam_robot::bound::{cases_needed, lower_bound, upper_bound};
 
 use super::{
+    bound::{cases_needed, lower_bound, upper_bound},
     calibration::Calibration,
     judged_view::{JudgedView, JudgedVisit, Zone},
     quantile::{ErrorSample, Quantile},

@@ -3,7 +3,7 @@
 //! Section 3.
 
 use std::{
-    io::Write,
+    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -54,7 +54,7 @@ pub(super) struct CalibrateArguments {
     /// The mirror's rim, if the images do not show it: its centre, to the right and down from the image's
     /// first pixel, and its radius, in pixels. Check it with --picture
     #[arg(long, value_name = "U,V,R", value_parser = parse_rim, allow_hyphen_values = true)]
-    rim: Option<GivenRim>,
+    rim: Option<[f64; 3]>,
     /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
     initial: Option<PathBuf>,
@@ -70,16 +70,9 @@ pub(super) struct CalibrateArguments {
     json: bool,
 }
 
-/// A rim that is set by hand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct GivenRim {
-    centre: [f64; 2],
-    radius: f64,
-}
-
-/// The JSON line.
+/// What `--json` prints.
 #[derive(Serialize)]
-struct Report {
+struct CalibrationReport {
     images: usize,
     image: [u32; 2],
     centre: [f64; 2],
@@ -98,14 +91,21 @@ struct Report {
 impl CalibrateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         watch_for_interrupt()?;
-        self.check_places()?;
-        let known = self.known()?;
+        for (path, endings) in [
+            (&self.out, &["toml"][..]),
+            (&self.picture, &["png", "jpg", "jpeg"]),
+            (&self.mask_out, &["png"]),
+        ] {
+            path.as_ref().map_or(Ok(()), |path| output::check_place(path, endings))?;
+        }
+        let (known, mirror) = self.known()?;
         let images = self.read_images()?;
+        let size = images[0].dimensions().into();
         let grey: Vec<GrayImage> = images.iter().map(grayscale).collect();
         let rim = match &self.rim {
-            Some(given) => {
-                given.check(images[0].dimensions().into())?;
-                rim::given(&grey, given.centre.into(), given.radius)
+            Some(given @ [u, v, radius]) => {
+                check_rim(*given, size).map_err(|cause| CliError::at("--rim", cause))?;
+                rim::given(&grey, [*u, *v].into(), *radius)
             }
             None => rim::find(&grey),
         };
@@ -113,17 +113,20 @@ impl CalibrateArguments {
         let mask = match &self.mask_out {
             Some(path) => {
                 let found = unchanging::mask(&self.mask_name(path), &images, &rim);
-                Some((path, found.map_err(|error| CliError::at("--mask-out", error))?))
+                Some(found.map_err(|error| CliError::at("--mask-out", error))?)
             }
             None => None,
         };
-        let camera = with_rim(known, images[0].dimensions().into(), &rim)?;
-        let camera = Camera { mask: mask.as_ref().map(|(_, mask)| mask.clone()), ..camera };
+        let mirror = with_rim(mirror, &rim);
+        let optics = OpticsModel::SphericalMirror(mirror);
+        let camera = Camera { image: size, optics, mask: None, ..known };
+        checked(&camera)?;
+        let camera = Camera { mask, ..camera };
         let text = calibration::to_toml(&camera);
         if let Some(path) = &self.picture {
             picture_file::write(path, &fit_picture(&images[0], &camera, &rim))?;
         }
-        if let Some((path, mask)) = &mask {
+        if let (Some(path), Some(mask)) = (&self.mask_out, &camera.mask) {
             let png = mask.to_png().map_err(|error| CliError::in_file(path, error))?;
             output::write_whole(path, &png)?;
         }
@@ -132,22 +135,23 @@ impl CalibrateArguments {
             None if self.json => {}
             None => out.write_all(text.as_bytes())?,
         }
-        self.report(out, &camera, &rim)?;
-        Ok(Outcome::Holds)
-    }
-
-    fn check_places(&self) -> Result<(), CliError> {
-        let places: [(_, &[&str]); 3] = [
-            (&self.out, &["toml"]),
-            (&self.picture, &["png", "jpg", "jpeg"]),
-            (&self.mask_out, &["png"]),
-        ];
-        for (path, endings) in places {
-            if let Some(path) = path {
-                output::check_place(path, endings)?;
-            }
+        let report = CalibrationReport {
+            images: self.images.len(),
+            image: camera.image,
+            centre: mirror.centre.into(),
+            rim: hundredth(rim.radius),
+            rim_from: if self.rim.is_some() { "option" } else { "images" },
+            focal: mirror.focal,
+            rim_seen: hundredth(rim.seen),
+            rim_spread: hundredth(rim.spread),
+            mask_seen: camera.mask.as_ref().map(|mask| hundredth(share_seen(mask, &rim))),
+        };
+        if self.json {
+            print_line(out, "calibration", &report)?;
+        } else if self.out.is_some() {
+            report.print(out, &mirror)?;
         }
-        Ok(())
+        Ok(Outcome::Holds)
     }
 
     /// The camera as far as it is known without the images.
@@ -161,35 +165,32 @@ impl CalibrateArguments {
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
             return Err(CliError::in_file(path, cause));
         };
-        let known = Camera {
-            optics: OpticsModel::SphericalMirror(mirror),
-            ahead: initial.ahead,
-            seen_from: initial.seen_from,
-            ..Camera::superscout()
-        };
-        Ok((known, mirror))
+        let Camera { ahead, seen_from, .. } = initial;
+        Ok((Camera { ahead, seen_from, ..Camera::superscout() }, mirror))
     }
 
     /// Reads the images. All must have the size of the first.
     fn read_images(&self) -> Result<Vec<RgbImage>, CliError> {
         let mut images: Vec<RgbImage> = Vec::new();
         for path in &self.images {
-            let image = match images.first() {
-                Some(first) => picture_file::read_if(path, |found| {
-                    same_size(&self.images[0], first.dimensions().into(), path, found)
-                }),
-                None => picture_file::read_if(path, |found| {
-                    let [least, most] = calibration::SIDES;
-                    if found.iter().all(|side| (least..=most).contains(side)) {
-                        return Ok(());
+            let first = images.first().map(RgbImage::dimensions);
+            let image = picture_file::read_if(path, |[width, height]| {
+                let [least, most] = calibration::SIDES;
+                let sides = least..=most;
+                let wrong = match first {
+                    Some((first_width, first_height))
+                        if (width, height) != (first_width, first_height) =>
+                    {
+                        let first = self.images[0].display();
+                        format!(", but {first} is {first_width} by {first_height}")
                     }
-                    let cause = format!(
-                        "the image is {} by {} pixels; its sides should be from {least} to {most}",
-                        found[0], found[1]
-                    );
-                    Err(CliError::in_file(path, cause))
-                }),
-            };
+                    None if !sides.contains(&width) || !sides.contains(&height) => {
+                        format!("; its sides should be from {least} to {most}")
+                    }
+                    _ => return Ok(()),
+                };
+                Err(format!("the image is {width} by {height} pixels{wrong}"))
+            });
             images.push(image?);
         }
         Ok(images)
@@ -205,119 +206,76 @@ impl CalibrateArguments {
             }
             RimError::NoImage | RimError::Sizes { .. } | RimError::TooSmall(_) => error.to_string(),
         };
-        match self.images.as_slice() {
-            [path] => CliError::in_file(path, error),
-            [first, others @ ..] => {
-                let others = others.len();
-                CliError::at(format!("{} and {others} more", first.display()), error)
-            }
-            [] => CliError::at("IMAGE", error),
+        let first = self.images[0].display();
+        match self.images.len() - 1 {
+            0 => CliError::at(first, error),
+            others => CliError::at(format!("{first} and {others} more"), error),
         }
     }
 
     /// The mask's path in the calibration: its file name if both are in one folder, else its whole path.
     fn mask_name(&self, path: &Path) -> String {
         let beside = self.out.as_deref().and_then(Path::parent) == path.parent();
-        let name = if beside { path.file_name().map(Path::new).map(Path::to_owned) } else { None };
+        let name = path.file_name().filter(|_| beside).map(PathBuf::from);
         let whole = || std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         name.unwrap_or_else(whole).to_string_lossy().into_owned()
     }
+}
 
-    fn report(&self, out: &mut dyn Write, camera: &Camera, rim: &Rim) -> Result<(), CliError> {
-        let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return Ok(()) };
-        let mask_seen = camera.mask.as_ref().map(|mask| share_seen(mask, rim));
-        if self.json {
-            return print_line(
-                out,
-                "calibration",
-                &Report {
-                    images: self.images.len(),
-                    image: camera.image,
-                    centre: mirror.centre.into(),
-                    rim: hundredth(rim.radius),
-                    rim_from: if self.rim.is_some() { "option" } else { "images" },
-                    focal: mirror.focal,
-                    rim_seen: hundredth(rim.seen),
-                    rim_spread: hundredth(rim.spread),
-                    mask_seen: mask_seen.map(hundredth),
-                },
-            );
-        }
-        if self.out.is_none() {
-            return Ok(());
-        }
-        let [u, v] = mirror.centre.into();
+impl CalibrationReport {
+    fn print(&self, out: &mut dyn Write, mirror: &SphericalMirror) -> io::Result<()> {
+        let [u, v] = self.centre;
         writeln!(out, "centre  {u:.1}, {v:.1} pixels")?;
-        let from = if self.rim.is_some() { "given, " } else { "" };
+        let from = if self.rim_from == "option" { "given, " } else { "" };
         writeln!(
             out,
             "rim     {:.1} pixels, {from}seen over {:.0} % of the circle, within {:.2} pixels of it",
-            rim.radius,
-            100.0 * rim.seen,
-            rim.spread
+            self.rim,
+            100.0 * self.rim_seen,
+            self.rim_spread
         )?;
         writeln!(
             out,
             "focal   {:.1} pixels, for a mirror of radius {} m, {} m above the pinhole",
-            mirror.focal, mirror.mirror_radius, mirror.mirror_distance
+            self.focal, mirror.mirror_radius, mirror.mirror_distance
         )?;
-        if let Some(seen) = mask_seen {
-            writeln!(out, "mask    keeps {:.0} % of the mirror", 100.0 * seen)?;
+        match self.mask_seen {
+            Some(seen) => writeln!(out, "mask    keeps {:.0} % of the mirror", 100.0 * seen),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
-impl GivenRim {
-    /// Returns an error if the rim cannot be that of a mirror in an image of this size.
-    fn check(&self, image: [u32; 2]) -> Result<(), CliError> {
-        let [width, height] = image.map(f64::from);
-        let [u, v] = self.centre;
-        let refused = |cause: String| Err(CliError::at("--rim", cause));
-        if !(0.0..=width - 1.0).contains(&u) || !(0.0..=height - 1.0).contains(&v) {
-            return refused(format!(
-                "the centre {u},{v} is outside of the images, which are {width} by {height} pixels"
-            ));
-        }
-        let most = width.hypot(height);
-        if !(8.0..=most).contains(&self.radius) {
-            let radius = self.radius;
-            return refused(format!(
-                "the radius is {radius} pixels; it must be from 8 to {most:.0}"
-            ));
-        }
-        // The farthest corner of the image.
-        let corner = u.max(width - 1.0 - u).hypot(v.max(height - 1.0 - v));
-        if self.radius >= corner {
-            let radius = self.radius;
-            return refused(format!(
-                "the circle of radius {radius} around {u},{v} is nowhere in the images"
-            ));
-        }
+/// Returns the cause if a rim, centre and radius, cannot be that of a mirror in an image of this size.
+fn check_rim([u, v, radius]: [f64; 3], image: [u32; 2]) -> Result<(), String> {
+    let [width, height] = image.map(f64::from);
+    let most = width.hypot(height);
+    // The farthest corner of the image.
+    let corner = u.max(width - 1.0 - u).hypot(v.max(height - 1.0 - v));
+    if !(0.0..=width - 1.0).contains(&u) || !(0.0..=height - 1.0).contains(&v) {
+        Err(format!(
+            "the centre {u},{v} is outside of the images, which are {width} by {height} pixels"
+        ))
+    } else if !(8.0..=most).contains(&radius) {
+        Err(format!("the radius is {radius} pixels; it must be from 8 to {most:.0}"))
+    } else if radius >= corner {
+        Err(format!("the circle of radius {radius} around {u},{v} is nowhere in the images"))
+    } else {
         Ok(())
     }
 }
 
 /// Parses a rim: centre and radius.
-fn parse_rim(text: &str) -> Result<GivenRim, String> {
-    let [u, v, radius] =
-        three_numbers(text).ok_or("write three numbers of pixels: U,V,R, as in 611,480,652")?;
-    Ok(GivenRim { centre: [u, v], radius })
+fn parse_rim(text: &str) -> Result<[f64; 3], String> {
+    let rim = three_numbers(text);
+    rim.ok_or_else(|| "write three numbers of pixels: U,V,R, as in 611,480,652".to_owned())
 }
 
-/// The calibrated camera with this rim.
-fn with_rim(
-    (known, mirror): (Camera, SphericalMirror),
-    image: [u32; 2],
-    rim: &Rim,
-) -> Result<Camera, CliError> {
+/// The calibrated mirror with this rim.
+fn with_rim(mirror: SphericalMirror, rim: &Rim) -> SphericalMirror {
     let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
     let focal = hundredth(SphericalMirror::focal_of_rim(rim.radius, radius, distance));
-    let centre = rim.centre.map(hundredth);
-    let optics = OpticsModel::SphericalMirror(SphericalMirror { centre, focal, ..mirror });
-    let camera = Camera { image, optics, mask: None, ..known };
-    checked(&camera)?;
-    Ok(camera)
+    SphericalMirror { centre: rim.centre.map(hundredth), focal, ..mirror }
 }
 
 /// Rounds to hundredths. Images are not more exact than a hundredth of a pixel.
@@ -328,26 +286,9 @@ fn hundredth(number: f64) -> f64 {
 /// Returns an error if a calibration file cannot contain this camera.
 fn checked(camera: &Camera) -> Result<(), CliError> {
     let text = calibration::to_toml(camera);
-    let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let nothing = &mut |_: &str| Err(io::ErrorKind::NotFound.into());
     let read = calibration::read(text.as_bytes(), nothing);
     read.map(|_| ()).map_err(|error| CliError::at("the calibration that was found", error))
-}
-
-fn same_size(
-    first: &Path,
-    expected: [u32; 2],
-    path: &Path,
-    found: [u32; 2],
-) -> Result<(), CliError> {
-    if found == expected {
-        return Ok(());
-    }
-    let [[width, height], [first_width, first_height]] = [found, expected];
-    let cause = format!(
-        "the image is {width} by {height} pixels, but {} is {first_width} by {first_height}",
-        first.display()
-    );
-    Err(CliError::in_file(path, cause))
 }
 
 /// The share of the mirror's pixels that a mask keeps.
@@ -357,10 +298,7 @@ fn share_seen(mask: &Mask, rim: &Rim) -> f64 {
     let inside = pixels.filter(|&[u, v]| {
         (f64::from(u) - rim.centre[0]).hypot(f64::from(v) - rim.centre[1]) < rim.radius
     });
-    let (mut all, mut seen) = (0_u32, 0_u32);
-    for pixel in inside {
-        all += 1;
-        seen += u32::from(mask.sees(pixel));
-    }
+    let (all, seen) = inside
+        .fold((0_u32, 0_u32), |(all, seen), pixel| (all + 1, seen + u32::from(mask.sees(pixel))));
     f64::from(seen) / f64::from(all.max(1))
 }

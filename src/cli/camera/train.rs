@@ -19,10 +19,10 @@ use toposlam_vision::{
 };
 
 use crate::cli::{
-    CliError, Outcome, exit_codes::help_end, input, output, picture_file, progress::Progress,
-    text::counted,
+    CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
+    progress::Progress,
 };
-use report::{LeftOut, TrainingReport, Validation};
+use report::{LeftOut, TrainingReport};
 
 /// Learn the colours of a building's floor, stripe and marker from labelled images
 ///
@@ -74,10 +74,6 @@ pub(super) struct TrainArguments {
     /// Width of the stripe, across the floor or up the wall
     #[arg(long, value_name = "METRES", default_value_t = 0.05)]
     stripe_width: f64,
-    /// Number of parts for cross-validation: each part is classified with the colours learned from the
-    /// others [default: 5, or the number of images if that is less]
-    #[arg(long, value_name = "K")]
-    folds: Option<usize>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -91,7 +87,8 @@ enum On {
     Wall,
 }
 
-/// The default number of parts.
+/// The number of parts for cross-validation, if there are as many images: each part is classified with the colours
+/// learned from the others.
 const FOLDS: usize = 5;
 
 /// An image and its labels.
@@ -106,7 +103,6 @@ impl TrainArguments {
         let stripe = self.stripe()?;
         let camera = input::read_camera(&self.calibration)?;
         let pairs = self.pairs()?;
-        self.check_folds(pairs.len())?;
         let progress = Progress::new("learning", "images")?;
         progress.parts(pairs.len());
         let (mut training, mut left_out) = (Training::new(stripe), Vec::new());
@@ -116,13 +112,14 @@ impl TrainArguments {
                 return Err(CliError::Interrupted);
             }
             if let Some(cause) = learn(&mut training, &camera, &pair)? {
-                left_out.push(LeftOut { image: pair.image, cause });
+                let (image, reason) = (pair.image.display().to_string(), cause.to_string());
+                left_out.push(LeftOut { image, reason });
             }
             progress.part_done(1);
         }
         progress.finish();
-        for LeftOut { image, cause } in &left_out {
-            remark!("left out: {}: {cause}", image.display());
+        for LeftOut { image, reason } in &left_out {
+            remark!("left out: {image}: {reason}");
         }
         self.check_classes(&training)?;
         if training.seen(PixelClass::Marker).images == 0 {
@@ -130,13 +127,21 @@ impl TrainArguments {
         }
         let model = training.model().map_err(|error| CliError::in_file(&self.images, error))?;
         let progress = Progress::new("cross-validating", "parts")?;
-        let validation = self.validation(&training, &progress);
+        let folds = FOLDS.min(training.images());
+        let validation = training.cross_validate(folds, &progress);
         progress.finish();
-        let validation = validation?;
+        let validation = match validation {
+            Ok(confusion) => Ok((folds, confusion)),
+            Err(TrainingError::Interrupted(stopped)) => return Err(stopped.into()),
+            Err(TrainingError::Folds { .. }) => {
+                Err("there is only one image to learn from".to_owned())
+            }
+            Err(error) => Err(error.to_string()),
+        };
         output::write_whole(&self.out, model.to_toml().as_bytes())?;
-        let report = TrainingReport { training: &training, left_out, stripe, validation };
+        let report = TrainingReport::new(&training, left_out, stripe, validation);
         if self.json {
-            report.print_json(out)?;
+            print_line(out, "training", &report)?;
         } else {
             report.print(out)?;
         }
@@ -190,16 +195,6 @@ impl TrainArguments {
         }
     }
 
-    /// Returns an error for an impossible number of parts, before the long work begins.
-    fn check_folds(&self, images: usize) -> Result<(), CliError> {
-        match self.folds {
-            Some(folds) if folds < 2 || folds > images => {
-                Err(CliError::at("--folds", too_few(folds, images)))
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// Returns an error if a class is missing that sensing needs.
     fn check_classes(&self, training: &Training) -> Result<(), CliError> {
         if training.images() == 0 {
@@ -216,34 +211,6 @@ impl TrainArguments {
             }
         }
     }
-
-    /// Cross-validates. If the number of parts was not given and is impossible, returns the reason.
-    fn validation(&self, training: &Training, watch: &dyn Watch) -> Result<Validation, CliError> {
-        let images = training.images();
-        let folds = self.folds.unwrap_or(FOLDS.min(images));
-        match training.cross_validate(folds, watch) {
-            Ok(confusion) => Ok(Validation::Folds(folds, confusion)),
-            Err(TrainingError::Interrupted(stopped)) => Err(stopped.into()),
-            Err(TrainingError::Folds { .. }) if self.folds.is_none() => {
-                Ok(Validation::None { why: "there is only one image to learn from".to_owned() })
-            }
-            Err(error) if self.folds.is_none() => Ok(Validation::None { why: error.to_string() }),
-            Err(TrainingError::Folds { .. }) => {
-                Err(CliError::at("--folds", too_few(folds, images)))
-            }
-            Err(error) => Err(CliError::at("--folds", error)),
-        }
-    }
-}
-
-fn too_few(folds: usize, images: usize) -> String {
-    let images_counted = counted(images, "image");
-    if images < 2 {
-        return format!("{images_counted} cannot be divided; there must be at least 2");
-    }
-    format!(
-        "{images_counted} cannot be divided into {folds}; there can be from 2 to {images} parts"
-    )
 }
 
 /// The files in a folder with one of these endings, by name without the ending.
@@ -298,9 +265,6 @@ fn learn(
 
 fn read_labels(path: &Path, expected: [u32; 2]) -> Result<RgbImage, CliError> {
     picture_file::read_if(path, |found| {
-        if found == expected {
-            return Ok(());
-        }
-        Err(CliError::in_file(path, ExampleError::LabelSize { found, expected }))
+        if found == expected { Ok(()) } else { Err(ExampleError::LabelSize { found, expected }) }
     })
 }

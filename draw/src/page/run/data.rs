@@ -11,6 +11,8 @@ use crate::{
     page::template::in_script,
     picture::Drawn,
     run_page_data::{PageArrival, PageFrame, RunPageData},
+    scene,
+    story::{Story, StoryDetail},
 };
 
 /// The radius of the robot's body, in metres.
@@ -19,17 +21,21 @@ const BODY: f64 = 0.41 / 2.0;
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(run_data: &RunPageData, drawn: &Drawn) -> String {
     let mut album = Album::default();
-    let rounds = run_data.rounds.iter().zip(&drawn.places);
-    let mut rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
-    if let Some(last) = rounds.last_mut() {
+    let story = Story::new(&run_data.world, run_data.facing, StoryDetail::default());
+    let (story, lines) = story.of_steps(&run_data.steps);
+    let last = run_data.rounds.len().saturating_sub(1);
+    let frames = run_data.rounds.iter().zip(&drawn.places).enumerate();
+    let rounds = frames.map(|(nth, (frame, at))| {
         // The last frame shows the end of the run.
-        last["story"] = json!(run_data.story.len());
-        last["maps"] = json!(run_data.maps.len());
-    }
+        let steps = if nth == last { run_data.steps.len() } else { frame.steps };
+        let known = [lines[steps], run_data.maps(steps).count()];
+        round(frame, *at, known, &mut album)
+    });
+    let rounds: Vec<_> = rounds.collect();
     in_script(&json!({
         "rounds": rounds,
         "calls": run_data.calls.iter().map(call).collect::<Vec<_>>(),
-        "story": run_data.story,
+        "story": story,
         "images": album.images,
         "body": rounded(BODY * drawn.metre),
         "trail": folding::json(run_data),
@@ -53,7 +59,13 @@ impl<'a> Album<'a> {
     }
 }
 
-fn round<'a>(round: &'a PageFrame, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
+/// The lines of the story and the maps that are shown are counted.
+fn round<'a>(
+    round: &'a PageFrame,
+    [x, y]: [f64; 2],
+    [story, maps]: [usize; 2],
+    album: &mut Album<'a>,
+) -> Value {
     json!({
         "time": clock(round.time),
         "x": rounded(x),
@@ -62,11 +74,11 @@ fn round<'a>(round: &'a PageFrame, [x, y]: [f64; 2], album: &mut Album<'a>) -> V
         "turn": rounded(-round.pose.heading.to_degrees()),
         "moves": round.moves,
         "state": words::state(round.state),
-        "scene": round.scene,
+        "scene": round.scene.as_ref().map(scene::in_words).unwrap_or_default(),
         "command": words::command(round.command),
         "image": round.image.as_ref().map(|jpeg| album.place(jpeg)),
-        "story": round.story,
-        "maps": round.maps,
+        "story": story,
+        "maps": maps,
     })
 }
 

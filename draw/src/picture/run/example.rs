@@ -7,15 +7,17 @@ use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState},
         pose::Pose,
+        scene::{Place, Reason, Scene},
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
+    format::named_world::NamedWorld,
     mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, PartialMap, map_world},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
 };
 
-use crate::run_page_data::{PageArrival, PageFrame, RunPageData};
+use crate::run_page_data::{MappingStep, PageArrival, PageFrame, RunPageData};
 
 /// Seven frames; the last three images are the same, and the third call is wrong.
 pub(crate) fn run_page_data() -> RunPageData {
@@ -25,17 +27,15 @@ pub(crate) fn run_page_data() -> RunPageData {
     let hallways = hallways.map(|(from, to)| (from.to_owned(), to.to_owned()));
     let plan = Arc::new(FloorPlan::new(1.6, &places, &hallways).unwrap());
     let facing = Dart(0);
-    let maps = maps(&plan, facing);
     let round = |(number, y): (usize, f64)| PageFrame {
         time: 2.5 * number as f64,
         pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
         moves: number.div_ceil(3) as u64,
         state: PathState::Hallway,
-        scene: format!("scene {number}"),
+        scene: Some(Scene { place: Place::Unknown(Reason::NoFloor), marker: None }),
         command: Some(Command { turn: 0.0, forward: 0.5 }),
         image: (number > 0).then(|| vec![number.min(4) as u8; 3]),
-        story: number / 2,
-        maps: 1.min(number),
+        steps: 1.min(number),
     };
     let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
     let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
@@ -47,29 +47,29 @@ pub(crate) fn run_page_data() -> RunPageData {
         conforms: frames < 7,
     };
     RunPageData {
-        name: "two hallways".to_owned(),
+        world: NamedWorld::numbered("two hallways", "", plan.graph().clone(), Some(facing)),
+        steps: steps(&plan, facing),
         calls: [(1, 2), (4, 1), (7, 3)].map(call).to_vec(),
         plan,
         facing,
         rounds,
-        story: ["one", "two", "three", "four"].map(str::to_owned).to_vec(),
-        maps,
         ending: "the robot gave up".to_owned(),
     }
 }
 
-/// The map of a plan whenever Algorithm 1 adds to it.
-pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
-    let mut maps = Vec::new();
-    let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| match event {
-        MappingEvent::Started { .. }
-        | MappingEvent::LoopClosed { .. }
-        | MappingEvent::VertexAdded { .. } => {
-            maps.push(journey.map().clone());
-        }
-        _ => {}
+/// The steps of Algorithm 1 in a plan.
+fn steps(plan: &FloorPlan, facing: Dart) -> Vec<MappingStep> {
+    let mut steps = Vec::new();
+    let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
+        steps.push(MappingStep { walk: journey.clone(), event });
     };
     let mut world = GraphWorld::new(plan.graph(), facing);
     map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(1000), &mut watch).unwrap();
-    maps
+    steps
+}
+
+/// The map of a plan whenever Algorithm 1 adds to it.
+pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
+    let steps = steps(plan, facing).into_iter().filter(|step| step.event.grows_map());
+    steps.map(|step| step.walk.map().clone()).collect()
 }

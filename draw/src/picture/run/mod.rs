@@ -27,7 +27,7 @@ pub fn run_svg(run_data: &RunPageData) -> String {
     let drawing = RunDrawing::of(run_data);
     let extent = drawing.extent();
     let metre = Some(drawing.ground.metre);
-    let (title, caption) = (&run_data.name, &run_data.ending);
+    let (title, caption) = (&run_data.world.name, &run_data.ending);
     let sheet = Sheet { title, caption, extent, metre, up: NORTH };
     let legend = sheet.legend(legend(run_data));
     sheet.document(&legend, None, |page, shift| drawing.write(page, shift))
@@ -207,11 +207,10 @@ mod tests {
     #[test]
     fn the_same_run_gives_the_same_bytes_and_any_name_is_text() {
         let nasty = "<i>&\"";
-        let run_data = RunPageData {
-            name: nasty.to_owned(),
-            ending: nasty.to_owned(),
-            ..example::run_page_data()
-        };
+        let mut run_data = example::run_page_data();
+        for text in [&mut run_data.world.name, &mut run_data.ending] {
+            nasty.clone_into(text);
+        }
         let svg = run_svg(&run_data);
         assert_eq!(svg, run_svg(&run_data.clone()));
         let document = Document::parse(&svg).unwrap();
@@ -225,8 +224,7 @@ mod tests {
         let run_data = RunPageData {
             rounds: Vec::new(),
             calls: Vec::new(),
-            story: Vec::new(),
-            maps: Vec::new(),
+            steps: Vec::new(),
             ..example::run_page_data()
         };
         let svg = run_svg(&run_data);

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use serde::Serialize;
-use toposlam_robot::bound::upper_bound;
+use toposlam_simulator::evaluation::bound::upper_bound;
 use toposlam_terminal::{
     CliError, Outcome,
     progress::Progress,

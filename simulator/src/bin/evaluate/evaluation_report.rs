@@ -5,7 +5,7 @@ use std::{fmt::Display, io::Write, time::Instant};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use toposlam_robot::bound::upper_bound;
+use toposlam_simulator::evaluation::bound::upper_bound;
 use toposlam_simulator::{
     LearningError,
     evaluation::report::{Rate, TargetStatus},

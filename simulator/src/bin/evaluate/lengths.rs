@@ -7,7 +7,7 @@ use serde_json::json;
 use toposlam_model::{
     enumerate::Watch, mapping::MappingAlgorithm, measurement::MeasurementContradiction,
 };
-use toposlam_robot::bound::upper_bound;
+use toposlam_simulator::evaluation::bound::upper_bound;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,

@@ -1,142 +1,37 @@
-//! The output of training: the pixels of each class, and the result of cross-validation.
+//! The report of training: the pixels of each class, and the result of cross-validation.
 
-use std::{io::Write, path::PathBuf};
+use std::io::{self, Write};
 
 use serde::Serialize;
-use serde_json::{Map, Value, json};
-use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, StripeKind, Training};
+use serde_json::{Map, Value};
+use toposlam_vision::colour::{Confusion, PixelClass, Stripe, Training};
 
-use crate::cli::{
-    CliError,
-    json::print_line,
-    text::{grouped, print_hanging, print_rows},
-};
-
-/// The result of training.
-pub(super) struct TrainingReport<'t> {
-    pub(super) training: &'t Training,
-    pub(super) left_out: Vec<LeftOut>,
-    pub(super) stripe: Stripe,
-    pub(super) validation: Validation,
-}
-
-/// An image that was left out, and why.
-pub(super) struct LeftOut {
-    pub(super) image: PathBuf,
-    pub(super) cause: ExampleError,
-}
-
-/// The result of cross-validation.
-pub(super) enum Validation {
-    /// With this number of parts.
-    Folds(usize, Confusion),
-    /// Not validated.
-    None { why: String },
-}
-
-impl TrainingReport<'_> {
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let kind = match self.stripe.kind {
-            StripeKind::OnFloor => "a tape on the floor",
-            StripeKind::OnWall => "a baseboard on the wall",
-        };
-        writeln!(out, "stripe  {kind}, {} m wide", self.stripe.width)?;
-        write!(out, "images  {}", grouped(self.training.images() as u128))?;
-        match self.left_out.len() {
-            0 => writeln!(out)?,
-            others => writeln!(out, ", and {others} left out")?,
-        }
-        writeln!(out)?;
-        match &self.validation {
-            Validation::Folds(folds, confusion) => {
-                writeln!(out, "Cross-validation in {folds} parts:\n")?;
-                self.print_confusion(out, confusion)
-            }
-            Validation::None { why } => {
-                let rows = PixelClass::LEARNED.map(|class| self.seen(class));
-                print_rows(out, ["class", "images", "    pixels"], &rows)?;
-                Ok(writeln!(out, "\nnot cross-validated: {why}")?)
-            }
-        }
-    }
-
-    fn seen(&self, class: PixelClass) -> [String; 3] {
-        let seen = self.training.seen(class);
-        let (images, pixels) = (grouped(seen.images as u128), grouped(seen.pixels.into()));
-        [class.name().to_owned(), format!("{images:>6}"), format!("{pixels:>10}")]
-    }
-
-    fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), CliError> {
-        let rows = PixelClass::LEARNED.map(|class| {
-            let [name, images, pixels] = self.seen(class);
-            let recall = confusion.recall(class);
-            let recall = recall.map_or("-".to_owned(), |share| format!("{:.2} %", 100.0 * share));
-            [name, images, pixels, format!("{recall:>9}")]
-        });
-        print_rows(out, ["class", "images", "    pixels", "    right"], &rows)?;
-        writeln!(out, "\nTrue class, and the predicted classes with their pixels:\n")?;
-        for (class, predicted) in PixelClass::LEARNED.iter().zip(&confusion.pixels) {
-            let predicted =
-                Confusion::GIVEN.iter().zip(predicted).filter(|(_, pixels)| **pixels > 0);
-            let predicted = predicted
-                .map(|(class, &pixels)| format!("{} {}", class.name(), grouped(pixels.into())));
-            let texts = predicted.collect::<Vec<_>>().join(", ");
-            print_hanging(out, &format!("  {:<8}", class.name()), &texts)?;
-        }
-        Ok(())
-    }
-
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let (folds, confusion, not_validated) = match &self.validation {
-            Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion), None),
-            Validation::None { why } => (None, None, Some(why.as_str())),
-        };
-        let classes = PixelClass::LEARNED.map(|class| {
-            let seen = self.training.seen(class);
-            ClassFigures {
-                class: class.name(),
-                images: seen.images,
-                pixels: seen.pixels,
-                recall: confusion.and_then(|confusion| confusion.recall(class)),
-                precision: confusion.and_then(|confusion| confusion.precision(class)),
-            }
-        });
-        let left_out = self.left_out.iter().map(|LeftOut { image, cause }| {
-            json!({ "image": image.display().to_string(), "reason": cause.to_string() })
-        });
-        print_line(
-            out,
-            "training",
-            &TrainingLine {
-                images: self.training.images(),
-                left_out: left_out.collect(),
-                folds,
-                not_validated,
-                confusion: confusion.map(confusion_json),
-                classes,
-                stripe: json!({ "kind": self.stripe.kind.place(), "width": self.stripe.width }),
-            },
-        )
-    }
-}
+use crate::cli::text::{grouped, print_hanging, print_rows};
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct TrainingLine<'t> {
+pub(super) struct TrainingReport {
     images: usize,
-    left_out: Vec<Value>,
+    left_out: Vec<LeftOut>,
     folds: Option<usize>,
     /// Why there was no cross-validation.
-    not_validated: Option<&'t str>,
+    not_validated: Option<String>,
     /// For each true class, the number of pixels in each predicted class.
-    confusion: Option<Value>,
-    classes: [ClassFigures; 4],
-    stripe: Value,
+    confusion: Option<Map<String, Value>>,
+    classes: [ClassReport; 4],
+    stripe: StripeReport,
+}
+
+/// An image that was left out, and why.
+#[derive(Serialize)]
+pub(super) struct LeftOut {
+    pub(super) image: String,
+    pub(super) reason: String,
 }
 
 /// The pixels of a class, and how well they are classified.
 #[derive(Serialize)]
-struct ClassFigures {
+struct ClassReport {
     class: &'static str,
     images: usize,
     pixels: u64,
@@ -144,13 +39,91 @@ struct ClassFigures {
     precision: Option<f64>,
 }
 
-/// For each true class, the number of pixels in each predicted class.
-fn confusion_json(confusion: &Confusion) -> Value {
-    let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(is, predicted)| {
-        let columns = Confusion::GIVEN.iter().zip(predicted);
-        let row: Map<_, _> =
-            columns.map(|(class, &pixels)| (class.name().to_owned(), pixels.into())).collect();
-        (is.name().to_owned(), Value::Object(row))
-    });
-    Value::Object(rows.collect())
+#[derive(Serialize)]
+struct StripeReport {
+    kind: &'static str,
+    width: f64,
+}
+
+impl TrainingReport {
+    /// The validation has the number of parts and its result, or the reason why there is none.
+    pub(super) fn new(
+        training: &Training,
+        left_out: Vec<LeftOut>,
+        stripe: Stripe,
+        validation: Result<(usize, Confusion), String>,
+    ) -> Self {
+        let confusion = validation.as_ref().ok().map(|(_, confusion)| confusion);
+        let classes = PixelClass::LEARNED.map(|class| {
+            let seen = training.seen(class);
+            ClassReport {
+                class: class.name(),
+                images: seen.images,
+                pixels: seen.pixels,
+                recall: confusion.and_then(|confusion| confusion.recall(class)),
+                precision: confusion.and_then(|confusion| confusion.precision(class)),
+            }
+        });
+        let name = |class: &PixelClass| class.name().to_owned();
+        let row = |pixels: &[u64; 5]| {
+            let pixels = pixels.iter().map(|&pixels| Value::from(pixels));
+            Value::Object(Confusion::GIVEN.iter().map(name).zip(pixels).collect())
+        };
+        let pixels = confusion.map(|confusion| {
+            PixelClass::LEARNED.iter().map(name).zip(confusion.pixels.iter().map(row)).collect()
+        });
+        Self {
+            images: training.images(),
+            left_out,
+            folds: validation.as_ref().ok().map(|(folds, _)| *folds),
+            confusion: pixels,
+            classes,
+            stripe: StripeReport { kind: stripe.kind.place(), width: stripe.width },
+            not_validated: validation.err(),
+        }
+    }
+
+    pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
+        let kind = match self.stripe.kind {
+            "floor" => "a tape on the floor",
+            _ => "a baseboard on the wall",
+        };
+        writeln!(out, "stripe  {kind}, {} m wide", self.stripe.width)?;
+        write!(out, "images  {}", grouped(self.images as u128))?;
+        match self.left_out.len() {
+            0 => writeln!(out)?,
+            others => writeln!(out, ", and {others} left out")?,
+        }
+        writeln!(out)?;
+        let row = |class: &ClassReport| {
+            let recall = class.recall.map_or("-".to_owned(), |it| format!("{:.2} %", 100.0 * it));
+            [
+                class.class.to_owned(),
+                format!("{:>6}", grouped(class.images as u128)),
+                format!("{:>10}", grouped(class.pixels.into())),
+                format!("{recall:>9}"),
+            ]
+        };
+        let rows = self.classes.each_ref().map(row);
+        let heads = ["class", "images", "    pixels", "    right"];
+        let (Some(folds), Some(confusion)) = (self.folds, &self.confusion) else {
+            let [class, images, pixels, _] = heads;
+            let rows = rows.map(|[class, images, pixels, _]| [class, images, pixels]);
+            print_rows(out, [class, images, pixels], &rows)?;
+            let why = self.not_validated.as_deref().unwrap_or_default();
+            return writeln!(out, "\nnot cross-validated: {why}");
+        };
+        writeln!(out, "Cross-validation in {folds} parts:\n")?;
+        print_rows(out, heads, &rows)?;
+        writeln!(out, "\nTrue class, and the predicted classes with their pixels:\n")?;
+        for class in &self.classes {
+            let pixels = |given: &PixelClass| {
+                let pixels = confusion.get(class.class)?.get(given.name())?.as_u64()?;
+                (pixels > 0).then(|| format!("{} {}", given.name(), grouped(pixels.into())))
+            };
+            let texts: Vec<_> = Confusion::GIVEN.iter().filter_map(pixels).collect();
+            print_hanging(out, &format!("  {:<8}", class.class), &texts.join(", "))?;
+        }
+        Ok(())
+    }
 }
