@@ -180,7 +180,7 @@ impl RunReport {
             moves += &format!(" ({expected} in the plan's embedded graph)");
         }
         row(out, "moves", &moves)?;
-        if let Some(certificate) = self.certificate {
+        if let Some(certificate) = &self.certificate {
             certificate.print("  certificate       ", out)?;
         }
         if let Some(moves) = self.audit_moves.filter(|_| run.method.audits() > 0) {

@@ -97,7 +97,7 @@ impl ConformArguments {
             words.extend(["--driver", "anyone"].map(str::to_owned));
         }
         if let Some(algorithm) = self.algorithm {
-            words.extend(["--algorithm", algorithm.directional().name()].map(str::to_owned));
+            words.extend(["--algorithm", algorithm.name()].map(str::to_owned));
         }
         words.join(" ")
     }
