@@ -1,7 +1,5 @@
 //! The least mean number of moves of any explorer on small starts: `examples/optimum.rs`.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 #[path = "../examples/optimum.rs"]
 mod search;
 

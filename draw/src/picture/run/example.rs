@@ -10,7 +10,7 @@ use toposlam_model::{
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
-    mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, PartialMap, map_world},
+    mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, PartialMap, explore},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
 };
@@ -70,6 +70,7 @@ pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
         _ => {}
     };
     let mut world = GraphWorld::new(plan.graph(), facing);
-    map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(1000), &mut watch).unwrap();
+    let world = &mut Observed::new(&mut world, &mut watch);
+    explore(&mut Algorithm1Run::new(1000), world).unwrap();
     maps
 }
