@@ -21,7 +21,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::{WorldSearch, fold, smallest_world},
-    mapping::{Algorithm1Run, MapWalk, MappingAlgorithm, MappingEvent, Nearest, map_world},
+    mapping::{Algorithm1Run, MapWalk, MappingAlgorithm, MappingEvent, Observed, explore},
     marker::Directional,
     percept::Percept,
     trace::{Trace, TraceEvent, TraceEventKind, anywhere},
@@ -45,7 +45,7 @@ fn trace(plan: &FloorPlan) -> Trace {
     };
     let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, Dart(0));
-    map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
+    explore(&mut exploration, &mut Observed::new(&mut world, &mut listen)).unwrap();
     Trace::new(events).unwrap()
 }
 

@@ -4,7 +4,7 @@
 use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
-    folding::{ContradictionReason, FoldError, FoldedTrail, TrailContradiction, fold},
+    folding::{ContradictionReason, FoldError, FoldedTrail, TrailError, fold},
     marker::{Directional, Marker, NoMarker, Undirected},
     percept::{Percept, Sighting, WalkEvent},
     trace::Trace,
@@ -73,10 +73,10 @@ impl FoldedTrace {
         let folded = trace.before_relocation();
         let (mut trail, walk) = match fold(folded.percepts(), folded.doors()) {
             Ok(trail) => (Some(trail), None),
-            Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
+            Err(FoldError { event, error: TrailError::Contradiction(reason) }) => {
                 (None, Some((event.index(), Impossibility::Walk(reason))))
             }
-            Err(FoldError::TooManyDarts { .. }) => (None, None),
+            Err(FoldError { error: TrailError::TooManyDarts, .. }) => (None, None),
         };
         let first = |is: &dyn Fn(&Percept) -> bool, why| {
             let moves = trace.percepts().iter().position(is)?;

@@ -11,12 +11,10 @@ use toposlam_model::{
     check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, SharedPrefixCheck, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
-    folding::fold,
     isomorphism::{Candidate, isomorphism},
-    mapping::{Algorithm1Run, MovableMarkerRun, Nearest, map_world},
+    mapping::{Algorithm1Run, MovableMarkerRun, explore},
     marker::{MARKERS, Marker, named},
-    percept::Door,
-    world::{GraphWorld, World},
+    world::GraphWorld,
 };
 
 fn main() {
@@ -111,35 +109,6 @@ fn compare_long_cycles(bencher: Bencher, marker: &str) {
     });
 }
 
-/// What follows if two places of a folded trail are one, and then that they are not: the union is undone, or made
-/// in a copy, or in a trail that is folded again. The trail is of a random walk of 400 moves in a random world.
-#[divan::bench(args = ["undone", "in a copy", "folded again"], sample_count = 5)]
-fn suppose(bencher: Bencher, way: &str) {
-    let mut random = Random(1);
-    let graph = random_cubic(100, &mut random);
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let (mut percepts, mut doors) = (vec![world.sensed()], Vec::new());
-    for _ in 0..400 {
-        let door = Door(random.below(3) as u32);
-        world.traverse(door).unwrap();
-        doors.push(door);
-        percepts.push(world.sensed());
-    }
-    let trail = fold(&percepts, &doors).unwrap();
-    let places: Vec<Dart> = trail.vertices().collect();
-    let pairs: Vec<(Dart, Dart)> =
-        places.iter().zip(places.iter().skip(1)).map(|(&one, &other)| (one, other)).collect();
-    let mut undone = trail.clone();
-    bencher.counter(ItemsCount::new(pairs.len())).bench_local(|| {
-        let possible = pairs.iter().filter(|&&(one, other)| match way {
-            "undone" => undone.with_united(one, other, |_| ()).is_ok(),
-            "in a copy" => trail.clone().unite(one, other).is_ok(),
-            _ => fold(&percepts, &doors).unwrap().unite(one, other).is_ok(),
-        });
-        possible.count()
-    });
-}
-
 /// Algorithm 1 on a random world of 2,000 vertices and 3,000 edges; the items are moves.
 #[divan::bench(sample_count = 5)]
 fn map_large_world(bencher: Bencher) {
@@ -147,7 +116,7 @@ fn map_large_world(bencher: Bencher) {
     let run = || {
         let mut exploration = Algorithm1Run::new(graph.dart_count());
         let mut world = GraphWorld::new(&graph, Dart(0));
-        map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
+        explore(&mut exploration, &mut world).unwrap();
         judge(&exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
         exploration.moves()
     };

@@ -9,7 +9,7 @@ use std::error::Error;
 use toposlam_model::{
     check::{Check, RunChoices, Shard},
     enumerate::Class,
-    mapping::{ExploredMap, Explorer, Flaw, InvalidStep, MappingError, Observer},
+    mapping::{ExploredMap, Explorer, Flaw, InvalidStep, Mapped, MappingError, ObservedWorld},
     marker::{Directional, MarkerKind},
     percept::{Door, Percept, Sighting, retrace},
     world::World,
@@ -109,11 +109,7 @@ impl Explorer for DepthFirst {
         Directional
     }
 
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        _: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         let degree = world.percept().map_err(MappingError::World)?.degree;
         (self.far, self.pose) = (vec![vec![None; degree as usize]], (0, 0));
         Ok(())
@@ -123,12 +119,7 @@ impl Explorer for DepthFirst {
         Ok(self.unexplored().last().copied())
     }
 
-    fn step<W: World>(
-        &mut self,
-        edge: End,
-        world: &mut W,
-        _: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn step<W: ObservedWorld>(&mut self, edge: End, world: &mut W) -> Mapped<W> {
         let lost = || MappingError::GaveUp("a known way does not lead home".to_owned());
         let home = self.walk_home(self.pose, world).map_err(MappingError::World)?;
         self.take(edge, home.ok_or_else(lost)?, world).map_err(MappingError::World)?;

@@ -113,7 +113,6 @@ impl OptimumSearch {
         Ok(Self { starts, known: HashMap::new() })
     }
 
-    /// The number of starts.
     pub(crate) fn start_count(&self) -> usize {
         self.starts.len()
     }
@@ -239,7 +238,7 @@ impl OptimumSearch {
     }
 
     fn belief(&self, trail: FoldedTrail, candidates: Vec<Candidate>) -> Belief {
-        let form = seen_from_robot(&trail);
+        let form = trail.seen_from_robot();
         let least = match self.known.get(&form) {
             Some(&(Total::Exactly(total) | Total::AtLeast(total))) => total,
             None if trail.is_complete() => 0,
@@ -281,36 +280,6 @@ impl OptimumSearch {
         }
         groups.into_values().collect()
     }
-}
-
-/// The folded trail as it is seen from the robot: vertices are numbered breadth first. Two walks with one
-/// form have the same future.
-fn seen_from_robot(trail: &FoldedTrail) -> Vec<u32> {
-    let mut number = vec![None; trail.trail_vertex_count()];
-    number[trail.vertex(trail.pose())] = Some(0);
-    let mut entries = vec![trail.pose()];
-    let mut form = Vec::new();
-    let mut next = 0;
-    while let Some(&entry) = entries.get(next) {
-        next += 1;
-        form.push(trail.degree(entry));
-        for door in 0..trail.degree(entry) {
-            let dart = trail.behind(entry, Door(door));
-            if trail.marker() == Some(dart) {
-                form.push(u32::MAX - 1);
-            }
-            let Some(far) = trail.opposite(dart) else {
-                form.push(u32::MAX);
-                continue;
-            };
-            let vertex = *number[trail.vertex(far)].get_or_insert_with(|| {
-                entries.push(far);
-                entries.len() - 1
-            });
-            form.extend([vertex as u32, trail.door(entries[vertex], far).0]);
-        }
-    }
-    form
 }
 
 #[allow(dead_code, reason = "a test has the search without the program")]

@@ -1,8 +1,16 @@
 //! Embedded graphs for property tests: an edge at a time, between any two corners.
 
+use std::ops::ControlFlow;
+
 use proptest::{collection::vec, prelude::*};
 
-use crate::embedded_graph::EmbeddedGraph;
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Each, Enumeration},
+    marker::Marker,
+    percept::{Door, Percept},
+    world::{GraphWorld, World},
+};
 
 pub(crate) use crate::enumerate::Class;
 
@@ -38,4 +46,31 @@ fn grown(class: Class, edges: &[(u16, bool, u16)]) -> EmbeddedGraph {
         })
         .collect();
     EmbeddedGraph::from_edge_lists(&named).unwrap()
+}
+
+/// Every start of a class with a number of edges. Its facing dart is dart 0.
+pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
+    let mut starts = Vec::new();
+    let all = Enumeration::new(Each::Start, class, edges).unwrap();
+    let _: ControlFlow<()> = all.for_each(&mut |found| {
+        starts.push(found.graph.clone());
+        ControlFlow::Continue(())
+    });
+    starts
+}
+
+/// A walk of a robot: what it perceives, the doors that it takes, and its poses. Doors are counted modulo the degree.
+pub(crate) fn walk<M: Marker>(
+    mut world: GraphWorld<'_, M>,
+    turns: impl IntoIterator<Item = u32>,
+) -> (Vec<Percept>, Vec<Door>, Vec<Dart>) {
+    let (mut percepts, mut doors, mut poses) = (vec![world.sensed()], vec![], vec![world.pose()]);
+    for turn in turns {
+        let door = Door(turn % world.sensed().degree);
+        world.traverse(door).unwrap();
+        doors.push(door);
+        percepts.push(world.sensed());
+        poses.push(world.pose());
+    }
+    (percepts, doors, poses)
 }

@@ -23,7 +23,7 @@
 //! ```
 //! use toposlam_model::{
 //!     embedded_graph::{Dart, EmbeddedGraph},
-//!     mapping::{DEFAULT_DART_BOUND, Algorithm1Run, Nearest, map_world},
+//!     mapping::{Algorithm1Run, explore},
 //!     world::GraphWorld,
 //! };
 //!
@@ -35,8 +35,8 @@
 //!     ("c", vec!["b", "a"]),
 //! ])?;
 //! let mut world = GraphWorld::new(&graph, Dart(0));
-//! let mut exploration = Algorithm1Run::new(DEFAULT_DART_BOUND);
-//! map_world(&mut world, &mut Nearest, &mut exploration, &mut ())?;
+//! let mut exploration = Algorithm1Run::default();
+//! explore(&mut exploration, &mut world)?;
 //! assert_eq!(exploration.moves(), 5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

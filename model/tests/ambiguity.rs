@@ -1,9 +1,6 @@
 //! Worlds that a marker does not distinguish: the witnesses, and the search.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::{
-    collections::BTreeSet,
     ops::ControlFlow,
     sync::atomic::{AtomicBool, Ordering},
 };
@@ -20,6 +17,8 @@ use toposlam_model::{
     percept::{Door, Percept},
     world::{Action, State, World},
 };
+
+use crate::starts;
 
 fn search(class: Class, edges: usize, marker: &str) -> Findings {
     AmbiguitySearch::new(class, edges, named(marker).unwrap()).unwrap().run(&()).unwrap()
@@ -125,14 +124,6 @@ fn corridors_and_planar_worlds() {
     assert_eq!(counts(&search(Class::Corridor, 10, "none")).1, [0, 0, 1, 2, 8, 8, 3, 12, 41, 67]);
 }
 
-/// A start with a directional marker is a rooted map: A000698 counts them.
-#[test]
-fn placed_worlds_of_a_directional_marker_are_starts() {
-    assert_eq!(counts(&search(Class::Multigraph, 6, "directional")).0[5], 110_410);
-    assert_eq!(counts(&search(Class::Multigraph, 6, "directed-edge")).0[5], 110_410);
-    assert_eq!(counts(&search(Class::Multigraph, 6, "none")).0[5], 9436);
-}
-
 /// All placed worlds of a class and its sizes, each by a graph and a facing dart.
 fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(EmbeddedGraph, Dart)> {
     let mut placed: Vec<(EmbeddedGraph, Dart)> = Vec::new();
@@ -212,33 +203,23 @@ fn every_pair_is_confirmed_by_a_relation_from_every_start() {
 #[test]
 fn each_pair_is_listed_once_and_the_smallest_first() {
     for marker in ["none", "undirected"] {
-        assert_listed_in_order(&search(Class::Multigraph, 4, marker));
-    }
-}
-
-fn assert_listed_in_order(findings: &Findings) {
-    let pairs = findings.pairs();
-    // The larger world's size counts first, then the smaller one's, then the codes, the first
-    // world's before the other's.
-    let code = |world: &PlacedWorld| code(&world.graph, PlacedWorld::FACING);
-    let in_order = |one: &[&PlacedWorld; 2], other: &[&PlacedWorld; 2]| {
+        let findings = search(Class::Multigraph, 4, marker);
+        let pairs = findings.pairs();
+        // The larger world's size counts first, then the smaller one's, then the codes, the first
+        // world's before the other's.
+        let code = |world: &PlacedWorld| code(&world.graph, PlacedWorld::FACING);
         let key = |[one, other]: [&PlacedWorld; 2]| {
             (other.graph.edge_count(), one.graph.edge_count(), code(one), code(other))
         };
-        key(*one) <= key(*other)
-    };
-    assert!(pairs.is_sorted_by(in_order));
-    let sizes: Vec<_> = pairs
-        .iter()
-        .map(|[one, other]| (other.graph.edge_count(), one.graph.edge_count()))
-        .collect();
-    assert!(sizes.is_sorted() && sizes.iter().all(|(larger, smaller)| smaller <= larger));
-    assert_eq!(pairs.first().copied(), findings.smallest());
-    let of_groups = findings.groups.iter().map(|group| group.worlds.len());
-    let count: usize = of_groups.map(|worlds| worlds * (worlds - 1) / 2).sum();
-    assert_eq!(pairs.len(), count);
-    let distinct: BTreeSet<_> = pairs.iter().map(|pair| pair.map(std::ptr::from_ref)).collect();
-    assert_eq!(distinct.len(), pairs.len());
+        assert!(pairs.is_sorted_by(|one, other| key(*one) < key(*other)));
+        assert!(
+            pairs.iter().all(|[one, other]| one.graph.edge_count() <= other.graph.edge_count())
+        );
+        assert_eq!(pairs.first().copied(), findings.smallest());
+        let of_groups = findings.groups.iter().map(|group| group.worlds.len());
+        let count: usize = of_groups.map(|worlds| worlds * (worlds - 1) / 2).sum();
+        assert_eq!(pairs.len(), count);
+    }
 }
 
 /// What two robots perceive differs, for the first time, at the end of some walk of this length.
@@ -268,12 +249,7 @@ fn tells_apart(one: &PlacedRobot, other: &PlacedRobot, length: usize) -> Option<
 #[test]
 fn the_walk_is_the_shortest_and_the_least() {
     let mut walks = 0;
-    let starts = Enumeration::new(Each::Start, Class::Multigraph, 3).unwrap();
-    let mut graphs = Vec::new();
-    let _ = starts.for_each(&mut |found| {
-        graphs.push(found.graph.clone());
-        ControlFlow::Continue(())
-    });
+    let graphs = starts(Class::Multigraph, 3);
     for marker in MARKERS {
         for (one, other) in graphs.iter().zip(graphs.iter().cycle().skip(5)) {
             let comparison = Comparison::new(marker, (one, Dart(0)), (other, Dart(0)));
@@ -290,14 +266,9 @@ fn the_walk_is_the_shortest_and_the_least() {
     assert!(walks > 400, "{walks}");
 }
 
-/// A triangle and a square, with a marker, and what proves that they differ or do not.
+/// A triangle and a square.
 fn cycles() -> [EmbeddedGraph; 2] {
-    [3_u32, 4].map(|edges| {
-        let name = |n: u32| (n % edges).to_string();
-        let lists: Vec<_> =
-            (0..edges).map(|n| (name(n), vec![name(n + 1), name(n + edges - 1)])).collect();
-        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-    })
+    [3, 4].map(EmbeddedGraph::cycle)
 }
 
 #[test]
@@ -329,17 +300,11 @@ fn a_relation_that_is_not_kept_proves_nothing() {
     let undirected = named("undirected").unwrap();
     let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
     let [one, other] = comparison.starts([Dart(0), Dart(0)]);
-    let marked = |state: State, placed| State { placed: Some(placed), ..state };
-    let pairs: Vec<_> = pairs
-        .into_iter()
-        .map(|(here, there)| {
-            (
-                marked(here, one.state().placed.unwrap()),
-                marked(there, other.state().placed.unwrap()),
-            )
-        })
-        .collect();
-    assert!(!Relation(pairs).verify(&one, &other));
+    let [here, there] = [one.state().placed, other.state().placed];
+    let marked = |(one, other): (State, State)| {
+        (State { placed: here, ..one }, State { placed: there, ..other })
+    };
+    assert!(!Relation(pairs.into_iter().map(marked).collect()).verify(&one, &other));
 }
 
 #[test]
@@ -350,19 +315,20 @@ fn a_walk_that_shows_no_difference_proves_nothing() {
     let [one, other] = comparison.starts([Dart(0), Dart(0)]);
     let walk = comparison.walk([Dart(0), Dart(0)]).unwrap();
     assert!(walk.verify(&one, &other));
-    let shorter = Walk { actions: walk.actions[..2].to_vec(), ..walk.clone() };
-    assert!(!shorter.verify(&one, &other));
-    let longer = Walk { actions: [&walk.actions[..], &walk.actions[..1]].concat(), ..walk.clone() };
-    assert!(!longer.verify(&one, &other));
-    let swapped = Walk { percepts: [walk.percepts[1], walk.percepts[0]], ..walk.clone() };
-    assert!(!swapped.verify(&one, &other));
+    let wrong = [
+        Walk { actions: walk.actions[..2].to_vec(), ..walk.clone() },
+        Walk { actions: [&walk.actions[..], &walk.actions[..1]].concat(), ..walk.clone() },
+        Walk { percepts: [walk.percepts[1], walk.percepts[0]], ..walk.clone() },
+        Walk { actions: vec![Action::Drop], ..walk.clone() },
+    ];
+    for wrong in wrong {
+        assert!(!wrong.verify(&one, &other), "{wrong:?}");
+    }
     // A walk whose percepts differ before its end is not the shortest, and no proof.
     let late = [&walk.actions[..], &[Action::Take(Door(1)); 1]].concat();
     let ends = [one.clone(), other.clone()].map(|it| *replay(it, &late).unwrap().last().unwrap());
     assert_ne!(ends[0], ends[1], "or this tests nothing");
     assert!(!Walk { actions: late, percepts: ends }.verify(&one, &other));
-    let impossible = Walk { actions: vec![Action::Drop], ..walk.clone() };
-    assert!(!impossible.verify(&one, &other));
     let percepts: Vec<Percept> = replay(one, &walk.actions).unwrap();
     assert_eq!((percepts.len(), percepts.last()), (4, Some(&walk.percepts[0])));
 }
@@ -380,55 +346,48 @@ fn a_search_of_no_size_or_of_too_many_edges_is_refused() {
 /// A search that is stopped returns no findings.
 #[test]
 fn an_interrupted_search_says_so() {
-    struct Stop;
+    /// Stops the search, or one part of it and no other.
+    struct Stop(AtomicBool, bool);
     impl Watch for Stop {
         fn stop(&self) -> bool {
-            true
-        }
-    }
-    /// Breaks off one part of the search, and no other.
-    struct StopOnce(AtomicBool);
-    impl Watch for StopOnce {
-        fn stop(&self) -> bool {
-            self.0.swap(false, Ordering::Relaxed)
+            self.0.swap(self.1, Ordering::Relaxed)
         }
     }
     let search = AmbiguitySearch::new(Class::Simple, 5, named("none").unwrap()).unwrap();
-    assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
-    assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
+    for each_time in [true, false] {
+        let stop = Stop(AtomicBool::new(true), each_time);
+        assert_eq!(search.run(&stop), Err(Unfinished::Interrupted));
+    }
 }
 
 /// A chain of three edges, seen from an end and from a vertex beside it.
 #[test]
 fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() {
-    let graph = EmbeddedGraph::from_neighbour_lists(&[
-        ("a", vec!["b"]),
-        ("b", vec!["a", "c"]),
-        ("c", vec!["b", "d"]),
-        ("d", vec!["c"]),
-    ])
-    .unwrap();
+    let graph = EmbeddedGraph::chain(3);
     let like = |marker, [one, other]: [u32; 2]| {
         let marker = named(marker).unwrap();
         let comparison = Comparison::new(marker, (&graph, Dart(one)), (&graph, Dart(other)));
         comparison.start_like(Dart(one)).map(|dart| dart.0)
     };
-    // Without a marker it may begin anywhere: at `a`, or turned round, at `d`.
-    assert_eq!(like("none", [0, 2]), Some(0));
-    assert_eq!(like("none", [5, 2]), Some(0));
-    assert_eq!(like("none", [1, 0]), Some(1));
-    // With one at `b`, it begins there; one at `c` is the same, turned round.
-    assert_eq!(like("undirected", [2, 1]), Some(2));
-    assert_eq!(like("undirected", [2, 3]), Some(3));
-    assert_eq!(like("undirected", [0, 1]), None);
+    for (marker, facing, expected) in [
+        // Without a marker it may begin anywhere: at an end, or turned round, at the other one.
+        ("none", [0, 2], Some(0)),
+        ("none", [5, 2], Some(0)),
+        ("none", [1, 0], Some(1)),
+        // With one beside an end, it begins there; one beside the other end is the same, turned round.
+        ("undirected", [2, 1], Some(2)),
+        ("undirected", [2, 3], Some(3)),
+        ("undirected", [0, 1], None),
+    ] {
+        assert_eq!(like(marker, facing), expected, "{marker} {facing:?}");
+    }
 }
 
 /// Where the robot is, and, with a marker that it can carry, where that lies, or that it is carried.
 #[test]
 fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
     let [triangle, _] = cycles();
-    let count = |marker| state_count(&triangle, named(marker).unwrap());
-    assert_eq!(count("undirected"), 6);
-    assert_eq!(count("directional"), 6);
-    assert_eq!(count("movable"), 6 * (3 + 1));
+    for (marker, count) in [("undirected", 6), ("directional", 6), ("movable", 6 * (3 + 1))] {
+        assert_eq!(state_count(&triangle, named(marker).unwrap()), count);
+    }
 }

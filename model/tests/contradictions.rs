@@ -1,87 +1,159 @@
-//! Algorithm 1 ends on every world, also on one that breaks, lies, or has no end.
-
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+//! Each explorer ends on every world, also on one that breaks, lies, or has no end.
 
 use proptest::prelude::*;
 use toposlam_model::{
-    embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
+    embedded_graph::{MAX_EDGES, Vertex},
+    folding::ContradictionReason,
     mapping::{
-        Algorithm1Run, Contradiction, Explorer, MapWalk, MappingError, MappingEvent, Nearest,
-        map_world,
+        Algorithm1Run, Contradiction, Explorer, FoldingRun, MappingError, MovableMarkerRun,
+        ObservedWorld, explore,
     },
-    percept::{Door, Percept},
-    world::{GraphWorld, RefusedAction, World},
+    percept::{Door, Percept, Sighting},
+    world::{MarkerCarrier, RefusedAction, World},
 };
 
-use crate::scripted_world::{ScriptedWorld, marked, plain};
+type Error = MappingError<RefusedAction>;
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl World<Error = RefusedAction>) -> Result<u64, MappingError<RefusedAction>> {
-    let mut exploration = Algorithm1Run::new(BOUND);
-    map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
+/// A percept without a marker.
+fn plain(degree: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Nothing }
 }
 
-fn scripted(percepts: &[Percept]) -> MappingError<RefusedAction> {
-    map(&mut ScriptedWorld::new(percepts)).unwrap_err()
+/// A percept with a directional marker that points along a door.
+fn marked(degree: u32, door: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
+}
+
+fn lying(degree: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Lying(1) }
+}
+
+/// A sensor with scripted percepts, one a move, also such that no world has. The last one repeats. Actions are
+/// refused if there is a reason.
+struct ScriptedWorld<'s> {
+    percepts: &'s [Percept],
+    moves: usize,
+    refused: Option<RefusedAction>,
+}
+
+impl ObservedWorld for ScriptedWorld<'_> {}
+
+impl World for ScriptedWorld<'_> {
+    type Error = RefusedAction;
+
+    fn percept(&mut self) -> Result<Percept, RefusedAction> {
+        Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
+    }
+
+    fn traverse(&mut self, _: Door) -> Result<(), RefusedAction> {
+        self.moves += 1;
+        self.refused.map_or(Ok(()), Err)
+    }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = RefusedAction>> {
+        Some(self)
+    }
+}
+
+impl MarkerCarrier for ScriptedWorld<'_> {
+    type Error = RefusedAction;
+
+    fn pick_up(&mut self) -> Result<(), RefusedAction> {
+        self.refused
+            .filter(|refused| *refused == RefusedAction::NothingToPickUp)
+            .map_or(Ok(()), Err)
+    }
+
+    fn drop(&mut self) -> Result<(), RefusedAction> {
+        Ok(())
+    }
+}
+
+fn run<E: Explorer + Default>(percepts: &[Percept], bound: usize) -> Result<(), Error> {
+    let mut explorer = E::default();
+    explorer.limit_darts(bound);
+    explore(&mut explorer, &mut ScriptedWorld { percepts, moves: 0, refused: None })
+}
+
+fn algorithm1(percepts: &[Percept]) -> Error {
+    run::<Algorithm1Run>(percepts, BOUND).unwrap_err()
+}
+
+fn folding(percepts: &[Percept]) -> Error {
+    run::<FoldingRun>(percepts, BOUND).unwrap_err()
+}
+
+fn movable(percepts: &[Percept]) -> Error {
+    run::<MovableMarkerRun>(percepts, BOUND).unwrap_err()
+}
+
+fn known_place((vertex, index): (u32, u32), expected: Percept, perceived: Percept) -> Error {
+    Contradiction::KnownPlace { vertex: Vertex(vertex), index, expected, perceived }.into()
 }
 
 // paper: alg1.1, alg1.terminates
 #[test]
 fn a_world_without_end_runs_into_the_bound() {
-    assert_eq!(scripted(&[marked(3, 0), plain(3)]), MappingError::Bound { bound: BOUND });
-    assert_eq!(scripted(&[marked(u32::MAX, 0)]), MappingError::Bound { bound: BOUND });
-    assert_eq!(scripted(&[marked(3, 0), plain(u32::MAX)]), MappingError::Bound { bound: BOUND });
-}
-
-#[test]
-fn the_bound_is_never_more_than_the_darts_that_can_be_numbered() {
-    let begin = |mut exploration: Algorithm1Run| {
-        exploration.begin(&mut ScriptedWorld::new(&[marked(u32::MAX, 0)]), &mut ())
-    };
-    let exploration = Algorithm1Run::new(usize::MAX);
-    assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
-    let mut exploration = Algorithm1Run::new(BOUND);
-    exploration.set_bound(usize::MAX);
-    assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
+    let bound = |bound| MappingError::Bound { bound };
+    for percepts in
+        [&[marked(3, 0), plain(3)][..], &[marked(u32::MAX, 0)], &[marked(3, 0), plain(u32::MAX)]]
+    {
+        assert_eq!(algorithm1(percepts), bound(BOUND));
+    }
+    for percepts in [&[marked(3, 0), plain(3)][..], &[marked(u32::MAX, 0)]] {
+        assert_eq!(folding(percepts), bound(BOUND));
+    }
+    // No two places look alike.
+    let endless: Vec<_> = std::iter::once(lying(1)).chain((2..99).map(plain)).collect();
+    for percepts in [&endless[..], &[lying(u32::MAX)], &[lying(3), plain(u32::MAX)]] {
+        assert_eq!(movable(percepts), bound(BOUND));
+    }
+    // It is never more than the darts that can be numbered.
+    let most = Err(bound(2 * MAX_EDGES));
+    assert_eq!(run::<Algorithm1Run>(&[marked(u32::MAX, 0)], usize::MAX), most);
 }
 
 #[test]
 fn a_start_without_its_marker_is_a_contradiction() {
     for perceived in [plain(3), plain(0), marked(3, 1), marked(0, 0)] {
-        assert_eq!(scripted(&[perceived]), Contradiction::Start { perceived }.into());
+        let expected = Error::from(Contradiction::Start { perceived });
+        assert_eq!(algorithm1(&[perceived]), expected);
+        assert_eq!(folding(&[perceived]), expected);
     }
+    let two = Percept { degree: 3, sighting: Sighting::Lying(2) };
+    for perceived in [plain(3), plain(0), lying(0), marked(3, 0), two] {
+        let expected = Contradiction::StartWithoutMarker { perceived };
+        assert_eq!(movable(&[perceived]), expected.into());
+    }
+    assert_eq!(
+        movable(&[plain(3)]).to_string(),
+        "the world contradicts itself: the marker must lie at the start, but there is degree 3 \
+         without the marker"
+    );
 }
 
 #[test]
 fn a_percept_that_no_vertex_gives_is_a_contradiction() {
     for perceived in [plain(0), marked(2, 2), marked(0, 0)] {
-        let expected = Contradiction::Impossible { perceived }.into();
-        assert_eq!(scripted(&[marked(1, 0), perceived]), expected);
+        let expected = Error::from(Contradiction::Impossible { perceived });
+        assert_eq!(algorithm1(&[marked(1, 0), perceived]), expected);
+        assert_eq!(folding(&[marked(1, 0), perceived]), expected);
+        assert_eq!(movable(&[lying(1), perceived]), expected);
     }
 }
 
 // paper: alg1.6
 #[test]
 fn a_known_place_that_changed_is_a_contradiction() {
-    // A dead end behind each of two doors; but the start has three doors when met again.
-    let expected = Contradiction::KnownPlace {
-        vertex: Vertex(0),
-        index: 0,
-        expected: marked(2, 0),
-        perceived: marked(3, 0),
-    };
-    assert_eq!(scripted(&[marked(2, 0), plain(1), marked(3, 0)]), expected.into());
-    // The marker may not turn, either.
-    let turned = Contradiction::KnownPlace {
-        vertex: Vertex(0),
-        index: 0,
-        expected: marked(2, 0),
-        perceived: marked(2, 1),
-    };
-    assert_eq!(scripted(&[marked(2, 0), plain(1), marked(2, 1)]), turned.into());
+    // A dead end behind each of two doors; but the start has three doors when met again, or the marker turned.
+    for perceived in [marked(3, 0), marked(2, 1)] {
+        let expected = known_place((0, 0), marked(2, 0), perceived);
+        assert_eq!(algorithm1(&[marked(2, 0), plain(1), perceived]), expected);
+    }
     assert_eq!(
-        MappingError::<RefusedAction>::from(expected).to_string(),
+        known_place((0, 0), marked(2, 0), marked(3, 0)).to_string(),
         "the world contradicts itself: at the known vertex v0, entered by its dart 0: expected \
          degree 2 with the marker along door 0, found degree 3 with the marker along door 0"
     );
@@ -91,8 +163,20 @@ fn a_known_place_that_changed_is_a_contradiction() {
 fn a_marker_where_it_cannot_be_is_a_contradiction() {
     for perceived in [marked(3, 1), marked(2, 0)] {
         let expected = Contradiction::Marker { vertex: Vertex(0), index: 0, perceived };
-        assert_eq!(scripted(&[marked(2, 0), perceived]), expected.into());
+        assert_eq!(algorithm1(&[marked(2, 0), perceived]), expected.into());
     }
+    for perceived in [lying(3), marked(3, 0)] {
+        let expected = Contradiction::SecondMarker { vertex: Vertex(0), index: 0, perceived };
+        assert_eq!(movable(&[lying(2), perceived]), expected.into());
+    }
+    assert_eq!(
+        movable(&[lying(2), lying(3)]).to_string(),
+        "the world contradicts itself: the robot carries the marker, but behind the unexplored \
+         dart 0 of vertex v0 there is degree 3 with a marker lying there"
+    );
+    // At a known place, too.
+    let expected = known_place((0, 0), plain(2), lying(2));
+    assert_eq!(movable(&[lying(2), plain(1), lying(2)]), expected);
 }
 
 #[test]
@@ -101,23 +185,105 @@ fn a_way_back_that_changed_is_a_contradiction() {
     // third? The path back to v0 shows three doors again, and the way back of that shows two.
     let percepts = [marked(1, 0), plain(3), plain(3), plain(3), plain(2)];
     let expected = Contradiction::WayBack { expected: plain(3), perceived: plain(2) };
-    assert_eq!(scripted(&percepts), expected.into());
+    assert_eq!(algorithm1(&percepts), expected.into());
+}
+
+#[test]
+fn a_trail_that_contradicts_itself_is_an_error_with_the_visits() {
+    // Behind each door of the start is a dead end; but the start has three doors when met again.
+    let visits = [0, 2];
+    let trail = |reason, expected| Error::from(Contradiction::Trail { reason, expected });
+    let reason = ContradictionReason::Degree { visits, degrees: [2, 3] };
+    let found = folding(&[marked(2, 0), plain(1), marked(3, 0)]);
+    // The robot went back, so it is known what it should have seen.
+    assert_eq!(found, trail(reason, Some(marked(2, 0))));
+    assert_eq!(
+        found.to_string(),
+        "the world contradicts itself: the junctions after 0 and 2 moves are the same one, with 2 \
+         doors and with 3"
+    );
+    // The marker may not turn, either.
+    let sightings = [0, 1].map(|door| Sighting::Pointing(Door(door)));
+    let reason = ContradictionReason::Marker { visits, sightings };
+    let found = folding(&[marked(2, 0), plain(1), marked(2, 1)]);
+    assert_eq!(found, trail(reason, Some(marked(2, 0))));
+    // The marker is behind its own door, and is come to by it.
+    let reason = ContradictionReason::OwnOpposite { visit: 0 };
+    assert_eq!(folding(&[marked(3, 0), marked(3, 0)]), trail(reason, None));
+}
+
+/// Of a cycle: out to v1 and v2 and over the next edge, where the marker is dropped, for this may be
+/// v0; back to v2, to v1, to v0.
+const CYCLE: [Percept; 7] = {
+    const TWO: Percept = Percept { degree: 2, sighting: Sighting::Nothing };
+    [Percept { degree: 2, sighting: Sighting::Lying(1) }, TWO, TWO, TWO, TWO, TWO, TWO]
+};
+
+// paper: movable.place, movable.new
+#[test]
+fn a_known_place_that_changed_or_a_marker_that_is_gone_is_a_contradiction() {
+    // On the way to an unexplored edge.
+    let expected = known_place((0, 0), plain(2), plain(3));
+    assert_eq!(movable(&[lying(2), plain(1), plain(3)]), expected);
+    // At the known end, back from the unknown one, where the marker cannot be, either; at a vertex that the unknown
+    // end cannot be; and at one that it can be.
+    for (moves, place, wrong) in [
+        (4, (2, 1), [plain(3), lying(2)]),
+        (5, (1, 1), [plain(1), lying(2)]),
+        (6, (0, 0), [plain(1), lying(3)]),
+    ] {
+        for perceived in wrong {
+            let percepts = [&CYCLE[..moves], &[perceived]].concat();
+            assert_eq!(movable(&percepts), known_place(place, plain(2), perceived));
+        }
+    }
+    // Where the marker was left.
+    for perceived in [plain(2), lying(3)] {
+        let percepts = [&CYCLE[..], &[plain(2), plain(2), perceived]].concat();
+        let expected = Contradiction::WayBack { expected: lying(2), perceived };
+        assert_eq!(movable(&percepts), expected.into());
+    }
+}
+
+/// Out to v1 and v2 and over the next edge to a place that looks like v0, and is; then the marker is
+/// carried to v2, and the robot is back at v0, with two darts to try.
+const BACK_LINK: [Percept; 11] = {
+    const TWO: Percept = Percept { degree: 2, sighting: Sighting::Nothing };
+    const THREE: Percept = Percept { degree: 3, sighting: Sighting::Nothing };
+    const HERE: Percept = Percept { degree: 3, sighting: Sighting::Lying(1) };
+    [HERE, TWO, TWO, THREE, TWO, TWO, HERE, TWO, TWO, TWO, THREE]
+};
+
+// paper: movable.back-link
+#[test]
+fn a_back_link_that_is_not_there_is_a_contradiction() {
+    let with = |more: &[Percept]| movable(&[&BACK_LINK[..], more].concat());
+    let expected = Contradiction::NoBackLink { vertex: Vertex(0), marked: Vertex(2) };
+    let error = with(&[plain(1), plain(3), plain(1), plain(3)]);
+    assert_eq!(error, expected.into());
+    assert_eq!(
+        error.to_string(),
+        "the world contradicts itself: an unexplored edge joins the vertices v2 and v0, but no \
+         unexplored dart of v0 leads to the marker at v2"
+    );
+    // The marker lies at another vertex than where it was dropped.
+    assert_eq!(with(&[lying(3)]), known_place((2, 1), lying(2), lying(3)));
+    // The vertex looks different after a dart that did not lead there.
+    assert_eq!(with(&[plain(1), plain(2)]), known_place((0, 1), plain(3), plain(2)));
+    assert_eq!(with(&[plain(1), lying(3)]), known_place((0, 1), plain(3), lying(3)));
 }
 
 #[test]
 fn the_worlds_own_error_is_passed_on() {
-    struct Closed;
-    impl World for Closed {
-        type Error = RefusedAction;
-        fn percept(&mut self) -> Result<Percept, RefusedAction> {
-            Ok(marked(2, 0))
-        }
-        fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
-            Err(RefusedAction::NoSuchDoor { door, degree: 0 })
-        }
+    fn error<E: Explorer + Default>(percept: Percept, refused: RefusedAction) -> Error {
+        let mut world = ScriptedWorld { percepts: &[percept], moves: 0, refused: Some(refused) };
+        explore(&mut E::default(), &mut world).unwrap_err()
     }
-    let error = RefusedAction::NoSuchDoor { door: Door(0), degree: 0 };
-    assert_eq!(map(&mut Closed), Err(MappingError::World(error)));
+    let door = RefusedAction::NoSuchDoor { door: Door(0), degree: 0 };
+    assert_eq!(error::<Algorithm1Run>(marked(2, 0), door), MappingError::World(door));
+    for refused in [door, RefusedAction::NothingToPickUp] {
+        assert_eq!(error::<MovableMarkerRun>(lying(2), refused), MappingError::World(refused));
+    }
 }
 
 proptest! {
@@ -125,58 +291,18 @@ proptest! {
     fn every_sensor_comes_to_an_end(
         percepts in proptest::collection::vec((0..5u32, 0..8u32), 1..200),
     ) {
-        let percepts: Vec<_> = std::iter::once(marked(2, 0))
-            .chain(percepts.into_iter().map(|(degree, door)| {
-                if door < degree { marked(degree, door) } else { plain(degree) }
-            }))
-            .collect();
-        let _ = map(&mut ScriptedWorld::new(&percepts));
+        let sensed = |first: Percept, other: fn(u32, u32) -> Percept| -> Vec<Percept> {
+            let others = percepts.iter().map(|&(degree, number)| other(degree, number));
+            std::iter::once(first).chain(others).collect()
+        };
+        let pointing = |degree, door| if door < degree { marked(degree, door) } else { plain(degree) };
+        let pointed = sensed(marked(2, 0), pointing);
+        let _ = run::<Algorithm1Run>(&pointed, BOUND);
+        let _ = run::<FoldingRun>(&pointed, BOUND);
+        let lay = |degree, number| if number % 4 == 0 { lying(degree) } else { plain(degree) };
+        let _ = run::<MovableMarkerRun>(&sensed(lying(2), lay), BOUND);
+        // Also one that never lies about the marker while the robot carries it or looks for it in vain.
+        let degrees = sensed(lying(2), |degree, number| plain(1 + (degree + number) % 3));
+        let _ = run::<MovableMarkerRun>(&degrees, BOUND);
     }
-}
-
-/// The events contain every move and every decision.
-// paper: cost.moves
-// paper: alg1.2, alg1.3, alg1.7, alg1.18, alg1.19, alg1.20, alg1.21, alg1.22, alg1.23, alg1.return
-#[test]
-fn the_story_of_a_triangle_with_a_tail() {
-    let graph = EmbeddedGraph::from_neighbour_lists(&[
-        ("end", vec!["a"]),
-        ("a", vec!["end", "b", "c"]),
-        ("b", vec!["a", "c"]),
-        ("c", vec!["b", "a"]),
-    ])
-    .unwrap();
-    let mut story = Vec::new();
-    let mut exploration = Algorithm1Run::new(graph.dart_count());
-    let mut listen = |_: &mut _, _: &MapWalk, event: MappingEvent| {
-        if !matches!(event, MappingEvent::Moved { .. }) {
-            story.push(event);
-        }
-    };
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
-    let arrived = |edge, percept, contradicted, hypotheses| MappingEvent::Arrived {
-        edge: Dart(edge),
-        percept,
-        contradicted,
-        hypotheses,
-    };
-    let added =
-        |edge, vertex| MappingEvent::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
-    assert_eq!(
-        story,
-        [
-            MappingEvent::Started { percept: marked(1, 0) },
-            arrived(0, plain(3), 0, 0),
-            added(0, 1),
-            arrived(2, plain(2), 1, 0),
-            added(2, 2),
-            arrived(5, plain(2), 1, 0),
-            added(5, 3),
-            arrived(7, plain(3), 0, 1),
-            MappingEvent::Confirmed { hypothesis: Dart(3), followed: 1 },
-            MappingEvent::LoopClosed { edge: Dart(7), other: Dart(3) },
-        ]
-    );
-    assert_eq!(exploration.moves(), 5);
 }

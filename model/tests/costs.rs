@@ -1,8 +1,6 @@
 //! What worlds cost, with each algorithm and at least: the tables in `worlds/README.md` and
 //! `docs/folding.md`.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use std::{fs, ops::RangeInclusive, path::Path};
 
 use toposlam_model::{
@@ -45,28 +43,16 @@ fn moves(algorithm: MappingAlgorithm, world: &NamedWorld, facing: Dart) -> u64 {
 /// them, and whether the paper's cost is among them.
 fn rows(name: &str, paper: u64) -> Vec<String> {
     let world = world(name);
-    world
-        .graph
-        .darts()
-        .map(|facing| {
-            let ways = every_way(
-                Algorithm1Run::default(),
-                &world.graph,
-                facing,
-                DEFAULT_STATE_BUDGET,
-                &(),
-            )
-            .unwrap();
-            let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
-            let among = if ways.costs.contains(paper) { "yes" } else { "no" };
-            let (start, moves) =
-                (world.start_text(facing), moves(MappingAlgorithm::Algorithm1, &world, facing));
-            let runs = ways.runs;
-            format!(
-                "| {name} | {start} | {moves} | {runs} | {least} to {most} | {paper}: {among} |"
-            )
-        })
-        .collect()
+    let row = |facing| {
+        let run = Algorithm1Run::default();
+        let ways = every_way(run, &world.graph, facing, DEFAULT_STATE_BUDGET, &()).unwrap();
+        let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
+        let among = if ways.costs.contains(paper) { "yes" } else { "no" };
+        let (start, runs) = (world.start_text(facing), ways.runs);
+        let moves = moves(MappingAlgorithm::Algorithm1, &world, facing);
+        format!("| {name} | {start} | {moves} | {runs} | {least} to {most} | {paper}: {among} |")
+    };
+    world.graph.darts().map(row).collect()
 }
 
 // paper: cost.shape-6, cost.shape-8
@@ -113,8 +99,8 @@ fn the_table_of_both_costs_is_true() {
 }
 
 fn tally(class: Class, edges: usize, algorithm: MappingAlgorithm) -> Tally {
-    let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
-    let tally = algorithm.sweep(&sweep, RunChoices::Default, &());
+    let check = Check::new(class, edges, Shard::WHOLE).unwrap();
+    let tally = algorithm.sweep(&check, RunChoices::Default, &());
     assert_eq!(tally.failure, None);
     assert_eq!((tally.mapped, tally.below_certificate), (tally.starts, 0));
     tally
@@ -125,22 +111,16 @@ fn cells(tally: &Tally, total: u64, most: u64) -> String {
     format!("{:.1} | {most}", total as f64 / tally.starts as f64)
 }
 
-fn moves_of(tally: &Tally) -> String {
-    cells(tally, tally.moves_total, tally.moves_max())
-}
-
-fn certificates_of(tally: &Tally) -> String {
-    cells(tally, tally.certificate_total, tally.certificate_max)
-}
-
 /// A row for each number of edges: the mean and the most moves of a certificate and of both algorithms.
 fn every_start(class: Class, up_to: usize) -> Vec<String> {
     let rows = (1..=up_to).map(|edges| {
         let one = tally(class, edges, MappingAlgorithm::Algorithm1);
         let other = tally(class, edges, MappingAlgorithm::MovableMarker);
-        let (starts, certificate) = (one.starts, certificates_of(&one));
+        let certificate = cells(&one, one.certificate_total, one.certificate_max);
+        let starts = one.starts;
         let ratio = one.moves_total as f64 / one.certificate_total as f64;
-        let [one, other] = [one, other].map(|tally| moves_of(&tally));
+        let [one, other] =
+            [one, other].map(|tally| cells(&tally, tally.moves_total, tally.moves_max()));
         format!("| {class} | {edges} | {starts} | {certificate} | {one} | {ratio:.2} | {other} |")
     });
     rows.collect()

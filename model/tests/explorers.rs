@@ -11,14 +11,15 @@ use depth_first::DepthFirst;
 use own_marker::Beacon;
 use toposlam_model::{
     ambiguity::AmbiguitySearch,
-    check::{Check, RunChoices, Shard, SharedPrefixCheck, Tally, judge_start},
-    embedded_graph::{Dart, EmbeddedGraph},
+    check::{Check, RunChoices, Shard, SharedPrefixCheck, Tally},
+    embedded_graph::Dart,
     enumerate::Class,
-    isomorphism::Candidate,
-    mapping::{Algorithm1Run, ExploredMap, Explorer, Flaw, MappingError, Observer, explore},
+    mapping::{
+        Algorithm1Run, ExploredMap, Explorer, Flaw, Mapped, MappingError, ObservedWorld, explore,
+    },
     marker::{Directional, Marker, MarkerKind, named},
     percept::Door,
-    world::{RefusedAction, World},
+    world::RefusedAction,
 };
 
 fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
@@ -72,7 +73,6 @@ enum Broken {
     Endless,
     /// It takes a door that does not exist.
     NoDoor,
-    /// It gives up.
     GivesUp,
 }
 
@@ -88,12 +88,8 @@ impl Explorer for BrokenExplorer {
         Directional
     }
 
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        explore(&mut self.1, world, observer)?;
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        explore(&mut self.1, world)?;
         match self.0 {
             Broken::Endless => loop {
                 world.traverse(Door::BACK).map_err(MappingError::World)?;
@@ -107,18 +103,7 @@ impl Explorer for BrokenExplorer {
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
         let mut map = self.1.explored()?;
         match self.0 {
-            Broken::Mirrored => {
-                let clockwise: Vec<_> =
-                    map.graph.darts().map(|dart| map.graph.counterclockwise(dart).0).collect();
-                let opposite: Vec<_> =
-                    map.graph.darts().map(|dart| map.graph.opposite(dart).0).collect();
-                return ExploredMap::from_permutations(
-                    &opposite,
-                    &clockwise,
-                    map.facing.0,
-                    map.pose.0,
-                );
-            }
+            Broken::Mirrored => map.graph = Cow::Owned(map.graph.mirror_image()),
             Broken::WrongPose => map.pose = map.facing,
             Broken::WrongFacing => map.facing = map.graph.clockwise(map.facing),
             Broken::OneMap => {
@@ -164,51 +149,6 @@ fn the_sweep_catches_broken_explorers() {
     let no_door = first_flaw(Broken::NoDoor).1;
     assert!(matches!(no_door, Flaw::Error(MappingError::World(RefusedAction::NoSuchDoor { .. }))));
     assert_eq!(first_flaw(Broken::Endless).2, Some(10_000));
-}
-
-/// An explorer claims a map and a bound; the moves are the world's count.
-#[test]
-fn the_world_counts_the_moves() {
-    #[derive(Clone)]
-    struct Pacing(u64);
-    impl Explorer for Pacing {
-        type Marker = MarkerKind;
-        type Choice = ();
-
-        fn marker(&self) -> MarkerKind {
-            Directional
-        }
-
-        fn begin<W: World>(
-            &mut self,
-            world: &mut W,
-            _: &mut impl Observer<W>,
-        ) -> Result<(), MappingError<W::Error>> {
-            (0..self.0).try_for_each(|_| world.traverse(Door::BACK)).map_err(MappingError::World)
-        }
-
-        fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
-            let graph =
-                EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]);
-            let pose = Dart((self.0 % 2) as u32);
-            Ok(ExploredMap { graph: Cow::Owned(graph.unwrap()), facing: Dart(0), pose })
-        }
-
-        fn move_bound(&self, edges: usize, _: usize) -> u64 {
-            3 * edges as u64
-        }
-    }
-    let edge =
-        EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]).unwrap();
-    let judge = |moves| judge_start(&mut Pacing(moves), &edge, Dart(0), &mut Candidate::default());
-    for moves in 0..=3 {
-        assert_eq!(judge(moves), (moves, Ok(())));
-    }
-    let (moves, flaw) = judge(4);
-    assert_eq!(
-        (moves, flaw.unwrap_err().to_string()),
-        (3, "no more than 3 moves are allowed".to_owned())
-    );
 }
 
 /// The search accepts a marker that another crate defines. Receiving the beacon at a neighbouring vertex

@@ -1,15 +1,15 @@
 //! Percepts that are false each time in the same way: which of them no robot can detect.
 
-use std::ops::ControlFlow;
-
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    enumerate::Class,
     isomorphism::Bijection,
     mapping::{FACING, MappingAlgorithm, MappingMethod, Relocate},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, RefusedAction, World},
 };
+
+use crate::starts;
 
 /// A world in which percepts are false, given the robot's pose, the true percept and the number of moves.
 struct Falsified<'g, F> {
@@ -43,16 +43,6 @@ fn mapped(
     mapped.ok().and_then(|_| run.map().complete().cloned())
 }
 
-fn starts(edges: usize) -> Vec<EmbeddedGraph> {
-    let mut starts = Vec::new();
-    let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
-    let _: ControlFlow<()> = all.for_each(&mut |found: EnumeratedGraph| {
-        starts.push(found.graph.clone());
-        ControlFlow::Continue(())
-    });
-    starts
-}
-
 fn is_right(map: &EmbeddedGraph, graph: &EmbeddedGraph) -> bool {
     Bijection::of_starts((map, FACING), (graph, FACING)).verify(map, graph)
 }
@@ -61,7 +51,7 @@ fn is_right(map: &EmbeddedGraph, graph: &EmbeddedGraph) -> bool {
 /// marked vertex after the start, by this function of another door.
 fn unnoticed_at_the_marker(edges: usize, sighting: impl Fn(Door) -> Sighting) -> usize {
     let mut wrong = 0;
-    for graph in starts(edges) {
+    for graph in starts(Class::Multigraph, edges) {
         for by in 1..graph.degree_around(FACING) {
             let found = mapped(&graph, |_, percept, moves| match percept.sighting {
                 Sighting::Pointing(door) if moves > 0 => {
@@ -89,7 +79,7 @@ fn a_marker_that_is_missed_or_turned_each_time_is_always_noticed() {
 fn a_marker_that_is_invented_each_time_can_make_a_cycle_of_two_a_loop() {
     for (edges, unnoticed) in [(1, 0), (2, 1), (3, 0), (4, 14)] {
         let mut wrong = Vec::new();
-        for graph in starts(edges) {
+        for graph in starts(Class::Multigraph, edges) {
             let marked = graph.vertex(FACING);
             for along in graph.darts().filter(|&dart| graph.vertex(dart) != marked) {
                 let found = mapped(&graph, |pose, percept, _| {
@@ -114,7 +104,7 @@ fn a_marker_that_is_invented_each_time_can_make_a_cycle_of_two_a_loop() {
 fn doors_that_are_never_seen_are_missing_in_a_map_that_no_walk_contradicts() {
     for (edges, unnoticed) in [(1, 0), (2, 7), (3, 80)] {
         let mut wrong = 0;
-        for graph in starts(edges) {
+        for graph in starts(Class::Multigraph, edges) {
             for vertex in graph.vertices() {
                 for degree in 1..=2 * edges as u32 {
                     let found = mapped(&graph, |pose, percept, _| {

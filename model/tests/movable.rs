@@ -1,90 +1,56 @@
 //! The movable marker algorithm maps every small world without loops and parallel edges, at the cost
 //! that a second implementation has, too; and with loops or parallel edges it does not.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
-use std::ops::ControlFlow;
-
 use toposlam_model::{
     ambiguity::Comparison,
     check::{Check, RunChoices, Shard, judge},
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    enumerate::{Class, Each, Enumeration},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Class,
     isomorphism::{Candidate, code, isomorphism},
-    mapping::{
-        Flaw, MapWalk, MappingAlgorithm, MappingEvent, MovableEvent, MovableMarkerRun, Nearest,
-        explore, map_with_movable_marker,
-    },
+    mapping::{Flaw, MappingAlgorithm, MovableMarkerRun, explore},
     marker::{MarkerKind, Movable},
-    percept::{Percept, Sighting},
     world::GraphWorld,
 };
 
-/// For each number of edges: starts, the sum of the moves, the most moves.
-fn rows(class: Class, up_to: usize) -> Vec<(u64, u64, u64)> {
-    let rows = (1..=up_to).map(|edges| {
-        let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
-        let tally = sweep.run(MovableMarkerRun::default, RunChoices::Default, &());
-        assert_eq!(tally.failure, None);
-        assert_eq!(tally.mapped, tally.starts);
-        (tally.starts, tally.moves_total, tally.moves_max())
-    });
-    rows.collect()
-}
+use crate::starts;
 
-/// The moves: by `tests/oracle/movable_marker.py` of the workspace.
+/// The starts, the sum of the moves, and the most moves: by `tests/oracle/movable_marker.py` of the workspace.
 // paper: movable.place, movable.new, movable.known, movable.back-link
 #[test]
-fn every_start_of_every_simple_world_with_up_to_eight_edges_is_mapped_right() {
-    assert_eq!(
-        rows(Class::Simple, 8),
-        [
-            (1, 1, 1),
-            (2, 5, 3),
-            (6, 27, 6),
-            (23, 173, 15),
-            (108, 1222, 24),
-            (596, 9519, 36),
-            (3790, 80_494, 50),
-            (27_339, 740_807, 66),
-        ]
-    );
+fn every_start_of_every_small_simple_world_is_mapped_right() {
+    for (class, edges, row) in [
+        (Class::Simple, 1, (1, 1, 1)),
+        (Class::Simple, 2, (2, 5, 3)),
+        (Class::Simple, 3, (6, 27, 6)),
+        (Class::Simple, 4, (23, 173, 15)),
+        (Class::Simple, 5, (108, 1222, 24)),
+        (Class::Simple, 6, (596, 9519, 36)),
+        (Class::Simple, 7, (3790, 80_494, 50)),
+        (Class::Simple, 8, (27_339, 740_807, 66)),
+        (Class::Corridor, 10, (61_455, 2_348_793, 104)),
+        (Class::Planar, 8, (15_485, 371_598, 66)),
+    ] {
+        let check = Check::new(class, edges, Shard::WHOLE).unwrap();
+        let tally = check.run(MovableMarkerRun::default, RunChoices::Default, &());
+        assert_eq!((tally.failure.as_ref(), tally.mapped), (None, tally.starts), "{class} {edges}");
+        assert_eq!((tally.starts, tally.moves_total, tally.moves_max()), row, "{class} {edges}");
+    }
 }
 
-#[test]
-fn every_start_of_every_corridor_world_with_up_to_ten_edges_is_mapped_right() {
-    let rows = rows(Class::Corridor, 10);
-    assert_eq!(rows.last(), Some(&(61_455, 2_348_793, 104)));
-}
-
-#[test]
-fn every_start_of_every_planar_world_with_up_to_eight_edges_is_mapped_right() {
-    let rows = rows(Class::Planar, 8);
-    assert_eq!(rows.last(), Some(&(15_485, 371_598, 66)));
-}
-
-fn run(graph: &EmbeddedGraph, facing: Dart) -> (MovableMarkerRun, GraphWorld<'_, MarkerKind>) {
-    let mut search = MovableMarkerRun::new(graph.dart_count());
+/// The moves of a run. At its end the robot carries the marker.
+fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
+    let mut run = MovableMarkerRun::new(graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
-    explore(&mut search, &mut world, &mut ()).unwrap();
-    (search, world)
-}
-
-#[test]
-fn at_the_end_the_robot_carries_the_marker() {
-    let starts = Enumeration::new(Each::Start, Class::Simple, 6).unwrap();
-    let _ = starts.for_each(&mut |found| {
-        let (_, world) = run(found.graph, Dart(0));
-        assert!(world.carries());
-        ControlFlow::Continue(())
-    });
+    explore(&mut run, &mut world).unwrap();
+    assert!(world.carries());
+    run.moves()
 }
 
 /// From an end, no known vertex can ever be the place just reached.
 #[test]
 fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
-        assert_eq!(run(&EmbeddedGraph::chain(edges), Dart(0)).0.moves(), edges as u64);
+        assert_eq!(moves(&EmbeddedGraph::chain(edges), Dart(0)), edges as u64);
     }
 }
 
@@ -99,7 +65,7 @@ fn a_cycle_of_m_edges_costs_m_squared_plus_m_minus_6() {
         let last = 1 + 1 + (edges - 1);
         assert_eq!(2 + new + last, edges * edges + edges - 6);
         for facing in graph.darts() {
-            assert_eq!(run(&graph, facing).0.moves(), edges * edges + edges - 6);
+            assert_eq!(moves(&graph, facing), edges * edges + edges - 6);
         }
     }
 }
@@ -119,91 +85,6 @@ fn the_bound_is_the_stated_one() {
     assert_eq!(bound(1, 1), 0);
 }
 
-/// The tetrahedron: every vertex has three doors.
-fn k4() -> EmbeddedGraph {
-    EmbeddedGraph::from_neighbour_lists(&[
-        ("hub", vec!["a", "b", "c"]),
-        ("a", vec!["hub", "c", "b"]),
-        ("b", vec!["hub", "a", "c"]),
-        ("c", vec!["hub", "b", "a"]),
-    ])
-    .unwrap()
-}
-
-/// What happens on the way, but for the moves, each with the moves made by then.
-fn story(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent)> {
-    let mut story = Vec::new();
-    let mut listen = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
-        if !matches!(event, MappingEvent::Moved { .. }) {
-            story.push((journey.moves(), event));
-        }
-    };
-    let mut search = MovableMarkerRun::new(graph.dart_count());
-    let mut world = GraphWorld::with_marker(graph, Movable, Dart(0));
-    map_with_movable_marker(&mut world, &mut Nearest, &mut search, &mut listen).unwrap();
-    story
-}
-
-/// The events contain every decision.
-// paper: movable.place, movable.new, movable.known, movable.back-link
-#[test]
-fn the_story_of_the_tetrahedron() {
-    use MovableEvent::{Behind, Dropped, NotBehind, PickedUp};
-    let percept = Percept { degree: 3, sighting: Sighting::Nothing };
-    let started =
-        MappingEvent::Started { percept: Percept { degree: 3, sighting: Sighting::Lying(1) } };
-    let arrived = |edge, candidates| {
-        MappingEvent::Movable(MovableEvent::Arrived { edge: Dart(edge), percept, candidates })
-    };
-    let not_at = |vertex| MappingEvent::Movable(MovableEvent::NotAt { vertex: Vertex(vertex) });
-    let found = |vertex| MappingEvent::Movable(MovableEvent::Found { vertex: Vertex(vertex) });
-    let added =
-        |edge, vertex| MappingEvent::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
-    let closed = |edge, other| MappingEvent::LoopClosed { edge: Dart(edge), other: Dart(other) };
-    assert_eq!(
-        story(&k4()),
-        [
-            (0, started),
-            (0, MappingEvent::Movable(PickedUp)),
-            (1, arrived(0, 0)),
-            (1, added(0, 1)),
-            (2, arrived(4, 0)),
-            (2, added(4, 2)),
-            // Back over the edge, and by v1 to v0.
-            (3, arrived(7, 1)),
-            (3, MappingEvent::Movable(Dropped)),
-            (6, found(0)),
-            // To v2 by v1, and back: v0 has two unexplored darts.
-            (6, MappingEvent::Movable(PickedUp)),
-            (8, MappingEvent::Movable(Dropped)),
-            (12, MappingEvent::Movable(NotBehind { dart: Dart(1), percept })),
-            (13, MappingEvent::Movable(Behind { dart: Dart(2) })),
-            (13, MappingEvent::Movable(PickedUp)),
-            (13, closed(7, 2)),
-            (14, arrived(8, 0)),
-            (14, added(8, 3)),
-            // Back over the edge, by v2 to v1, and on to v0, which has one unexplored dart left.
-            (15, arrived(10, 2)),
-            (15, MappingEvent::Movable(Dropped)),
-            (18, not_at(1)),
-            (19, found(0)),
-            (19, MappingEvent::Movable(PickedUp)),
-            (19, closed(10, 1)),
-            (21, arrived(5, 1)),
-            (21, MappingEvent::Movable(Dropped)),
-            (24, found(3)),
-            (24, MappingEvent::Movable(PickedUp)),
-            (24, closed(5, 11)),
-        ]
-    );
-    // In a cycle, no place is v0 but that behind the last edge.
-    let story = story(&EmbeddedGraph::cycle(7));
-    let not_found = story
-        .iter()
-        .filter(|(_, event)| matches!(event, MappingEvent::Movable(MovableEvent::NotFound)));
-    assert_eq!(not_found.count(), 4);
-}
-
 /// What a run on a world with loops or parallel edges comes to.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
@@ -216,7 +97,7 @@ fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
     let mut search = MovableMarkerRun::new(10 * graph.dart_count());
     let mut world = GraphWorld::with_marker(graph, Movable, facing);
     let mut candidate = Candidate::default();
-    let run = explore(&mut search, &mut world, &mut ());
+    let run = explore(&mut search, &mut world);
     let judged = run
         .map_err(Flaw::from)
         .and_then(|()| judge(&search, facing, &world, &mut candidate).map(|_| ()));
@@ -233,16 +114,12 @@ fn end(graph: &EmbeddedGraph, facing: Dart) -> End {
 #[test]
 fn no_world_with_loops_or_parallel_edges_is_mapped_right() {
     let (mut wrong, mut errors) = (Vec::new(), 0);
-    for edges in 1..=5 {
-        let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
-        let _ = starts.for_each(&mut |found| {
-            match end(found.graph, Dart(0)) {
-                End::Right => assert!(found.graph.is_simple()),
-                End::WrongMap => wrong.push(found.graph.clone()),
-                End::Error => errors += 1,
-            }
-            ControlFlow::Continue(())
-        });
+    for graph in (1..=5).flat_map(|edges| starts(Class::Multigraph, edges)) {
+        match end(&graph, Dart(0)) {
+            End::Right => assert!(graph.is_simple()),
+            End::WrongMap => wrong.push(graph),
+            End::Error => errors += 1,
+        }
     }
     assert!(wrong.iter().all(|graph| !graph.is_simple()));
     assert_eq!((wrong.len(), errors), (6, 8808));

@@ -5,10 +5,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::{Candidate, code},
-    mapping::{
-        Algorithm1Run, DEFAULT_DART_BOUND, Explorer, Flaw, InvalidStep, MappingChoice,
-        MappingError, Nearest, map_world, step,
-    },
+    mapping::{Algorithm1Run, DEFAULT_DART_BOUND, Explorer, Flaw, MappingError, explore},
     percept::Door,
     world::{GraphWorld, World},
 };
@@ -20,7 +17,7 @@ fn theta(far: [&'static str; 3]) -> EmbeddedGraph {
 fn mapped(graph: &EmbeddedGraph) -> (Algorithm1Run, GraphWorld<'_>) {
     let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, Dart(0));
-    map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
+    explore(&mut exploration, &mut world).unwrap();
     (exploration, world)
 }
 
@@ -40,19 +37,19 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
     let mut moved = world.clone();
     moved.traverse(Door::BACK).unwrap();
     assert!(matches!(verdict(&exploration, &moved), Some(Flaw::WrongPose { .. })));
-    // Back and forth, until it is one move too many.
+    // Back and forth, until it is one move too many. The world counts the moves.
     let bound = exploration.move_bound(3, 2);
-    while exploration.moves() <= bound {
+    while world.moves() <= bound {
         assert_eq!(verdict(&exploration, &world), None);
         for _ in 0..2 {
-            exploration.go_through(Door::BACK, &mut world, &mut ()).unwrap();
+            world.traverse(Door::BACK).unwrap();
         }
     }
-    let moves = exploration.moves();
+    let moves = world.moves();
     assert_eq!(verdict(&exploration, &world), Some(Flaw::TooManyMoves { moves, bound }));
     // Broken off.
     let mut world = GraphWorld::new(&plane, Dart(0));
-    exploration.begin(&mut world, &mut ()).unwrap();
+    exploration.begin(&mut world).unwrap();
     assert_eq!(verdict(&exploration, &world), Some(Flaw::Unfinished { unexplored: 3 }));
 }
 
@@ -61,95 +58,11 @@ fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
     let graph = EmbeddedGraph::from_edge_lists(&[("u", vec!["a"]), ("v", vec!["a"])]).unwrap();
     let map = |bound| {
         let mut world = GraphWorld::new(&graph, Dart(0));
-        map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(bound), &mut ())
+        explore(&mut Algorithm1Run::new(bound), &mut world)
     };
     assert_eq!(map(2), Ok(()));
     assert_eq!(map(1), Err(MappingError::Bound { bound: 1 }));
     assert_eq!(DEFAULT_DART_BOUND, 16_384);
-}
-
-/// A step out of order is an error and changes nothing. Nothing is left of an earlier run.
-#[test]
-fn a_step_out_of_order_is_an_error() {
-    let error = |step| Err(MappingError::InvalidStep(step));
-    let [edge, hypothesis] = [MappingChoice::Edge(Dart(0)), MappingChoice::Hypothesis(0)];
-    let no_hypothesis = InvalidStep::NoHypothesis { index: 0, left: 0 };
-    let graph = theta(["c", "b", "a"]);
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut fresh = Algorithm1Run::new(6);
-    assert_eq!(fresh.choose().unwrap(), None);
-    let unexplored = InvalidStep::NotUnexplored(Dart(0));
-    assert_eq!(step(&mut fresh, edge, &mut world, &mut ()), error(unexplored));
-    assert_eq!(step(&mut fresh, hypothesis, &mut world, &mut ()), error(no_hypothesis));
-    assert_eq!(fresh.close_loop(Dart(0), &mut world, &mut ()), Err(InvalidStep::NoEdge));
-    assert_eq!(fresh.add_place(&mut world, &mut ()), error(InvalidStep::NoEdge));
-    assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
-    assert_eq!(fresh.map().complete(), None);
-    let (mut done, mut world) = mapped(&graph);
-    let map = done.map().clone();
-    assert_eq!(done.open_choices().next(), None);
-    assert_eq!(step(&mut done, edge, &mut world, &mut ()), error(unexplored));
-    assert_eq!(step(&mut done, hypothesis, &mut world, &mut ()), error(no_hypothesis));
-    assert_eq!(done.close_loop(Dart(1), &mut world, &mut ()), Err(InvalidStep::NoEdge));
-    assert_eq!(done.add_place(&mut world, &mut ()), error(InvalidStep::NoEdge));
-    assert_eq!(done.map(), &map);
-    // A start that is refused leaves nothing of the run before.
-    world.traverse(Door(1)).unwrap();
-    done.begin(&mut world, &mut ()).unwrap_err();
-    assert_eq!((done.robot(), done.moves(), done.map().dart_count()), (Dart(0), 0, 0));
-}
-
-/// A loop is closed by another unexplored dart than the one that is being explored, or not at all.
-/// Meanwhile no other edge can be chosen.
-#[test]
-fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
-    let graph = theta(["c", "b", "a"]);
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut exploration = Algorithm1Run::new(6);
-    exploration.begin(&mut world, &mut ()).unwrap();
-    step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
-    let map = exploration.map().clone();
-    exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
-    for (dart, invalid) in [
-        (Dart(0), InvalidStep::NotUnexplored(Dart(0))),
-        (Dart(3), InvalidStep::NotUnexplored(Dart(3))),
-        (Dart(6), InvalidStep::NotUnexplored(Dart(6))),
-        (Dart(4), InvalidStep::SameDart(Dart(4))),
-    ] {
-        assert_eq!(exploration.close_loop(dart, &mut world, &mut ()), Err(invalid));
-        assert_eq!(exploration.map(), &map);
-    }
-    for other in [1, 2, 4, 5] {
-        let chosen = MappingChoice::Edge(Dart(other));
-        let chosen = step(&mut exploration, chosen, &mut world, &mut ());
-        let in_progress = InvalidStep::EdgeInProgress(Dart(4));
-        assert_eq!(chosen, Err(MappingError::InvalidStep(in_progress)));
-    }
-    let left = exploration.hypotheses().len();
-    let chosen = MappingChoice::Hypothesis(left);
-    let none = InvalidStep::NoHypothesis { index: left, left };
-    let chosen = step(&mut exploration, chosen, &mut world, &mut ());
-    assert_eq!(chosen, Err(MappingError::InvalidStep(none)));
-    // All of that has changed nothing.
-    assert!(exploration.is_at_line_8());
-    exploration.close_loop(Dart(1), &mut world, &mut ()).unwrap();
-    assert_eq!(exploration.map().opposite(Dart(1)), Some(Dart(4)));
-}
-
-/// A caller that follows its own path reports where it ended.
-#[test]
-fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
-    let graph = theta(["c", "b", "a"]);
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut exploration = Algorithm1Run::new(6);
-    exploration.begin(&mut world, &mut ()).unwrap();
-    step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
-    exploration.clear_trail();
-    exploration.go_through(Door::BACK, &mut world, &mut ()).unwrap();
-    exploration.arrive_at_marker(Dart(0));
-    // Out, back, out again and over the edge.
-    exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
-    assert_eq!((exploration.moves(), exploration.robot()), (4, Dart(3)));
 }
 
 /// The run with the most moves for its vertices, and the first start that takes the most moves.

@@ -3,7 +3,7 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{Choices, PartialMap},
+    mapping::{Algorithm1Run, Explorer, InvalidStep, MappingChoice},
     percept::Door,
 };
 
@@ -180,19 +180,17 @@ pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
 }
 
-/// The open choices of Algorithm 1: any edge at line 5, any hypothesis at line 9. The map has at most 127
-/// edges.
-pub struct DrawnChoices<'c, C>(pub &'c mut C);
-
-impl<C: Choose> Choices for DrawnChoices<'_, C> {
-    fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
-        let place = self.0.below(map.unexplored_count() as u8);
-        map.unexplored().nth(place.into()).unwrap_or(nearest)
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-        self.0.below(hypotheses.len() as u8).into()
-    }
+/// An open choice of Algorithm 1: any edge at line 5, any hypothesis at line 9; `None` if the run has ended. The map has
+/// at most 127 edges.
+///
+/// # Errors
+/// Returns none: Algorithm 1 always knows its choices.
+pub fn open_choice(
+    choose: &mut impl Choose,
+    run: &mut Algorithm1Run,
+) -> Result<Option<MappingChoice>, InvalidStep> {
+    let open = run.choices()?;
+    Ok(if open.is_empty() { None } else { Some(open[usize::from(choose.below(open.len() as u8))]) })
 }
 
 #[cfg(test)]

@@ -14,14 +14,14 @@ use toposlam_model::{
         world_file,
     },
     isomorphism::Candidate,
-    mapping::{Algorithm1Run, Explorer, MapWalk, MappingEvent, map_world},
+    mapping::{Algorithm1Run, Explorer, MapWalk, MappingEvent, Observed, explore_with},
     world::GraphWorld,
 };
 
 use crate::{
     bytes::Bytes,
     definition::{is_simple, is_world},
-    draw::{self, DrawnChoices},
+    draw,
 };
 
 /// A body for a fuzzer.
@@ -105,8 +105,9 @@ pub fn mapping(bytes: &[u8]) {
     let mut watch = |_: &mut _, journey: &MapWalk, _: MappingEvent| {
         assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
     };
-    let mut open = DrawnChoices(&mut choose);
-    let flaw = match map_world(&mut world, &mut open, &mut exploration, &mut watch) {
+    let observed = &mut Observed::new(&mut world, &mut watch);
+    let ended = explore_with(&mut exploration, observed, |run| draw::open_choice(&mut choose, run));
+    let flaw = match ended {
         Err(error) => Some(error.into()),
         Ok(()) => judge(&exploration, facing, &world, &mut Candidate::default()).err(),
     };

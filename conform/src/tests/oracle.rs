@@ -11,8 +11,8 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     mapping::{
-        Algorithm1Run, Choices, MapWalk, MappingAlgorithm, MappingError, MappingEvent, PartialMap,
-        map_world,
+        Algorithm1Run, Explorer, MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observed,
+        explore_with,
     },
     percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEventKind},
@@ -294,17 +294,6 @@ impl Script {
     }
 }
 
-impl Choices for Script {
-    fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
-        let open: Vec<_> = map.unexplored().collect();
-        open[self.choose(open.len())]
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-        self.choose(hypotheses.len())
-    }
-}
-
 /// The number of runs of Algorithm 1 that are tried.
 const RUNS: usize = 1000;
 
@@ -324,7 +313,13 @@ pub(super) fn takes_doors(algorithm: MappingAlgorithm, trace: &Trace) -> Option<
         let end = match algorithm {
             MappingAlgorithm::Algorithm1 => {
                 let mut exploration = Algorithm1Run::new(usize::MAX);
-                map_world(&mut world, &mut script, &mut exploration, &mut nobody)
+                explore_with(&mut exploration, &mut Observed::new(&mut world, &mut nobody), |run| {
+                    let open = run.choices()?;
+                    if open.is_empty() {
+                        return Ok(None);
+                    }
+                    Ok(open.get(script.choose(open.len())).copied())
+                })
             }
             _ => algorithm.map_world(&mut world, usize::MAX, &mut nobody).1,
         };

@@ -56,7 +56,6 @@ fn push_label(bytes: &mut Vec<u8>, percept: Percept, carries: bool) {
 }
 
 impl AmbiguityCandidate {
-    /// A placed world of an enumeration, so with at most 32 edges.
     pub(super) fn new(quotient: &QuotientCode, code: &StartCode) -> Self {
         // A movable marker makes more classes than a byte can number.
         let is_wide = quotient.len() > 1 << u8::BITS;
@@ -92,13 +91,11 @@ impl AmbiguityCandidate {
         (usize::from(length) == words.len()).then_some(candidate)
     }
 
-    /// Its bytes.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// The bytes of the quotient.
     #[must_use]
     pub fn quotient(&self) -> &[u8] {
         self.parts().map_or(&[], |(quotient, _)| quotient)
@@ -127,46 +124,39 @@ mod tests {
     use super::*;
     use crate::{
         any_graph::{Class, any_graph},
-        embedded_graph::Dart,
+        embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::{as_discovered, code},
         percept::Door,
     };
 
+    fn placed(graph: &EmbeddedGraph, facing: Dart) -> PlacedWorld {
+        PlacedWorld { graph: as_discovered(graph, facing), code: code(graph, facing) }
+    }
+
     proptest! {
         #[test]
-        fn a_placed_world_is_restored_from_its_candidate(
-            graph in any_graph(Class::Multigraph, 9),
+        fn a_placed_world_is_restored_from_its_candidate_and_ordered_as_in_a_report(
+            one in any_graph(Class::Multigraph, 9),
+            other in any_graph(Class::Multigraph, 9),
             facing in any::<prop::sample::Index>(),
         ) {
-            let facing = Dart(facing.index(graph.dart_count()) as u32);
-            let placed = PlacedWorld {
-                graph: as_discovered(&graph, facing),
-                code: code(&graph, facing),
-            };
-            let candidate = AmbiguityCandidate::new(&Vec::new(), &placed.code);
-            prop_assert_eq!(candidate.world(), Some(placed));
+            let worlds =
+                [placed(&one, Dart(facing.index(one.dart_count()) as u32)), placed(&other, Dart(0))];
+            let candidates =
+                worlds.each_ref().map(|world| AmbiguityCandidate::new(&Vec::new(), &world.code));
+            let rank = |world: &PlacedWorld| (world.graph.edge_count(), world.code.clone());
+            prop_assert_eq!(
+                candidates[0].cmp(&candidates[1]),
+                rank(&worlds[0]).cmp(&rank(&worlds[1]))
+            );
+            let [candidate, _] = candidates;
+            let [world, _] = worlds;
+            prop_assert_eq!(candidate.world(), Some(world));
             let bytes: Box<[u8]> = candidate.as_bytes().into();
             prop_assert_eq!(AmbiguityCandidate::from_bytes(bytes.clone()), Some(candidate));
             for length in 0..bytes.len() {
                 prop_assert_eq!(AmbiguityCandidate::from_bytes(bytes[..length].into()), None);
             }
-        }
-
-        /// Candidates with the same quotient are ordered as in a report.
-        #[test]
-        fn the_order_of_candidates_is_that_of_worlds(
-            one in any_graph(Class::Multigraph, 9),
-            other in any_graph(Class::Multigraph, 9),
-        ) {
-            let placed = [one, other].map(|graph| PlacedWorld {
-                graph: as_discovered(&graph, Dart(0)),
-                code: code(&graph, Dart(0)),
-            });
-            let [one, other] =
-                placed.each_ref().map(|world| AmbiguityCandidate::new(&Vec::new(), &world.code));
-            let [rank, other_rank] =
-                placed.each_ref().map(|world| (world.graph.edge_count(), &world.code));
-            prop_assert_eq!(one.cmp(&other), rank.cmp(&other_rank));
         }
     }
 

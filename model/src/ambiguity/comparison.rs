@@ -3,7 +3,7 @@
 use std::{cell::OnceCell, collections::HashSet};
 
 use super::{
-    partition::coarsest_watched,
+    partition::coarsest,
     space::{PlacedRobot, Space, States},
     state_classes::StateClasses,
     witness::{Relation, Walk},
@@ -53,7 +53,6 @@ impl<'a> Comparison<'a> {
         self.class(watch).map(|_| ())
     }
 
-    /// The coarsest partition of the states of both worlds.
     fn class(&self, watch: &dyn Watch) -> Result<&[u32], Interrupted> {
         if let Some(class) = self.class.get() {
             return Ok(class);
@@ -67,11 +66,10 @@ impl<'a> Comparison<'a> {
         };
         let labels = [one.labels, other.labels].concat();
         let maps: Vec<_> = one.maps.into_iter().zip(other.maps).map(both).collect();
-        let class = coarsest_watched(&labels, &maps, watch)?;
+        let class = coarsest(&labels, &maps, watch)?;
         Ok(self.class.get_or_init(|| class))
     }
 
-    /// Whether the starts are in one class.
     fn in_one_class(&self, poses: [Dart; 2], watch: &dyn Watch) -> Result<bool, Interrupted> {
         let [one, other] = self.starts(poses);
         let here = self.states[0].number(one.state()) as usize;
@@ -148,14 +146,13 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// How they can: the shortest walk, and of these the least; `None` where they cannot.
+    /// Does the same as [`walk_watched`](Self::walk_watched). Nothing stops it.
     #[must_use]
     pub fn walk(&self, poses: [Dart; 2]) -> Option<Walk> {
-        // Nothing stops it.
         self.walk_watched(poses, &()).unwrap_or_default()
     }
 
-    /// Does the same as [`walk`](Self::walk).
+    /// How they can: the shortest walk, and of these the least; `None` where they cannot.
     ///
     /// # Errors
     /// Returns an error if the watch stops.
@@ -206,9 +203,7 @@ impl Bisimulation {
 
 /// How a look for a difference ended.
 enum Look {
-    /// With one.
     Difference(Walk),
-    /// There are no more pairs.
     NoMore,
     /// As many pairs as were wanted have been found.
     Enough,
@@ -225,7 +220,6 @@ struct Pairs<'c, 'a> {
     found: Vec<ReachedPair>,
     /// The place of the pair to look further from.
     next: usize,
-    /// The numbers of the states of each pair found.
     known: HashSet<[u32; 2]>,
 }
 
@@ -245,7 +239,6 @@ impl<'c, 'a> Pairs<'c, 'a> {
         pairs
     }
 
-    /// Takes in a pair, if it is a new one.
     fn find(&mut self, pair: (State, State), from: Option<(usize, Action)>) -> bool {
         let [one, other] = self.states;
         let new = self.known.insert([one.number(pair.0), other.number(pair.1)]);
@@ -332,50 +325,49 @@ mod tests {
         EmbeddedGraph::from_edge_lists(&lists).unwrap()
     }
 
+    fn cycles(lengths: [usize; 2]) -> [EmbeddedGraph; 2] {
+        lengths.map(EmbeddedGraph::cycle)
+    }
+
+    /// Without a marker.
+    fn comparison(graphs: &[EmbeddedGraph; 2]) -> Comparison<'_> {
+        let [one, other] = graphs.each_ref().map(|graph| (graph, Dart(0)));
+        Comparison::new(named("none").unwrap(), one, other)
+    }
+
     /// Without a marker no walk distinguishes cycles. If their lengths `n` and `m` are coprime, two robots
     /// reach all `2 n m` pairs of poses that agree on the sense.
     #[test]
     fn the_partition_is_made_only_where_there_are_many_pairs() {
-        let none = named("none").unwrap();
         for (shorter, longer, is_made) in [(3, 4, false), (8, 9, true)] {
-            let (one, other) = (EmbeddedGraph::cycle(shorter), EmbeddedGraph::cycle(longer));
-            let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
-            let pairs = 2 * shorter * longer;
-            let states = 2 * (shorter + longer);
+            let graphs = cycles([shorter, longer]);
+            let (pairs, states) = (2 * shorter * longer, 2 * (shorter + longer));
             assert_eq!(pairs > 4 * states, is_made);
-            assert!(pairs > 4 + states);
-            let asked = comparison();
+            let asked = comparison(&graphs);
             assert_eq!(asked.relation([Dart(0); 2]).unwrap().0.len(), pairs);
             assert_eq!(asked.class.get().is_some(), is_made);
-            let asked = comparison();
+            let asked = comparison(&graphs);
             assert_eq!(asked.walk([Dart(0); 2]), None);
             assert_eq!(asked.class.get().is_some(), is_made);
         }
     }
 
-    /// Two robots in cycles of coprime lengths reach all pairs of poses that agree on the sense; all poses
-    /// look alike.
     #[test]
     fn many_pairs_are_replaced_by_the_classes() {
-        let none = named("none").unwrap();
-        let (one, other) = (EmbeddedGraph::cycle(200), EmbeddedGraph::cycle(201));
-        let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
-        let starts = comparison.starts([Dart(0); 2]);
-        let found = |most| comparison.bisimulation([Dart(0); 2], most, &()).unwrap().unwrap();
+        let graphs = cycles([200, 201]);
+        let comparison = comparison(&graphs);
+        let [one, other] = comparison.starts([Dart(0); 2]);
         let pairs = 2 * 200 * 201;
-        match found(pairs) {
-            Bisimulation::Relation(relation) => {
-                assert_eq!(relation.0.len(), pairs);
-                assert!(relation.verify(&starts[0], &starts[1]));
-            }
-            Bisimulation::Classes(_) => panic!("there are not more pairs"),
-        }
-        match found(pairs - 1) {
-            Bisimulation::Relation(_) => panic!("there are more pairs"),
-            Bisimulation::Classes(classes) => {
-                assert_eq!(classes.count(), 1);
-                assert_eq!(classes.classes()[0].each_ref().map(Vec::len), [400, 402]);
-                assert!(classes.verify(&starts[0], &starts[1]));
+        for most in [pairs, pairs - 1] {
+            let found = comparison.bisimulation([Dart(0); 2], most, &()).unwrap().unwrap();
+            assert!(found.verify(&one, &other));
+            match found {
+                Bisimulation::Relation(relation) => assert_eq!(relation.0.len(), most),
+                // All poses look alike.
+                Bisimulation::Classes(classes) => {
+                    assert_eq!((classes.count(), most), (1, pairs - 1));
+                    assert_eq!(classes.classes()[0].each_ref().map(Vec::len), [400, 402]);
+                }
             }
         }
     }
@@ -384,16 +376,6 @@ mod tests {
     struct QuestionLimit {
         at: u64,
         asked: AtomicU64,
-    }
-
-    impl QuestionLimit {
-        fn new(at: u64) -> Self {
-            Self { at, asked: AtomicU64::new(0) }
-        }
-
-        fn asked(&self) -> u64 {
-            self.asked.load(Ordering::Relaxed)
-        }
     }
 
     impl Watch for QuestionLimit {
@@ -406,22 +388,23 @@ mod tests {
 
     #[test]
     fn each_search_ends_at_the_question_at_which_it_is_stopped() {
-        let none = named("none").unwrap();
-        let (one, other) = (EmbeddedGraph::cycle(40), EmbeddedGraph::cycle(41));
-        let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+        let graphs = cycles([40, 41]);
+        let comparison = || comparison(&graphs);
         let searches: [Search; 3] = [
             |comparison, watch| comparison.partition(watch) == Err(Interrupted),
             |comparison, watch| comparison.walk_watched([Dart(0); 2], watch) == Err(Interrupted),
             |comparison, watch| comparison.bisimulation([Dart(0); 2], usize::MAX, watch).is_err(),
         ];
         for is_stopped in searches {
-            let unlimited = QuestionLimit::new(u64::MAX);
-            assert!(!is_stopped(&comparison(), &unlimited));
-            assert!(unlimited.asked() > 0);
-            for at in 1..=unlimited.asked() {
-                let limited = QuestionLimit::new(at);
-                assert!(is_stopped(&comparison(), &limited));
-                assert_eq!(limited.asked(), at);
+            let questions = |at, ends| {
+                let limit = QuestionLimit { at, asked: AtomicU64::new(0) };
+                assert_eq!(is_stopped(&comparison(), &limit), ends);
+                limit.asked.into_inner()
+            };
+            let all = questions(u64::MAX, false);
+            assert!(all > 0);
+            for at in 1..=all {
+                assert_eq!(questions(at, true), at);
             }
         }
     }
@@ -431,12 +414,9 @@ mod tests {
     #[test]
     fn a_difference_is_found_that_many_pairs_come_before() {
         let length = 400;
-        let one = cycle_of_ways(9, length, length);
-        let other = cycle_of_ways(10, length, length + 1);
-        let none = named("none").unwrap();
-        let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+        let graphs = [cycle_of_ways(9, length, length), cycle_of_ways(10, length, length + 1)];
         let poses = [Dart(0); 2];
-        let asked = comparison();
+        let asked = comparison(&graphs);
         let walk = asked.walk(poses).unwrap();
         assert!(asked.class.get().is_some());
         let [here, there] = asked.starts(poses);
@@ -444,6 +424,6 @@ mod tests {
         // Also once the partition is made, and for the relation.
         assert_eq!(asked.walk(poses), Some(walk));
         assert_eq!(asked.relation(poses), None);
-        assert_eq!(comparison().relation(poses), None);
+        assert_eq!(comparison(&graphs).relation(poses), None);
     }
 }

@@ -43,12 +43,10 @@ impl TryFrom<Vec<u32>> for PlacedWorld {
 /// at least two.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AmbiguousGroup {
-    /// The worlds.
     pub worlds: Vec<PlacedWorld>,
 }
 
 impl AmbiguousGroup {
-    /// Its smallest pair.
     pub(super) fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
         match self.worlds.as_slice() {
             [one, other, ..] => Some([one, other]),
@@ -60,9 +58,7 @@ impl AmbiguousGroup {
 /// The findings among the worlds with one number of edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SizeFindings {
-    /// The number of edges.
     pub edges: usize,
-    /// All placed worlds.
     pub placed_worlds: u64,
     /// The placed worlds that are indistinguishable from another of the sizes searched.
     pub ambiguous: u64,
@@ -81,7 +77,6 @@ pub struct Findings {
 /// Which pairs a search keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptPairs {
-    /// All.
     All,
     /// Only the smallest one, whose memory does not grow with the number of pairs.
     Smallest,
@@ -107,7 +102,6 @@ pub enum Unfinished {
 }
 
 impl Findings {
-    /// Counts placed worlds with this number of edges.
     pub fn count_placed(&mut self, edges: usize, placed_worlds: u64) {
         if let Some(size) = self.sizes.iter_mut().find(|size| size.edges == edges) {
             size.placed_worlds += placed_worlds;
@@ -129,7 +123,6 @@ impl Findings {
         }
     }
 
-    /// The same with the smallest pair only.
     #[must_use]
     pub fn into_smallest(mut self) -> Self {
         self.groups.truncate(1);
@@ -160,7 +153,6 @@ impl Findings {
     }
 }
 
-/// The order of pairs.
 pub(super) fn rank([one, other]: [&PlacedWorld; 2]) -> (usize, usize, &StartCode, &StartCode) {
     (other.graph.edge_count(), one.graph.edge_count(), &one.code, &other.code)
 }

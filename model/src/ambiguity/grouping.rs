@@ -23,7 +23,6 @@ pub(super) struct Grouping<'a> {
     groups: Vec<AmbiguousGroup>,
     /// The first candidate of the latest quotient, and its world if there is another one.
     first: Option<(AmbiguityCandidate, Option<PlacedWorld>)>,
-    /// Pairs that are not confirmed yet.
     pairs: Vec<[PlacedWorld; 2]>,
 }
 
@@ -38,7 +37,6 @@ impl<'a> Grouping<'a> {
         Self { marker, watch, kept, sizes, groups: Vec::new(), first: None, pairs: Vec::new() }
     }
 
-    /// Adds the next candidate.
     pub(super) fn add(&mut self, candidate: AmbiguityCandidate) -> Result<(), Unfinished> {
         let same = |(first, _): &&mut (AmbiguityCandidate, Option<PlacedWorld>)| {
             first.quotient() == candidate.quotient()
@@ -75,7 +73,6 @@ impl<'a> Grouping<'a> {
         self.groups.push(AmbiguousGroup { worlds: pair.map(PlacedWorld::clone).into() });
     }
 
-    /// Another world of the latest group.
     fn put(&mut self, world: &PlacedWorld) {
         self.count(world);
         if self.kept == KeptPairs::All
@@ -107,7 +104,6 @@ impl<'a> Grouping<'a> {
         in_parts(&pairs, &(), || Ok(()), confirm, |_| 1, Result::and)
     }
 
-    /// The findings, after the last candidate.
     pub(super) fn findings(mut self) -> Result<Findings, Unfinished> {
         self.confirm()?;
         let Self { sizes, mut groups, .. } = self;
@@ -131,24 +127,10 @@ fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        ambiguity::{AmbiguitySearch, CandidatesInMemory, quotient::QuotientCode},
+        ambiguity::{AmbiguitySearch, quotient::QuotientCode},
         enumerate::Class,
         marker::named,
     };
-
-    #[test]
-    fn worlds_that_a_walk_tells_apart_are_not_confirmed() {
-        for marker in ["none", "undirected", "movable"].map(|name| named(name).unwrap()) {
-            let findings =
-                AmbiguitySearch::new(Class::Multigraph, 3, marker).unwrap().run(&()).unwrap();
-            let groups: Vec<_> = findings.groups.iter().map(|group| &group.worlds).collect();
-            for (one, other) in groups.iter().zip(groups.iter().skip(1)) {
-                assert!(is_confirmed(marker, [&one[0], &one[1]]));
-                assert!(!is_confirmed(marker, [&one[0], &other[0]]));
-            }
-            assert!(groups.len() > 1);
-        }
-    }
 
     #[test]
     fn a_group_that_is_not_confirmed_is_an_error() {
@@ -162,19 +144,5 @@ mod tests {
             grouping.add(AmbiguityCandidate::new(&QuotientCode::new(), &world.code)).unwrap();
         }
         assert!(matches!(grouping.findings(), Err(Unfinished::Unconfirmed(_))));
-    }
-
-    #[test]
-    fn only_the_smallest_pair_is_kept_if_no_other_is_wanted() {
-        for marker in ["none", "undirected", "movable"].map(|name| named(name).unwrap()) {
-            let search = AmbiguitySearch::new(Class::Multigraph, 4, marker).unwrap();
-            let all = search.run(&()).unwrap();
-            let sorter = Box::new(CandidatesInMemory::default());
-            let one = search.run_sorted(sorter, KeptPairs::Smallest, &()).unwrap();
-            assert_eq!(one.sizes, all.sizes);
-            assert_eq!(one.smallest(), all.smallest());
-            assert_eq!(one.pairs().len(), 1);
-            assert!(all.pairs().len() > 1);
-        }
     }
 }

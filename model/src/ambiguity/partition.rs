@@ -6,17 +6,9 @@
 use crate::enumerate::{Interrupted, Watch};
 
 /// The class of each state in the coarsest partition in which states of one class have the same
-/// label, and each of the maps takes them to states of one class. Classes are numbered from 0.
-pub(super) fn coarsest<L: Ord>(labels: &[L], maps: &[Vec<u32>]) -> Vec<u32> {
-    // Nothing stops it.
-    coarsest_watched(labels, maps, &()).unwrap_or_default()
-}
-
-/// Does the same as [`coarsest`].
-///
-/// # Errors
-/// Returns an error if the watch stops.
-pub(super) fn coarsest_watched<L: Ord>(
+/// label, and each of the maps takes them to states of one class. Classes are numbered from 0. It is an error if the
+/// watch stops.
+pub(super) fn coarsest<L: Ord>(
     labels: &[L],
     maps: &[Vec<u32>],
     watch: &dyn Watch,
@@ -87,15 +79,12 @@ impl Preimages {
 struct Partition {
     /// The states, those of a class side by side, its marked ones first.
     states: Vec<u32>,
-    /// The place of each state in `states`.
     place: Vec<u32>,
     class: Vec<u32>,
     /// The first place of each class, and one past its last.
     first: Vec<u32>,
     end: Vec<u32>,
-    /// How many states of each class are marked.
     marked: Vec<u32>,
-    /// The classes with marked states.
     touched: Vec<u32>,
 }
 
@@ -137,7 +126,6 @@ impl Partition {
         self.end[class as usize] - self.first[class as usize]
     }
 
-    /// Marks a state that is not marked yet.
     fn mark(&mut self, state: u32) {
         let class = self.class[state as usize] as usize;
         if self.marked[class] == 0 {
@@ -209,7 +197,7 @@ mod tests {
     proptest! {
         #[test]
         fn it_is_the_partition_that_rounds_of_splitting_end_with((labels, maps) in machine()) {
-            let (fast, slow) = (coarsest(&labels, &maps), by_rounds(&labels, &maps));
+            let (fast, slow) = (coarsest(&labels, &maps, &()).unwrap(), by_rounds(&labels, &maps));
             for one in 0..labels.len() {
                 for other in 0..labels.len() {
                     prop_assert_eq!(fast[one] == fast[other], slow[one] == slow[other]);

@@ -2,7 +2,12 @@
 
 use super::{
     partition::coarsest,
-    space::{Space, StateLabel},
+    space::{Space, StateLabel, States},
+};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::{StartCode, code},
+    marker::Marker,
 };
 
 /// A placed world with indistinguishable states identified.
@@ -22,8 +27,12 @@ pub(super) struct Quotient {
 pub(super) type QuotientCode = Vec<(StateLabel, [u32; 3])>;
 
 impl Quotient {
-    pub(super) fn from_space(space: &Space) -> Self {
-        let class = coarsest(&space.labels, &space.maps);
+    /// The quotient of a world whose marker was placed by the facing dart, and its states.
+    pub(super) fn new(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> (Self, States) {
+        let states = States::from_start(graph, marker, facing);
+        let space = Space::from_states(graph, marker, &states);
+        // Nothing stops it.
+        let class = coarsest(&space.labels, &space.maps, &()).unwrap_or_default();
         let count = class.iter().max().map_or(0, |&last| last as usize + 1);
         let mut representative = vec![0; count];
         for (state, &class) in class.iter().enumerate() {
@@ -34,10 +43,9 @@ impl Quotient {
             representative.iter().map(|&state| class[map[state] as usize]).collect()
         };
         let maps = space.maps.iter().map(classes_after).collect();
-        Self { labels, maps, class }
+        (Self { labels, maps, class }, states)
     }
 
-    /// The class of each state of the placed world.
     pub(super) fn classes(&self) -> &[u32] {
         &self.class
     }
@@ -71,4 +79,14 @@ impl Quotient {
         }
         code
     }
+}
+
+/// The code of a placed world, equal exactly for isomorphic ones: that of the least start whose facing dart is among
+/// these. They all place the marker alike, and there is at least one.
+pub(super) fn placed_code(
+    graph: &EmbeddedGraph,
+    alike: impl IntoIterator<Item = Dart>,
+) -> StartCode {
+    let codes = alike.into_iter().map(|facing| code(graph, facing));
+    codes.min().unwrap_or_else(|| code(graph, Dart(0)))
 }

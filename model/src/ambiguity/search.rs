@@ -11,15 +11,15 @@ use super::{
     AmbiguityCandidate, CandidateSorter, CandidatesInMemory, Findings, KeptPairs, SearchError,
     SizeFindings, Unfinished,
     grouping::Grouping,
-    quotient::Quotient,
-    space::{Space, States},
+    quotient::{Quotient, placed_code},
+    space::States,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{
         Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
     },
-    isomorphism::{StartCode, canonical, code},
+    isomorphism::canonical,
     marker::Marker,
     world::State,
 };
@@ -40,7 +40,6 @@ pub struct SearchPart {
 }
 
 impl SearchPart {
-    /// The number of edges of its worlds.
     #[must_use]
     pub fn edges(&self) -> usize {
         self.edges
@@ -50,12 +49,10 @@ impl SearchPart {
 /// The number of candidates that a part of the search collects before it gives them to the sorter.
 const BATCH: usize = 1024;
 
-/// The result of one part of the search.
 struct Seen {
     placed_worlds: u64,
     /// Those that the sorter did not get yet.
     candidates: Vec<AmbiguityCandidate>,
-    /// Why the part was not completed.
     end: Result<(), SearchError>,
 }
 
@@ -202,21 +199,16 @@ impl<'m> AmbiguitySearch<'m> {
         seen.end.map(|()| seen.placed_worlds)
     }
 
-    /// Searches all ways to place the marker in a graph.
     fn search_graph(&self, found: EnumeratedGraph, seen: &mut Seen) {
         let EnumeratedGraph { graph, automorphisms } = found;
-        let mut refined: Option<(States, Quotient)> = None;
+        let mut refined: Option<(Quotient, States)> = None;
         for places in self.placings(graph, automorphisms) {
             seen.placed_worlds += 1;
             let facing = places[0];
             // The states of a world do not depend on where a movable marker lies at first.
             let known = refined.take().filter(|_| self.marker.is_movable());
-            let (states, quotient) = known.unwrap_or_else(|| {
-                let states = States::from_start(graph, self.marker, facing);
-                let quotient =
-                    Quotient::from_space(&Space::from_states(graph, self.marker, &states));
-                (states, quotient)
-            });
+            let (quotient, states) =
+                known.unwrap_or_else(|| Quotient::new(graph, self.marker, facing));
             // A world without two indistinguishable states shares its percepts only with its covers,
             // which have at least twice as many edges.
             if !quotient.is_discrete() || 2 * graph.edge_count() <= self.sizes.len() {
@@ -225,11 +217,11 @@ impl<'m> AmbiguitySearch<'m> {
                 let starts = self.marker.starts(graph, facing);
                 let codes = starts.iter().map(begun).map(|state| quotient.code(state));
                 if let Some(least) = codes.min() {
-                    let placed = least_code(graph, &places);
+                    let placed = placed_code(graph, places);
                     seen.candidates.push(AmbiguityCandidate::new(&least, &placed));
                 }
             }
-            refined = Some((states, quotient));
+            refined = Some((quotient, states));
         }
     }
 
@@ -259,16 +251,10 @@ impl<'m> AmbiguitySearch<'m> {
     }
 }
 
-/// The code of the placed world of these facing darts, which all place the marker alike: that of its least start.
-fn least_code(graph: &EmbeddedGraph, places: &[Dart]) -> StartCode {
-    let codes = places.iter().map(|&facing| code(graph, facing));
-    codes.min().unwrap_or_else(|| code(graph, Dart(0)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ambiguity::PlacedWorld, marker::named};
+    use crate::{ambiguity::PlacedWorld, isomorphism::code, marker::named};
 
     /// A cover has at least twice as many edges.
     #[test]

@@ -15,15 +15,12 @@ pub type SorterError = Box<dyn error::Error + Send + Sync>;
 /// Why a search with a [sorter](CandidateSorter) has no findings.
 #[derive(Debug, Error)]
 pub enum SearchError {
-    /// The search did not finish.
     #[error(transparent)]
     Unfinished(#[from] Unfinished),
-    /// The sorter failed.
     #[error("{0}")]
     Sorter(SorterError),
 }
 
-/// Candidates in their order.
 pub type SortedCandidates = Box<dyn Iterator<Item = Result<AmbiguityCandidate, SorterError>>>;
 
 /// Sorts the candidates of a search: in memory, on disk, or on other machines.
@@ -41,7 +38,6 @@ pub trait CandidateSorter: Sync {
     fn sorted(self: Box<Self>) -> Result<SortedCandidates, SorterError>;
 }
 
-/// Sorts candidates in memory.
 #[derive(Debug, Default)]
 pub struct CandidatesInMemory(Mutex<Vec<AmbiguityCandidate>>);
 

@@ -7,7 +7,6 @@ use crate::{
     world::{Action, GraphWorld, State},
 };
 
-/// A robot in a placed world.
 pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
 
 /// What a robot knows in a state without moving: its percept, and whether it carries the marker.
@@ -31,7 +30,6 @@ pub(super) struct States {
 }
 
 impl States {
-    /// The states of a world whose marker was placed by the facing dart.
     pub(super) fn from_start(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
         let can_carry = marker.is_movable();
         let places = if can_carry {
@@ -42,19 +40,16 @@ impl States {
         Self { darts: graph.dart_count(), places, can_carry }
     }
 
-    /// How many there are.
     pub(super) fn len(&self) -> usize {
         self.darts * (self.places.len() + usize::from(self.can_carry))
     }
 
-    /// The state of a number.
     pub(super) fn state(&self, number: u32) -> State {
         let place = number as usize / self.darts;
         let pose = Dart(number % self.darts as u32);
         State { pose, placed: self.places.get(place).copied() }
     }
 
-    /// The number of a state.
     pub(super) fn number(&self, state: State) -> u32 {
         let place = match state.placed {
             Some(placed) => self.places.binary_search(&placed).unwrap_or_default(),
@@ -77,7 +72,6 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// The space of a world with a marker.
     pub(super) fn from_states(graph: &EmbeddedGraph, marker: &dyn Marker, states: &States) -> Self {
         let count = states.len();
         let mut labels = Vec::with_capacity(count);

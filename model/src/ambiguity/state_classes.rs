@@ -20,7 +20,6 @@ impl StateClasses {
         Self { states, class, count }
     }
 
-    /// The number of classes.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count

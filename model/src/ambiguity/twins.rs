@@ -1,39 +1,32 @@
 //! The worlds that a marker does not distinguish from a given one, and that have as many edges. Section 2.2,
 //! Figure 1.
 //!
-//! Two placed worlds are indistinguishable exactly if they have the same [quotient](super::quotient). In the
-//! quotient, turning to the next dart and crossing an edge are permutations of the classes. So each class has
-//! as many darts as any other, and the types of the vertices follow from the quotient: a vertex has the darts of
-//! one orbit of turning, repeated up to its degree. A twin joins the darts in other pairs, each dart with one
-//! of the class that crossing leads to. The search makes all such pairs, in the order of discovery from the
-//! first dart, so that each world appears about once.
+//! Two placed worlds are indistinguishable exactly if they have the same [quotient](super::quotient). A twin joins the
+//! darts in other pairs, each dart with one of the class that crossing leads to. The search makes all such pairs, in the
+//! order of discovery from the first dart, so that each world appears about once.
 
 use std::collections::BTreeSet;
 
 use super::{
     Comparison,
-    quotient::Quotient,
-    space::{Space, States},
+    quotient::{Quotient, placed_code},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
-    isomorphism::{StartCode, code},
+    isomorphism::StartCode,
     marker::Marker,
 };
 
 /// A placed world that a marker does not distinguish from another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Twin {
-    /// Its graph.
     pub graph: EmbeddedGraph,
-    /// The dart that places the marker.
     pub facing: Dart,
     /// For the pose at the start of the first world, the indistinguishable pose here.
     pub pose: Dart,
 }
 
-/// The twins of a placed world.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Twins {
     /// Those that were found: simple ones before others, then by genus.
@@ -44,7 +37,6 @@ pub struct Twins {
 
 /// The limits of a search for twins, about a second's work.
 const STEPS: u64 = 200_000;
-/// The most twins that are kept.
 const MOST: usize = 64;
 /// The most darts of a world whose twins are searched.
 const MOST_DARTS: usize = 4096;
@@ -65,8 +57,7 @@ pub fn twins(
     if marker.is_movable() || graph.dart_count() > MOST_DARTS {
         return Twins { worlds: Vec::new(), may_be_more: true };
     }
-    let states = States::from_start(graph, marker, facing);
-    let quotient = Quotient::from_space(&Space::from_states(graph, marker, &states));
+    let (quotient, _) = Quotient::new(graph, marker, facing);
     if quotient.is_discrete() {
         return Twins::default();
     }
@@ -82,7 +73,7 @@ pub fn twins(
         opposite: vec![None; graph.dart_count()],
         order: Vec::new(),
         touched: vec![false; graph.vertex_count()],
-        known: BTreeSet::from([placed_code(graph, marker, facing)]),
+        known: BTreeSet::from([code_placed_by(graph, marker, facing)]),
         found: Vec::new(),
         stopped: false,
     };
@@ -93,17 +84,12 @@ pub fn twins(
     Twins { worlds: found, may_be_more: stopped }
 }
 
-/// A code of a placed world: equal exactly for isomorphic ones.
-fn placed_code(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> StartCode {
+fn code_placed_by(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> StartCode {
     let placing = marker.first_alike(graph, facing);
-    let alike = graph.darts().filter(|&dart| marker.first_alike(graph, dart) == placing);
-    let codes = alike.map(|dart| code(graph, dart));
-    codes.min().unwrap_or_else(|| code(graph, facing))
+    placed_code(graph, graph.darts().filter(|&dart| marker.first_alike(graph, dart) == placing))
 }
 
-/// The classes of the darts.
 struct Classes {
-    /// The class of each dart.
     of: Vec<u32>,
     /// The class to which crossing leads from each class.
     across: Vec<u32>,
@@ -131,9 +117,7 @@ struct Search<'s> {
     steps: u64,
     /// The pairs so far. The vertices are those of the first world.
     opposite: Vec<Option<Dart>>,
-    /// The darts of the vertices that were met, in that order.
     order: Vec<Dart>,
-    /// Whether a vertex was met.
     touched: Vec<bool>,
     known: BTreeSet<StartCode>,
     found: Vec<Twin>,
@@ -199,7 +183,7 @@ impl Search<'_> {
         let clockwise: Vec<u32> = graph.darts().map(|dart| graph.clockwise(dart).0).collect();
         // The darts keep their numbers: those of a vertex stand side by side.
         let Ok((other, _)) = EmbeddedGraph::from_permutations(&numbers, &clockwise) else { return };
-        if !self.known.insert(placed_code(&other, self.marker, self.facing)) {
+        if !self.known.insert(code_placed_by(&other, self.marker, self.facing)) {
             return;
         }
         let comparison = Comparison::new(self.marker, (graph, self.facing), (&other, self.facing));
@@ -225,12 +209,12 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::{collections::BTreeMap, ops::ControlFlow};
+    use std::collections::BTreeMap;
 
     use super::*;
     use crate::{
         ambiguity::quotient::QuotientCode,
-        enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+        any_graph::{Class, starts},
         format::world_file,
         isomorphism::isomorphism,
         marker::{Directional, NoMarker, Undirected},
@@ -268,21 +252,15 @@ mod tests {
             for edges in 1..=4 {
                 let mut placed: BTreeMap<StartCode, (EmbeddedGraph, Dart, QuotientCode)> =
                     BTreeMap::new();
-                let all = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
-                let mut visit = |world: EnumeratedGraph| {
-                    let graph = world.graph;
-                    for facing in graph.darts() {
-                        let states = States::from_start(graph, marker, facing);
-                        let quotient =
-                            Quotient::from_space(&Space::from_states(graph, marker, &states));
-                        let starts = marker.starts(graph, facing).into_iter();
-                        let least = starts.map(|start| quotient.code(start.0)).min().unwrap();
-                        let code = placed_code(graph, marker, facing);
-                        placed.insert(code, (graph.clone(), facing, least));
-                    }
-                    ControlFlow::Continue(())
-                };
-                let _: ControlFlow<()> = all.for_each(&mut visit);
+                // The starts of a world are its darts.
+                for graph in starts(Class::Multigraph, edges) {
+                    let facing = Dart(0);
+                    let (quotient, _) = Quotient::new(&graph, marker, facing);
+                    let starts = marker.starts(&graph, facing).into_iter();
+                    let least = starts.map(|start| quotient.code(start.0)).min().unwrap();
+                    let code = code_placed_by(&graph, marker, facing);
+                    placed.insert(code, (graph, facing, least));
+                }
                 for (graph, facing, code) in placed.values() {
                     let alike = placed.values().filter(|(.., other)| other == code).count();
                     let found = twins(graph, marker, *facing, *facing, &());

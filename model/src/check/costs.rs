@@ -23,7 +23,6 @@ pub enum ChoicesLimit {
     States(u64),
     /// The memory for the states of one start: 1 GiB.
     Memory,
-    /// The search was interrupted.
     Interrupted,
 }
 
@@ -44,7 +43,6 @@ impl ChoicesLimit {
 pub struct Costs(Vec<u64>);
 
 impl Costs {
-    /// The set of 0 alone.
     pub(super) fn nothing() -> Self {
         Self(vec![1])
     }
@@ -64,12 +62,10 @@ impl Costs {
         }
     }
 
-    /// Its size in memory.
     pub(super) fn bytes(&self) -> usize {
         size_of::<u64>() * self.0.len()
     }
 
-    /// The costs, ascending.
     #[must_use]
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = u64> + '_ {
         (0..self.0.len() as u64 * 64).filter(|&cost| self.contains(cost))
@@ -81,13 +77,11 @@ impl Costs {
         self.0.get((cost / 64) as usize).is_some_and(|word| word >> (cost % 64) & 1 == 1)
     }
 
-    /// The least cost.
     #[must_use]
     pub fn min(&self) -> Option<u64> {
         self.iter().next()
     }
 
-    /// The greatest cost.
     #[must_use]
     pub fn max(&self) -> Option<u64> {
         self.iter().next_back()

@@ -3,12 +3,12 @@
 
 use std::{collections::HashMap, vec};
 
-use super::{ChoicesLimit, Costs, EveryWay, judge};
+use super::{ChoicesLimit, Costs, EveryWay, judge, judge::check_moves};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Explorer, FACING, Flaw, MapWalk, PartialMap, StateKey},
+    mapping::{Explorer, FACING, Flaw, MapWalk, StateKey},
     world::GraphWorld,
 };
 
@@ -17,6 +17,38 @@ const MAX_BYTES: usize = 1 << 30;
 
 /// The default number of states of one start that may be explored.
 pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
+
+/// The choices of the runs that are checked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RunChoices {
+    /// The default ones: one run.
+    #[default]
+    Default,
+    /// The default ones, and then all: every run.
+    All {
+        /// The number of states of one start that may be explored.
+        budget: u64,
+    },
+}
+
+impl RunChoices {
+    /// Makes and judges the other runs of a start, if they are to be checked.
+    ///
+    /// # Errors
+    /// Returns the first [`Flaw`].
+    pub fn others<E: Explorer>(
+        self,
+        new: impl Fn() -> E,
+        graph: &EmbeddedGraph,
+        facing: Dart,
+        watch: &dyn Watch,
+    ) -> Result<Option<EveryWay>, Flaw> {
+        match self {
+            Self::Default => Ok(None),
+            Self::All { budget } => every_way(new(), graph, facing, budget, watch).map(Some),
+        }
+    }
+}
 
 /// Runs an explorer on a start with all choices, and judges the end of every run. States that are
 /// [compared](Explorer::state_key) are explored once; runs are counted. The search stops after `budget` states,
@@ -34,7 +66,7 @@ pub fn every_way<E: Explorer>(
     let mut world = GraphWorld::with_marker(graph, explorer.marker(), facing);
     let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
     explorer.limit_darts(graph.dart_count());
-    explorer.begin(&mut world, &mut ())?;
+    explorer.begin(&mut world)?;
     let mut search = Search {
         facing,
         budget,
@@ -49,14 +81,10 @@ pub fn every_way<E: Explorer>(
     };
     let is_compared = explorer.state_key().is_some();
     let Futures { runs, costs } = search.run(world, explorer)?;
-    match costs.max() {
-        Some(moves) if moves > bound => Err(Flaw::TooManyMoves { moves, bound }),
-        _ => {
-            let [begun, within_rounds] = search.begun;
-            let states = if is_compared { search.known.len() as u64 } else { begun };
-            Ok(EveryWay { states, within_rounds, runs, costs, limit: search.limit })
-        }
-    }
+    check_moves(costs.max().unwrap_or(0), bound)?;
+    let [begun, within_rounds] = search.begun;
+    let states = if is_compared { search.known.len() as u64 } else { begun };
+    Ok(EveryWay { states, within_rounds, runs, costs, limit: search.limit })
 }
 
 /// What can follow a state: the number of runs, and the moves that they still take.
@@ -79,44 +107,24 @@ impl Futures {
 
 /// A round: what begins at a state between two rounds, by one choice.
 struct Round {
-    /// The number of vertices of the map at its beginning.
     vertices: usize,
     /// What can follow each state within it: the hypotheses that are left.
     known: HashMap<Vec<Dart>, Futures>,
     bytes: usize,
 }
 
-/// Where a state is kept when all that can follow it is known.
-enum Kept {
-    /// It is not compared.
-    Nowhere,
-    Round {
-        state: (PartialMap, Vertex),
-        follows: Follows,
-    },
-    WithinRound(Vec<Dart>),
-}
-
 /// A state whose choices are being followed, one after the other.
 struct SearchFrame<'g, E: Explorer> {
-    kept: Kept,
+    /// Where it is kept when all that can follow it is known; `None` if it is not compared.
+    key: Option<StateKey>,
+    /// Whether it follows the state within a round in which no hypothesis is left: the place is new.
+    is_new_place: bool,
     world: GraphWorld<'g, E::Marker>,
     explorer: E,
-    /// Those that were not followed yet.
     choices: vec::IntoIter<E::Choice>,
-    /// The moves of the step by the last choice.
     moves: u64,
     futures: Futures,
     bytes: usize,
-}
-
-/// What a state between two rounds follows.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Follows {
-    /// The beginning, or a confirmed hypothesis.
-    Known,
-    /// The state within a round in which no hypothesis is left: the place is new.
-    NoHypothesis,
 }
 
 struct Search<'g, 'w, E: Explorer> {
@@ -125,12 +133,10 @@ struct Search<'g, 'w, E: Explorer> {
     watch: &'w dyn Watch,
     /// States begun between two rounds, and within one.
     begun: [u64; 2],
-    /// An estimate of the memory that the states take.
     bytes: usize,
-    /// The first limit that was reached.
     limit: Option<ChoicesLimit>,
     /// For each state between two rounds, what can follow it, and the robot's pose in the world.
-    known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
+    known: HashMap<StateKey, (Futures, Dart)>,
     /// The rounds that have begun: one for each state between two rounds on the stack.
     rounds: Vec<Round>,
     stack: Vec<SearchFrame<'g, E>>,
@@ -144,7 +150,7 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         while let Some(frame) = self.stack.last_mut() {
             if let Some(futures) = found.take() {
                 frame.futures.include(&futures, frame.moves);
-                if matches!(frame.kept, Kept::Round { .. }) {
+                if matches!(frame.key, Some(StateKey::Round(..))) {
                     let round = self.rounds.pop();
                     self.bytes -= round.map_or(0, |round| round.bytes);
                 }
@@ -180,21 +186,22 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
     fn enter(
         &mut self,
         world: GraphWorld<'g, E::Marker>,
-        explorer: E,
+        mut explorer: E,
     ) -> Result<Option<Futures>, Flaw> {
-        let (level, kept) = match explorer.state_key() {
-            None => (0, Kept::Nowhere),
+        let key = explorer.state_key();
+        let (mut level, mut is_new_place) = (0, false);
+        match &key {
+            None => {}
             Some(StateKey::WithinRound(hypotheses)) => {
-                if let Some(known) = self.in_round(&hypotheses) {
+                if let Some(known) = self.in_round(hypotheses) {
                     return Ok(Some(known));
                 }
-                (1, Kept::WithinRound(hypotheses))
+                level = 1;
             }
-            Some(StateKey::Round(map, vertex)) => {
-                let grown =
+            Some(StateKey::Round(map, _)) => {
+                is_new_place =
                     self.rounds.last().is_some_and(|last| map.vertex_count() > last.vertices);
-                let follows = if grown { Follows::NoHypothesis } else { Follows::Known };
-                if grown {
+                if is_new_place {
                     if let Some(known) = self.in_round(&[]) {
                         return Ok(Some(known));
                     }
@@ -202,53 +209,25 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
                         return Ok(Some(Futures::default()));
                     }
                 }
-                let state = (map, vertex);
-                if let Some((futures, truly)) = self.known.get(&state) {
-                    // One state, one place in the world; it may have been entered by another dart.
-                    if world.graph().vertex(*truly) != world.graph().vertex(world.pose()) {
-                        let believed = explorer.map_walk().map_or(FACING, MapWalk::robot);
-                        return Err(Flaw::WrongPose {
-                            believed,
-                            image: *truly,
-                            truly: world.pose(),
-                        });
-                    }
-                    let futures = futures.clone();
-                    self.keep_in_round(follows, &futures);
-                    return Ok(Some(futures));
-                }
-                (0, Kept::Round { state, follows })
             }
-        };
+        }
+        if let Some((futures, image)) = key.as_ref().and_then(|key| self.known.get(key)) {
+            // One state, one place in the world; it may have been entered by another dart.
+            let (graph, truly, image) = (world.graph(), world.pose(), *image);
+            if graph.vertex(image) != graph.vertex(truly) {
+                let believed = explorer.map_walk().map_or(FACING, MapWalk::robot);
+                return Err(Flaw::WrongPose { believed, image, truly });
+            }
+            let futures = futures.clone();
+            self.keep_new_place(is_new_place, &futures);
+            return Ok(Some(futures));
+        }
         if !self.begin(level) {
             return Ok(Some(Futures::default()));
         }
-        self.push(kept, world, explorer)?;
-        Ok(None)
-    }
-
-    /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
-    fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
-        let Some(frame) = self.stack.last_mut() else { return Ok(None) };
-        let (mut world, mut next) = (frame.world.clone(), frame.explorer.clone());
-        next.step(choice, &mut world, &mut ())?;
-        frame.moves = world.moves() - frame.world.moves();
-        if let Kept::Round { state, .. } = &frame.kept {
-            let (vertices, known) = (state.0.vertex_count(), HashMap::new());
-            self.rounds.push(Round { vertices, known, bytes: 0 });
-        }
-        self.enter(world, next)
-    }
-
-    /// Puts a state on the stack. At the end of a run there is no choice: then the run is judged.
-    fn push(
-        &mut self,
-        kept: Kept,
-        world: GraphWorld<'g, E::Marker>,
-        mut explorer: E,
-    ) -> Result<(), Flaw> {
         let choices = explorer.choices()?;
         let mut futures = Futures::default();
+        // At the end of a run there is no choice: then the run is judged.
         if choices.is_empty() {
             judge(&explorer, self.facing, &world, &mut self.candidate)?;
             futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
@@ -256,39 +235,54 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
         let darts = explorer.map_walk().map_or(0, |walk| walk.map().dart_count());
         let bytes = 500 + 100 * darts + 20 * choices.len();
         self.bytes += bytes;
-        let choices = choices.into_iter();
-        self.stack.push(SearchFrame { kept, world, explorer, choices, moves: 0, futures, bytes });
-        Ok(())
+        let (choices, moves) = (choices.into_iter(), 0);
+        let frame =
+            SearchFrame { key, is_new_place, world, explorer, choices, moves, futures, bytes };
+        self.stack.push(frame);
+        Ok(None)
+    }
+
+    /// What can follow a choice at the state on top of the stack. As [`Self::enter`].
+    fn follow(&mut self, choice: E::Choice) -> Result<Option<Futures>, Flaw> {
+        let Some(frame) = self.stack.last_mut() else { return Ok(None) };
+        let (mut world, mut next) = (frame.world.clone(), frame.explorer.clone());
+        next.step(choice, &mut world)?;
+        frame.moves = world.moves() - frame.world.moves();
+        if let Some(StateKey::Round(map, _)) = &frame.key {
+            let (vertices, known) = (map.vertex_count(), HashMap::new());
+            self.rounds.push(Round { vertices, known, bytes: 0 });
+        }
+        self.enter(world, next)
     }
 
     /// Removes the state on top of the stack, whose choices were all followed. Returns what can follow it.
     fn leave(&mut self) -> Option<Futures> {
-        let SearchFrame { kept, world, futures, bytes, .. } = self.stack.pop()?;
+        let SearchFrame { key, is_new_place, world, futures, bytes, .. } = self.stack.pop()?;
         self.bytes -= bytes;
-        match kept {
-            Kept::Nowhere => {}
-            Kept::WithinRound(hypotheses) => self.insert_in_round(hypotheses, &futures),
-            Kept::Round { state, follows } => {
-                self.bytes += 100 + 20 * state.0.dart_count() + futures.bytes();
-                self.known.insert(state, (futures.clone(), world.pose()));
-                self.keep_in_round(follows, &futures);
+        match key {
+            None => {}
+            Some(StateKey::WithinRound(hypotheses)) => self.keep_in_round(hypotheses, &futures),
+            Some(StateKey::Round(map, vertex)) => {
+                self.bytes += 100 + 20 * map.dart_count() + futures.bytes();
+                let key = StateKey::Round(map, vertex);
+                self.known.insert(key, (futures.clone(), world.pose()));
+                self.keep_new_place(is_new_place, &futures);
             }
         }
         Some(futures)
     }
 
-    /// What can follow a state of the present round, if it is known.
     fn in_round(&self, hypotheses: &[Dart]) -> Option<Futures> {
         self.rounds.last()?.known.get(hypotheses).cloned()
     }
 
-    fn keep_in_round(&mut self, follows: Follows, futures: &Futures) {
-        if follows == Follows::NoHypothesis {
-            self.insert_in_round(Vec::new(), futures);
+    fn keep_new_place(&mut self, is_new_place: bool, futures: &Futures) {
+        if is_new_place {
+            self.keep_in_round(Vec::new(), futures);
         }
     }
 
-    fn insert_in_round(&mut self, hypotheses: Vec<Dart>, futures: &Futures) {
+    fn keep_in_round(&mut self, hypotheses: Vec<Dart>, futures: &Futures) {
         let Some(round) = self.rounds.last_mut() else { return };
         let bytes = 40 + 4 * hypotheses.len() + futures.bytes();
         round.bytes += bytes;
@@ -300,9 +294,14 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mapping::Algorithm1Run;
+    use crate::{
+        any_graph::starts,
+        check::smallest_failure::delegate_to_run,
+        enumerate::Class,
+        mapping::{Algorithm1Run, InvalidStep, Mapped, MappingChoice, MappingError, ObservedWorld},
+        marker::Directional,
+    };
 
-    /// Stops at once.
     struct Stopped;
 
     impl Watch for Stopped {
@@ -313,19 +312,79 @@ mod tests {
 
     #[test]
     fn the_limit_that_was_reached_is_named() {
-        let limit = |budget, watch: &dyn Watch| {
-            let ways = every_way(
-                Algorithm1Run::default(),
-                &EmbeddedGraph::cycle(5),
-                Dart(0),
-                budget,
-                watch,
-            )
-            .unwrap();
-            (ways.limit, ways.states + ways.within_rounds <= budget)
-        };
-        assert_eq!(limit(1000, &()), (None, true));
-        assert_eq!(limit(9, &()), (Some(ChoicesLimit::States(9)), true));
-        assert_eq!(limit(1000, &Stopped), (Some(ChoicesLimit::Interrupted), true));
+        for (budget, watch, limit) in [
+            (1000, &() as &dyn Watch, None),
+            (9, &(), Some(ChoicesLimit::States(9))),
+            (1000, &Stopped, Some(ChoicesLimit::Interrupted)),
+        ] {
+            let cycle = EmbeddedGraph::cycle(5);
+            let ways = every_way(Algorithm1Run::default(), &cycle, Dart(0), budget, watch).unwrap();
+            assert_eq!(ways.limit, limit);
+            assert!(ways.states + ways.within_rounds <= budget);
+        }
+    }
+
+    /// Algorithm 1 with other choices, or with another bound.
+    #[derive(Clone)]
+    struct Altered {
+        /// By how much the numbers of hypotheses are off.
+        off: usize,
+        /// It claims to need no more moves than these.
+        claimed: u64,
+        run: Algorithm1Run,
+    }
+
+    impl Explorer for Altered {
+        delegate_to_run!(Directional, MappingChoice);
+
+        fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
+            let choices = self.run.choices()?.into_iter().map(|choice| match choice {
+                MappingChoice::Hypothesis(index) => MappingChoice::Hypothesis(index + self.off),
+                edge @ MappingChoice::Edge(_) => edge,
+            });
+            Ok(choices.collect())
+        }
+
+        fn step<W: ObservedWorld>(&mut self, choice: MappingChoice, world: &mut W) -> Mapped<W> {
+            self.run.step(choice, world)
+        }
+
+        fn move_bound(&self, _: usize, _: usize) -> u64 {
+            self.claimed
+        }
+    }
+
+    fn altered(graph: &EmbeddedGraph, off: usize, claimed: u64) -> Result<EveryWay, Flaw> {
+        let run = Altered { off, claimed, run: Algorithm1Run::default() };
+        every_way(run, graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+    }
+
+    /// Choices that are not open are an error. They are not replaced by others, with less coverage.
+    #[test]
+    fn a_broken_enumeration_of_choices_fails() {
+        let graphs = starts(Class::Multigraph, 3);
+        let flaws: Vec<_> =
+            graphs.iter().filter_map(|graph| altered(graph, 1, u64::MAX).err()).collect();
+        assert!(!flaws.is_empty());
+        for flaw in flaws {
+            let Flaw::Error(MappingError::InvalidStep(InvalidStep::NoHypothesis { index, left })) =
+                flaw
+            else {
+                panic!("{flaw}")
+            };
+            assert_eq!(index, left);
+        }
+    }
+
+    /// States are explored once, so the run with the most moves may be none that was followed to its end.
+    #[test]
+    fn the_most_moves_of_all_runs_are_compared_with_the_bound() {
+        for graph in (1..=3).flat_map(|edges| starts(Class::Multigraph, edges)) {
+            let moves = altered(&graph, 0, u64::MAX).unwrap().costs.max().unwrap();
+            assert!(altered(&graph, 0, moves).is_ok());
+            let bound = moves - 1;
+            let flaw = Flaw::TooManyMoves { moves, bound };
+            assert_eq!(altered(&graph, 0, bound), Err(flaw));
+        }
     }
 }

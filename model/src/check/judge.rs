@@ -6,7 +6,9 @@ use crate::{
     counts::counted,
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{ExploredMap, Explorer, FACING, Flaw, MapWalk, MappingEvent, PartialMap, explore},
+    mapping::{
+        ExploredMap, Explorer, FACING, Flaw, MapWalk, MappingEvent, Observed, PartialMap, explore,
+    },
     world::GraphWorld,
 };
 
@@ -24,8 +26,12 @@ pub fn judge<'c, E: Explorer>(
 ) -> Result<&'c Bijection, Flaw> {
     let (graph, moves) = (world.graph(), world.moves());
     let bijection = judge_map(&explorer.explored()?, (graph, facing), world.pose(), candidate)?;
-    let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
-    if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(bijection) }
+    check_moves(moves, explorer.move_bound(graph.edge_count(), graph.vertex_count()))?;
+    Ok(bijection)
+}
+
+pub(super) fn check_moves(moves: u64, bound: u64) -> Result<(), Flaw> {
+    if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(()) }
 }
 
 /// Runs an explorer on a start with the default choices, and [judges](judge) it. Moves beyond its bound are refused,
@@ -38,7 +44,7 @@ pub fn judge_start<E: Explorer>(
 ) -> (u64, Result<(), Flaw>) {
     let mut world = bounded_world(explorer, graph, facing);
     explorer.limit_darts(graph.dart_count());
-    let ended = explore(explorer, &mut world, &mut ()).map_err(Flaw::from);
+    let ended = explore(explorer, &mut world).map_err(Flaw::from);
     let judged = ended.and_then(|()| judge(explorer, facing, &world, candidate).map(|_| ()));
     (world.moves(), judged)
 }
@@ -82,9 +88,7 @@ pub fn judge_map<'c>(
 /// The first addition to the map that is not true of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FalseStep {
-    /// The moves made by then.
     pub moves: u64,
-    /// What was added.
     pub added: MappingEvent,
 }
 
@@ -114,18 +118,18 @@ pub fn first_false_step<E: Explorer>(
     facing: Dart,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |_: &mut GraphWorld<E::Marker>, journey: &MapWalk, added: MappingEvent| {
+    let mut watch = |_: &mut GraphWorld<E::Marker>, walk: &MapWalk, added: MappingEvent| {
         let adds =
             matches!(added, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. });
-        if adds && first.is_none() && !embeds(journey.map(), graph, facing) {
-            first = Some(FalseStep { moves: journey.moves(), added });
+        if adds && first.is_none() && !embeds(walk.map(), graph, facing) {
+            first = Some(FalseStep { moves: walk.moves(), added });
         }
     };
     let mut world = bounded_world(&explorer, graph, facing);
     // A wrong map can have more darts than the world.
     explorer.limit_darts(2 * graph.dart_count());
     // An error at its end does not matter here.
-    let _ = explore(&mut explorer, &mut world, &mut watch);
+    let _ = explore(&mut explorer, &mut Observed::new(&mut world, &mut watch));
     first
 }
 

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use super::{
     Check, CheckPieces, EveryWay, FinishedUnits, PartTally, Probe, RunChoices, SharedPrefixCheck,
-    Tally, check_worlds, judge_map,
+    Tally, check_worlds, judge::check_moves, judge_map,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -17,33 +17,30 @@ use crate::{
 
 impl MappingAlgorithm {
     /// Judges a run that has ended, as [`judge`](super::judge): its map, the robot's `pose` in it, which is `truly` the
-    /// one in the world, and the moves of its journey.
+    /// one in the world, and the moves of its walk.
     ///
     /// # Errors
     /// Returns the first [`Flaw`].
     pub fn judge<'c>(
         self,
-        (journey, pose): (&MapWalk, Dart),
+        (walk, pose): (&MapWalk, Dart),
         (graph, facing): (&EmbeddedGraph, Dart),
         truly: Dart,
         candidate: &'c mut Candidate,
     ) -> Result<&'c Bijection, Flaw> {
-        let unexplored = journey.map().unexplored_count();
-        let map = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
+        let unexplored = walk.map().unexplored_count();
+        let map = walk.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
         let map = ExploredMap { graph: Cow::Borrowed(map), facing: FACING, pose };
         let bijection = judge_map(&map, (graph, facing), truly, candidate)?;
-        let (moves, bound) =
-            (journey.moves(), self.move_bound(graph.edge_count(), graph.vertex_count()));
-        if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(bijection) }
+        check_moves(walk.moves(), self.move_bound(graph.edge_count(), graph.vertex_count()))?;
+        Ok(bijection)
     }
 
-    /// Checks every start of a sweep, as [`Check::run`].
     #[must_use]
     pub fn sweep(self, sweep: &Check, choices: RunChoices, watch: &dyn Watch) -> Tally {
         with_explorer!(self, E => sweep.run(E::default, choices, watch))
     }
 
-    /// Checks every start of a lazy sweep, as [`SharedPrefixCheck::resume`].
     #[must_use]
     pub fn lazy_sweep(
         self,
@@ -54,37 +51,31 @@ impl MappingAlgorithm {
         with_explorer!(self, E => sweep.resume(E::default, units, watch))
     }
 
-    /// The number of units of a lazy sweep.
     #[must_use]
     pub fn unit_count(self, sweep: &SharedPrefixCheck) -> usize {
         with_explorer!(self, E => sweep.unit_count(E::default))
     }
 
-    /// The pieces of a lazy sweep, as [`CheckPieces::new`].
     #[must_use]
     pub fn pieces(self, sweep: &SharedPrefixCheck, watch: &dyn Watch) -> CheckPieces {
         with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
     }
 
-    /// The counts of a piece, as [`CheckPieces::check`].
     #[must_use]
     pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PartTally {
         with_explorer!(self, E => of.check(piece, E::default(), watch))
     }
 
-    /// The result of a lazy sweep, as [`CheckPieces::finished`].
     #[must_use]
     pub fn finished_pieces(self, counts: PartTally) -> Tally {
         with_explorer!(self, E => CheckPieces::finished(counts, E::default))
     }
 
-    /// A random probe, as [`SharedPrefixCheck::probe`].
     #[must_use]
     pub fn probe(self, sweep: &SharedPrefixCheck, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         with_explorer!(self, E => sweep.probe(E::default(), numbers, watch))
     }
 
-    /// Checks every start of some worlds, as [`check_worlds`].
     #[must_use]
     pub fn check_worlds(
         self,

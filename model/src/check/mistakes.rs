@@ -16,7 +16,6 @@ use crate::{
     world::{GraphWorld, RefusedAction, State, World},
 };
 
-/// The kind of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MistakeKind {
     /// The number of doors is wrong.
@@ -31,7 +30,6 @@ pub enum MistakeKind {
     Carried,
 }
 
-/// All of them.
 pub const MISTAKE_KINDS: [MistakeKind; 5] = [
     MistakeKind::Degree,
     MistakeKind::MarkerInvented,
@@ -41,7 +39,6 @@ pub const MISTAKE_KINDS: [MistakeKind; 5] = [
 ];
 
 impl MistakeKind {
-    /// Its name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -88,20 +85,16 @@ impl fmt::Display for MistakeKind {
 /// What happens instead of what should.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MistakeEffect {
-    /// This is perceived.
     Perceived(Percept),
     /// The robot is then at this dart of the world, as if it had come in by it.
     Carried(Dart),
 }
 
-/// One mistake in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mistake {
     /// It happens when the robot has made this number of moves, before it perceives its place.
     pub moves: u64,
-    /// What it would perceive.
     pub truth: Percept,
-    /// What happens.
     pub effect: MistakeEffect,
 }
 
@@ -121,30 +114,33 @@ impl fmt::Display for Mistake {
     }
 }
 
-/// A world in which one thing goes wrong.
+/// A world in which one thing goes wrong. Without a mistake, it keeps each visit.
 struct FaultyWorld<'g> {
     world: GraphWorld<'g>,
-    mistake: Mistake,
+    mistake: Option<Mistake>,
+    visits: Vec<(Dart, Percept)>,
 }
 
 impl<'g> FaultyWorld<'g> {
-    fn new(world: GraphWorld<'g>, mistake: Mistake) -> Self {
-        let mut faulty = Self { world, mistake };
-        faulty.carry();
+    fn new(world: GraphWorld<'g>, mistake: Option<Mistake>) -> Self {
+        let mut faulty = Self { world, mistake, visits: Vec::new() };
+        faulty.arrive();
         faulty
     }
 
-    fn is_now(&self) -> bool {
-        self.world.moves() == self.mistake.moves
+    /// What happens now instead of what should.
+    fn effect(&self) -> Option<MistakeEffect> {
+        let mistake = self.mistake.filter(|mistake| mistake.moves == self.world.moves());
+        mistake.map(|mistake| mistake.effect)
     }
 
-    /// Carries the robot, if that happens now.
-    fn carry(&mut self) {
-        if let MistakeEffect::Carried(pose) = self.mistake.effect
-            && self.is_now()
-        {
+    fn arrive(&mut self) {
+        if let Some(MistakeEffect::Carried(pose)) = self.effect() {
             let placed = self.world.state().placed;
             self.world = self.world.clone().at(State { pose, placed });
+        }
+        if self.mistake.is_none() {
+            self.visits.push((self.world.pose(), self.world.sensed()));
         }
     }
 }
@@ -153,15 +149,15 @@ impl World for FaultyWorld<'_> {
     type Error = RefusedAction;
 
     fn percept(&mut self) -> Result<Percept, RefusedAction> {
-        match self.mistake.effect {
-            MistakeEffect::Perceived(percept) if self.is_now() => Ok(percept),
+        match self.effect() {
+            Some(MistakeEffect::Perceived(percept)) => Ok(percept),
             _ => self.world.percept(),
         }
     }
 
     fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
         self.world.traverse(door)?;
-        self.carry();
+        self.arrive();
         Ok(())
     }
 }
@@ -194,7 +190,6 @@ pub struct MistakeCounts {
 }
 
 impl MistakeCounts {
-    /// The number of runs.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.right + self.reported + self.too_large + self.undetected()
@@ -206,7 +201,6 @@ impl MistakeCounts {
         self.wrong_pose + self.wrong_map
     }
 
-    /// Adds other counts.
     pub fn add(&mut self, other: Self) {
         self.right += other.right;
         self.reported += other.reported;
@@ -220,20 +214,14 @@ impl MistakeCounts {
 /// A run that ends with a wrong map or a wrong pose, and nothing shows it to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UndetectedMistake {
-    /// The world.
     pub graph: EmbeddedGraph,
-    /// The facing dart.
     pub facing: Dart,
-    /// The mistake.
     pub mistake: Mistake,
-    /// What is wrong at the end.
     pub flaw: Flaw,
 }
 
-/// The results of a check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MistakeTally {
-    /// The number of starts.
     pub starts: u64,
     /// For each of the [`MISTAKE_KINDS`], how the runs ended.
     pub counts: [MistakeCounts; 5],
@@ -241,7 +229,6 @@ pub struct MistakeTally {
     pub first: [Option<UndetectedMistake>; 5],
     /// The moves of all runs without a mistake.
     pub moves: u64,
-    /// Whether the check was interrupted.
     pub interrupted: bool,
 }
 
@@ -261,7 +248,6 @@ impl MistakeTally {
         }
     }
 
-    /// How all runs ended.
     #[must_use]
     pub fn all(&self) -> MistakeCounts {
         let mut all = MistakeCounts::default();
@@ -284,15 +270,6 @@ fn keep_first(first: &mut Option<UndetectedMistake>, other: UndetectedMistake) {
 pub struct MistakeCheck {
     starts: Enumeration,
     method: MappingMethod,
-}
-
-/// How a run ended.
-enum Ending {
-    /// With the right map, after this number of moves.
-    Right(u64),
-    Reported,
-    TooLarge,
-    Undetected(Flaw),
 }
 
 impl MistakeCheck {
@@ -330,7 +307,6 @@ impl MistakeCheck {
     }
 }
 
-/// The runs of one part of a check.
 struct MistakenRuns {
     check: MistakeCheck,
     candidate: Candidate,
@@ -349,92 +325,56 @@ impl MistakenRuns {
                 for effect in kind.mistakes(graph, pose, truth) {
                     let mistake = Mistake { moves, truth, effect };
                     let counts = &mut tally.counts[at];
-                    match self.ending(graph, facing, mistake) {
-                        Ending::Right(moves) => {
-                            counts.right += 1;
-                            counts.extra_moves += moves.cast_signed() - least.cast_signed();
+                    let mut world = FaultyWorld::new(GraphWorld::new(graph, facing), Some(mistake));
+                    let explored = match self.map(&mut world, graph) {
+                        Ok(explored) => explored,
+                        Err(MappingError::Bound { .. }) => {
+                            counts.too_large += 1;
+                            continue;
                         }
-                        Ending::Reported => counts.reported += 1,
-                        Ending::TooLarge => counts.too_large += 1,
-                        Ending::Undetected(flaw) => {
-                            match flaw {
-                                Flaw::WrongPose { .. } => counts.wrong_pose += 1,
-                                _ => counts.wrong_map += 1,
-                            }
-                            let graph = graph.clone();
-                            let undetected = UndetectedMistake { graph, facing, mistake, flaw };
-                            keep_first(&mut tally.first[at], undetected);
+                        Err(_) => {
+                            counts.reported += 1;
+                            continue;
                         }
+                    };
+                    let (made, pose) = (world.world.moves(), world.world.pose());
+                    let judged = judge_map(&explored, (graph, facing), pose, &mut self.candidate);
+                    let Err(flaw) = judged else {
+                        counts.right += 1;
+                        counts.extra_moves += made.cast_signed() - least.cast_signed();
+                        continue;
+                    };
+                    match flaw {
+                        Flaw::WrongPose { .. } => counts.wrong_pose += 1,
+                        _ => counts.wrong_map += 1,
                     }
+                    let graph = graph.clone();
+                    let undetected = UndetectedMistake { graph, facing, mistake, flaw };
+                    keep_first(&mut tally.first[at], undetected);
                 }
             }
         }
     }
 
-    /// The poses and percepts of a run without a mistake.
     fn visits(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Vec<(Dart, Percept)> {
-        let mut world = VisitedWorld::new(GraphWorld::new(graph, facing));
+        let mut world = FaultyWorld::new(GraphWorld::new(graph, facing), None);
         // A flaw of a run without a mistake is found by a sweep.
         let _ = self.map(&mut world, graph);
         world.visits
     }
 
-    fn ending(&mut self, graph: &EmbeddedGraph, facing: Dart, mistake: Mistake) -> Ending {
-        let mut world = FaultyWorld::new(GraphWorld::new(graph, facing), mistake);
-        let explored = match self.map(&mut world, graph) {
-            Ok(explored) => explored,
-            Err(MappingError::Bound { .. }) => return Ending::TooLarge,
-            Err(_) => return Ending::Reported,
-        };
-        let (moves, pose) = (world.world.moves(), world.world.pose());
-        match judge_map(&explored, (graph, facing), pose, &mut self.candidate) {
-            Ok(_) => Ending::Right(moves),
-            Err(flaw) => Ending::Undetected(flaw),
-        }
-    }
-
-    /// Maps a world, by the method of the check.
-    fn map<W: Relocate<Error = RefusedAction>>(
+    fn map(
         &self,
-        world: &mut W,
+        world: &mut FaultyWorld,
         graph: &EmbeddedGraph,
     ) -> Result<ExploredMap<'static>, MappingError<RefusedAction>> {
         let bound = 2 * graph.dart_count() + 20;
-        let (journey, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
+        let (walk, mapped) = self.check.method.map_world(world, bound, &[], &mut ());
         let pose = mapped?.pose;
-        let map = journey.map().complete().ok_or(MappingError::Bound { bound })?;
+        let map = walk.map().complete().ok_or(MappingError::Bound { bound })?;
         Ok(ExploredMap { graph: Cow::Owned(map.clone()), facing: FACING, pose })
     }
 }
-
-/// A world that remembers each visit.
-struct VisitedWorld<'g> {
-    world: GraphWorld<'g>,
-    visits: Vec<(Dart, Percept)>,
-}
-
-impl<'g> VisitedWorld<'g> {
-    fn new(world: GraphWorld<'g>) -> Self {
-        let visits = vec![(world.pose(), world.sensed())];
-        Self { world, visits }
-    }
-}
-
-impl World for VisitedWorld<'_> {
-    type Error = RefusedAction;
-
-    fn percept(&mut self) -> Result<Percept, RefusedAction> {
-        self.world.percept()
-    }
-
-    fn traverse(&mut self, door: Door) -> Result<(), RefusedAction> {
-        self.world.traverse(door)?;
-        self.visits.push((self.world.pose(), self.world.sensed()));
-        Ok(())
-    }
-}
-
-impl Relocate for VisitedWorld<'_> {}
 
 #[cfg(test)]
 mod tests {
@@ -471,7 +411,6 @@ mod tests {
         }
     }
 
-    /// Stops from the beginning.
     struct Stopped;
 
     impl Watch for Stopped {

@@ -1,20 +1,19 @@
 //! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
 mod costs;
-mod enumerated_start;
 mod every_way;
 mod guess;
 mod judge;
 mod mapping_algorithm;
 mod mistakes;
 mod one_by_one;
-mod run_choices;
 mod shared_prefix;
+#[cfg(test)]
+pub(crate) mod smallest_failure;
 mod tally;
 
 pub use costs::{ChoicesLimit, Costs, EveryWay};
-pub use enumerated_start::EnumeratedStart;
-pub use every_way::{DEFAULT_STATE_BUDGET, every_way};
+pub use every_way::{DEFAULT_STATE_BUDGET, RunChoices, every_way};
 pub use guess::determines_world;
 pub use judge::{FalseStep, first_false_step, judge, judge_map, judge_start};
 pub use mistakes::{
@@ -22,9 +21,8 @@ pub use mistakes::{
     UndetectedMistake,
 };
 pub use one_by_one::{Check, Shard, ShardError, check_worlds};
-pub use run_choices::RunChoices;
 pub use shared_prefix::{CheckPieces, FinishedUnits, LazyWorld, Probe, SharedPrefixCheck};
-pub use tally::{FailedStart, KeptStart, PartTally, Tally, WorstStart};
+pub use tally::{EnumeratedStart, FailedStart, KeptStart, PartTally, Tally, WorstStart};
 
 #[cfg(test)]
 mod tests {
@@ -34,50 +32,28 @@ mod tests {
     use crate::{
         any_graph::{Class, any_graph},
         embedded_graph::{Dart, EmbeddedGraph},
-        isomorphism::Candidate,
-        mapping::{
-            Algorithm1Run, Choices, Flaw, MovableMarkerRun, Nearest, PartialMap, explore,
-            map_with_movable_marker, map_world,
-        },
-        marker::Movable,
+        isomorphism::{Candidate, as_discovered},
+        mapping::{Algorithm1Run, Explorer, Flaw, MovableMarkerRun, explore, explore_with},
         world::GraphWorld,
     };
 
-    /// Chooses as the numbers say.
-    struct Drawn<'n> {
-        numbers: &'n [u16],
-        next: usize,
-    }
-
-    impl Drawn<'_> {
-        fn below(&mut self, bound: usize) -> usize {
-            self.next = (self.next + 1) % self.numbers.len();
-            usize::from(self.numbers[self.next]) % bound
-        }
-    }
-
-    impl Choices for Drawn<'_> {
-        fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
-            let place = self.below(map.unexplored_count() as usize);
-            map.unexplored().nth(place).unwrap_or(nearest)
-        }
-
-        fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-            self.below(hypotheses.len())
-        }
-    }
-
-    fn flaw_with_movable(
-        graph: &EmbeddedGraph,
-        facing: Dart,
-        mut choices: impl Choices,
+    /// The flaw of a run, with its default choices or with those that numbers draw.
+    fn flaw<E: Explorer>(
+        mut run: E,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        numbers: &[u16],
     ) -> Option<Flaw> {
-        let mut world = GraphWorld::with_marker(graph, Movable, facing);
-        let mut search = MovableMarkerRun::new(graph.dart_count());
+        let mut world = GraphWorld::with_marker(graph, run.marker(), facing);
+        let mut numbers = numbers.iter().cycle();
+        let explored = explore_with(&mut run, &mut world, |run| {
+            let open = run.choices()?;
+            let Some(&number) = numbers.next() else { return run.choose() };
+            Ok(open.get(usize::from(number) % open.len().max(1)).copied())
+        });
         let mut candidate = Candidate::default();
-        map_with_movable_marker(&mut world, &mut choices, &mut search, &mut ())
+        explored
             .map_err(Flaw::from)
-            .and_then(|()| judge(&search, facing, &world, &mut candidate))
+            .and_then(|()| judge(&run, facing, &world, &mut candidate))
             .err()
     }
 
@@ -86,46 +62,40 @@ mod tests {
         #[test]
         fn larger_worlds_are_mapped_right_whatever_the_choices(
             graph in any_graph(Class::Multigraph, 40),
-            facing in any::<u32>(),
+            facing in any::<prop::sample::Index>(),
             numbers in proptest::collection::vec(any::<u16>(), 1..20),
         ) {
-            let facing = Dart(facing % graph.dart_count() as u32);
-            let mut world = GraphWorld::new(&graph, facing);
-            let mut exploration = Algorithm1Run::new(graph.dart_count());
-            let mut choices = Drawn { numbers: &numbers, next: 0 };
-            map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
-            let mut candidate = Candidate::default();
-            let verdict = judge(&exploration, facing, &world, &mut candidate);
-            prop_assert!(verdict.is_ok());
+            let start = (&graph, Dart(facing.index(graph.dart_count()) as u32));
+            prop_assert_eq!(flaw(Algorithm1Run::new(graph.dart_count()), start, &numbers), None);
         }
 
         // paper: movable.place, movable.new, movable.known, movable.back-link
         #[test]
         fn larger_simple_worlds_are_mapped_right_with_a_movable_marker(
             graph in any_graph(Class::Simple, 60),
-            facing in any::<u32>(),
+            facing in any::<prop::sample::Index>(),
             numbers in proptest::collection::vec(any::<u16>(), 1..20),
         ) {
-            let facing = Dart(facing % graph.dart_count() as u32);
-            let drawn = Drawn { numbers: &numbers, next: 0 };
-            prop_assert_eq!(flaw_with_movable(&graph, facing, Nearest), None);
-            prop_assert_eq!(flaw_with_movable(&graph, facing, drawn), None);
+            let start = (&graph, Dart(facing.index(graph.dart_count()) as u32));
+            for numbers in [&[], &numbers[..]] {
+                let run = MovableMarkerRun::new(graph.dart_count());
+                prop_assert_eq!(flaw(run, start, numbers), None);
+            }
         }
 
         /// The default choices look at nothing but the map, so the numbers of a world do not matter.
         #[test]
         fn isomorphic_starts_cost_the_same(
             graph in any_graph(Class::Multigraph, 30),
-            facing in any::<u32>(),
+            facing in any::<prop::sample::Index>(),
         ) {
-            let facing = Dart(facing % graph.dart_count() as u32);
-            let copy = crate::isomorphism::as_discovered(&graph, facing);
+            let facing = Dart(facing.index(graph.dart_count()) as u32);
             let moves = |graph, facing| {
-                let mut exploration = Algorithm1Run::new(60);
-                let mut world = GraphWorld::new(graph, facing);
-                explore(&mut exploration, &mut world, &mut ()).unwrap();
-                exploration.moves()
+                let mut run = Algorithm1Run::default();
+                explore(&mut run, &mut GraphWorld::new(graph, facing)).unwrap();
+                run.moves()
             };
+            let copy = as_discovered(&graph, facing);
             prop_assert_eq!(moves(&graph, facing), moves(&copy, Dart(0)));
         }
     }

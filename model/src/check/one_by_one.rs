@@ -17,9 +17,7 @@ use crate::{
 /// One of `n` disjoint parts of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Its number, from 1.
     index: usize,
-    /// The number of shards.
     of: usize,
 }
 
@@ -32,13 +30,11 @@ impl Shard {
     /// The whole check.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// Its number, from 1.
     #[must_use]
     pub fn index(self) -> usize {
         self.index
     }
 
-    /// The number of shards.
     #[must_use]
     pub fn of(self) -> usize {
         self.of
@@ -89,7 +85,6 @@ impl Check {
         Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard })
     }
 
-    /// The class of worlds.
     #[must_use]
     pub fn class(&self) -> Class {
         self.worlds.class()
@@ -134,7 +129,6 @@ pub(super) fn check_stop(watch: &dyn Watch) -> ControlFlow<()> {
     if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-/// Checks the parts of a whole, and adds up the tallies.
 fn tally_parts<P: Sync>(
     parts: &[P],
     watch: &dyn Watch,
@@ -171,7 +165,6 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
         Self { new, explorer, choices, watch, candidate: Candidate::default(), certificates }
     }
 
-    /// Checks every start of a world.
     fn check_starts(
         &mut self,
         graph: &EmbeddedGraph,

@@ -4,31 +4,55 @@ use std::cmp::Reverse;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ChoicesLimit, EnumeratedStart, EveryWay, FalseStep};
+use super::{ChoicesLimit, EveryWay, FalseStep};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::{StartCode, canonical},
     mapping::{CostOrder, Flaw},
 };
+
+/// A start by its place in the [enumeration](crate::enumerate::Enumeration): its world as discovered from its
+/// least start, and the first dart of that which faces as the start does. Starts are ordered as the
+/// enumeration finds them.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct EnumeratedStart {
+    /// The [code](crate::isomorphism::StartCode) of the least start.
+    code: Vec<u32>,
+    facing: u32,
+}
+
+impl EnumeratedStart {
+    #[must_use]
+    pub fn new(graph: &EmbeddedGraph, facing: Dart) -> Self {
+        let least = canonical(graph);
+        let orbit = least.orbit[facing.at()];
+        let mut numbered = (0..).zip(&least.order);
+        let facing = numbered.find(|(_, dart)| least.orbit[dart.at()] == orbit);
+        Self { code: least.code.words().to_vec(), facing: facing.map_or(0, |(number, _)| number) }
+    }
+
+    /// The start; `None` if the code is not that of a start.
+    #[must_use]
+    pub fn start(&self) -> Option<(EmbeddedGraph, Dart)> {
+        let graph = StartCode::start_of(&self.code)?;
+        let facing = Dart(self.facing);
+        (facing.at() < graph.dart_count()).then_some((graph, facing))
+    }
+}
 
 /// The start that took the most moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorstStart {
-    /// The world.
     pub graph: EmbeddedGraph,
-    /// The facing dart.
     pub facing: Dart,
-    /// The moves.
     pub moves: u64,
 }
 
 /// A start on which the algorithm failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FailedStart {
-    /// The world.
     pub graph: EmbeddedGraph,
-    /// The facing dart.
     pub facing: Dart,
-    /// What is wrong.
     pub flaw: Flaw,
     /// The moves made, if it is the run with the default choices.
     pub moves: Option<u64>,
@@ -70,7 +94,6 @@ impl KeptStart for EnumeratedStart {
     }
 }
 
-/// Keeps one of two starts.
 fn keep<S: KeptStart>(kept: &mut Option<S>, other: Option<S>) {
     if let Some(other) = other
         && kept.as_ref().is_none_or(|kept| other.replaces(kept))
@@ -87,9 +110,7 @@ fn keep<S: KeptStart>(kept: &mut Option<S>, other: Option<S>) {
 pub struct Tally<W = WorstStart, F = FailedStart> {
     /// Embedded graphs up to isomorphism.
     pub worlds: u64,
-    /// Starts run.
     pub starts: u64,
-    /// Starts mapped correctly.
     pub mapped: u64,
     /// Starts on which a limit was reached before the run ended.
     pub unknown: u64,
@@ -123,7 +144,6 @@ pub struct Tally<W = WorstStart, F = FailedStart> {
     pub over_budget: u64,
     /// With all choices: starts whose states took too much memory.
     pub over_memory: u64,
-    /// Whether the check was interrupted.
     pub interrupted: bool,
 }
 
@@ -171,7 +191,6 @@ impl<W, F> Tally<W, F> {
         self.over_budget + self.over_memory
     }
 
-    /// Starts on which the algorithm failed.
     #[must_use]
     pub fn failed(&self) -> u64 {
         self.starts - self.mapped - self.unknown
@@ -184,7 +203,6 @@ impl<W, F> Tally<W, F> {
         moves as f64 / order.value(edges as f64, vertices as f64)
     }
 
-    /// Counts all runs of a start.
     pub(super) fn count_every_way(&mut self, ways: &EveryWay) {
         self.states += ways.states;
         self.runs = self.runs.saturating_add(ways.runs);
@@ -213,55 +231,34 @@ impl<W, F> Tally<W, F> {
             self.most_moves_per_vertex = Some((moves, vertices));
         }
     }
-}
 
-impl<W, F> Tally<W, F> {
-    /// The same counts, with other starts.
     pub(super) fn with_starts<V, G>(self, worst: Option<V>, failure: Option<G>) -> Tally<V, G> {
-        let Self {
-            worlds,
-            starts,
-            mapped,
-            unknown,
-            moves_total,
-            moves_made,
-            certificate_total,
-            certificate_max,
-            below_certificate,
-            most_moves_per_vertex,
-            states,
-            runs,
-            extremes,
-            over_budget,
-            over_memory,
-            interrupted,
-            ..
-        } = self;
-        Tally {
-            worlds,
-            starts,
-            mapped,
-            unknown,
-            moves_total,
-            moves_made,
-            certificate_total,
-            certificate_max,
-            below_certificate,
-            worst,
-            most_moves_per_vertex,
-            failure,
-            states,
-            runs,
-            extremes,
-            over_budget,
-            over_memory,
-            interrupted,
-        }
+        let mut tally = Tally { worst, failure, ..Tally::default() };
+        tally.add_counts(&self);
+        tally
+    }
+
+    fn add_counts<V, G>(&mut self, later: &Tally<V, G>) {
+        self.worlds += later.worlds;
+        self.starts += later.starts;
+        self.mapped += later.mapped;
+        self.unknown += later.unknown;
+        self.moves_total += later.moves_total;
+        self.moves_made += later.moves_made;
+        self.below_certificate += later.below_certificate;
+        self.certificate_total += later.certificate_total;
+        self.certificate_max = self.certificate_max.max(later.certificate_max);
+        self.states += later.states;
+        self.over_budget += later.over_budget;
+        self.over_memory += later.over_memory;
+        self.runs = self.runs.saturating_add(later.runs);
+        self.interrupted |= later.interrupted;
+        self.count_extremes(later.extremes);
+        later.most_moves_per_vertex.into_iter().for_each(|most| self.count_moves_per_vertex(most));
     }
 }
 
 impl<W: KeptStart, F: KeptStart> Tally<W, F> {
-    /// Counts a certificate.
     pub fn count_certificate(&mut self, certificate: Option<u64>) {
         let certificate = certificate.unwrap_or_default();
         self.certificate_total += certificate;
@@ -282,29 +279,13 @@ impl<W: KeptStart, F: KeptStart> Tally<W, F> {
         keep(&mut self.worst, worst);
     }
 
-    /// Notes a start on which the algorithm failed.
     pub fn count_failure(&mut self, failure: F) {
         keep(&mut self.failure, Some(failure));
     }
 
     /// Adds the counts of another, later part of the same check.
     pub fn merge(&mut self, later: Self) {
-        self.worlds += later.worlds;
-        self.starts += later.starts;
-        self.mapped += later.mapped;
-        self.unknown += later.unknown;
-        self.moves_total += later.moves_total;
-        self.moves_made += later.moves_made;
-        self.below_certificate += later.below_certificate;
-        self.certificate_total += later.certificate_total;
-        self.certificate_max = self.certificate_max.max(later.certificate_max);
-        self.states += later.states;
-        self.over_budget += later.over_budget;
-        self.over_memory += later.over_memory;
-        self.runs = self.runs.saturating_add(later.runs);
-        self.interrupted |= later.interrupted;
-        self.count_extremes(later.extremes);
-        later.most_moves_per_vertex.into_iter().for_each(|most| self.count_moves_per_vertex(most));
+        self.add_counts(&later);
         keep(&mut self.worst, later.worst);
         keep(&mut self.failure, later.failure);
     }

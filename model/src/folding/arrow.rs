@@ -11,7 +11,6 @@ use crate::{
     percept::{Percept, Sighting},
 };
 
-/// In which sense the robot passed the arrow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
     Along,
@@ -25,7 +24,6 @@ pub(super) struct Arrow {
     against: Option<Dart>,
 }
 
-/// What a sighting shows of an arrow.
 fn of_arrow(sighting: Sighting) -> Sighting {
     match sighting {
         Sighting::PassedAlong | Sighting::PassedAgainst => sighting,

@@ -1,11 +1,9 @@
 //! Certificates: shortest walks that determine their world.
 //!
-//! A walk determines its world exactly if its folded trail is complete. Each return to the marker raises
-//! the cycle rank of the folded trail by at most one, so a certificate closes each edge that is not in a
-//! breadth-first tree by a way there and a way back. A *hanging* edge leads to a part of the world that
-//! is a tree without the marker. It is traversed there and back, except on the last way.
-//!
-//! No explorer can map a world in fewer moves than its certificate has, whatever it does.
+//! Each return to the marker raises the cycle rank of the folded trail by at most one, so a certificate closes each edge
+//! that is not in a breadth-first tree by a way there and a way back. A *hanging* edge leads to a part of the world that
+//! is a tree without the marker. It is traversed there and back, except on the last way. No explorer can map a world in
+//! fewer moves than its certificate has.
 
 use std::mem;
 
@@ -15,14 +13,12 @@ use crate::{
     percept::Door,
 };
 
-/// A certificate under construction.
 struct CertificateWalk<'g> {
     graph: &'g EmbeddedGraph,
     tree: MarkerTree,
     visited: Vec<bool>,
     /// The vertices on the last way, which is not walked back.
     on_last_way: Vec<bool>,
-    /// The darts by which the walk leaves, in order.
     darts: Vec<Dart>,
 }
 
@@ -68,7 +64,6 @@ impl<'g> CertificateWalk<'g> {
         self.graph.vertex(self.graph.opposite(dart))
     }
 
-    /// The darts of the tree that lead from the marker to a vertex.
     fn way_from_marker(&self, mut vertex: Vertex) -> Vec<Dart> {
         let mut way = Vec::new();
         while vertex != self.tree.root() {
@@ -160,62 +155,20 @@ pub fn certificate(graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
 
 #[cfg(test)]
 mod tests {
-    use std::{
-        collections::{HashMap, HashSet},
-        ops::ControlFlow,
-    };
+    use std::collections::HashSet;
 
     use super::*;
     use crate::{
-        enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+        any_graph::{Class, starts, walk},
         folding::{FoldedTrail, fold},
-        percept::Percept,
         world::{GraphWorld, World},
     };
-
-    fn percepts(graph: &EmbeddedGraph, facing: Dart, doors: &[Door]) -> Vec<Percept> {
-        let mut world = GraphWorld::new(graph, facing);
-        let mut percepts = vec![world.sensed()];
-        for &door in doors {
-            world.traverse(door).unwrap();
-            percepts.push(world.sensed());
-        }
-        percepts
-    }
-
-    /// The folded trail as it is seen from the robot: two walks with one code have the same future.
-    fn seen_from_robot(trail: &FoldedTrail) -> Vec<u32> {
-        let mut number = HashMap::from([(trail.vertex(trail.pose()), (0, trail.pose()))]);
-        let mut order = vec![trail.pose()];
-        let mut code = Vec::new();
-        let mut next = 0;
-        while let Some(&pose) = order.get(next) {
-            next += 1;
-            let degree = trail.degree(pose);
-            code.push(degree);
-            for door in 0..degree {
-                let dart = trail.behind(pose, Door(door));
-                code.push(u32::from(trail.marker() == Some(dart)));
-                let Some(far) = trail.opposite(dart) else {
-                    code.push(u32::MAX);
-                    continue;
-                };
-                let count = number.len() as u32;
-                let (found, entry) = *number.entry(trail.vertex(far)).or_insert_with(|| {
-                    order.push(far);
-                    (count, far)
-                });
-                code.extend([found, trail.door(entry, far).0]);
-            }
-        }
-        code
-    }
 
     /// The moves of a shortest walk whose folded trail is complete, by trying all walks.
     fn shortest_by_trying_all(graph: &EmbeddedGraph, facing: Dart) -> usize {
         let world = GraphWorld::new(graph, facing);
         let trail = FoldedTrail::new(world.sensed()).unwrap();
-        let mut seen = HashSet::from([seen_from_robot(&trail)]);
+        let mut seen = HashSet::from([trail.seen_from_robot()]);
         let mut level = vec![(world, trail)];
         let mut moves = 0;
         while !level.iter().any(|(_, trail)| trail.is_complete()) {
@@ -226,7 +179,7 @@ mod tests {
                     let (mut world, mut trail) = (world.clone(), trail.clone());
                     world.traverse(Door(door)).unwrap();
                     trail.step(Door(door), world.sensed()).unwrap();
-                    if seen.insert(seen_from_robot(&trail)) {
+                    if seen.insert(trail.seen_from_robot()) {
                         later.push((world, trail));
                     }
                 }
@@ -236,61 +189,28 @@ mod tests {
         moves
     }
 
-    fn every_start(class: Class, edges: usize, mut visit: impl FnMut(&EmbeddedGraph)) {
-        let starts = Enumeration::new(Each::Start, class, edges).unwrap();
-        let mut visit = |found: EnumeratedGraph| {
-            visit(found.graph);
-            ControlFlow::Continue(())
-        };
-        let _: ControlFlow<()> = starts.for_each(&mut visit);
-    }
-
     #[test]
     fn a_cycle_a_chain_and_a_star_have_the_lengths_of_the_formula() {
-        let cycle = |count: usize| {
-            let names: Vec<String> = (0..count).map(|vertex| vertex.to_string()).collect();
-            let lists: Vec<(&str, Vec<&str>)> = (0..count)
-                .map(|vertex| {
-                    let [before, after] =
-                        [vertex + count - 1, vertex + 1].map(|other| names[other % count].as_str());
-                    (names[vertex].as_str(), vec![before, after])
-                })
-                .collect();
-            EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-        };
         for count in 3..9 {
-            assert_eq!(certificate_length(&cycle(count), Dart(0)), count);
+            assert_eq!(certificate_length(&EmbeddedGraph::cycle(count), Dart(0)), count);
         }
-        let chain = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b", "d"]),
-            ("d", vec!["c"]),
-        ])
-        .unwrap();
-        assert_eq!(certificate_length(&chain, Dart(0)), 3);
-        let star = EmbeddedGraph::from_neighbour_lists(&[
-            ("hub", vec!["a", "b", "c", "d", "e"]),
-            ("a", vec!["hub"]),
-            ("b", vec!["hub"]),
-            ("c", vec!["hub"]),
-            ("d", vec!["hub"]),
-            ("e", vec!["hub"]),
-        ])
-        .unwrap();
+        assert_eq!(certificate_length(&EmbeddedGraph::chain(3), Dart(0)), 3);
+        let leaves = ["a", "b", "c", "d", "e"];
+        let lists = leaves.map(|leaf| (leaf, vec!["hub"]));
+        let star = [&[("hub", leaves.to_vec())], &lists[..]].concat();
+        let star = EmbeddedGraph::from_neighbour_lists(&star).unwrap();
         assert_eq!(certificate_length(&star, Dart(0)), 9);
     }
 
     #[test]
     fn every_certificate_has_the_length_of_the_formula_and_determines_its_world() {
         for (class, most) in [(Class::Multigraph, 5), (Class::Simple, 7)] {
-            for edges in 1..=most {
-                every_start(class, edges, |graph| {
-                    let doors = certificate(graph, Dart(0));
-                    assert_eq!(doors.len(), certificate_length(graph, Dart(0)));
-                    let trail = fold(&percepts(graph, Dart(0), &doors), &doors).unwrap();
-                    assert!(trail.is_complete(), "{graph:?}");
-                });
+            for graph in (1..=most).flat_map(|edges| starts(class, edges)) {
+                let doors = certificate(&graph, Dart(0));
+                assert_eq!(doors.len(), certificate_length(&graph, Dart(0)));
+                let world = GraphWorld::new(&graph, Dart(0));
+                let (percepts, doors, _) = walk(world, doors.iter().map(|door| door.0));
+                assert!(fold(&percepts, &doors).unwrap().is_complete(), "{graph:?}");
             }
         }
     }
@@ -298,11 +218,9 @@ mod tests {
     #[test]
     fn no_shorter_walk_determines_its_world() {
         for (class, most) in [(Class::Multigraph, 3), (Class::Simple, 5)] {
-            for edges in 1..=most {
-                every_start(class, edges, |graph| {
-                    let least = shortest_by_trying_all(graph, Dart(0));
-                    assert_eq!(certificate_length(graph, Dart(0)), least, "{graph:?}");
-                });
+            for graph in (1..=most).flat_map(|edges| starts(class, edges)) {
+                let least = shortest_by_trying_all(&graph, Dart(0));
+                assert_eq!(certificate_length(&graph, Dart(0)), least, "{graph:?}");
             }
         }
     }

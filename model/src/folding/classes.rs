@@ -21,15 +21,11 @@ const NO_NUMBER: u32 = u32::MAX;
 pub(super) struct DartClasses {
     vertices: Vec<TrailVertex>,
     darts: Vec<TrailDart>,
-    /// The number of classes of trail vertices.
     count: usize,
-    /// The number of open darts of roots.
     open: usize,
-    /// What to undo.
     changes: Vec<Change>,
     /// The number of changes before the latest union.
     before_union: usize,
-    /// Scratch: darts that have to be identified next.
     pairs: Vec<(u32, u32)>,
 }
 
@@ -38,7 +34,6 @@ clone_in_place!(DartClasses { vertices, darts, count, open, changes, before_unio
 /// A vertex for each percept at a place that was not known.
 #[derive(Clone, Copy, Debug)]
 struct TrailVertex {
-    /// Its first dart.
     first: u32,
     /// The number of trail vertices in its class, if it is a root.
     size: u32,
@@ -50,7 +45,6 @@ struct TrailVertex {
 
 #[derive(Clone, Copy, Debug)]
 struct TrailDart {
-    /// The trail vertex at which it is.
     owner: u32,
     /// The same dart of a larger class. A dart of a root is its own parent.
     parent: u32,
@@ -61,13 +55,11 @@ struct TrailDart {
 }
 
 impl TrailVertex {
-    /// Its darts.
     fn darts(&self) -> Range<u32> {
         self.first..self.first + self.percept.degree
     }
 }
 
-/// A change by a union.
 #[derive(Clone, Copy, Debug)]
 enum Change {
     /// A root became the child of another root.
@@ -126,19 +118,16 @@ impl DartClasses {
         }
     }
 
-    /// The number of a dart, if its class has numbers.
     #[inline]
     pub(super) fn number(&self, dart: u32) -> Option<u32> {
         let number = self.darts[self.find(dart) as usize].number;
         (number != NO_NUMBER).then_some(number)
     }
 
-    /// The number of classes.
     pub(super) fn count(&self) -> usize {
         self.count
     }
 
-    /// The number of open darts.
     #[inline]
     pub(super) fn open_count(&self) -> usize {
         self.open
@@ -174,32 +163,27 @@ impl DartClasses {
         }
     }
 
-    /// Whether a dart of a root is open.
     #[inline]
     pub(super) fn is_open(&self, root: u32) -> bool {
         self.darts[root as usize].opposite == OPEN
     }
 
-    /// The next dart clockwise at the same trail vertex.
     #[inline]
     pub(super) fn next_around(&self, dart: u32) -> u32 {
         let darts = self.vertex(dart).darts();
         if dart + 1 == darts.end { darts.start } else { dart + 1 }
     }
 
-    /// The trail vertex of a dart.
     #[inline]
     pub(super) fn owner(&self, dart: u32) -> u32 {
         self.darts[dart as usize].owner
     }
 
-    /// The trail vertex at which a dart is.
     #[inline]
     fn vertex(&self, dart: u32) -> &TrailVertex {
         &self.vertices[self.owner(dart) as usize]
     }
 
-    /// The first dart of a trail vertex.
     #[inline]
     pub(super) fn first(&self, vertex: u32) -> u32 {
         self.vertices[vertex as usize].first
@@ -218,18 +202,15 @@ impl DartClasses {
         self.vertex(dart).percept
     }
 
-    /// The number of moves before a dart's trail vertex was seen.
     pub(super) fn visit(&self, dart: u32) -> usize {
         self.vertex(dart).visit
     }
 
-    /// The degree of a dart's vertex.
     #[inline]
     pub(super) fn degree(&self, dart: u32) -> u32 {
         self.percept(dart).degree
     }
 
-    /// The darts of a trail vertex.
     pub(super) fn darts_of(&self, vertex: u32) -> Range<u32> {
         self.vertices[vertex as usize].darts()
     }
@@ -251,7 +232,6 @@ impl DartClasses {
         first + if index < degree - places { index + places } else { index - (degree - places) }
     }
 
-    /// The door that leads from a dart to another at the same trail vertex.
     #[inline]
     pub(super) fn door(&self, from: u32, to: u32) -> Door {
         let &TrailVertex { first, percept, .. } = self.vertex(from);
@@ -295,12 +275,10 @@ impl DartClasses {
         self.changes.push(Change::Open { before: self.open });
     }
 
-    /// The number of changes by unions that can be undone.
     pub(super) fn change_count(&self) -> usize {
         self.changes.len()
     }
 
-    /// Undoes the latest union.
     pub(super) fn undo(&mut self) {
         self.undo_to(self.before_union);
     }
@@ -370,7 +348,6 @@ impl DartClasses {
         }
     }
 
-    /// Identifies two darts, and all that follows.
     fn close(
         &mut self,
         one: u32,
@@ -389,7 +366,6 @@ impl DartClasses {
         Ok(())
     }
 
-    /// Makes one class of two.
     #[inline]
     fn merge(
         &mut self,

@@ -7,19 +7,17 @@ use crate::{embedded_graph::Dart, percept::Sighting};
 impl FoldedTrail {
     /// Whether a dart is the only one at its vertex that is not open, and the vertex has neither a marker nor
     /// [numbers](Self::set_numbers).
-    #[must_use]
-    pub fn is_leaf(&self, dart: Dart) -> bool {
+    pub(crate) fn is_leaf(&self, dart: Dart) -> bool {
         let leaf = self.root_of(dart);
         self.number(leaf).is_none()
             && self.sighting(leaf) == Sighting::Nothing
-            && self.darts_around(leaf).all(|dart| (dart == leaf) != self.is_open_root(dart))
+            && self.darts_around(leaf).all(|dart| (dart == leaf) != self.classes.is_open(dart.0))
     }
 
     /// Whether a [leaf](Self::is_leaf) can be united with a dart, and no other identification follows: the dart
     /// is open, at a vertex of the same degree without a marker.
     #[inline]
-    #[must_use]
-    pub fn takes_leaf(&self, dart: Dart, leaf: Dart) -> bool {
+    pub(crate) fn takes_leaf(&self, dart: Dart, leaf: Dart) -> bool {
         self.opposite(dart).is_none()
             && self.degree(dart) == self.degree(leaf)
             && self.sighting(dart) == Sighting::Nothing
@@ -28,7 +26,7 @@ impl FoldedTrail {
     /// Visits the darts that a union of a leaf with a dart that [takes it](Self::takes_leaf) would close, with
     /// the [numbers](Self::number) of their opposites after it.
     #[inline]
-    pub fn for_each_closed_by_leaf(
+    pub(crate) fn for_each_closed_by_leaf(
         &self,
         leaf: Dart,
         dart: Dart,
@@ -42,8 +40,9 @@ impl FoldedTrail {
         }
         let (mut at_leaf, mut at_dart) = (leaf, dart);
         for _ in 1..self.degree(leaf) {
-            [at_leaf, at_dart] = [at_leaf, at_dart].map(|root| self.next_around(root));
-            if !self.is_open_root(at_dart)
+            [at_leaf, at_dart] =
+                [at_leaf, at_dart].map(|root| Dart(self.classes.next_around(root.0)));
+            if !self.classes.is_open(at_dart.0)
                 && let Some(far) = self.opposite(at_dart)
             {
                 visit(at_leaf, number(far));

@@ -13,15 +13,12 @@ pub struct MarkedTrails {
     pub may_be_more: bool,
 }
 
-/// The most trails that are kept.
 const MOST: usize = 64;
-/// The most identifications that are tried.
 const STEPS: u64 = 20_000;
 
 impl FoldedTrail {
     /// The first dart of the first vertex with an undirected marker.
-    #[must_use]
-    pub fn marked_vertex(&self) -> Option<Dart> {
+    pub(crate) fn marked_vertex(&self) -> Option<Dart> {
         self.marked_vertices().next()
     }
 
@@ -67,22 +64,18 @@ impl FoldedTrail {
 mod tests {
     use super::*;
     use crate::{
+        any_graph::walk,
         embedded_graph::EmbeddedGraph,
         folding::fold,
         marker::Undirected,
         percept::{Door, Percept},
-        world::{GraphWorld, World},
+        world::GraphWorld,
     };
 
     /// The folded trail of a walk with an undirected marker at the start.
     fn walked(graph: &EmbeddedGraph, start: Dart, doors: &[u32]) -> FoldedTrail {
-        let mut world = GraphWorld::with_marker(graph, Undirected, start);
-        let mut percepts = vec![world.sensed()];
-        let doors: Vec<Door> = doors.iter().copied().map(Door).collect();
-        for &door in &doors {
-            world.traverse(door).unwrap();
-            percepts.push(world.sensed());
-        }
+        let world = GraphWorld::with_marker(graph, Undirected, start);
+        let (percepts, doors, _) = walk(world, doors.iter().copied());
         fold(&percepts, &doors).unwrap()
     }
 

@@ -13,20 +13,15 @@ pub(crate) struct MarkerTree {
     vertices: Vec<TreeVertex>,
     /// The vertices in the order of their distances.
     order: Vec<Vertex>,
-    /// The number of hanging edges.
     hanging: usize,
 }
 
-/// A vertex in the tree.
 #[derive(Clone, Copy, Debug)]
 struct TreeVertex {
-    /// Its distance from the marker.
     distance: u32,
     /// Its dart that leads toward the marker; of no use at the marker's vertex.
     up: Dart,
-    /// The vertex to which that leads.
     parent: Vertex,
-    /// Whether it is behind a hanging edge.
     hangs: bool,
     /// The number of hanging edges on its way to the marker.
     hanging: u32,
@@ -85,27 +80,22 @@ impl MarkerTree {
         }
     }
 
-    /// The marker's vertex.
     pub(super) fn root(&self) -> Vertex {
         self.order[0]
     }
 
-    /// The dart at a vertex, not the marker's, that leads toward the marker.
     pub(crate) fn up(&self, vertex: Vertex) -> Dart {
         self.vertices[vertex.at()].up
     }
 
-    /// The next vertex on the way from a vertex, not the marker's, to the marker.
     pub(super) fn parent(&self, vertex: Vertex) -> Vertex {
         self.vertices[vertex.at()].parent
     }
 
-    /// Whether a vertex is behind a hanging edge.
     pub(super) fn hangs(&self, vertex: Vertex) -> bool {
         self.vertices[vertex.at()].hangs
     }
 
-    /// Whether a dart leads toward the marker along the tree.
     pub(super) fn leads_up(&self, graph: &EmbeddedGraph, dart: Dart) -> bool {
         let vertex = graph.vertex(dart);
         vertex != self.root() && self.up(vertex) == dart

@@ -2,27 +2,17 @@
 //!
 //! A *trail* has one vertex for each percept of a walk, joined by the edges that were traversed. All
 //! sightings of the directional marker are one pose, and so are those of an arrow on an edge in one
-//! sense, so these poses are identified; identified poses have identified neighbours behind the same
-//! doors; and so on, until nothing changes. This is Stallings folding ("Topology of finite graphs",
-//! 1983), and it is congruence closure.
-//!
-//! * If the folding contradicts itself, no world of any size explains the walk.
-//! * Otherwise the folded trail maps, locally one to one, into every world that explains the walk. An
-//!   *open* dart is the end of an edge that was never traversed. Dead ends behind the open darts make
-//!   the folded trail a world that explains the walk, so there is at least one.
-//! * If no dart is open and the marker was seen, the folded trail *is* the world: a covering of it in
-//!   which the marker has one preimage. Without a sighting of the marker, and for a robot without one,
-//!   the folded trail is a tree; if none of its darts is open, it is the world: a finite tree covers no
-//!   other graph. So a walk determines its world exactly if no dart is open.
+//! sense; identified poses have identified neighbours behind the same doors; and so on, until nothing changes. This is
+//! Stallings folding ("Topology of finite graphs", 1983), and it is congruence closure. If it contradicts itself, no
+//! world of any size explains the walk. Otherwise the folded trail maps, locally one to one, into every world that
+//! explains the walk. An *open* dart is the end of an edge that was never traversed: a walk determines its world exactly
+//! if no dart is open.
 //!
 //! That is exact for the markers [`Directional`](crate::marker::Directional), [`DirectedEdge`](crate::marker::DirectedEdge)
-//! and [`NoMarker`](crate::marker::NoMarker): [`Pointing`](crate::percept::Sighting::Pointing),
-//! [`PassedAlong`](crate::percept::Sighting::PassedAlong) and
-//! [`PassedAgainst`](crate::percept::Sighting::PassedAgainst) identify poses. A sighting of another marker that
-//! lies at a vertex is compared where vertices are identified for another reason, because the robot returned
-//! along known edges. A mark on an edge without a sense is not compared. With these markers a contradiction is
-//! still a proof, and its absence proves nothing. An undirected marker lies at one vertex, so that its sightings
-//! can be identified in [several ways](MarkedTrails).
+//! and [`NoMarker`](crate::marker::NoMarker). A sighting of another marker that
+//! lies at a vertex is compared where vertices are identified for another reason; a mark on an edge without a sense is
+//! not. With these markers a contradiction is still a proof, and its absence proves nothing. An undirected marker lies at
+//! one vertex, so that its sightings can be identified in [several ways](MarkedTrails).
 
 mod arrow;
 mod certificate;
@@ -33,19 +23,15 @@ mod leaf;
 mod marked_vertex;
 mod marker_tree;
 mod smallest;
-mod smallest_marked;
 mod trail;
 
 pub(crate) use certificate::certificate_darts;
 pub use certificate::{certificate, certificate_length};
 pub use closed::ClosedTrail;
-pub use contradiction::{
-    ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
-};
+pub use contradiction::{ContradictionReason, FoldError, MAX_DARTS, TrailError};
 pub use marked_vertex::MarkedTrails;
 pub(crate) use marker_tree::MarkerTree;
-pub use smallest::{SearchLimit, SmallestWorld, WorldSearch};
-pub use smallest_marked::smallest_world;
+pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_world};
 pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept, WalkEvent};
@@ -58,13 +44,13 @@ use crate::percept::{Door, Percept, WalkEvent};
 /// which the trail is too large.
 pub fn fold(percepts: &[Percept], doors: &[Door]) -> Result<FoldedTrail, FoldError> {
     let Some((&first, later)) = percepts.split_first() else { return Ok(FoldedTrail::default()) };
-    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(WalkEvent::Percept(0)))?;
+    let at = |event| move |error| FoldError { event, error };
+    let mut trail = FoldedTrail::new(first).map_err(at(WalkEvent::Percept(0)))?;
     for (index, &door) in doors.iter().enumerate() {
-        let event = WalkEvent::Door(index);
-        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(event))?;
+        let door_error = at(WalkEvent::Door(index));
+        trail.check_door(door).map_err(TrailError::from).map_err(door_error)?;
         if let Some(&percept) = later.get(index) {
-            let event = WalkEvent::Percept(index + 1);
-            trail.step(door, percept).map_err(|error| error.at(event))?;
+            trail.step(door, percept).map_err(at(WalkEvent::Percept(index + 1)))?;
         }
     }
     Ok(trail)

@@ -1,18 +1,14 @@
 //! The smallest world that explains a walk.
 //!
 //! Each world that explains a walk arises from its folded trail: some of its vertices are one vertex, and
-//! each open dart leads to another open dart or out of the trail. Of what lies outside, a dead end behind each
-//! dart is the smallest. So the search has two parts. The first decides, for each vertex, which of the
-//! vertices before it it is, if any; [uniting](FoldedTrail::unite) two vertices has consequences, and
-//! excludes what contradicts the walk. The second joins open darts in pairs as far as the class allows.
-//! Worlds with no fewer edges than the best one so far are left out (branch and bound).
-//!
-//! The walk may be any walk that folds without a contradiction, with the directional marker, without a marker,
-//! or with an undirected one if only one vertex of the trail has it. The search may take exponential time; it ends after a number of steps.
+//! each open dart leads to another open dart or out of the trail, at best to a dead end. The search first decides, for
+//! each vertex, which of the vertices before it it is, if any, and then joins open darts in pairs as far as the class
+//! allows. Worlds with no fewer edges than the best one so far are left out (branch and bound). It may take exponential
+//! time; it ends after a number of steps.
 
 use std::collections::{HashSet, VecDeque};
 
-use super::FoldedTrail;
+use super::{FoldedTrail, MarkedTrails};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
@@ -22,7 +18,6 @@ use crate::{
 /// The worlds to search, and the limit of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldSearch {
-    /// The class of worlds.
     pub class: Class,
     /// The largest number of edges, if only smaller worlds are searched.
     pub max_edges: Option<usize>,
@@ -51,7 +46,6 @@ const VERTICES: usize = 256;
 /// The smallest world that explains a walk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SmallestWorld {
-    /// A world.
     World {
         /// The world; the robot starts with dart 0 behind it.
         graph: EmbeddedGraph,
@@ -65,10 +59,7 @@ pub enum SmallestWorld {
     /// No world of the class explains the walk, whatever its size.
     NoWorld,
     /// The search ended before a world of the class was found.
-    NotFound {
-        /// Why it ended.
-        limit: SearchLimit,
-    },
+    NotFound { limit: SearchLimit },
 }
 
 /// Why a search ended early.
@@ -76,23 +67,56 @@ pub enum SmallestWorld {
 pub enum SearchLimit {
     /// It reached the largest number of edges. A larger world may explain the walk.
     Edges,
-    /// It reached the largest number of steps.
     Steps,
-    /// It reached the largest number of decisions.
     Decisions,
-    /// It was stopped.
     Stopped,
 }
 
 /// Finds the world of a class with the fewest edges that explains the walk of a trail: a robot from some
-/// start in it, with the directional marker somewhere or without one, has the percepts of the walk. Of
-/// several, it is the first in the order of the search.
+/// start in it, with the directional or an undirected marker somewhere or without one, has the percepts of the
+/// walk. Of several, it is the first in the order of the search.
 #[must_use]
-pub(super) fn smallest_world(
+pub fn smallest_world(
     trail: &FoldedTrail,
     search: WorldSearch,
     watch: &dyn Watch,
 ) -> SmallestWorld {
+    if trail.marked_vertex().is_none() {
+        return smallest_of_trail(trail, search, watch);
+    }
+    let MarkedTrails { trails, may_be_more } = trail.with_one_marked_vertex(watch);
+    let mut limit = may_be_more.then_some(SearchLimit::Steps);
+    let mut best: Option<FoundWorld> = None;
+    for trail in &trails {
+        match smallest_of_trail(trail, search, watch) {
+            SmallestWorld::World { graph, marker, limit: reached } => {
+                limit = limit.or(reached);
+                if best.as_ref().is_none_or(|(best, _)| graph.edge_count() < best.edge_count()) {
+                    best = Some((graph, marker));
+                }
+            }
+            SmallestWorld::NotFound { limit: reached } => limit = limit.or(Some(reached)),
+            SmallestWorld::NoWorld => {}
+        }
+    }
+    SmallestWorld::new(best, limit)
+}
+
+/// A world that explains the walk, and the dart of its marker.
+type FoundWorld = (EmbeddedGraph, Option<Dart>);
+
+impl SmallestWorld {
+    fn new(found: Option<FoundWorld>, limit: Option<SearchLimit>) -> Self {
+        match (found, limit) {
+            (Some((graph, marker)), limit) => Self::World { graph, marker, limit },
+            (None, Some(limit)) => Self::NotFound { limit },
+            (None, None) => Self::NoWorld,
+        }
+    }
+}
+
+/// Does the same for a trail in which only one vertex has an undirected marker.
+fn smallest_of_trail(trail: &FoldedTrail, search: WorldSearch, watch: &dyn Watch) -> SmallestWorld {
     let mut state = Search {
         trail: trail.clone(),
         class: search.class,
@@ -120,16 +144,9 @@ pub(super) fn smallest_world(
         let undecided = later.iter().map(|&dart| Undecided::new(dart)).collect();
         state.decide(&mut vec![first], undecided);
     }
-    match (state.best, state.stopped) {
-        (Some(Proposal { graph, marker, .. }), limit) => {
-            SmallestWorld::World { graph, marker, limit }
-        }
-        (None, None) if search.max_edges.is_some() => {
-            SmallestWorld::NotFound { limit: SearchLimit::Edges }
-        }
-        (None, None) => SmallestWorld::NoWorld,
-        (None, Some(limit)) => SmallestWorld::NotFound { limit },
-    }
+    let is_bounded = state.best.is_none() && search.max_edges.is_some();
+    let limit = state.stopped.or(is_bounded.then_some(SearchLimit::Edges));
+    SmallestWorld::new(state.best, limit)
 }
 
 /// The first darts of the vertices, from that of the marker on, or else from that of the start.
@@ -150,18 +167,9 @@ fn breadth_first(trail: &FoldedTrail) -> Vec<Dart> {
     }
     order
 }
-
-/// A world that explains the walk.
-struct Proposal {
-    edges: usize,
-    graph: EmbeddedGraph,
-    marker: Option<Dart>,
-}
-
 /// A vertex that may be one of those that are decided to be distinct.
 #[derive(Clone)]
 struct Undecided {
-    /// A dart of the vertex.
     dart: Dart,
     /// Darts of distinct vertices; it may be any of these.
     options: Vec<Dart>,
@@ -175,7 +183,6 @@ impl Undecided {
     }
 }
 
-/// The state of the search.
 struct Search<'w> {
     trail: FoldedTrail,
     class: Class,
@@ -183,11 +190,10 @@ struct Search<'w> {
     watch: &'w dyn Watch,
     steps: u64,
     stopped: Option<SearchLimit>,
-    /// The number of decisions on top of each other.
     depth: usize,
     /// The number of undecided vertices and options that are kept for them.
     kept: usize,
-    best: Option<Proposal>,
+    best: Option<FoundWorld>,
 }
 
 impl Search<'_> {
@@ -212,10 +218,10 @@ impl Search<'_> {
                         if self.is_over() || self.is_too_large(distinct) {
                             break;
                         }
-                        let changes = self.trail.change_count();
+                        let changes = self.trail.classes.change_count();
                         if self.unite(dart, option, distinct) {
                             self.decide(distinct, undecided.clone());
-                            self.trail.undo_to(changes);
+                            self.trail.classes.undo_to(changes);
                         }
                     }
                     distinct.push(dart);
@@ -270,15 +276,15 @@ impl Search<'_> {
         if self.trail.degree(one) != self.trail.degree(other) || self.is_over() {
             return false;
         }
-        let changes = self.trail.change_count();
+        let changes = self.trail.classes.change_count();
         let united = self.unite(one, other, distinct);
-        self.trail.undo_to(changes);
+        self.trail.classes.undo_to(changes);
         united
     }
 
     /// Makes one vertex of two, unless that contradicts the walk, the class or that vertices are distinct.
     fn unite(&mut self, one: Dart, other: Dart, distinct: &[Dart]) -> bool {
-        let changes = self.trail.change_count();
+        let changes = self.trail.classes.change_count();
         let more = self.trail.vertex_count() / VERTICES;
         self.steps = self.steps.saturating_sub(more as u64);
         if self.trail.unite(one, other).is_err() {
@@ -288,7 +294,7 @@ impl Search<'_> {
         let fits = distinct.iter().all(|&dart| seen.insert(self.trail.vertex(dart)))
             && (!self.class.is_simple() || self.trail.is_simple());
         if !fits {
-            self.trail.undo_to(changes);
+            self.trail.classes.undo_to(changes);
         }
         fits
     }
@@ -301,7 +307,7 @@ impl Search<'_> {
 
     fn exceeds(&self, edges: usize) -> bool {
         self.max_edges.is_some_and(|max| edges > max)
-            || self.best.as_ref().is_some_and(|best| edges >= best.edges)
+            || self.best.as_ref().is_some_and(|(best, _)| edges >= best.edge_count())
     }
 
     /// Joins open darts in pairs; all vertices are distinct.
@@ -385,7 +391,7 @@ impl Search<'_> {
             let order = discovery_order(&closed.graph, start);
             let place = |dart| order.iter().position(|&known| known == dart);
             let marker = closed.marker.and_then(place).map(|place| Dart(place as u32));
-            self.best = Some(Proposal { edges, graph: closed.graph.renumbered(&order), marker });
+            self.best = Some((closed.graph.renumbered(&order), marker));
         }
         true
     }

@@ -22,7 +22,6 @@ pub struct FoldedTrail {
     pub(super) classes: DartClasses,
     /// The dart along which the directional marker points.
     marker: Option<Dart>,
-    /// The arrow on an edge.
     pub(super) arrow: Arrow,
     /// The dart by which the robot has come in.
     pub(super) pose: u32,
@@ -33,10 +32,7 @@ clone_in_place!(FoldedTrail { classes, marker, arrow, pose, moves });
 
 impl FoldedTrail {
     /// Begins another walk. Memory is kept.
-    ///
-    /// # Errors
-    /// Returns an error if no vertex has the percept, or if it has too many darts.
-    pub fn restart(&mut self, percept: Percept) -> Result<(), TrailError> {
+    pub(crate) fn restart(&mut self, percept: Percept) -> Result<(), TrailError> {
         self.classes.clear();
         (self.marker, self.arrow, self.pose, self.moves) = (None, Arrow::default(), 0, 0);
         self.add_vertex(percept)?;
@@ -55,21 +51,17 @@ impl FoldedTrail {
 
     /// Another walk begins, of a robot that may be anywhere in the same world. It is joined to the earlier
     /// ones when the marker is seen.
-    ///
-    /// # Errors
-    /// See [`step`](Self::step).
-    pub fn begin_walk(&mut self, percept: Percept) -> Result<(), TrailError> {
+    pub(crate) fn begin_walk(&mut self, percept: Percept) -> Result<(), TrailError> {
         self.moves += usize::from(self.classes.trail_vertex_count() > 0);
         self.pose = self.add_vertex(percept)?;
         self.identify_marker(percept)
     }
 
     /// The robot stands at a place that it knows, and has come in by this dart.
-    pub fn stand_at(&mut self, pose: Dart) {
+    pub(crate) fn stand_at(&mut self, pose: Dart) {
         self.pose = self.classes.find(pose.0);
     }
 
-    /// Whether the robot's vertex has a door.
     pub(super) fn check_door(&self, door: Door) -> Result<(), ContradictionReason> {
         let degree = self.classes.degree(self.pose);
         if door.0 < degree {
@@ -134,8 +126,7 @@ impl FoldedTrail {
 
     /// What a robot with this pose saw at its place before, if it came there along edges that it knew. That
     /// is so after a [step](Self::step) that failed, too.
-    #[must_use]
-    pub fn seen_before(&self) -> Option<Percept> {
+    pub(crate) fn seen_before(&self) -> Option<Percept> {
         self.classes.seen_before(self.pose, self.moves)
     }
 
@@ -177,7 +168,7 @@ impl FoldedTrail {
     /// Visits the darts that were open before the latest [union](Self::unite) and are not open after it,
     /// with their [opposites](Self::opposite) after it.
     #[inline]
-    pub fn for_each_closed_dart(&self, mut visit: impl FnMut(Dart, Dart)) {
+    pub(crate) fn for_each_closed_dart(&self, mut visit: impl FnMut(Dart, Dart)) {
         self.classes.for_each_identified(|dart| {
             if let Some(opposite) = self.opposite(Dart(dart)) {
                 visit(Dart(dart), opposite);
@@ -187,28 +178,16 @@ impl FoldedTrail {
 
     /// Gives numbers to the darts of a vertex, clockwise from a pose. Later unions keep them. Two
     /// vertices with numbers must be proved to be distinct.
-    pub fn set_numbers(&mut self, pose: Dart, first: u32) {
+    pub(crate) fn set_numbers(&mut self, pose: Dart, first: u32) {
         self.classes.set_numbers(self.classes.find(pose.0), first);
     }
 
     /// The number of a dart, if its vertex has [numbers](Self::set_numbers).
     #[inline]
-    #[must_use]
-    pub fn number(&self, dart: Dart) -> Option<u32> {
+    pub(crate) fn number(&self, dart: Dart) -> Option<u32> {
         self.classes.number(dart.0)
     }
 
-    /// The number of changes by unions that can be undone.
-    pub(super) fn change_count(&self) -> usize {
-        self.classes.change_count()
-    }
-
-    /// Undoes the latest unions, so that this many changes are left.
-    pub(super) fn undo_to(&mut self, count: usize) {
-        self.classes.undo_to(count);
-    }
-
-    /// The number of moves.
     #[inline]
     #[must_use]
     pub fn moves(&self) -> usize {
@@ -276,6 +255,36 @@ impl FoldedTrail {
             next = doors.next().and_then(|&door| self.opposite(self.behind(pose, door)));
         }
         entries
+    }
+
+    /// The folded trail as it is seen from the robot: vertices are numbered breadth first. Two walks with one form have
+    /// the same future.
+    #[must_use]
+    pub fn seen_from_robot(&self) -> Vec<u32> {
+        let mut number = vec![None; self.trail_vertex_count()];
+        number[self.vertex(self.pose())] = Some(0);
+        let mut entries = vec![self.pose()];
+        let mut form = Vec::new();
+        let mut next = 0;
+        while let Some(&entry) = entries.get(next) {
+            next += 1;
+            form.push(self.degree(entry));
+            for dart in (0..self.degree(entry)).map(|door| self.behind(entry, Door(door))) {
+                if self.marker() == Some(dart) {
+                    form.push(u32::MAX - 1);
+                }
+                let Some(far) = self.opposite(dart) else {
+                    form.push(u32::MAX);
+                    continue;
+                };
+                let vertex = *number[self.vertex(far)].get_or_insert_with(|| {
+                    entries.push(far);
+                    entries.len() - 1
+                });
+                form.extend([vertex as u32, self.door(entries[vertex], far).0]);
+            }
+        }
+        form
     }
 
     /// The open darts, as darts of roots.
@@ -367,23 +376,10 @@ impl FoldedTrail {
         self.classes.owner(dart.0) as usize
     }
 
-    /// The degree of a dart's vertex.
     #[inline]
     #[must_use]
     pub fn degree(&self, dart: Dart) -> u32 {
         self.classes.degree(dart.0)
-    }
-
-    /// Whether a dart of a root is open.
-    #[inline]
-    pub(super) fn is_open_root(&self, root: Dart) -> bool {
-        self.classes.is_open(root.0)
-    }
-
-    /// The next dart clockwise at the vertex of a dart of a root.
-    #[inline]
-    pub(super) fn next_around(&self, root: Dart) -> Dart {
-        Dart(self.classes.next_around(root.0))
     }
 
     /// What was seen at a dart's vertex, by a robot that came in by the first dart of the root.
@@ -397,7 +393,6 @@ impl FoldedTrail {
         self.classes.roots().map(|root| Dart(self.classes.first(root)))
     }
 
-    /// Adds a vertex with open darts, a class of its own, and returns its first dart.
     fn add_vertex(&mut self, percept: Percept) -> Result<u32, TrailError> {
         let Percept { degree, sighting } = percept;
         if degree == 0 {

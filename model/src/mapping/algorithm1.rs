@@ -1,144 +1,61 @@
 //! Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
 //!
-//! The numbers are those of the printed lines. The state and the small steps are those of
-//! [`Algorithm1Run`].
+//! The numbers are those of the printed lines. The state is a plain value: to try every choice, clone it together
+//! with the world where the run waits for one, at line 4 or at line 8. Memory is reused from run to run.
+
+use std::{cmp::Reverse, mem};
 
 use super::{
-    Algorithm1Run, Choices, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk,
-    MappingChoice, MappingError, MappingEvent, Nearest, Observer, StateKey, StepPurpose,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
+    MappingError, MappingEvent, ObservedWorld, PartialMap, StateKey, StepPurpose,
+    map_walk::{NO_PERCEPT, has_walk},
+    partial_map::START,
+    tree::BreadthFirstTree,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     marker::{Directional, MarkerKind},
-    world::World,
+    percept::{Door, Percept, Sighting, retrace},
 };
 
-/// The result of the validation of a hypothesis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ValidationResult {
-    /// The percepts did not match; the robot is back where it was.
-    Rejected,
-    /// The percepts matched throughout; the robot stands at the marker.
-    Confirmed,
+/// One open choice, made. A run takes one step for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MappingChoice {
+    /// Line 5: the unexplored dart to explore next.
+    Edge(Dart),
+    /// Line 9: the index of the hypothesis to try next, among those that are left.
+    Hypothesis(usize),
 }
 
-/// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing
-/// door. Afterwards `exploration` holds the map, the robot's pose in it and the number of moves;
-/// [`Algorithm1Run::map`] is then [complete](super::PartialMap::complete).
-///
-/// # Errors
-/// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
-/// darts become known than the exploration's bound. The exploration then holds what is known so far.
+/// The state of a run of Algorithm 1: the robot's walk, and the hypotheses about its place.
+#[derive(Debug)]
+pub struct Algorithm1Run {
+    walk: MapWalk,
+    current: CurrentVertex,
+    /// H, from the farthest to the nearest.
+    hypotheses: Vec<Dart>,
+    /// Within a step: the percept at each vertex since the path began, and the door taken there.
+    trail: Vec<(Percept, Door)>,
+    /// The tree of the map from the marker; none after a change of the map that it does not survive.
+    to_marker: BreadthFirstTree,
+}
+
+clone_in_place!(Algorithm1Run { walk, current, hypotheses, to_marker; scratch trail });
+
+has_walk!(Algorithm1Run);
+
+#[derive(Clone, Copy, Debug)]
+struct CurrentVertex {
+    /// Its percept, with doors counted from its reference dart.
+    percept: Percept,
+    /// The door, counted from the reference dart, by which it really came in. It differs from
+    /// [`Door::BACK`] after a rejected hypothesis.
+    entry: Door,
+}
+
+/// Algorithm 1. The default choices are the nearest edge and the nearest hypothesis.
 // paper: alg1.return, alg1.terminates, alg1.every-world
-pub fn map_world<W: World>(
-    world: &mut W,
-    choices: &mut impl Choices,
-    exploration: &mut Algorithm1Run,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
-    exploration.begin(world, observer)?;
-    // 4 to 23, from one choice to the next.
-    while let Some(choice) = exploration.choose_with(choices) {
-        step(exploration, choice, world, observer)?;
-    }
-    // S is the map.
-    Ok(())
-}
-
-/// Lines 4 to 23, from one choice to the next: the step machine of Algorithm 1. The run waits for an
-/// edge at line 4 and for a hypothesis at line 8.
-///
-/// # Errors
-/// See [`map_world`].
-pub fn step<W: World>(
-    exploration: &mut Algorithm1Run,
-    choice: MappingChoice,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    step_with(exploration, choice, world, observer, try_path)
-}
-
-/// [`step`], with another function for lines 10 to 17. Tests break the algorithm with it.
-///
-/// # Errors
-/// See [`map_world`].
-// paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21
-#[inline]
-pub fn step_with<W: World, O: Observer<W>>(
-    exploration: &mut Algorithm1Run,
-    choice: MappingChoice,
-    world: &mut W,
-    observer: &mut O,
-    try_path: impl FnOnce(
-        &mut Algorithm1Run,
-        Dart,
-        &mut W,
-        &mut O,
-    ) -> Result<ValidationResult, MappingError<W::Error>>,
-) -> Result<(), MappingError<W::Error>> {
-    match choice {
-        // 4, 5: U is not empty; remove the unexplored edge e from it.
-        MappingChoice::Edge(edge) => {
-            // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
-            exploration.explore(edge, world, observer)?;
-        }
-        // 8, 9: H is not empty; remove a hypothesis from it.
-        MappingChoice::Hypothesis(index) => {
-            let hypothesis = exploration.remove_hypothesis(index)?;
-            // 10 to 17: if it is confirmed, no other is tried.
-            if try_path(exploration, hypothesis, world, observer)? == ValidationResult::Confirmed {
-                // 18, 19, 20: a loop was closed.
-                exploration.close_loop(hypothesis, world, observer)?;
-            }
-        }
-    }
-    // 21, 22, 23: H is empty, and no hypothesis was confirmed: vu is a new place.
-    if exploration.is_at_line_8() && exploration.hypotheses().is_empty() {
-        exploration.add_place(world, observer)?;
-    }
-    Ok(())
-}
-
-/// Lines 10 to 17: follows the path that leads to the marker if the hypothesis is true, as long as
-/// the percepts along it are as expected.
-///
-/// # Errors
-/// Returns an error if the world does, or if it contradicts itself on the way back.
-// paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17, alg1.validation
-pub fn try_path<W: World>(
-    exploration: &mut Algorithm1Run,
-    hypothesis: Dart,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<ValidationResult, MappingError<W::Error>> {
-    exploration.clear_trail();
-    let mut pose = hypothesis;
-    let mut followed = 0;
-    // 10: the motions of the path to v0, and the percepts expected along it.
-    while let Some((door, next)) = exploration.toward_marker(pose) {
-        let expected = exploration.map().expected(next);
-        // 11: try to traverse it.
-        let perceived = exploration.go_through(door, world, observer)?;
-        followed += 1;
-        // 12, 13: the percepts do not match.
-        if perceived != expected {
-            // 14, 15: reject the hypothesis, and retrace the path back to vu.
-            exploration.retrace(world, observer)?;
-            let event = MappingEvent::Rejected { hypothesis, followed, expected, perceived };
-            observer.event(world, exploration.walk(), event);
-            return Ok(ValidationResult::Rejected);
-        }
-        pose = next;
-    }
-    // 16, 17: the percepts match throughout; confirm the hypothesis.
-    exploration.arrive_at_marker(pose);
-    observer.event(world, exploration.walk(), MappingEvent::Confirmed { hypothesis, followed });
-    Ok(ValidationResult::Confirmed)
-}
-
-/// Algorithm 1. The default choices are those of [`Nearest`].
 impl Explorer for Algorithm1Run {
     type Marker = MarkerKind;
     type Choice = MappingChoice;
@@ -155,58 +72,65 @@ impl Explorer for Algorithm1Run {
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
-        self.set_bound(max_darts);
+        self.walk.set_bound(max_darts);
     }
 
     /// Lines 1 to 3: the marker lies at v0; S is v0; U is its edges.
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.find_start(world, observer)
+    // paper: alg1.1, alg1.2, alg1.3
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        self.walk.clear();
+        self.set_percept(NO_PERCEPT);
+        self.hypotheses.clear();
+        self.trail.clear();
+        self.to_marker.clear();
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
+            return Err(Contradiction::Start { perceived: percept }.into());
+        }
+        let start = self.walk.begin(percept, world)?;
+        self.set_percept(percept);
+        self.to_marker.grow_from(self.walk.map(), start);
+        Ok(())
     }
 
+    /// Lines 4 and 8: the choice to go on with; `None` when S is the map.
+    // paper: alg1.5
     #[inline]
     fn choose(&mut self) -> Result<Option<MappingChoice>, InvalidStep> {
-        Ok(self.choose_with(&mut Nearest))
+        Ok(if self.is_at_line_8() {
+            self.hypotheses.len().checked_sub(1).map(MappingChoice::Hypothesis)
+        } else {
+            self.walk.nearest_unexplored().map(MappingChoice::Edge)
+        })
     }
 
     fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
-        Ok(self.open_choices().collect())
+        Ok(self.open_choices())
     }
 
     /// The first part of line 6.
     #[inline]
-    fn approach<W: World>(
-        &mut self,
-        choice: MappingChoice,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn approach<W: ObservedWorld>(&mut self, choice: MappingChoice, world: &mut W) -> Mapped<W> {
         match choice {
-            MappingChoice::Edge(edge) => self.go_to_known_end(edge, world, observer),
+            MappingChoice::Edge(edge) => {
+                self.walk.travel_to(self.map().vertex(edge), PartialMap::expected, world)
+            }
             MappingChoice::Hypothesis(_) => Ok(()),
         }
     }
 
     #[inline]
-    fn step<W: World>(
-        &mut self,
-        choice: MappingChoice,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        step(self, choice, world, observer)
+    fn step<W: ObservedWorld>(&mut self, choice: MappingChoice, world: &mut W) -> Mapped<W> {
+        self.step_with(choice, world, Self::try_path)
     }
 
     fn map_walk(&self) -> Option<&MapWalk> {
-        Some(self.walk())
+        Some(&self.walk)
     }
 
     fn state_key(&self) -> Option<StateKey> {
         Some(if self.is_at_line_8() {
-            StateKey::WithinRound(self.hypotheses().to_vec())
+            StateKey::WithinRound(self.hypotheses.clone())
         } else {
             StateKey::Round(self.map().clone(), self.map().vertex(self.robot()))
         })
@@ -218,7 +142,7 @@ impl Explorer for Algorithm1Run {
             None => StepPurpose::Done,
             Some(MappingChoice::Edge(edge)) => StepPurpose::Explore(named(edge)),
             Some(MappingChoice::Hypothesis(index)) => {
-                StepPurpose::Try(named(self.hypotheses()[index]))
+                StepPurpose::Try(named(self.hypotheses[index]))
             }
         }
     }
@@ -231,3 +155,239 @@ impl Explorer for Algorithm1Run {
         m.saturating_mul(n).saturating_add(paths)
     }
 }
+
+impl Algorithm1Run {
+    /// A state ready for a run that may come to know at most `bound` darts.
+    #[must_use]
+    pub fn new(bound: usize) -> Self {
+        Self {
+            walk: MapWalk::new(bound),
+            current: CurrentVertex { percept: NO_PERCEPT, entry: Door::BACK },
+            hypotheses: Vec::new(),
+            trail: Vec::new(),
+            to_marker: BreadthFirstTree::default(),
+        }
+    }
+
+    /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would
+    /// have come in, from the farthest from the marker to the nearest.
+    #[must_use]
+    pub fn hypotheses(&self) -> &[Dart] {
+        &self.hypotheses
+    }
+
+    /// Whether the run waits at line 8, for a hypothesis, and not at line 4, for an edge.
+    pub(crate) fn is_at_line_8(&self) -> bool {
+        self.walk.edge.is_some()
+    }
+
+    /// Edges in the order of their numbers, or hypotheses from the farthest to the nearest.
+    pub(crate) fn open_choices(&self) -> Vec<MappingChoice> {
+        if self.is_at_line_8() {
+            (0..self.hypotheses.len()).map(MappingChoice::Hypothesis).collect()
+        } else {
+            self.map().unexplored().map(MappingChoice::Edge).collect()
+        }
+    }
+
+    /// Lines 4 to 23, from one choice to the next, with this function for lines 10 to 17.
+    // paper: alg1.4, alg1.8, alg1.9, alg1.17, alg1.18, alg1.21
+    #[inline]
+    fn step_with<W: ObservedWorld>(
+        &mut self,
+        choice: MappingChoice,
+        world: &mut W,
+        try_path: impl FnOnce(&mut Self, Dart, &mut W) -> Mapped<W, bool>,
+    ) -> Mapped<W> {
+        match choice {
+            // 4, 5: U is not empty; remove the unexplored edge e from it.
+            MappingChoice::Edge(edge) => {
+                // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
+                self.explore(edge, world)?;
+            }
+            // 8, 9: H is not empty; remove a hypothesis from it.
+            MappingChoice::Hypothesis(index) => {
+                let left = self.hypotheses.len();
+                if index >= left {
+                    return Err(InvalidStep::NoHypothesis { index, left }.into());
+                }
+                let hypothesis = self.hypotheses.remove(index);
+                // 10 to 17: if it is confirmed, no other is tried.
+                if try_path(self, hypothesis, world)? {
+                    // 18, 19, 20: a loop was closed.
+                    self.close_loop(hypothesis, world)?;
+                }
+            }
+        }
+        // 21, 22, 23: H is empty, and no hypothesis was confirmed: vu is a new place.
+        if self.is_at_line_8() && self.hypotheses.is_empty() {
+            self.add_place(world)?;
+        }
+        Ok(())
+    }
+
+    /// Lines 10 to 17: follows the path that leads to the marker if the hypothesis is true, as long as
+    /// the percepts along it are as expected. Returns whether it is confirmed: then the robot stands at the marker;
+    /// otherwise it is back where it was.
+    // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17, alg1.validation
+    fn try_path<W: ObservedWorld>(&mut self, hypothesis: Dart, world: &mut W) -> Mapped<W, bool> {
+        self.trail.clear();
+        let mut pose = hypothesis;
+        let mut followed = 0;
+        // 10: the motions of the path to v0, and the percepts expected along it.
+        while let Some((door, next)) = self.to_marker.toward_root(self.map(), pose) {
+            let expected = self.map().expected(next);
+            // 11: try to traverse it.
+            let perceived = self.go_through(door, world)?;
+            followed += 1;
+            // 12, 13: the percepts do not match.
+            if perceived != expected {
+                // 14, 15: reject the hypothesis, and retrace the path back to vu.
+                self.retrace(world)?;
+                let event = MappingEvent::Rejected { hypothesis, followed, expected, perceived };
+                world.event(&self.walk, event);
+                return Ok(false);
+            }
+            pose = next;
+        }
+        // 16, 17: the percepts match throughout; confirm the hypothesis.
+        self.arrive_at_marker(pose);
+        world.event(&self.walk, MappingEvent::Confirmed { hypothesis, followed });
+        Ok(true)
+    }
+
+    /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
+    /// to its unknown end, and lists the hypotheses about that: each unexplored dart by which the
+    /// robot may have come in, except those that its percept contradicts at once.
+    // paper: alg1.6, alg1.7
+    fn explore<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
+        self.trail.clear();
+        self.walk.explore(edge, PartialMap::expected, world)?;
+        let percept = self.walk.arrival;
+        self.set_percept(percept);
+        self.list_hypotheses(edge)?;
+        let hypotheses = self.hypotheses.len();
+        let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
+        let event = MappingEvent::Arrived { edge, percept, contradicted, hypotheses };
+        world.event(&self.walk, event);
+        Ok(())
+    }
+
+    // paper: alg1.hypotheses
+    fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
+        let Self { walk: MapWalk { map, arrival, .. }, hypotheses, .. } = self;
+        hypotheses.clear();
+        let marked = arrival.sighting != Sighting::Nothing;
+        // The unexplored darts that were not looked at yet, besides the edge itself.
+        let mut left = map.unexplored_count() - 1;
+        for vertex in map.vertices().rev() {
+            if left == 0 {
+                break;
+            }
+            let here = map.unexplored_count_at(vertex);
+            if here == 0 {
+                continue;
+            }
+            left -= here - u32::from(map.vertex(edge) == vertex);
+            if map.degree(vertex) == arrival.degree && (vertex == START) == marked {
+                for dart in map.unexplored_at(vertex).rev() {
+                    // Without a marker, all darts of a vertex look alike.
+                    if dart != edge && (!marked || map.expected(dart) == *arrival) {
+                        hypotheses.push(dart);
+                    }
+                }
+            }
+        }
+        if hypotheses.is_empty() {
+            let (vertex, index) = (map.vertex(edge), map.index(edge));
+            let perceived = *arrival;
+            return match perceived.sighting {
+                Sighting::Nothing => Ok(()),
+                _ => Err(Contradiction::Marker { vertex, index, perceived }),
+            };
+        }
+        if !self.to_marker.is_grown() {
+            self.to_marker.grow_from(map, START);
+            self.to_marker.grow_whole(map);
+        }
+        if hypotheses.len() > 1 {
+            let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));
+            hypotheses.sort_unstable_by_key(|&dart| Reverse((hops(dart), dart)));
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn go_through<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
+        let CurrentVertex { percept, entry } = self.current;
+        self.trail.push((percept, door));
+        let door = door.seen_from(entry, percept.degree);
+        let perceived = self.walk.go(door, world)?;
+        self.set_percept(perceived);
+        Ok(perceived)
+    }
+
+    /// Line 15: goes back along the trail, and counts doors there as before.
+    // paper: alg1.15
+    fn retrace<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        let trail = mem::take(&mut self.trail);
+        let doors = retrace(trail.iter().map(|&(percept, door)| (door, percept.degree)));
+        for (back, &(percept, door)) in doors.zip(trail.iter().rev()) {
+            let perceived = self.walk.go(back, world)?;
+            let expected = percept.seen_from(door);
+            if perceived != expected {
+                return Err(Contradiction::WayBack { expected, perceived }.into());
+            }
+        }
+        if let Some(&(percept, entry)) = trail.first() {
+            self.current = CurrentVertex { percept, entry };
+        }
+        self.trail = trail;
+        Ok(())
+    }
+
+    /// Lines 16 and 17: a path was followed to its end, and the robot knows that it has come to the
+    /// marker by the dart `pose`.
+    fn arrive_at_marker(&mut self, pose: Dart) {
+        self.walk.robot = pose;
+        self.set_percept(self.current.percept);
+    }
+
+    #[inline]
+    fn set_percept(&mut self, percept: Percept) {
+        self.current = CurrentVertex { percept, entry: Door::BACK };
+    }
+
+    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
+    // paper: alg1.18, alg1.19, alg1.20
+    fn close_loop(
+        &mut self,
+        hypothesis: Dart,
+        world: &mut impl ObservedWorld,
+    ) -> Result<(), InvalidStep> {
+        let edge = self.walk.close_loop(hypothesis, world)?;
+        let is_grown = self.to_marker.is_grown();
+        if is_grown && !self.to_marker.stays_with(self.walk.map(), edge, hypothesis) {
+            self.to_marker.clear();
+        }
+        self.hypotheses.clear();
+        Ok(())
+    }
+
+    /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
+    /// is still there.
+    // paper: alg1.21, alg1.22, alg1.23
+    fn add_place<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        // The robot may have come back by another dart than it first came in by.
+        let vertex = self.walk.add_place(self.current.entry, world)?;
+        if self.to_marker.is_grown() {
+            self.to_marker.add_leaf(self.walk.map(), vertex);
+        }
+        self.set_percept(self.map().expected(self.robot()));
+        self.hypotheses.clear();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

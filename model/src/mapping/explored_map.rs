@@ -8,11 +8,8 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 /// What an explorer returns: a map, and the robot's pose in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExploredMap<'a> {
-    /// The map.
     pub graph: Cow<'a, EmbeddedGraph>,
-    /// The dart of the map that is the facing dart.
     pub facing: Dart,
-    /// The dart of the map by which the robot has come in.
     pub pose: Dart,
 }
 

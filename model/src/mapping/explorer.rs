@@ -1,24 +1,19 @@
 //! Explorers: everything that maps a world, as one trait.
 //!
-//! * An [`Explorer`] is the state of a run. It waits for one of its open [choices](Explorer::choices), and
-//!   [makes the step](Explorer::step) of that choice in a [`World`]. Its events go to an [`Observer`].
-//! * The *drivers* run it: [`explore`] straight through, the checks of [`check`](crate::check) on every start (one
-//!   by one, with shared prefixes, with all choices), the matches of [`trace`](crate::trace) along a recorded run,
-//!   and robots with a [`MappingMethod`](super::MappingMethod).
-//! * [`MappingAlgorithm`](super::MappingAlgorithm) lists the explorers of this crate, to choose from at run time.
-//!
-//! A driver clones an explorer to try more than one choice, or to repeat a step in another world.
+//! An [`Explorer`] is the state of a run. It waits for one of its open [choices](Explorer::choices), and
+//! [makes the step](Explorer::step) of that choice in an [`ObservedWorld`]. The *drivers* run it: [`explore`] straight
+//! through, the checks of [`check`](crate::check) on every start, the matches of [`trace`](crate::trace) along a
+//! recorded run, and robots with a [`MappingMethod`](super::MappingMethod). A driver clones an explorer to try more
+//! than one choice, or to repeat a step in another world.
 
 use std::{borrow::Cow, fmt};
 
 use super::{
-    ExploredMap, FACING, Flaw, InvalidStep, MapWalk, MappingError, Observer, PartialMap,
-    StepPurpose,
+    ExploredMap, FACING, Flaw, InvalidStep, MapWalk, Mapped, ObservedWorld, PartialMap, StepPurpose,
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
     marker::Marker,
-    world::World,
 };
 
 /// An explorer: the state of a run that maps a world.
@@ -28,73 +23,49 @@ use crate::{
 /// [shared prefixes](crate::check::SharedPrefixCheck): at best, a step takes one door whose other end is not known, as its
 /// first move after [`approach`](Self::approach). `clone_from` is called for each run there; an implementation that
 /// reuses memory is faster.
+///
+/// Steps return an error if the world does, if it contradicts itself, if the choice is not open, or at the limit of
+/// darts. The state then holds what is known so far.
+#[expect(clippy::missing_errors_doc, reason = "see above")]
 pub trait Explorer: Clone {
-    /// The kind of marker with which it explores.
     type Marker: Marker + Clone;
 
-    /// What it can do next.
     type Choice: Copy + fmt::Debug + PartialEq;
 
     /// Its names, and the order of its cost.
-    const INFO: ExplorerInfo = ExplorerInfo::UNNAMED;
+    const INFO: ExplorerInfo = ExplorerInfo {
+        option: "explorer",
+        title: "Explorer",
+        in_words: "the explorer",
+        order: CostOrder::EdgesSquaredVertices,
+    };
 
-    /// The marker with which it explores.
     fn marker(&self) -> Self::Marker;
 
-    /// Limits the darts that later runs may come to know. Beyond that they end with [`MappingError::Bound`].
+    /// Limits the darts that later runs may come to know. Beyond that they end with
+    /// [`MappingError::Bound`](super::MappingError::Bound).
     fn limit_darts(&mut self, _max_darts: usize) {}
 
     /// Begins a run in another world. At its start the robot stands where the marker is placed, with its
     /// back to the facing door.
-    ///
-    /// # Errors
-    /// Returns an error if the world does, if it contradicts itself, or at the limit of darts.
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>>;
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W>;
 
-    /// The default choice; `None` if the run has ended, and the map is complete. By default there is none.
-    ///
-    /// # Errors
-    /// Returns an error if the map is not complete, and no choice is open.
+    /// The default choice; `None` if the run has ended, and the map is complete. By default there is none. It is an
+    /// error if the map is not complete, and no choice is open.
     fn choose(&mut self) -> Result<Option<Self::Choice>, InvalidStep> {
         Ok(None)
     }
 
-    /// Every open choice.
-    ///
-    /// # Errors
-    /// See [`choose`](Self::choose).
     fn choices(&mut self) -> Result<Vec<Self::Choice>, InvalidStep> {
         Ok(self.choose()?.into_iter().collect())
     }
 
     /// Makes the first moves of a step, in the known part of the world. [`step`](Self::step) then makes the others.
-    ///
-    /// # Errors
-    /// See [`step`](Self::step).
-    fn approach<W: World>(
-        &mut self,
-        _choice: Self::Choice,
-        _world: &mut W,
-        _observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn approach<W: ObservedWorld>(&mut self, _choice: Self::Choice, _world: &mut W) -> Mapped<W> {
         Ok(())
     }
 
-    /// Makes the step of an open choice.
-    ///
-    /// # Errors
-    /// Returns an error if the world does, if it contradicts itself, if the choice is not open, or at the limit of
-    /// darts. The state then holds what is known so far.
-    fn step<W: World>(
-        &mut self,
-        _choice: Self::Choice,
-        _world: &mut W,
-        _observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn step<W: ObservedWorld>(&mut self, _choice: Self::Choice, _world: &mut W) -> Mapped<W> {
         Err(InvalidStep::NoPlan.into())
     }
 
@@ -103,10 +74,7 @@ pub trait Explorer: Clone {
         None
     }
 
-    /// The map at the end of a run.
-    ///
-    /// # Errors
-    /// Returns a flaw if it is not complete.
+    /// The map at the end of a run; a flaw if it is not complete.
     fn explored(&self) -> Result<ExploredMap<'_>, Flaw> {
         let walk = self.map_walk().ok_or(Flaw::Unfinished { unexplored: 0 })?;
         let unexplored = walk.map().unexplored_count();
@@ -126,12 +94,9 @@ pub trait Explorer: Clone {
 
     /// The most moves that it may make in a world of this size. In a check, further moves are refused.
     fn move_bound(&self, _edges: usize, _vertices: usize) -> u64 {
-        DEFAULT_MOVE_BOUND
+        1_000_000
     }
 }
-
-/// How many moves an explorer may make if it states no bound.
-pub const DEFAULT_MOVE_BOUND: u64 = 1_000_000;
 
 /// What distinguishes a state from others of the same start, so that equal states are followed once.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -151,18 +116,7 @@ pub struct ExplorerInfo {
     pub title: &'static str,
     /// Its name in a sentence.
     pub in_words: &'static str,
-    /// The order of its cost.
     pub order: CostOrder,
-}
-
-impl ExplorerInfo {
-    /// Of an explorer that states nothing.
-    pub const UNNAMED: Self = Self {
-        option: "explorer",
-        title: "Explorer",
-        in_words: "the explorer",
-        order: CostOrder::EdgesSquaredVertices,
-    };
 }
 
 /// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
@@ -198,15 +152,23 @@ impl fmt::Display for CostOrder {
 /// to the facing door. Afterwards the explorer holds the map, the robot's pose in it and the number of moves.
 ///
 /// # Errors
-/// See [`Explorer::step`].
-pub fn explore<E: Explorer, W: World>(
+/// See [`Explorer`].
+pub fn explore<E: Explorer, W: ObservedWorld>(explorer: &mut E, world: &mut W) -> Mapped<W> {
+    explore_with(explorer, world, E::choose)
+}
+
+/// Does the same as [`explore`], with other choices.
+///
+/// # Errors
+/// See [`Explorer`].
+pub fn explore_with<E: Explorer, W: ObservedWorld>(
     explorer: &mut E,
     world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    explorer.begin(world, observer)?;
-    while let Some(choice) = explorer.choose()? {
-        explorer.step(choice, world, observer)?;
+    mut choose: impl FnMut(&mut E) -> Result<Option<E::Choice>, InvalidStep>,
+) -> Mapped<W> {
+    explorer.begin(world)?;
+    while let Some(choice) = choose(explorer)? {
+        explorer.step(choice, world)?;
     }
     Ok(())
 }

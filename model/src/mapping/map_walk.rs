@@ -1,30 +1,39 @@
-//! The robot's journey: the part of the state, and the steps, that the mapping algorithms share.
-//! Section 2.3.
+//! The robot's walk: the part of the state, and the steps, that the mapping algorithms share. Section 2.3.
 
 use std::mem;
 
 use super::{
-    Choices, Contradiction, FACING, InvalidStep, MappingError, MappingEvent, PartialMap,
-    tree::BreadthFirstTree,
+    Contradiction, FACING, InvalidStep, MappingError, MappingEvent, PartialMap, Relocate,
+    folding_explorer::ArrivalMeasurement, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::{Dart, MAX_EDGES, Vertex},
+    marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::World,
+    world::{GraphWorld, MarkerCarrier, World},
 };
 
 /// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
 /// many, ends with an error.
 pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 
+/// The result of steps in a world.
+pub type Mapped<W, T = ()> = Result<T, MappingError<<W as World>::Error>>;
+
 /// Observes a run in a world `W`.
 ///
 /// It also gets the world, so that an observer inside the world needs no shared ownership.
 pub trait Observer<W: ?Sized> {
-    /// Called after each event. The journey is as it is afterwards, except that at
+    /// Called after each event. The walk is as it is afterwards, except that at
     /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
-    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent);
+    fn event(&mut self, world: &mut W, walk: &MapWalk, event: MappingEvent);
+}
+
+impl<W: ?Sized, F: FnMut(&mut W, &MapWalk, MappingEvent)> Observer<W> for F {
+    fn event(&mut self, world: &mut W, walk: &MapWalk, event: MappingEvent) {
+        self(world, walk, event);
+    }
 }
 
 /// Ignores every event.
@@ -33,9 +42,64 @@ impl<W: ?Sized> Observer<W> for () {
     fn event(&mut self, _: &mut W, _: &MapWalk, _: MappingEvent) {}
 }
 
-impl<W: ?Sized, F: FnMut(&mut W, &MapWalk, MappingEvent)> Observer<W> for F {
-    fn event(&mut self, world: &mut W, journey: &MapWalk, event: MappingEvent) {
-        self(world, journey, event);
+/// A world in which explorers run. It gets the events of the run, and ignores them by default.
+pub trait ObservedWorld: World {
+    /// See [`Observer::event`].
+    #[inline]
+    fn event(&mut self, _walk: &MapWalk, _event: MappingEvent) {}
+}
+
+impl<M: Marker> ObservedWorld for GraphWorld<'_, M> {}
+
+/// A world with an observer.
+#[derive(Debug)]
+pub struct Observed<'a, W, O> {
+    world: &'a mut W,
+    observer: &'a mut O,
+}
+
+impl<'a, W: World, O: Observer<W>> Observed<'a, W, O> {
+    pub fn new(world: &'a mut W, observer: &'a mut O) -> Self {
+        Self { world, observer }
+    }
+}
+
+impl<W: World, O: Observer<W>> World for Observed<'_, W, O> {
+    type Error = W::Error;
+
+    #[inline]
+    fn percept(&mut self) -> Result<Percept, W::Error> {
+        self.world.percept()
+    }
+
+    #[inline]
+    fn traverse(&mut self, door: Door) -> Result<(), W::Error> {
+        self.world.traverse(door)
+    }
+
+    fn carrier(&mut self) -> Option<&mut dyn MarkerCarrier<Error = W::Error>> {
+        self.world.carrier()
+    }
+}
+
+impl<W: World, O: Observer<W>> ObservedWorld for Observed<'_, W, O> {
+    #[inline]
+    fn event(&mut self, walk: &MapWalk, event: MappingEvent) {
+        self.observer.event(self.world, walk, event);
+    }
+}
+
+impl<W: Relocate, O: Observer<W>> Relocate for Observed<'_, W, O> {
+    fn relocate(&mut self, error: W::Error) -> Result<(), W::Error> {
+        self.world.relocate(error)
+    }
+
+    fn measured(&self) -> ArrivalMeasurement {
+        self.world.measured()
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.world.is_blocked()
     }
 }
 
@@ -49,11 +113,9 @@ pub struct MapWalk {
     pub(super) robot: Dart,
     /// The known end of the edge that is being explored; none between two rounds.
     pub(super) edge: Option<Dart>,
-    /// The percept at its unknown end.
     pub(super) arrival: Percept,
     /// A tree of the map that is grown again when it does not fit.
     pub(super) from_robot: BreadthFirstTree,
-    /// Scratch: the darts on the way to somewhere known.
     pub(super) way: Vec<Dart>,
 }
 
@@ -62,7 +124,6 @@ clone_in_place!(MapWalk { bound, moves, map, robot, edge, arrival; scratch from_
 pub(super) const NO_PERCEPT: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
 impl MapWalk {
-    /// A journey with at most `bound` known darts.
     pub(super) fn new(bound: usize) -> Self {
         Self {
             bound: bound.min(2 * MAX_EDGES),
@@ -104,12 +165,10 @@ impl MapWalk {
         self.moves
     }
 
-    /// Counts on from earlier moves.
     pub(super) fn set_moves(&mut self, moves: u64) {
         self.moves = moves;
     }
 
-    /// Forgets an earlier run.
     pub(super) fn clear(&mut self) {
         self.moves = 0;
         self.map.clear();
@@ -119,82 +178,76 @@ impl MapWalk {
     }
 
     /// S is the start vertex, and U is its edges.
-    pub(super) fn begin<W: World>(
+    pub(super) fn begin<W: ObservedWorld>(
         &mut self,
         percept: Percept,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Vertex, MappingError<W::Error>> {
+    ) -> Mapped<W, Vertex> {
         self.check_bound(percept.degree)?;
         let start = self.map.add_vertex(percept.degree);
-        observer.event(world, self, MappingEvent::Started { percept });
+        world.event(self, MappingEvent::Started { percept });
         Ok(start)
     }
 
-    /// Makes the choice of line 5; `None` if everything is explored.
-    pub(super) fn choose_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+    /// The default choice of line 5: the unexplored dart that is fewest hops from the robot; then of the vertex
+    /// discovered first; then with the lowest index. `None` if everything is explored.
+    // paper: cost.cycle, cost.chain
+    pub(super) fn nearest_unexplored(&mut self) -> Option<Dart> {
         if self.map.unexplored_is_empty() {
             return None;
         }
         let here = self.map.vertex(self.robot);
         // Often it is at the robot's own vertex, and no tree is needed.
-        let nearest = if self.map.is_frontier(here) {
-            self.map.unexplored_at(here).next()?
-        } else {
-            self.from_robot.grow_from(&self.map, here);
-            self.from_robot.nearest_unexplored(&self.map)?
-        };
-        Some(choices.next_edge(&self.map, self.robot, nearest))
+        if self.map.is_frontier(here) {
+            return self.map.unexplored_at(here).next();
+        }
+        self.from_robot.grow_from(&self.map, here);
+        self.from_robot.nearest_unexplored(&self.map)
     }
 
     /// Goes through the known map to the known end of an unexplored edge, and follows it to its
     /// unknown end.
     #[inline]
-    pub(super) fn explore<W: World>(
+    pub(super) fn explore<W: ObservedWorld>(
         &mut self,
         edge: Dart,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    ) -> Mapped<W> {
         if let Some(explored) = self.edge {
             return Err(InvalidStep::EdgeInProgress(explored).into());
         }
         if !self.map.is_unexplored(edge) {
             return Err(InvalidStep::NotUnexplored(edge).into());
         }
-        self.go_over(edge, expected, world, observer)
+        self.go_over(edge, expected, world)
     }
 
     /// Goes to the known end of the edge that is being explored or is to be, and over it.
     #[inline]
-    pub(super) fn go_over<W: World>(
+    pub(super) fn go_over<W: ObservedWorld>(
         &mut self,
         edge: Dart,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.travel_to(self.map.vertex(edge), expected, world, observer)?;
-        self.arrival = self.go(self.map.door(self.robot, edge), world, observer)?;
+    ) -> Mapped<W> {
+        self.travel_to(self.map.vertex(edge), expected, world)?;
+        self.arrival = self.go(self.map.door(self.robot, edge), world)?;
         self.edge = Some(edge);
         Ok(())
     }
 
     /// Goes through the known map to a vertex; each place on the way must be as expected.
     #[inline]
-    pub(super) fn travel_to<W: World>(
+    pub(super) fn travel_to<W: ObservedWorld>(
         &mut self,
         target: Vertex,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        let way = self.way_to(target)?;
+    ) -> Mapped<W> {
+        let way = self.way_to(target);
         for &dart in &way {
-            let Some((next, perceived)) = self.leave_by(dart, world, observer)? else {
-                break;
-            };
+            let Some((next, perceived)) = self.leave_by(dart, world)? else { break };
             self.arrive(next, expected(&self.map, next), perceived)?;
         }
         self.way = way;
@@ -202,32 +255,27 @@ impl MapWalk {
     }
 
     /// The darts of a shortest path from the robot's vertex to a known one.
-    pub(super) fn way_to(&mut self, target: Vertex) -> Result<Vec<Dart>, InvalidStep> {
-        if target.at() >= self.map.vertex_count() {
-            return Err(InvalidStep::UnknownVertex(target));
-        }
+    pub(super) fn way_to(&mut self, target: Vertex) -> Vec<Dart> {
         let mut way = mem::take(&mut self.way);
-        if self.map.vertex(self.robot) == target {
-            way.clear();
-            return Ok(way);
+        way.clear();
+        let here = self.map.vertex(self.robot);
+        if here != target {
+            self.from_robot.grow_from_unless_rooted(&self.map, here);
+            self.from_robot.path_from_root(&self.map, target, &mut way);
         }
-        self.from_robot.grow_from_unless_rooted(&self.map, self.map.vertex(self.robot));
-        self.from_robot.path_from_root(&self.map, target, &mut way);
-        Ok(way)
+        way
     }
 
     /// Leaves by an explored dart of the map, and returns the pose behind it and the percept there;
     /// `None`, without a move, if the dart is not explored.
     #[inline]
-    pub(super) fn leave_by<W: World>(
+    pub(super) fn leave_by<W: ObservedWorld>(
         &mut self,
         dart: Dart,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Option<(Dart, Percept)>, MappingError<W::Error>> {
+    ) -> Mapped<W, Option<(Dart, Percept)>> {
         let Some(next) = self.map.opposite(dart) else { return Ok(None) };
-        let perceived = self.go(self.map.door(self.robot, dart), world, observer)?;
-        Ok(Some((next, perceived)))
+        Ok(Some((next, self.go(self.map.door(self.robot, dart), world)?)))
     }
 
     /// The robot has come in by a dart of the map, if the percept is the expected one.
@@ -246,16 +294,10 @@ impl MapWalk {
         Ok(())
     }
 
-    /// Makes one move, and returns the percept after it.
     // A check makes billions of moves: a call, with its result in memory, would be most of one.
     #[expect(clippy::inline_always, reason = "see above")]
     #[inline(always)]
-    pub(super) fn go<W: World>(
-        &mut self,
-        door: Door,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Percept, MappingError<W::Error>> {
+    pub(super) fn go<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
         world.traverse(door).map_err(MappingError::World)?;
         self.moves += 1;
         let percept = world.percept().map_err(MappingError::World)?;
@@ -263,7 +305,7 @@ impl MapWalk {
             Sighting::Pointing(door) => door.0 < percept.degree,
             _ => percept.degree > 0,
         };
-        observer.event(world, self, MappingEvent::Moved { door, percept });
+        world.event(self, MappingEvent::Moved { door, percept });
         if possible {
             Ok(percept)
         } else {
@@ -273,35 +315,30 @@ impl MapWalk {
 
     /// The edge that is being explored leads to a known vertex, by another unexplored dart. Returns
     /// its known end.
-    pub(super) fn close_loop<W: ?Sized>(
+    pub(super) fn close_loop(
         &mut self,
         other: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
+        world: &mut impl ObservedWorld,
     ) -> Result<Dart, InvalidStep> {
         let edge = self.edge.ok_or(InvalidStep::NoEdge)?;
-        if edge == other {
-            return Err(InvalidStep::SameDart(edge));
-        }
-        if !self.map.is_unexplored(other) {
+        if edge == other || !self.map.is_unexplored(other) {
             return Err(InvalidStep::NotUnexplored(other));
         }
         self.edge = None;
         self.from_robot.clear();
         self.map.join(edge, other);
-        observer.event(world, self, MappingEvent::LoopClosed { edge, other });
+        world.event(self, MappingEvent::LoopClosed { edge, other });
         Ok(edge)
     }
 
     /// The edge that is being explored leads to a new vertex, whose other edges are unexplored. The
     /// robot is still there. `entry` is the door by which it came in last, counted from the dart by
     /// which it first came in.
-    pub(super) fn add_place<W: World>(
+    pub(super) fn add_place<W: ObservedWorld>(
         &mut self,
         entry: Door,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Vertex, MappingError<W::Error>> {
+    ) -> Mapped<W, Vertex> {
         let edge = self.edge.ok_or(InvalidStep::NoEdge)?;
         self.check_bound(self.arrival.degree)?;
         self.edge = None;
@@ -310,7 +347,7 @@ impl MapWalk {
         let first = self.map.first_dart(vertex);
         self.map.join(edge, first);
         self.robot = Dart(first.0 + entry.0);
-        observer.event(world, self, MappingEvent::VertexAdded { edge, vertex });
+        world.event(self, MappingEvent::VertexAdded { edge, vertex });
         Ok(vertex)
     }
 
@@ -323,7 +360,7 @@ impl MapWalk {
     }
 }
 
-/// What the states of all runs have: the journey, as parts of it and by itself.
+/// What the states of all runs have: the walk, as parts of it and by itself.
 macro_rules! has_walk {
     ($run:ident) => {
         impl Default for $run {
@@ -334,43 +371,34 @@ macro_rules! has_walk {
 
         impl From<$run> for $crate::mapping::MapWalk {
             fn from(run: $run) -> Self {
-                run.journey
+                run.walk
             }
         }
 
         impl $run {
-            /// Sets the bound on the darts of the map for later runs.
-            pub fn set_bound(&mut self, bound: usize) {
-                self.journey.set_bound(bound);
-            }
-
-            /// The robot's journey: its map, its pose in the map and its moves.
+            /// The robot's walk: its map, its pose in the map and its moves.
             #[inline]
             #[must_use]
             pub fn walk(&self) -> &$crate::mapping::MapWalk {
-                &self.journey
+                &self.walk
             }
 
-            /// The map S, with the unexplored edges U.
             #[inline]
             #[must_use]
             pub fn map(&self) -> &$crate::mapping::PartialMap {
-                self.journey.map()
+                self.walk.map()
             }
 
-            /// The robot's pose in the map: the dart by which it came in. Where its place is not known, the last known
-            /// pose.
             #[inline]
             #[must_use]
             pub fn robot(&self) -> $crate::embedded_graph::Dart {
-                self.journey.robot()
+                self.walk.robot()
             }
 
-            /// The moves made so far.
             #[inline]
             #[must_use]
             pub fn moves(&self) -> u64 {
-                self.journey.moves()
+                self.walk.moves()
             }
         }
     };

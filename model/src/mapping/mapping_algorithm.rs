@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{Explorer, ExplorerInfo, MapWalk, MappingError, Observer, explore};
+use super::{Explorer, ExplorerInfo, MapWalk, Mapped, Observed, Observer, explore};
 use crate::{
     marker::{self, Directional, Marker},
     world::World,
@@ -11,14 +11,13 @@ use crate::{
 /// Declares the algorithms: for each its name here and its explorer.
 macro_rules! algorithms {
     ($dollar:tt $($(#[$doc:meta])* $name:ident: $explorer:ident,)*) => {
-        /// A mapping algorithm of this crate. For any other algorithm implement [`Explorer`].
+        /// A mapping algorithm of this crate. Any other algorithm implements [`Explorer`].
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum MappingAlgorithm {
             $($(#[$doc])* $name,)*
         }
 
         impl MappingAlgorithm {
-            /// All of them.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
         }
 
@@ -42,26 +41,22 @@ algorithms! { $
     Algorithm1: Algorithm1Run,
     /// The movable marker algorithm, for worlds without loops and parallel edges.
     MovableMarker: MovableMarkerRun,
-    /// The folding explorer.
     Folding: FoldingRun,
 }
 
 pub(crate) use with_explorer;
 
 impl MappingAlgorithm {
-    /// Its names, and the order of its cost.
     #[must_use]
     pub fn info(self) -> ExplorerInfo {
         with_explorer!(self, E => E::INFO)
     }
 
-    /// Its name in options and logs.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.info().option
     }
 
-    /// Its name in a sentence.
     #[must_use]
     pub fn in_words(self) -> &'static str {
         self.info().in_words
@@ -85,20 +80,20 @@ impl MappingAlgorithm {
         with_explorer!(self, E => E::default().move_bound(edges, vertices))
     }
 
-    /// Maps a world, as [`explore`], with a map of at most `max_darts` darts. Returns the robot's journey, too.
+    /// Maps a world, as [`explore`], with a map of at most `max_darts` darts. Returns the robot's walk, too.
     ///
     /// # Errors
-    /// See [`Explorer::step`]. The journey then holds what is known so far.
+    /// See [`Explorer::step`]. The walk then holds what is known so far.
     pub fn map_world<W: World>(
         self,
         world: &mut W,
         max_darts: usize,
         observer: &mut impl Observer<W>,
-    ) -> (MapWalk, Result<(), MappingError<W::Error>>) {
+    ) -> (MapWalk, Mapped<W>) {
         with_explorer!(self, E => {
             let mut explorer = E::default();
             explorer.limit_darts(max_darts);
-            let mapped = explore(&mut explorer, world, observer);
+            let mapped = explore(&mut explorer, &mut Observed::new(world, observer));
             (explorer.into(), mapped)
         })
     }

@@ -1,75 +1,38 @@
-//! The events of a run.
+//! The events of a run, and the purposes of its steps.
 
-use super::Contradiction;
+use std::fmt;
+
+use super::{Contradiction, InvalidStep, PartialMap};
 use crate::{
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept},
     world::Action,
 };
 
-/// An event of a run. Vertices and darts are those of the map.
+/// An event of a run. Vertices and darts are those of the map. `edge` is the known end of the edge that is explored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MappingEvent {
     /// Lines 1 to 3: the marker lies at the start vertex.
-    Started {
-        /// The percept there.
-        percept: Percept,
-    },
-    /// One move.
-    Moved {
-        /// The door taken.
-        door: Door,
-        /// The percept behind it.
-        percept: Percept,
-    },
-    /// Lines 5 to 7: the robot stands at the unknown end of an edge.
-    Arrived {
-        /// The known end of the edge.
-        edge: Dart,
-        /// The percept at the unknown one.
-        percept: Percept,
-        /// The number of hypotheses that the percept contradicts at once.
-        contradicted: usize,
-        /// The number of hypotheses that are left.
-        hypotheses: usize,
-    },
-    /// Lines 13 to 15: a hypothesis was rejected, and the robot is back.
-    Rejected {
-        /// The unexplored dart by which the robot would have come in.
-        hypothesis: Dart,
-        /// The number of moves along its path.
-        followed: u32,
-        /// The expected percept after the last of them.
-        expected: Percept,
-        /// The percept after the last of them.
-        perceived: Percept,
-    },
+    Started { percept: Percept },
+    /// One move: the door taken, and the percept behind it.
+    Moved { door: Door, percept: Percept },
+    /// Lines 5 to 7: the robot stands at the unknown end of an edge. The percept there contradicts some hypotheses
+    /// at once; the others are left.
+    Arrived { edge: Dart, percept: Percept, contradicted: usize, hypotheses: usize },
+    /// Lines 13 to 15: a hypothesis, the dart by which the robot would have come in, was rejected after this number
+    /// of moves along its path, by the percept after the last of them. The robot is back.
+    Rejected { hypothesis: Dart, followed: u32, expected: Percept, perceived: Percept },
     /// Lines 16 and 17: a hypothesis was confirmed; the robot is at the marker.
-    Confirmed {
-        /// The unexplored dart by which the robot came in.
-        hypothesis: Dart,
-        /// The number of moves along its path.
-        followed: u32,
-    },
+    Confirmed { hypothesis: Dart, followed: u32 },
     /// Lines 18 to 20: an edge was added between known vertices.
-    LoopClosed {
-        /// The end from which it was explored.
-        edge: Dart,
-        /// The other end.
-        other: Dart,
-    },
+    LoopClosed { edge: Dart, other: Dart },
     /// Lines 21 to 23: a vertex was added, with the edge that leads to it.
-    VertexAdded {
-        /// The end from which the edge was explored.
-        edge: Dart,
-        /// The new vertex.
-        vertex: Vertex,
-    },
-    /// An event of the movable marker algorithm.
+    VertexAdded { edge: Dart, vertex: Vertex },
+    /// Of the movable marker algorithm.
     Movable(MovableEvent),
-    /// An event of the folding explorer.
+    /// Of the folding explorer.
     Folding(FoldingEvent),
-    /// An audit, or a recovery.
+    /// Of an audit or a recovery.
     Safeguard(SafeguardEvent),
 }
 
@@ -101,89 +64,39 @@ impl MappingEvent {
 /// An event that only runs with a movable marker have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovableEvent {
-    /// The robot is at the unknown end of an edge and carries the marker.
-    Arrived {
-        /// The known end of the edge.
-        edge: Dart,
-        /// The percept at the unknown one.
-        percept: Percept,
-        /// The number of known vertices that this may be.
-        candidates: usize,
-    },
-    /// The robot dropped the marker where it is.
+    /// The robot is at the unknown end of an edge and carries the marker. This number of known vertices may be the
+    /// place.
+    Arrived { edge: Dart, percept: Percept, candidates: usize },
+    /// The robot dropped the marker.
     Dropped,
-    /// The robot picked the marker up where it is.
+    /// The robot picked the marker up.
     PickedUp,
     /// Place validation: the marker is not at this candidate, where the robot is.
-    NotAt {
-        /// The vertex.
-        vertex: Vertex,
-    },
+    NotAt { vertex: Vertex },
     /// Place validation: the marker lies at a known vertex, where the robot is.
-    Found {
-        /// The vertex.
-        vertex: Vertex,
-    },
+    Found { vertex: Vertex },
     /// Place validation: the marker is at no known vertex.
     NotFound,
     /// Back-link validation: the marker is not behind this unexplored dart, and the robot is back.
-    NotBehind {
-        /// The dart.
-        dart: Dart,
-        /// The percept behind it.
-        percept: Percept,
-    },
+    NotBehind { dart: Dart, percept: Percept },
     /// Back-link validation: the marker is behind this unexplored dart, and the robot is there.
-    Behind {
-        /// The dart.
-        dart: Dart,
-    },
+    Behind { dart: Dart },
 }
 
-/// An event that only runs of the folding explorer have.
+/// An event that only runs of the folding explorer have. A hypothesis is that the place behind `edge` is entered by a
+/// certain dart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldingEvent {
     /// The robot has gone to an unexplored dart and taken it.
-    Explored {
-        /// The dart.
-        edge: Dart,
-        /// The percept behind it.
-        percept: Percept,
-    },
-    /// The robot is going to test a hypothesis.
-    Testing {
-        /// The dart that leads to the place that the hypothesis is about.
-        edge: Dart,
-        /// The dart by which the place is entered, if the hypothesis is true.
-        hypothesis: Dart,
-        /// The number of moves to the marker, if it is true.
-        cost: usize,
-    },
+    Explored { edge: Dart, percept: Percept },
+    /// The robot is going to test a hypothesis. If it is true, the marker is this number of moves away.
+    Testing { edge: Dart, hypothesis: Dart, cost: usize },
     /// The test refuted its hypothesis. The robot goes on from where it is.
-    Refuted {
-        /// The dart that leads to the place.
-        edge: Dart,
-        /// The hypothesis.
-        hypothesis: Dart,
-        /// The expected percept.
-        expected: Percept,
-        /// The percept.
-        perceived: Percept,
-    },
+    Refuted { edge: Dart, hypothesis: Dart, expected: Percept, perceived: Percept },
     /// The test ended at the marker as expected.
-    Confirmed {
-        /// The dart that leads to the place.
-        edge: Dart,
-        /// The hypothesis.
-        hypothesis: Dart,
-    },
-    /// The robot has seen the marker, and the trail was folded.
-    Folded {
-        /// The number of vertices of the trail before.
-        before: usize,
-        /// The number of vertices afterwards.
-        after: usize,
-    },
+    Confirmed { edge: Dart, hypothesis: Dart },
+    /// The robot has seen the marker, and the trail was folded: its numbers of vertices.
+    Folded { before: usize, after: usize },
 }
 
 /// An event that only runs with audits or recoveries have.
@@ -192,29 +105,92 @@ pub enum SafeguardEvent {
     /// The map is complete, and the robot begins an audit.
     AuditBegun,
     /// Every percept of the audit agreed with the map.
-    AuditPassed {
-        /// The moves of the audit.
-        moves: u64,
-    },
+    AuditPassed { moves: u64 },
     /// The robot has detected a contradiction, and looks for the marker.
     Contradicted(Contradiction),
-    /// The map becomes too large. The robot discards it, and looks for the marker.
-    TooLarge {
-        /// The bound on darts.
-        bound: usize,
-    },
+    /// The map has more darts than the bound. The robot discards it, and looks for the marker.
+    TooLarge { bound: usize },
     /// The robot got lost or was switched off. It has found a junction, and looks for the marker.
     Relocated,
     /// The robot has found the marker. It folds its walks, and goes on with those that agree.
-    MarkerFound {
-        /// The number of walks that agree.
-        kept: usize,
-        /// The number of walks.
-        walks: usize,
-    },
+    MarkerFound { kept: usize, walks: usize },
     /// The robot goes to the doors that are blocked, to see whether they still are.
-    BlockedRetried {
-        /// The number of doors.
-        doors: usize,
+    BlockedRetried { doors: usize },
+}
+
+/// A dart of the map, by its vertex and index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MapDart {
+    pub vertex: u32,
+    pub index: u32,
+}
+
+impl MapDart {
+    #[must_use]
+    pub fn new(map: &PartialMap, dart: Dart) -> Self {
+        Self { vertex: map.vertex(dart).0, index: map.index(dart) }
+    }
+}
+
+impl fmt::Display for MapDart {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        write!(out, "dart {} of vertex v{}", self.index, self.vertex)
+    }
+}
+
+/// The purpose of a step of an algorithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepPurpose {
+    /// Lines 5 and 6 of Algorithm 1: to explore this dart.
+    Explore(MapDart),
+    /// Lines 10 to 15 of Algorithm 1: to follow the path of the hypothesis that it arrived by this dart, or
+    /// to return.
+    Try(MapDart),
+    Done,
+    ExploreOpen(MapDart),
+    Test {
+        edge: MapDart,
+        hypothesis: MapDart,
     },
+    /// The folding explorer has followed every dart.
+    NoOpenDart,
+    Audit,
+    Audited,
+    /// The robot goes on with the folding explorer after a recovery.
+    GoOn,
+    /// The robot recovers, and looks for its marker.
+    FindMarker,
+    TryBlocked,
+    TurnBack,
+    Lost,
+    GaveUp,
+    /// The percept is a contradiction.
+    Contradicted(Contradiction),
+    /// The step is not valid: the enumeration of choices is wrong.
+    InvalidStep(InvalidStep),
+}
+
+impl fmt::Display for StepPurpose {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Explore(dart) => write!(out, "line 5: explores the unexplored {dart}"),
+            Self::Try(dart) => write!(out, "line 9: tests whether it arrived by {dart}"),
+            Self::Done => write!(out, "line 4: the map is complete"),
+            Self::ExploreOpen(dart) => write!(out, "explores the open {dart}"),
+            Self::Test { edge, hypothesis } => {
+                write!(out, "tests whether {edge} leads to {hypothesis}")
+            }
+            Self::NoOpenDart => write!(out, "no dart is open: the map is complete"),
+            Self::Audit => write!(out, "audits the map"),
+            Self::Audited => write!(out, "the map is complete and audited"),
+            Self::GoOn => write!(out, "goes on with the folding explorer"),
+            Self::FindMarker => write!(out, "looks for its marker"),
+            Self::TryBlocked => write!(out, "tries the blocked doors once more"),
+            Self::TurnBack => write!(out, "turns back, to keep within its budget"),
+            Self::Lost => write!(out, "the robot got lost, and gives up"),
+            Self::GaveUp => write!(out, "the explorer gives up"),
+            Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
+            Self::InvalidStep(step) => write!(out, "{step}"),
+        }
+    }
 }

@@ -3,19 +3,18 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    AuditMove, EarlierWalk, FACING, FoldingRun, InvalidStep, MapWalk, MappedWorld,
-    MappingAlgorithm, MappingError, MappingEvent, Observer, RecoveryConfig, Relocate,
-    SafeguardEvent, audit, map_with_recovery,
+    EarlierWalk, FoldingRun, MapWalk, Mapped, MappedWorld, MappingAlgorithm, MappingEvent,
+    Observed, ObservedWorld, Observer, RecoveryConfig, Relocate,
+    audit::{AuditMove, audit_times},
+    map_with_recovery,
 };
 
-/// How a robot maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MappingMethod {
     /// By an algorithm. It gives up at a contradiction, or if it gets lost.
     By {
-        /// The algorithm.
         algorithm: MappingAlgorithm,
-        /// The number of [audits](audit) of the complete map.
+        /// The number of [audits](super::audit) of the complete map.
         audits: u32,
     },
     /// By the folding explorer. It audits its map, and [recovers](map_with_recovery).
@@ -28,7 +27,6 @@ impl Default for MappingMethod {
     }
 }
 
-/// The algorithm alone.
 impl From<MappingAlgorithm> for MappingMethod {
     fn from(algorithm: MappingAlgorithm) -> Self {
         Self::By { algorithm, audits: 0 }
@@ -36,7 +34,6 @@ impl From<MappingAlgorithm> for MappingMethod {
 }
 
 impl MappingMethod {
-    /// The algorithm.
     #[must_use]
     pub fn algorithm(self) -> MappingAlgorithm {
         match self {
@@ -45,7 +42,6 @@ impl MappingMethod {
         }
     }
 
-    /// The number of audits of a complete map.
     #[must_use]
     pub fn audits(self) -> u32 {
         match self {
@@ -53,7 +49,6 @@ impl MappingMethod {
         }
     }
 
-    /// Whether the robot recovers from mistakes.
     #[must_use]
     pub fn recovers(self) -> bool {
         matches!(self, Self::Recovering(_))
@@ -66,11 +61,11 @@ impl MappingMethod {
     }
 
     /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing door. A robot that
-    /// recovers may also go on from earlier walks, wherever it stands. Returns the robot's journey, too.
+    /// recovers may also go on from earlier walks, wherever it stands. Returns the robot's walk, too.
     ///
     /// # Errors
     /// Returns an error if the world does, if it contradicts itself, or if the map has more than `bound` darts.
-    /// The journey then holds what is known so far. A robot that recovers only returns errors from which it
+    /// The walk then holds what is known so far. A robot that recovers only returns errors from which it
     /// cannot.
     pub fn map_world<W: Relocate>(
         self,
@@ -78,53 +73,33 @@ impl MappingMethod {
         bound: usize,
         earlier: &[EarlierWalk],
         observer: &mut impl Observer<W>,
-    ) -> (MapWalk, Result<MappedWorld, MappingError<W::Error>>) {
+    ) -> (MapWalk, Mapped<W, MappedWorld>) {
         match self {
             Self::By { algorithm, audits } => {
-                let (journey, mapped) = algorithm.map_world(world, bound, observer);
-                let mapped = mapped.and_then(|()| audited(&journey, audits, world, observer));
-                (journey, mapped)
+                let (walk, mapped) = algorithm.map_world(world, bound, observer);
+                let world = &mut Observed::new(world, observer);
+                let mapped = mapped.and_then(|()| audited(&walk, audits, world));
+                (walk, mapped)
             }
             Self::Recovering(config) => {
-                let mut exploration = FoldingRun::new(bound);
-                let mapped = map_with_recovery(world, &mut exploration, config, earlier, observer);
-                (exploration.into(), mapped)
+                let mut run = FoldingRun::new(bound);
+                let world = &mut Observed::new(world, observer);
+                let mapped = map_with_recovery(world, &mut run, config, earlier);
+                (run.into(), mapped)
             }
         }
     }
 }
 
-/// Audits a complete map.
-fn audited<W: Relocate>(
-    journey: &MapWalk,
-    audits: u32,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<MappedWorld, MappingError<W::Error>> {
-    let Some(map) = journey.map().complete() else { return Err(InvalidStep::NoPlan.into()) };
-    let mut report = |world: &mut W, event| observer.event(world, journey, event);
-    let (mut pose, mut audit_moves, mut audited_percepts) = (journey.robot(), 0, Vec::new());
-    for _ in 0..audits {
-        report(world, MappingEvent::Safeguard(SafeguardEvent::AuditBegun));
-        let moved = |world: &mut W, AuditMove { door, percept, .. }| {
-            report(world, MappingEvent::Moved { door, percept });
-        };
-        let audited = audit(world, map, FACING, pose, moved)?;
-        pose = audited.pose;
-        audit_moves += audited.moves;
-        audited_percepts.push(audited.percepts());
-        let passed = SafeguardEvent::AuditPassed { moves: audited.moves };
-        report(world, MappingEvent::Safeguard(passed));
-    }
-    let moves = journey.moves() + audit_moves;
-    Ok(MappedWorld {
-        pose,
-        moves,
-        audit_moves,
-        audited_percepts,
-        recoveries: 0,
-        blocked: Vec::new(),
-    })
+fn audited<W: ObservedWorld>(walk: &MapWalk, audits: u32, world: &mut W) -> Mapped<W, MappedWorld> {
+    let (pose, audited_percepts) = audit_times(audits, world, walk, |world, made| {
+        let AuditMove { door, percept, .. } = made;
+        world.event(walk, MappingEvent::Moved { door, percept });
+    })?;
+    let audit_moves = audited_percepts.iter().map(|percepts| percepts - 1).sum();
+    let moves = walk.moves() + audit_moves;
+    let (recoveries, blocked) = (0, Vec::new());
+    Ok(MappedWorld { pose, moves, audit_moves, audited_percepts, recoveries, blocked })
 }
 
 /// The name in logs.
@@ -176,17 +151,16 @@ mod tests {
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Bijection,
-        mapping::ArrivalMeasurement,
+        mapping::{ArrivalMeasurement, FACING},
         measurement::{HallwayMeasurement, MeasurementNoise},
         percept::{Door, Percept},
         world::{GraphWorld, RefusedAction, State, World},
     };
 
     fn graph(lists: &[(&str, &str)]) -> EmbeddedGraph {
-        let list = |&(name, others): &(&str, &str)| {
-            (name.to_owned(), others.split(' ').map(str::to_owned).collect::<Vec<_>>())
-        };
-        EmbeddedGraph::from_neighbour_lists(&lists.iter().map(list).collect::<Vec<_>>()).unwrap()
+        let lists: Vec<(&str, Vec<&str>)> =
+            lists.iter().map(|&(name, others)| (name, others.split(' ').collect())).collect();
+        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
     }
 
     /// Two triangles that share a vertex, and a dead end at it.
@@ -201,17 +175,12 @@ mod tests {
         ])
     }
 
-    /// Three arms of two hallways each.
-    fn star() -> EmbeddedGraph {
-        graph(&[
-            ("centre", "a b c"),
-            ("a", "centre a-end"),
-            ("b", "centre b-end"),
-            ("c", "centre c-end"),
-            ("a-end", "a"),
-            ("b-end", "b"),
-            ("c-end", "c"),
-        ])
+    /// The image in the world of a pose in a map, which is right.
+    fn image(run: &MapWalk, graph: &EmbeddedGraph, pose: Dart) -> Option<Dart> {
+        let map = run.map().complete().unwrap();
+        let bijection = Bijection::of_starts((map, FACING), (graph, FACING));
+        assert!(bijection.verify(map, graph));
+        bijection.image(pose)
     }
 
     const FOLDING: MappingAlgorithm = MappingAlgorithm::Folding;
@@ -219,18 +188,14 @@ mod tests {
     #[test]
     fn audits_and_recovery_do_not_change_how_a_map_is_made() {
         let graph = bow_tie();
-        let facing = Dart(0);
         let mapped = |method: MappingMethod| {
-            let mut world = GraphWorld::new(&graph, facing);
+            let mut world = GraphWorld::new(&graph, FACING);
             let (run, mapped) = method.map_world(&mut world, 100, &[], &mut ());
             let mapped = mapped.unwrap();
             assert_eq!(mapped.moves, world.moves());
             assert_eq!(mapped.moves, run.moves() + mapped.audit_moves);
             assert_eq!(mapped.audited_percepts.len(), method.audits() as usize);
-            let map = run.map().complete().unwrap();
-            let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
-            assert!(bijection.verify(map, &graph));
-            assert_eq!(bijection.image(mapped.pose), Some(world.pose()));
+            assert_eq!(image(&run, &graph, mapped.pose), Some(world.pose()));
             (run.moves(), mapped.audit_moves)
         };
         for algorithm in MappingAlgorithm::with_fixed_marker() {
@@ -246,37 +211,28 @@ mod tests {
     #[test]
     fn a_robot_goes_on_from_an_earlier_walk_wherever_it_is_switched_on() {
         let graph = bow_tie();
-        let facing = Dart(0);
         // The first moves of the folding explorer.
-        let mut first: Option<Percept> = None;
+        let first = GraphWorld::new(&graph, FACING).sensed();
         let mut moves = Vec::new();
-        let mut world = GraphWorld::new(&graph, facing);
-        let (run, _) = MappingMethod::from(FOLDING).map_world(
-            &mut world,
-            100,
-            &[],
-            &mut |_: &mut GraphWorld, _: &MapWalk, event| match event {
-                MappingEvent::Started { percept } => first = Some(percept),
-                MappingEvent::Moved { door, percept } => moves.push((door, percept)),
-                _ => {}
-            },
-        );
-        assert_eq!(run.moves() as usize, moves.len());
+        let mut listen = |_: &mut GraphWorld, _: &MapWalk, event| {
+            if let MappingEvent::Moved { door, percept } = event {
+                moves.push((door, percept));
+            }
+        };
+        let mut world = GraphWorld::new(&graph, FACING);
+        FOLDING.map_world(&mut world, 100, &mut listen).1.unwrap();
         for known in [3, moves.len() / 2, moves.len()] {
-            let earlier = [EarlierWalk::new(first.unwrap(), moves[..known].iter().copied(), false)];
+            let earlier = [EarlierWalk::new(first, moves[..known].iter().copied(), false)];
             for pose in graph.darts() {
-                let world = GraphWorld::new(&graph, facing);
+                let world = GraphWorld::new(&graph, FACING);
                 let placed = world.state().placed;
                 let mut world = world.at(State { pose, placed });
                 let method = MappingMethod::Recovering(RecoveryConfig::default());
                 let (run, mapped) = method.map_world(&mut world, 100, &earlier, &mut ());
-                let map = run.map().complete().unwrap();
-                let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
-                assert!(bijection.verify(map, &graph));
-                assert_eq!(bijection.image(mapped.unwrap().pose), Some(world.pose()));
+                assert_eq!(image(&run, &graph, mapped.unwrap().pose), Some(world.pose()));
                 if known == moves.len() {
                     // It only goes to the marker, and audits what it knows.
-                    assert!(world.percept().is_ok() && run.moves() <= 3, "{}", run.moves());
+                    assert!(run.moves() <= 3, "{}", run.moves());
                 }
             }
         }
@@ -344,24 +300,21 @@ mod tests {
 
     #[test]
     fn lengths_show_that_a_robot_was_carried_unless_nothing_comes_after_it() {
-        let graph = star();
-        let facing = Dart(0);
+        let arms = [("a", "centre a-end"), ("b", "centre b-end"), ("c", "centre c-end")];
+        let ends = [("a-end", "a"), ("b-end", "b"), ("c-end", "c")];
+        let graph = graph(&[&[("centre", "a b c")], &arms[..], &ends].concat());
         let run = |after_and_to, noise| {
-            let world = GraphWorld::new(&graph, facing);
+            let world = GraphWorld::new(&graph, FACING);
             let mut world = Carried { world, after_and_to, length: None };
             let config = RecoveryConfig { noise, ..RecoveryConfig::default() };
             let method = MappingMethod::Recovering(config);
             let (run, mapped) = method.map_world(&mut world, 100, &[], &mut ());
-            let map = run.map().complete().unwrap();
-            let bijection = Bijection::of_starts((map, FACING), (&graph, facing));
-            assert!(bijection.verify(map, &graph));
-            let is_there =
-                bijection.image(mapped.as_ref().unwrap().pose) == Some(world.world.pose());
-            (is_there, mapped.unwrap())
+            let mapped = mapped.unwrap();
+            (image(&run, &graph, mapped.pose) == Some(world.world.pose()), mapped)
         };
         let noise = MeasurementNoise { standing: 0.1, ..MeasurementNoise::UNKNOWN };
         let noise = Some(noise.times(0.1, 1.0));
-        let (is_there, never) = run((u64::MAX, facing), noise);
+        let (is_there, never) = run((u64::MAX, FACING), noise);
         assert!(is_there && never.recoveries == 0);
         let (mut without, mut with) = (0, 0);
         for after in 1..=never.moves {

@@ -3,145 +3,44 @@
 //! construction" (1991).
 //!
 //! Place validation finds out whether the place just reached is new. If it is not, back-link
-//! validation finds the edge by which it was entered. The state and the small steps are those of
-//! [`MovableMarkerRun`].
+//! validation finds the edge by which it was entered.
 
 use super::{
-    Choices, Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk,
-    MappingError, MovableMarkerRun, Nearest, Observer, StepPurpose, ValidationResult,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
+    MappingError, MappingEvent, MovableEvent, ObservedWorld, PartialMap, StepPurpose,
+    map_walk::has_walk,
 };
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::{Dart, Vertex},
     marker::{MarkerKind, Movable},
-    world::World,
+    percept::{Door, Percept, Sighting},
+    world::{MarkerCarrier, World},
 };
 
-/// The place just reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReachedPlace {
-    /// A new place. The robot is there and carries the marker.
-    New,
-    /// A known vertex. The robot is there, and the marker lies there.
-    Known(Vertex),
+/// The state of a run with a movable marker: the robot's walk, and the candidates.
+#[derive(Debug)]
+pub struct MovableMarkerRun {
+    walk: MapWalk,
+    /// The known vertices that the unknown end may be and that were not searched yet. The next one is
+    /// the last.
+    candidates: Vec<Vertex>,
+    /// For each known vertex, whether it is a candidate.
+    is_candidate: Vec<bool>,
+    /// The unexplored darts that may be the other end of the edge and were not tried yet. The next one
+    /// is the last.
+    back_links: Vec<Dart>,
 }
 
-/// Maps a world without loops and parallel edges. At its start the robot stands where the marker
-/// lies, with its back to the facing door. Afterwards `search` holds the map, the robot's pose in it
-/// and the number of moves, and the robot carries the marker; [`MovableMarkerRun::map`] is then
-/// [complete](super::PartialMap::complete).
+clone_in_place!(MovableMarkerRun { walk, candidates, is_candidate, back_links });
+
+has_walk!(MovableMarkerRun);
+
+/// The movable marker algorithm, for worlds without loops and parallel edges. At its start the robot stands where
+/// the marker lies; at its end it carries the marker. The default choice is the nearest edge.
 ///
 /// With loops or parallel edges one movable marker does not suffice: the map is then wrong, or the
 /// run ends with an error.
-///
-/// # Errors
-/// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
-/// darts become known than the search's bound. The search then holds what is known so far.
-pub fn map_with_movable_marker<W: World>(
-    world: &mut W,
-    choices: &mut impl Choices,
-    search: &mut MovableMarkerRun,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    // The robot picks the marker up at v0; S is v0; U is its edges.
-    search.begin(world, observer)?;
-    // While U is not empty, remove an unexplored edge e = (vk, vu) from it.
-    while let Some(edge) = search.choose_with(choices) {
-        explore_edge(edge, search, world, observer)?;
-    }
-    // S is the map.
-    Ok(())
-}
-
-/// From one choice to the next: the step machine of the movable marker algorithm. The run waits for
-/// an edge.
-///
-/// # Errors
-/// See [`map_with_movable_marker`].
-pub fn explore_edge<W: World>(
-    edge: Dart,
-    search: &mut MovableMarkerRun,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<(), MappingError<W::Error>> {
-    // Carry the marker through S to the known end vk, and over e to the unknown end vu.
-    search.carry_over(edge, world, observer)?;
-    match validate_place(search, world, observer)? {
-        // vu is a known vertex: a loop was closed.
-        ReachedPlace::Known(vertex) => {
-            let back_link = validate_back_link(edge, vertex, search, world, observer)?;
-            search.close_loop(back_link, world, observer)?;
-        }
-        // vu is a new place.
-        ReachedPlace::New => search.add_place(world, observer)?,
-    }
-    Ok(())
-}
-
-/// Place validation: is the unknown end of the edge a new place, or which known vertex is it?
-///
-/// # Errors
-/// Returns an error if the world does, or if it contradicts itself.
-// paper: movable.place, movable.new, movable.known
-pub fn validate_place<W: World>(
-    search: &mut MovableMarkerRun,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<ReachedPlace, MappingError<W::Error>> {
-    // No known vertex can be vu: it is new.
-    if search.candidates().is_empty() {
-        return Ok(ReachedPlace::New);
-    }
-    // Drop the marker at vu, and go back over e to vk.
-    search.drop_marker(world, observer)?;
-    search.go_back(world, observer)?;
-    // Search S for it: every known vertex that can be vu.
-    while let Some(candidate) = search.next_candidate() {
-        // Found at a vertex of S: this is vu.
-        if let Some(vertex) = search.look_for_marker(candidate, world, observer)? {
-            return Ok(ReachedPlace::Known(vertex));
-        }
-    }
-    // Not found: vu is new. Go there again, for the marker.
-    search.return_to_marker(world, observer)?;
-    search.pick_up(world, observer)?;
-    Ok(ReachedPlace::New)
-}
-
-/// Back-link validation: which unexplored dart of the known vertex is the other end of `edge`?
-/// The robot is at the vertex where the marker lies. Afterwards it carries the marker.
-///
-/// # Errors
-/// Returns an error if the world does, or if it contradicts itself.
-// paper: movable.back-link
-pub fn validate_back_link<W: World>(
-    edge: Dart,
-    vertex: Vertex,
-    search: &mut MovableMarkerRun,
-    world: &mut W,
-    observer: &mut impl Observer<W>,
-) -> Result<Dart, MappingError<W::Error>> {
-    search.pick_up(world, observer)?;
-    // An only unexplored dart of the vertex needs no validation.
-    if let Some(only) = search.list_back_links(vertex) {
-        return Ok(only);
-    }
-    // Carry the marker to vk, drop it there, and return without it.
-    let marked = search.map().vertex(edge);
-    search.travel_to(marked, world, observer)?;
-    search.drop_marker(world, observer)?;
-    search.travel_to(vertex, world, observer)?;
-    // Try the unexplored darts one by one, until the marker lies behind one.
-    while let Some(dart) = search.next_back_link() {
-        if search.try_back_link(dart, world, observer)? == ValidationResult::Confirmed {
-            search.pick_up(world, observer)?;
-            return Ok(dart);
-        }
-    }
-    Err(Contradiction::NoBackLink { vertex, marked }.into())
-}
-
-/// The movable marker algorithm, for worlds without loops and parallel edges. The default choices are those of
-/// [`Nearest`].
 impl Explorer for MovableMarkerRun {
     type Marker = MarkerKind;
     type Choice = Dart;
@@ -158,45 +57,54 @@ impl Explorer for MovableMarkerRun {
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
-        self.set_bound(max_darts);
+        self.walk.set_bound(max_darts);
     }
 
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.find_start(world, observer)
+    /// The robot picks the marker up at v0; S is v0; U is its edges.
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        self.walk.clear();
+        self.candidates.clear();
+        self.back_links.clear();
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Lying(1) {
+            return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
+        }
+        self.walk.begin(percept, world)?;
+        self.pick_up(world)
     }
 
     fn choose(&mut self) -> Result<Option<Dart>, InvalidStep> {
-        Ok(self.choose_with(&mut Nearest))
+        Ok(self.walk.nearest_unexplored())
     }
 
     fn choices(&mut self) -> Result<Vec<Dart>, InvalidStep> {
         Ok(self.map().unexplored().collect())
     }
 
-    fn approach<W: World>(
-        &mut self,
-        edge: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        self.travel_to(self.map().vertex(edge), world, observer)
+    fn approach<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
+        self.travel_to(self.map().vertex(edge), world)
     }
 
-    fn step<W: World>(
-        &mut self,
-        edge: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        explore_edge(edge, self, world, observer)
+    /// While U is not empty: an unexplored edge e = (vk, vu) is removed from it.
+    fn step<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
+        // Carry the marker through S to the known end vk, and over e to the unknown end vu.
+        self.carry_over(edge, world)?;
+        match self.validate_place(world)? {
+            // vu is a known vertex: a loop was closed.
+            Some(vertex) => {
+                let back_link = self.validate_back_link(edge, vertex, world)?;
+                self.walk.close_loop(back_link, world)?;
+            }
+            // vu is a new place.
+            None => {
+                self.walk.add_place(Door::BACK, world)?;
+            }
+        }
+        Ok(())
     }
 
     fn map_walk(&self) -> Option<&MapWalk> {
-        Some(self.walk())
+        Some(&self.walk)
     }
 
     fn purpose(&self, edge: Option<Dart>) -> StepPurpose {
@@ -226,3 +134,224 @@ impl Explorer for MovableMarkerRun {
         new.saturating_add(loops.saturating_mul(n.saturating_mul(6).saturating_sub(7)))
     }
 }
+
+fn marked(place: Percept) -> Percept {
+    Percept { sighting: Sighting::Lying(1), ..place }
+}
+
+fn carrier<W: World>(
+    world: &mut W,
+) -> Result<&mut dyn MarkerCarrier<Error = W::Error>, InvalidStep> {
+    world.carrier().ok_or(InvalidStep::NoMovableMarker)
+}
+
+impl MovableMarkerRun {
+    /// A state for a run with at most `bound` known darts.
+    #[must_use]
+    pub fn new(bound: usize) -> Self {
+        Self {
+            walk: MapWalk::new(bound),
+            candidates: Vec::new(),
+            is_candidate: Vec::new(),
+            back_links: Vec::new(),
+        }
+    }
+
+    /// Place validation: which known vertex is the unknown end of the edge? There the robot and the marker then are.
+    /// If it is a new place, the robot is there and carries the marker.
+    // paper: movable.place, movable.new, movable.known
+    fn validate_place<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W, Option<Vertex>> {
+        // No known vertex can be vu: it is new.
+        if self.candidates.is_empty() {
+            return Ok(None);
+        }
+        // Drop the marker at vu, and go back over e to vk.
+        self.drop_marker(world)?;
+        self.go_back(world)?;
+        // Search S for it: every known vertex that can be vu.
+        while let Some(candidate) = self.next_candidate() {
+            // Found at a vertex of S: this is vu.
+            if let Some(vertex) = self.look_for_marker(candidate, world)? {
+                return Ok(Some(vertex));
+            }
+        }
+        // Not found: vu is new. Go there again, for the marker.
+        self.return_to_marker(world)?;
+        self.pick_up(world)?;
+        Ok(None)
+    }
+
+    /// Back-link validation: which unexplored dart of the known vertex is the other end of `edge`?
+    /// The robot is at the vertex where the marker lies. Afterwards it carries the marker.
+    // paper: movable.back-link
+    fn validate_back_link<W: ObservedWorld>(
+        &mut self,
+        edge: Dart,
+        vertex: Vertex,
+        world: &mut W,
+    ) -> Mapped<W, Dart> {
+        self.pick_up(world)?;
+        // An only unexplored dart of the vertex needs no validation.
+        self.back_links.clear();
+        self.back_links.extend(self.walk.map.unexplored_at(vertex).rev());
+        if let [only] = self.back_links[..] {
+            return Ok(only);
+        }
+        // Carry the marker to vk, drop it there, and return without it.
+        let marked = self.map().vertex(edge);
+        self.travel_to(marked, world)?;
+        self.drop_marker(world)?;
+        self.travel_to(vertex, world)?;
+        // Try the unexplored darts one by one, in the order of indices, until the marker lies behind one.
+        while let Some(dart) = self.back_links.pop() {
+            if self.try_back_link(dart, world)? {
+                self.pick_up(world)?;
+                return Ok(dart);
+            }
+        }
+        Err(Contradiction::NoBackLink { vertex, marked }.into())
+    }
+
+    /// Carries the marker through the known map to the known end of an unexplored edge, and over it
+    /// to its unknown end; and lists the candidates: the known vertices that this may be.
+    fn carry_over<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
+        self.walk.explore(edge, PartialMap::unmarked, world)?;
+        let percept = self.walk.arrival;
+        if percept.sighting != Sighting::Nothing {
+            let (vertex, index) = (self.map().vertex(edge), self.map().index(edge));
+            return Err(Contradiction::SecondMarker { vertex, index, perceived: percept }.into());
+        }
+        self.list_candidates(self.map().vertex(edge));
+        let candidates = self.candidates.len();
+        self.report(MovableEvent::Arrived { edge, percept, candidates }, world);
+        Ok(())
+    }
+
+    /// The candidates: they look like the unknown end and have an unexplored dart; and, since the
+    /// world has no loops and no parallel edges, they are neither the known end nor joined to it.
+    /// In the order in which a depth-first walk of the shortest paths from the known end meets them.
+    fn list_candidates(&mut self, known_end: Vertex) {
+        let Self { walk: MapWalk { map, arrival, from_robot, .. }, .. } = self;
+        let looks_like_it = |vertex| map.degree(vertex) == arrival.degree;
+        self.is_candidate.clear();
+        self.is_candidate
+            .extend(map.vertices().map(|vertex| looks_like_it(vertex) && map.is_frontier(vertex)));
+        self.is_candidate[known_end.at()] = false;
+        for far in map.darts_of(known_end).filter_map(|dart| map.opposite(dart)) {
+            self.is_candidate[map.vertex(far).at()] = false;
+        }
+        self.candidates.clear();
+        if self.is_candidate.contains(&true) {
+            from_robot.grow_from(map, known_end);
+            from_robot.grow_whole(map);
+            from_robot.preorder(map, &mut self.candidates);
+            self.candidates.retain(|vertex| self.is_candidate[vertex.at()]);
+            self.candidates.reverse();
+        }
+    }
+
+    /// Removes the next candidate that the robot has not passed yet.
+    fn next_candidate(&mut self) -> Option<Vertex> {
+        while let Some(candidate) = self.candidates.pop() {
+            if self.may_be(candidate) {
+                return Some(candidate);
+            }
+        }
+        None
+    }
+
+    fn may_be(&self, vertex: Vertex) -> bool {
+        self.is_candidate.get(vertex.at()) == Some(&true)
+    }
+
+    fn drop_marker<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        carrier(world)?.drop().map_err(MappingError::World)?;
+        self.report(MovableEvent::Dropped, world);
+        Ok(())
+    }
+
+    fn pick_up<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        carrier(world)?.pick_up().map_err(MappingError::World)?;
+        self.report(MovableEvent::PickedUp, world);
+        Ok(())
+    }
+
+    fn go_back<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        let edge = self.walk.edge.ok_or(InvalidStep::NoEdge)?;
+        let perceived = self.walk.go(Door::BACK, world)?;
+        self.walk.arrive(edge, self.map().unmarked(edge), perceived)?;
+        Ok(())
+    }
+
+    /// Goes through the known map to a candidate. If the marker lies at a candidate on the way, the
+    /// robot stops there, and that vertex is returned.
+    fn look_for_marker<W: ObservedWorld>(
+        &mut self,
+        candidate: Vertex,
+        world: &mut W,
+    ) -> Mapped<W, Option<Vertex>> {
+        let way = self.walk.way_to(candidate);
+        for &dart in &way {
+            let Some((next, perceived)) = self.walk.leave_by(dart, world)? else { break };
+            let (vertex, expected) = (self.map().vertex(next), self.map().unmarked(next));
+            if self.may_be(vertex) && perceived == marked(expected) {
+                self.walk.robot = next;
+                self.report(MovableEvent::Found { vertex }, world);
+                return Ok(Some(vertex));
+            }
+            self.walk.arrive(next, expected, perceived)?;
+            if self.may_be(vertex) {
+                self.is_candidate[vertex.at()] = false;
+                self.report(MovableEvent::NotAt { vertex }, world);
+            }
+        }
+        self.walk.way = way;
+        Ok(None)
+    }
+
+    /// Goes through the known map to the known end of the edge, and over it to the unknown end,
+    /// where the marker was left.
+    fn return_to_marker<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+        let edge = self.walk.edge.ok_or(InvalidStep::NoEdge)?;
+        self.report(MovableEvent::NotFound, world);
+        let expected = marked(self.walk.arrival);
+        self.walk.go_over(edge, PartialMap::unmarked, world)?;
+        let perceived = self.walk.arrival;
+        if perceived != expected {
+            return Err(Contradiction::WayBack { expected, perceived }.into());
+        }
+        Ok(())
+    }
+
+    /// Goes through the known map to a vertex, past no marker.
+    fn travel_to<W: ObservedWorld>(&mut self, vertex: Vertex, world: &mut W) -> Mapped<W> {
+        self.walk.travel_to(vertex, PartialMap::unmarked, world)
+    }
+
+    /// Follows an unexplored dart of the robot's vertex. Returns whether the marker is behind it: then the robot is
+    /// there; otherwise it is back.
+    fn try_back_link<W: ObservedWorld>(&mut self, dart: Dart, world: &mut W) -> Mapped<W, bool> {
+        let door = self.map().door(self.walk.robot, dart);
+        let percept = self.walk.go(door, world)?;
+        match self.walk.edge {
+            Some(edge) if percept.sighting != Sighting::Nothing => {
+                self.walk.arrive(edge, marked(self.map().unmarked(edge)), percept)?;
+                self.report(MovableEvent::Behind { dart }, world);
+                Ok(true)
+            }
+            _ => {
+                let back = self.walk.go(Door::BACK, world)?;
+                self.walk.arrive(dart, self.map().unmarked(dart), back)?;
+                self.report(MovableEvent::NotBehind { dart, percept }, world);
+                Ok(false)
+            }
+        }
+    }
+
+    fn report(&self, event: MovableEvent, world: &mut impl ObservedWorld) {
+        world.event(&self.walk, MappingEvent::Movable(event));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,6 @@ use crate::{
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct PartialMap {
     known: EmbeddedGraph,
-    /// The number of unexplored darts at each vertex.
     unexplored_at: Vec<u32>,
     unexplored: u32,
 }
@@ -28,26 +27,22 @@ pub const FACING: Dart = Dart(0);
 pub(super) const START: Vertex = Vertex(0);
 
 impl PartialMap {
-    /// The empty map.
     pub(super) fn new() -> Self {
         Self { known: EmbeddedGraph::unfinished(), unexplored_at: Vec::new(), unexplored: 0 }
     }
 
-    /// Makes the map empty.
     pub(super) fn clear(&mut self) {
         self.known.clear();
         self.unexplored_at.clear();
         self.unexplored = 0;
     }
 
-    /// Adds a vertex with unexplored darts only.
     pub(super) fn add_vertex(&mut self, degree: u32) -> Vertex {
         self.unexplored_at.push(degree);
         self.unexplored += degree;
         self.known.add_vertex(degree)
     }
 
-    /// Makes two unexplored darts the ends of one edge.
     pub(super) fn join(&mut self, one: Dart, other: Dart) {
         self.known.join(one, other);
         for end in [one, other] {
@@ -56,7 +51,6 @@ impl PartialMap {
         self.unexplored -= 2;
     }
 
-    /// The number of known vertices.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
         self.known.vertex_count()
@@ -74,7 +68,6 @@ impl PartialMap {
         self.unexplored
     }
 
-    /// Whether U is empty.
     #[inline]
     #[must_use]
     pub fn unexplored_is_empty(&self) -> bool {
@@ -86,10 +79,8 @@ impl PartialMap {
         self.known.vertices().flat_map(|vertex| self.unexplored_at(vertex))
     }
 
-    /// Whether this is an unexplored dart of the map.
     #[inline]
-    #[must_use]
-    pub fn is_unexplored(&self, dart: Dart) -> bool {
+    pub(crate) fn is_unexplored(&self, dart: Dart) -> bool {
         dart.at() < self.dart_count() && self.known.joined(dart).is_none()
     }
 
@@ -100,16 +91,13 @@ impl PartialMap {
         darts.filter(|&dart| self.known.joined(dart).is_none())
     }
 
-    /// The number of unexplored darts of a vertex.
     #[inline]
     pub(super) fn unexplored_count_at(&self, vertex: Vertex) -> u32 {
         self.unexplored_at[vertex.at()]
     }
 
-    /// Whether the vertex has an unexplored dart.
     #[inline]
-    #[must_use]
-    pub fn is_frontier(&self, vertex: Vertex) -> bool {
+    pub(crate) fn is_frontier(&self, vertex: Vertex) -> bool {
         self.unexplored_at[vertex.at()] > 0
     }
 
@@ -120,14 +108,12 @@ impl PartialMap {
         self.known.joined(dart)
     }
 
-    /// The vertex at which the dart is.
     #[inline]
     #[must_use]
     pub fn vertex(&self, dart: Dart) -> Vertex {
         self.known.vertex(dart)
     }
 
-    /// The degree of a vertex.
     #[inline]
     #[must_use]
     pub fn degree(&self, vertex: Vertex) -> u32 {
@@ -141,7 +127,6 @@ impl PartialMap {
         self.known.index(dart)
     }
 
-    /// The dart with the given index at a vertex.
     #[must_use]
     pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
         self.known.dart(vertex, index)
@@ -179,14 +164,8 @@ impl PartialMap {
 
     /// The percept expected of a robot that comes in by the dart `pose`, at a vertex without a marker.
     #[inline]
-    #[must_use]
-    pub fn unmarked(&self, pose: Dart) -> Percept {
+    pub(crate) fn unmarked(&self, pose: Dart) -> Percept {
         Percept { degree: self.known.degree_around(pose), sighting: Sighting::Nothing }
-    }
-
-    /// The known vertices at the far ends of a vertex's explored darts.
-    pub fn neighbours(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> + '_ {
-        self.darts_of(vertex).filter_map(|dart| self.opposite(dart)).map(|far| self.vertex(far))
     }
 
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].

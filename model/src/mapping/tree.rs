@@ -21,20 +21,16 @@ pub(super) struct BreadthFirstTree {
 
 clone_in_place!(BreadthFirstTree { vertices, reached, grown });
 
-/// The place of a vertex in the tree.
 #[derive(Clone, Copy, Debug)]
 struct TreeVertex {
-    /// The number of edges to the root.
     hops: u32,
     /// Its dart that leads towards the root; of no use at the root and outside of the tree.
     up: Dart,
 }
 
-/// The hops of a vertex that is not in the tree.
 const UNREACHED: u32 = u32::MAX;
 
 impl BreadthFirstTree {
-    /// Begins a new tree at its root.
     pub(super) fn grow_from(&mut self, map: &PartialMap, root: Vertex) {
         self.vertices.clear();
         self.vertices.resize(map.vertex_count(), TreeVertex { hops: UNREACHED, up: Dart(0) });
@@ -44,14 +40,12 @@ impl BreadthFirstTree {
         self.reached.push(root);
     }
 
-    /// Discards the tree: it no longer fits the map.
     #[inline]
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
         self.reached.clear();
     }
 
-    /// Whether there is a tree.
     #[inline]
     pub(super) fn is_grown(&self) -> bool {
         !self.reached.is_empty()
@@ -84,7 +78,6 @@ impl BreadthFirstTree {
         true
     }
 
-    /// Grows the tree over the whole map.
     pub(super) fn grow_whole(&mut self, map: &PartialMap) {
         while self.grow(map) {}
     }

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{
-    ContradictoryMeasurement, MeasuredVisit, MeasurementContradiction, MeasurementNoise,
-    ONE_DEGREE, ONE_DEGREE_MEDIAN,
+    MeasuredVisit, MeasurementContradiction, MeasurementNoise, ONE_DEGREE_MEDIAN,
     closed_walk::ClosedWalks,
-    edge::{Deviation, EdgeMeasurement, EdgeMeasurements},
+    edge::{EdgeMeasurement, EdgeMeasurements},
 };
 use crate::embedded_graph::Dart;
 
@@ -40,9 +39,9 @@ impl MeasurementCheck {
             let mut found = None;
             if let Some((edge, now)) = traversed(number, before, visit) {
                 let edge = edges.entry(edge).or_default();
-                let deviation = edge.length_deviation(&now.hallway, noise);
-                check.compared += usize::from(deviation.is_some());
-                found = length(&now, deviation).or_else(|| turn(edge, &now, noise));
+                let [length, turn] = edge.deviations(&now, noise);
+                check.compared += usize::from(length.is_some());
+                found = now.contradicts(length, turn);
                 if found.is_none() {
                     edge.add(now);
                 }
@@ -72,25 +71,6 @@ fn traversed(
     Some((left.min(entered), measurement))
 }
 
-fn length(now: &EdgeMeasurement, deviation: Option<Deviation>) -> Option<MeasurementContradiction> {
-    let Deviation { before, visit, .. } =
-        deviation.filter(|deviation| deviation.statistic > ONE_DEGREE)?;
-    let measurement = ContradictoryMeasurement::Length { before, now: now.hallway.length };
-    Some(MeasurementContradiction { visit: now.visit, earlier: visit, measurement })
-}
-
-fn turn(
-    edge: &EdgeMeasurements,
-    now: &EdgeMeasurement,
-    noise: &MeasurementNoise,
-) -> Option<MeasurementContradiction> {
-    let deviation = edge.turn_deviation(now, noise);
-    let Deviation { before, visit, .. } =
-        deviation.filter(|deviation| deviation.statistic > ONE_DEGREE)?;
-    let measurement = ContradictoryMeasurement::Turn { before, now: now.hallway.turn? };
-    Some(MeasurementContradiction { visit: now.visit, earlier: visit, measurement })
-}
-
 /// The noise that explains the median deviation, or this one if it does. A few contradictions do not change a
 /// median.
 fn widened(visits: &[MeasuredVisit], noise: &MeasurementNoise) -> MeasurementNoise {
@@ -100,9 +80,7 @@ fn widened(visits: &[MeasuredVisit], noise: &MeasurementNoise) -> MeasurementNoi
         let before = number.checked_sub(1).map(|before| &visits[before]);
         let Some((edge, now)) = traversed(number, before, visit) else { continue };
         let edge = edges.entry(edge).or_default();
-        let deviations =
-            [edge.length_deviation(&now.hallway, noise), edge.turn_deviation(&now, noise)];
-        for (statistics, deviation) in statistics.iter_mut().zip(deviations) {
+        for (statistics, deviation) in statistics.iter_mut().zip(edge.deviations(&now, noise)) {
             statistics.extend(deviation.map(|deviation| deviation.statistic));
         }
         edge.add(now);

@@ -12,14 +12,14 @@ type Quarter = u32;
 /// Follows the robot by the shapes of junctions and the lengths of hallways.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClosedWalks {
-    here: Option<Here>,
+    here: Option<WalkPosition>,
     /// For each vertex, by its least dart, the last visit.
     visited: BTreeMap<Dart, PastVisit>,
 }
 
 /// Where the robot is, from where it began.
 #[derive(Clone, Copy, Debug, Default)]
-struct Here {
+struct WalkPosition {
     /// In metres.
     position: [f64; 2],
     /// The sum of the variances of the way so far, along each axis, in square metres.
@@ -33,7 +33,7 @@ struct Here {
 #[derive(Clone, Debug)]
 struct PastVisit {
     visit: usize,
-    here: Here,
+    here: WalkPosition,
     /// The direction of the vertex's least dart.
     direction: Quarter,
     /// The directions of all darts clockwise from that one, in quarter turns clockwise from it.
@@ -50,13 +50,13 @@ impl ClosedWalks {
         noise: &MeasurementNoise,
     ) -> Option<(usize, ContradictoryMeasurement)> {
         let here = match before {
-            None => Some(Here::default()),
+            None => Some(WalkPosition::default()),
             Some(before) => self.here.and_then(|here| here.after(before, visit, noise)),
         };
         let mut here = here.unwrap_or_else(|| {
             // It is not known how the robot came here: the walk begins again.
             self.visited.clear();
-            Here::default()
+            WalkPosition::default()
         });
         let found = self.compare(number, visit, &mut here);
         // Of two shapes it is not known which leads on.
@@ -71,7 +71,7 @@ impl ClosedWalks {
         &mut self,
         number: usize,
         visit: &MeasuredVisit,
-        here: &mut Here,
+        here: &mut WalkPosition,
     ) -> Option<(usize, ContradictoryMeasurement)> {
         let (door, &vertex) = visit.darts.iter().enumerate().min_by_key(|(_, dart)| **dart)?;
         let mut quarters = visit.shape?.quarters();
@@ -102,7 +102,7 @@ impl ClosedWalks {
     }
 }
 
-impl Here {
+impl WalkPosition {
     /// Where the robot is after a move; `None` if that is not known.
     fn after(
         mut self,
@@ -126,7 +126,11 @@ impl Here {
 }
 
 impl PastVisit {
-    fn contradiction(&self, now: &Here, direction: Quarter) -> Option<ContradictoryMeasurement> {
+    fn contradiction(
+        &self,
+        now: &WalkPosition,
+        direction: Quarter,
+    ) -> Option<ContradictoryMeasurement> {
         if self.direction != direction {
             let quarters = (direction + 4 - self.direction) % 4;
             return Some(ContradictoryMeasurement::ClosedTurns { quarters });

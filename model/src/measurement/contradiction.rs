@@ -23,17 +23,11 @@ pub struct MeasuredVisit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContradictoryMeasurement {
     /// The hallway has another length than before, in metres.
-    Length {
-        /// By the measurements before it.
-        before: f64,
-        /// By this one.
-        now: f64,
-    },
+    Length { before: f64, now: f64 },
     /// The hallway turns otherwise than before, in radians counter-clockwise.
     Turn {
         /// By the measurement before it, seen in the direction of this one.
         before: f64,
-        /// By this one.
         now: f64,
     },
     /// The junction has another shape than before.
@@ -82,6 +76,5 @@ pub struct MeasurementContradiction {
     /// The earlier visit that it contradicts: the end of an earlier traversal of the hallway, the beginning of the
     /// closed walk, or the last visit of the junction.
     pub earlier: usize,
-    /// How.
     pub measurement: ContradictoryMeasurement,
 }

@@ -1,13 +1,15 @@
 //! The measurements of one edge.
 
-use super::{HallwayMeasurement, MeasurementNoise};
+use super::{
+    ContradictoryMeasurement, HallwayMeasurement, MeasurementContradiction, MeasurementNoise,
+    ONE_DEGREE,
+};
 use crate::driving::scene::wrapped;
 
 /// The measurements of an edge that agree with each other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EdgeMeasurements(Vec<EdgeMeasurement>);
 
-/// A measurement of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgeMeasurement {
     /// The visit at its end.
@@ -28,13 +30,42 @@ pub(super) struct Deviation {
     pub visit: usize,
 }
 
+impl EdgeMeasurement {
+    /// How it contradicts those before it, by the deviations of its length and its turn.
+    pub(super) fn contradicts(
+        &self,
+        length: Option<Deviation>,
+        turn: Option<Deviation>,
+    ) -> Option<MeasurementContradiction> {
+        let HallwayMeasurement { length: now, turn: now_turn } = self.hallway;
+        let length =
+            length.map(|of| (of, ContradictoryMeasurement::Length { before: of.before, now }));
+        let turn = turn
+            .zip(now_turn)
+            .map(|(of, now)| (of, ContradictoryMeasurement::Turn { before: of.before, now }));
+        let mut contradictory =
+            [length, turn].into_iter().flatten().filter(|(of, _)| of.statistic > ONE_DEGREE);
+        let (Deviation { visit: earlier, .. }, measurement) = contradictory.next()?;
+        Some(MeasurementContradiction { visit: self.visit, earlier, measurement })
+    }
+}
+
 impl EdgeMeasurements {
+    /// How far a length and a turn are from those before them.
+    pub(super) fn deviations(
+        &self,
+        now: &EdgeMeasurement,
+        noise: &MeasurementNoise,
+    ) -> [Option<Deviation>; 2] {
+        [self.length_deviation(&now.hallway, noise), self.turn_deviation(now, noise)]
+    }
+
     pub(super) fn add(&mut self, measurement: EdgeMeasurement) {
         self.0.push(measurement);
     }
 
     /// How far a length is from the lengths before it; `None` if there are none.
-    pub(super) fn length_deviation(
+    fn length_deviation(
         &self,
         now: &HallwayMeasurement,
         noise: &MeasurementNoise,
@@ -53,11 +84,7 @@ impl EdgeMeasurements {
     }
 
     /// How far a turn is from the last one in the same direction, or else in the other; `None` if there is none.
-    pub(super) fn turn_deviation(
-        &self,
-        now: &EdgeMeasurement,
-        noise: &MeasurementNoise,
-    ) -> Option<Deviation> {
+    fn turn_deviation(&self, now: &EdgeMeasurement, noise: &MeasurementNoise) -> Option<Deviation> {
         let turn = now.hallway.turn?;
         let with_turn = || self.0.iter().rev().filter(|before| before.hallway.turn.is_some());
         let last = with_turn()

@@ -2,10 +2,8 @@
 //! They contradict: a hallway has one length, and the turns and displacements of a closed walk add up to none.
 //!
 //! Each test is a likelihood-ratio test of "nothing happened" against "the robot was moved, or its wheels
-//! slipped". A measurement has errors of a normal distribution, whose variance grows with the length of the way
-//! ([`MeasurementNoise`]). Twice the logarithm of the likelihood ratio is then the squared deviation divided by
-//! its variance, of a chi-square distribution (Wilks 1938). It contradicts if it is above the quantile for
-//! [`FALSE_ALARMS`].
+//! slipped", with errors of a normal distribution ([`MeasurementNoise`]). Twice the logarithm of the likelihood ratio is
+//! then of a chi-square distribution (Wilks 1938). It contradicts if it is above the quantile for [`FALSE_ALARMS`].
 
 mod check;
 mod closed_walk;

@@ -5,13 +5,12 @@ use std::borrow::Cow;
 use super::{
     AlgorithmCoverage, Trace, TraceWorld, TraceWorldError,
     choice_search::{Search, TraceClaim},
-    default_match::follow,
-    match_end::{Departure, MatchEnd},
+    match_end::{Departure, MatchEnd, RunStop},
 };
 use crate::{
     mapping::{
-        Algorithm1Run, Explorer, MapWalk, MappingAlgorithm, MappingChoice, MappingError,
-        with_explorer,
+        Algorithm1Run, Explorer, MapWalk, MappingAlgorithm, MappingChoice, MappingError, Observed,
+        StepPurpose, audit::audit_times, explore_with, with_explorer,
     },
     percept::{Percept, WalkEvent},
 };
@@ -19,11 +18,9 @@ use crate::{
 /// How far an algorithm follows a trace.
 #[derive(Clone, Debug)]
 pub struct AlgorithmMatch {
-    /// The algorithm.
     pub algorithm: MappingAlgorithm,
     /// The choices that it takes.
     pub choices: MatchedChoices,
-    /// How far it follows the trace.
     pub reached: MatchEnd,
     /// Its map, the robot's pose in the map and its moves at that point.
     pub run: MapWalk,
@@ -53,11 +50,7 @@ pub fn match_algorithm(
     claim: TraceClaim,
     bound: usize,
 ) -> AlgorithmMatch {
-    if algorithm == MappingAlgorithm::Algorithm1 {
-        match_choices(trace, claim, bound, None)
-    } else {
-        match_default(algorithm, trace, bound, &mut |_| None)
-    }
+    matched(algorithm, trace, claim, bound, None)
 }
 
 /// A percept in place of one that contradicts the map; `None` if it is not replaced.
@@ -72,48 +65,67 @@ pub fn match_amended(
     bound: usize,
     amend: Amendment,
 ) -> AlgorithmMatch {
-    if algorithm == MappingAlgorithm::Algorithm1 {
-        match_choices(trace, claim, bound, Some(amend))
-    } else {
-        match_default(algorithm, trace, bound, amend)
-    }
+    matched(algorithm, trace, claim, bound, Some(amend))
 }
 
-/// Matches a trace with the default choices of an algorithm, which are its only ones.
-fn match_default(
+fn matched(
     algorithm: MappingAlgorithm,
     trace: &Trace,
+    claim: TraceClaim,
     bound: usize,
-    amend: Amendment,
+    amend: Option<Amendment>,
 ) -> AlgorithmMatch {
-    let mut trace = Cow::Borrowed(trace);
-    let mut amended_before = 0;
-    let (reached, run) = loop {
-        let (reached, moves, run) =
-            with_explorer!(algorithm, E => follow::<E>(algorithm, &trace, bound));
-        let percept = match &reached {
-            MatchEnd::Departure(departure) if moves >= amended_before => amend(departure),
-            _ => None,
-        };
-        let Some(percept) = percept else { break (reached, run) };
-        trace.to_mut().percepts[moves] = percept;
-        // No percept is replaced twice.
-        amended_before = moves + 1;
+    if algorithm == MappingAlgorithm::Algorithm1 {
+        return match_choices(trace, claim, bound, amend);
+    }
+    with_explorer!(algorithm, E => match_default::<E>(algorithm, trace, bound, amend))
+}
+
+/// Matches a trace with an algorithm with the default choices, and then with audits of its map. If the map is
+/// not complete before the end of the trace, it is a match with the algorithm. At most `bound` darts may
+/// become known.
+#[must_use]
+pub fn match_audited(
+    algorithm: MappingAlgorithm,
+    audits: u32,
+    trace: &Trace,
+    claim: TraceClaim,
+    bound: usize,
+) -> AlgorithmMatch {
+    let mut world = TraceWorld::after(trace, 0);
+    let mut coverage = AlgorithmCoverage::default();
+    let (run, mapped) = algorithm.map_world(&mut world, bound, &mut coverage);
+    if mapped.is_err() {
+        return match_algorithm(algorithm, trace, claim, bound);
+    }
+    let audited = audit_times(audits, &mut world, &run, |_, _| {});
+    let stop = match audited {
+        Ok(_) => RunStop::after_end(world.moves(), StepPurpose::Audited, trace),
+        Err(error) => Some(RunStop::new(&error, world.moves(), StepPurpose::Audit)),
     };
-    let coverage = AlgorithmCoverage::default();
+    let reached = MatchEnd::of_only_run(stop, algorithm, trace);
     AlgorithmMatch { algorithm, choices: MatchedChoices::Default, reached, run, coverage }
 }
 
-/// The run with the default choices.
+/// The run of an explorer with the default choices.
 #[derive(Clone)]
-struct DefaultRun {
-    exploration: Algorithm1Run,
+struct DefaultRun<E> {
+    explorer: E,
     coverage: AlgorithmCoverage,
     moves: usize,
     has_begun: bool,
+    /// That of the last step.
+    purpose: StepPurpose,
 }
 
-impl DefaultRun {
+impl<E: Explorer + Default> DefaultRun<E> {
+    fn new(bound: usize) -> Self {
+        let mut explorer = E::default();
+        explorer.limit_darts(bound);
+        let (coverage, purpose) = (AlgorithmCoverage::default(), explorer.purpose(None));
+        Self { explorer, coverage, moves: 0, has_begun: false, purpose }
+    }
+
     /// Goes on until an error or the end, and returns the state before the last step, if it is kept.
     fn go_on(
         &mut self,
@@ -126,17 +138,19 @@ impl DefaultRun {
                 before = Some(self.clone());
             }
             let mut world = TraceWorld::after(trace, self.moves);
+            let observed = &mut Observed::new(&mut world, &mut self.coverage);
             let stepped = if self.has_begun {
-                match self.exploration.choose() {
+                match self.explorer.choose() {
                     Ok(None) => return (Ok(()), before),
                     Ok(Some(choice)) => {
-                        self.exploration.step(choice, &mut world, &mut self.coverage)
+                        self.purpose = self.explorer.purpose(Some(choice));
+                        self.explorer.step(choice, observed)
                     }
                     Err(invalid) => Err(invalid.into()),
                 }
             } else {
                 self.has_begun = true;
-                self.exploration.begin(&mut world, &mut self.coverage)
+                self.explorer.begin(observed)
             };
             self.moves = world.moves();
             if stepped.is_err() {
@@ -144,6 +158,39 @@ impl DefaultRun {
             }
         }
     }
+}
+
+/// Matches a trace with the default choices of an algorithm, which are its only ones.
+fn match_default<E: Explorer + Default + Into<MapWalk>>(
+    algorithm: MappingAlgorithm,
+    trace: &Trace,
+    bound: usize,
+    mut amend: Option<Amendment>,
+) -> AlgorithmMatch {
+    let mut trace = Cow::Borrowed(trace);
+    let mut run = DefaultRun::<E>::new(bound);
+    let mut amended_before = 0;
+    let reached = loop {
+        let (ended, before) = run.go_on(&trace, amend.is_some());
+        let stop = match ended {
+            Ok(()) => RunStop::after_end(run.moves, run.explorer.purpose(None), &trace),
+            Err(error) => Some(RunStop::new(&error, run.moves, run.purpose)),
+        };
+        let reached = MatchEnd::of_only_run(stop, algorithm, &trace);
+        let amended = match (&reached, &mut amend) {
+            (MatchEnd::Departure(departure), Some(amend)) if run.moves >= amended_before => {
+                amend(departure)
+            }
+            _ => None,
+        };
+        let (Some(percept), Some(before)) = (amended, before) else { break reached };
+        trace.to_mut().percepts[run.moves] = percept;
+        // No percept is replaced twice.
+        amended_before = run.moves + 1;
+        run = before;
+    };
+    let (choices, coverage) = (MatchedChoices::Default, AlgorithmCoverage::default());
+    AlgorithmMatch { algorithm, choices, reached, run: run.explorer.into(), coverage }
 }
 
 fn match_choices(
@@ -154,12 +201,7 @@ fn match_choices(
 ) -> AlgorithmMatch {
     let algorithm = MappingAlgorithm::Algorithm1;
     let mut trace = Cow::Borrowed(trace);
-    let mut default = DefaultRun {
-        exploration: Algorithm1Run::new(bound),
-        coverage: AlgorithmCoverage::default(),
-        moves: 0,
-        has_begun: false,
-    };
+    let mut default = DefaultRun::<Algorithm1Run>::new(bound);
     let mut search = Search::new(claim, bound);
     let mut amended_before = WalkEvent::Percept(0);
     let (run, found) = loop {
@@ -178,8 +220,8 @@ fn match_choices(
             search.run(&trace).filter(|(found, _)| !part || *found == MatchEnd::Mapped)
         };
         if let (Some(reached), None) = (reached, &found) {
-            let DefaultRun { exploration, coverage, .. } = default;
-            let (choices, run) = (MatchedChoices::Default, exploration.into());
+            let DefaultRun { explorer, coverage, .. } = default;
+            let (choices, run) = (MatchedChoices::Default, explorer.into());
             return AlgorithmMatch { algorithm, choices, reached, run, coverage };
         }
         if let Some(found) = found {
@@ -231,12 +273,11 @@ fn with_choices(
 ) -> (Algorithm1Run, AlgorithmCoverage) {
     let mut exploration = Algorithm1Run::new(bound);
     let mut coverage = AlgorithmCoverage::default();
+    let mut choices = script.iter().copied();
     let mut world = TraceWorld::after(trace, 0);
+    let world = &mut Observed::new(&mut world, &mut coverage);
     // The result is known.
-    let _ = exploration.begin(&mut world, &mut coverage).and_then(|()| {
-        let mut choices = script.iter();
-        choices.try_for_each(|&choice| exploration.step(choice, &mut world, &mut coverage))
-    });
+    let _ = explore_with(&mut exploration, world, |_| Ok(choices.next()));
     (exploration, coverage)
 }
 

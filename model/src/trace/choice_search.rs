@@ -12,7 +12,6 @@ use crate::{
     percept::WalkEvent,
 };
 
-/// What a trace claims to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceClaim {
     /// A complete run: choices that end with the trace are preferred.
@@ -90,7 +89,7 @@ impl Search {
             return self.search(trace, ways);
         }
         let mut exploration = Algorithm1Run::new(self.dart_bound);
-        let begun = exploration.begin(&mut TraceWorld::after(trace, 0), &mut ());
+        let begun = exploration.begin(&mut TraceWorld::after(trace, 0));
         let way = Way { exploration, moves: 0, script: Vec::new() };
         if let Err(error) = begun {
             self.ended(RunStop::new(&error, 0, StepPurpose::Done), way.script);
@@ -135,7 +134,7 @@ impl Search {
 
     /// Every choice that matches the trace.
     fn next(&mut self, trace: &Trace, before: &Way) -> Vec<Way> {
-        let mut choices: Vec<_> = before.exploration.open_choices().collect();
+        let mut choices = before.exploration.open_choices();
         let tries_hypotheses = before.exploration.is_at_line_8();
         if tries_hypotheses {
             // The default is the last.
@@ -148,7 +147,7 @@ impl Search {
             let mut way = before.clone();
             way.script.push(choice);
             let mut world = TraceWorld::after(trace, way.moves);
-            let stepped = way.exploration.step(choice, &mut world, &mut ());
+            let stepped = way.exploration.step(choice, &mut world);
             way.moves = world.moves();
             if let Err(error) = stepped {
                 let stop = RunStop::new(&error, way.moves, purpose);

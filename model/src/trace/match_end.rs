@@ -19,20 +19,13 @@ pub enum MatchEnd {
     /// To an event that it does not have.
     Departure(Departure),
     /// To an event at which it would know more darts than a bound allows. What follows is not matched.
-    Bound {
-        /// The event.
-        event: TraceEvent,
-        /// The bound.
-        bound: usize,
-    },
+    Bound { event: TraceEvent, bound: usize },
 }
 
 /// The first event of a trace that no run of an algorithm has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Departure {
-    /// The algorithm.
     pub algorithm: MappingAlgorithm,
-    /// The event.
     pub event: TraceEvent,
     /// What the algorithm does there instead, for each choice that leads there.
     pub allowed: Vec<AllowedStep>,
@@ -43,15 +36,13 @@ pub struct Departure {
 pub struct AllowedStep {
     /// The door that it takes, if any.
     pub door: Option<Door>,
-    /// The purpose.
     pub purpose: StepPurpose,
 }
 
 impl fmt::Display for AllowedStep {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         if let Some(door) = self.door {
-            write!(out, "door {} (", door.0)?;
-            write!(out, "{})", self.purpose)
+            write!(out, "door {} ({})", door.0, self.purpose)
         } else {
             write!(out, "{}", self.purpose)
         }
@@ -98,18 +89,29 @@ impl RunStop {
         }
     }
 
-    /// The same, for the only run of an algorithm.
-    pub(super) fn end(self, algorithm: MappingAlgorithm, trace: &Trace) -> MatchEnd {
-        match self {
-            Self::EndOfTrace => MatchEnd::EndOfTrace,
-            Self::Departure { event, allowed } => MatchEnd::Departure(Departure {
-                algorithm,
-                event: trace.event(event.index()),
-                allowed: vec![allowed],
-            }),
-            Self::Bound { event, bound } => {
-                MatchEnd::Bound { event: trace.event(event.index()), bound }
+    /// At the end of a run, after some moves, with a purpose; `None` if the trace ends, too.
+    pub(super) fn after_end(moves: usize, purpose: StepPurpose, trace: &Trace) -> Option<Self> {
+        let allowed = AllowedStep { door: None, purpose };
+        let stop = Self::Departure { event: WalkEvent::Door(moves), allowed };
+        (moves != trace.doors().len()).then_some(stop)
+    }
+}
+
+impl MatchEnd {
+    /// How far the only run of an algorithm follows a trace, which may have stopped.
+    pub(super) fn of_only_run(
+        stop: Option<RunStop>,
+        algorithm: MappingAlgorithm,
+        trace: &Trace,
+    ) -> Self {
+        let at = |event: WalkEvent| trace.event(event.index());
+        match stop {
+            None => Self::Mapped,
+            Some(RunStop::EndOfTrace) => Self::EndOfTrace,
+            Some(RunStop::Departure { event, allowed }) => {
+                Self::Departure(Departure { algorithm, event: at(event), allowed: vec![allowed] })
             }
+            Some(RunStop::Bound { event, bound }) => Self::Bound { event: at(event), bound },
         }
     }
 }

@@ -2,10 +2,8 @@
 //! Sections 2.1 and 2.3.
 
 mod algorithm_match;
-mod audit_match;
 mod choice_search;
 mod coverage;
-mod default_match;
 mod known_world;
 mod match_end;
 mod recovery_match;
@@ -16,9 +14,8 @@ use thiserror::Error;
 
 pub use crate::mapping::{MapDart, StepPurpose};
 pub use algorithm_match::{
-    AlgorithmMatch, Amendment, MatchedChoices, match_algorithm, match_amended,
+    AlgorithmMatch, Amendment, MatchedChoices, match_algorithm, match_amended, match_audited,
 };
-pub use audit_match::match_audited;
 pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
@@ -41,7 +38,6 @@ pub struct Trace {
     relocations: Vec<usize>,
 }
 
-/// An event of a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TraceEvent {
     /// The number of the recorded event that it came from, counted from 0.
@@ -67,16 +63,10 @@ pub enum TraceOrderError {
     Empty,
     /// A percept follows a percept.
     #[error("a percept follows a percept: no door was taken in between")]
-    NoDoor {
-        /// The id of the second.
-        event: usize,
-    },
+    NoDoor { event: usize },
     /// A door follows a door, or is the first event.
     #[error("a door follows a door: nothing was perceived in between")]
-    NoPercept {
-        /// The id of the door.
-        event: usize,
-    },
+    NoPercept { event: usize },
 }
 
 impl Trace {
@@ -248,10 +238,15 @@ impl Trace {
 pub(crate) mod tests {
     use super::*;
     use crate::{
+        any_graph::walk,
         embedded_graph::{Dart, EmbeddedGraph},
-        mapping::{MapWalk, MappingAlgorithm, MappingEvent},
+        mapping::{
+            MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observed, Observer, explore,
+            with_explorer,
+        },
+        marker::Marker,
         percept::Sighting,
-        world::{GraphWorld, World},
+        world::{GraphWorld, RefusedAction},
     };
 
     impl Trace {
@@ -262,15 +257,19 @@ pub(crate) mod tests {
         }
     }
 
+    /// What a robot perceives on a walk.
+    pub(crate) fn recorded<M: Marker>(
+        world: GraphWorld<'_, M>,
+        turns: impl IntoIterator<Item = u32>,
+    ) -> Trace {
+        let (percepts, doors, _) = walk(world, turns);
+        let ids = (0..percepts.len() + doors.len()).collect();
+        Trace { percepts, doors, ids, relocations: Vec::new() }
+    }
+
     /// What a robot perceives on a walk from a start.
     pub(crate) fn walked(graph: &EmbeddedGraph, facing: Dart, doors: &[Door]) -> Trace {
-        let mut world = GraphWorld::new(graph, facing);
-        let mut events = vec![TraceEventKind::Percept(world.sensed())];
-        for &door in doors {
-            world.traverse(door).unwrap();
-            events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
-        }
-        Trace::new(events).unwrap()
+        recorded(GraphWorld::new(graph, facing), doors.iter().map(|door| door.0))
     }
 
     /// A run of Algorithm 1.
@@ -284,15 +283,35 @@ pub(crate) mod tests {
         graph: &EmbeddedGraph,
         facing: Dart,
     ) -> Trace {
-        let mut doors = Vec::new();
-        let mut listen = |_: &mut GraphWorld, _: &MapWalk, event: MappingEvent| {
-            if let MappingEvent::Moved { door, .. } = event {
-                doors.push(door);
-            }
-        };
+        with_explorer!(algorithm, E => {
+            doors_of(graph, facing, |world| explore(&mut E::default(), world))
+        })
+    }
+
+    /// What is perceived in a run.
+    pub(crate) fn doors_of(
+        graph: &EmbeddedGraph,
+        facing: Dart,
+        run: impl FnOnce(&mut Recorded<'_, '_>) -> Result<(), MappingError<RefusedAction>>,
+    ) -> Trace {
+        let mut listen = Doors::default();
         let mut world = GraphWorld::new(graph, facing);
-        algorithm.map_world(&mut world, graph.dart_count(), &mut listen).1.unwrap();
-        walked(graph, facing, &doors)
+        run(&mut Observed::new(&mut world, &mut listen)).unwrap();
+        walked(graph, facing, &listen.0)
+    }
+
+    pub(crate) type Recorded<'a, 'g> = Observed<'a, GraphWorld<'g>, Doors>;
+
+    /// The doors of a run.
+    #[derive(Default)]
+    pub(crate) struct Doors(Vec<Door>);
+
+    impl<W> Observer<W> for Doors {
+        fn event(&mut self, _: &mut W, _: &MapWalk, event: MappingEvent) {
+            if let MappingEvent::Moved { door, .. } = event {
+                self.0.push(door);
+            }
+        }
     }
 
     /// A triangle with a tail; dart 0 is the end of the tail.

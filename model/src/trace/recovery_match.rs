@@ -2,13 +2,12 @@
 
 use super::{
     AlgorithmCoverage, AlgorithmMatch, MatchEnd, MatchedChoices, Trace, TraceWorld,
-    TraceWorldError,
-    match_end::{AllowedStep, RunStop},
+    TraceWorldError, match_end::RunStop,
 };
 use crate::{
     mapping::{
         ArrivalMeasurement, FoldingEvent, FoldingRun, MapDart, MapWalk, MappingAlgorithm,
-        MappingError, MappingEvent, Observer, RecoveryConfig, Relocate, SafeguardEvent,
+        MappingError, MappingEvent, Observed, Observer, RecoveryConfig, Relocate, SafeguardEvent,
         StepPurpose, map_with_recovery,
     },
     percept::{Door, Percept, WalkEvent},
@@ -38,20 +37,16 @@ pub fn match_recovering(
     let mut exploration = FoldingRun::new(bound);
     let mut world = RecordedWorld { world: TraceWorld::after(trace, 0), visits };
     let mut observer = StepObserver::default();
-    let mapped = map_with_recovery(&mut world, &mut exploration, config, &[], &mut observer);
+    let observed = &mut Observed::new(&mut world, &mut observer);
+    let mapped = map_with_recovery(observed, &mut exploration, config, &[]);
     let moves = world.world.moves();
     let is_end = moves == trace.doors().len();
-    let gone_on = |purpose| {
-        let allowed = AllowedStep { door: None, purpose };
-        RunStop::Departure { event: WalkEvent::Door(moves), allowed }
-    };
     let stop = match mapped {
-        Ok(_) if is_end => None,
-        Ok(_) => Some(gone_on(StepPurpose::Audited)),
+        Ok(_) => RunStop::after_end(moves, StepPurpose::Audited, trace),
         // After many recoveries the robot gives up.
         Err(MappingError::Contradiction(_)) if is_end => Some(RunStop::EndOfTrace),
         Err(MappingError::Contradiction(contradiction)) => {
-            Some(gone_on(StepPurpose::Contradicted(contradiction)))
+            RunStop::after_end(moves, StepPurpose::Contradicted(contradiction), trace)
         }
         Err(error) => Some(RunStop::new(&error, moves, observer.purpose)),
     };
@@ -62,7 +57,7 @@ pub fn match_recovering(
     AlgorithmMatch {
         algorithm,
         choices: MatchedChoices::Default,
-        reached: stop.map_or(MatchEnd::Mapped, |stop| stop.end(algorithm, trace)),
+        reached: MatchEnd::of_only_run(stop, algorithm, trace),
         run: exploration.into(),
         coverage: AlgorithmCoverage::default(),
     }
@@ -120,11 +115,11 @@ impl Default for StepObserver {
 }
 
 impl Observer<RecordedWorld<'_>> for StepObserver {
-    fn event(&mut self, world: &mut RecordedWorld, journey: &MapWalk, event: MappingEvent) {
+    fn event(&mut self, world: &mut RecordedWorld, walk: &MapWalk, event: MappingEvent) {
         use SafeguardEvent::{
             AuditBegun, AuditPassed, BlockedRetried, Contradicted, MarkerFound, Relocated, TooLarge,
         };
-        let named = |dart| MapDart::new(journey.map(), dart);
+        let named = |dart| MapDart::new(walk.map(), dart);
         self.purpose = match event {
             MappingEvent::Folding(FoldingEvent::Testing { edge, hypothesis, .. }) => {
                 StepPurpose::Test { edge: named(edge), hypothesis: named(hypothesis) }

@@ -78,11 +78,4 @@ mod tests {
         });
         assert_eq!((short, trials), (trace, TRIALS));
     }
-
-    #[test]
-    fn what_shows_nothing_stays() {
-        let graph = lollipop();
-        let trace = walked(&graph, Dart(0), &[Door(0), Door(1)]);
-        assert_eq!(shortened(&trace, |_| false), trace);
-    }
 }

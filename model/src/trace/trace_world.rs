@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::Trace;
 use crate::{
+    mapping::ObservedWorld,
     percept::{Door, Percept},
     world::World,
 };
@@ -23,7 +24,6 @@ pub enum TraceWorldError {
     /// Another door was taken.
     #[error("door {} was taken then, not door {}", recorded.0, asked.0)]
     Door {
-        /// The door that was taken.
         recorded: Door,
         /// The door that the algorithm takes.
         asked: Door,
@@ -56,6 +56,8 @@ impl<'t> TraceWorld<'t> {
         self.moves
     }
 }
+
+impl ObservedWorld for TraceWorld<'_> {}
 
 impl World for TraceWorld<'_> {
     type Error = TraceWorldError;

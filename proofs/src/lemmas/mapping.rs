@@ -1,7 +1,7 @@
 //! Whole runs of Algorithm 1, with all open choices: its invariant from round to round, the cost of a
 //! round, and its end. Section 2.3.
 //!
-//! The runs are those of [`map_world`] itself. Each is tracked with the truth that the robot does not
+//! The runs are those of [`Algorithm1Run`] itself. Each is tracked with the truth that the robot does not
 //! know: its pose in the world, and the dart of the world for each dart of its map.
 
 use std::cell::Cell;
@@ -10,8 +10,8 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
     mapping::{
-        Algorithm1Run, Choices, Explorer, FACING, MapWalk, MappingAlgorithm, MappingEvent,
-        PartialMap, map_world,
+        Algorithm1Run, Explorer, FACING, MapWalk, MappingAlgorithm, MappingChoice, MappingEvent,
+        Observed, explore_with,
     },
     percept::Door,
     world::GraphWorld,
@@ -19,7 +19,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{CaseResult, Choose, Exhibit, Stop, claim},
-    draw::{self, DrawnChoices},
+    draw,
     lemma::declare,
 };
 
@@ -136,25 +136,6 @@ impl Truth<'_> {
     }
 }
 
-/// The latest choice, and the choices that made it.
-struct Noted<'n, C> {
-    choices: DrawnChoices<'n, C>,
-    latest: &'n Cell<Dart>,
-}
-
-impl<C: Choose> Choices for Noted<'_, C> {
-    fn next_edge(&mut self, map: &PartialMap, robot: Dart, nearest: Dart) -> Dart {
-        self.latest.set(self.choices.next_edge(map, robot, nearest));
-        self.latest.get()
-    }
-
-    fn next_hypothesis(&mut self, map: &PartialMap, hypotheses: &[Dart]) -> usize {
-        let place = self.choices.next_hypothesis(map, hypotheses);
-        self.latest.set(hypotheses[place]);
-        place
-    }
-}
-
 /// Draws a run on a start, and calls `judge` with each event of the run and the truth at that moment.
 /// Returns its first error, or an error if a choice was not used; otherwise the end of the run.
 fn run<'g, C: Choose>(
@@ -182,8 +163,16 @@ fn run<'g, C: Choose>(
     // The map never needs more darts than the world has.
     let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
-    let mut choices = Noted { choices: DrawnChoices(choose), latest: &latest };
-    let ended = map_world(&mut world, &mut choices, &mut exploration, &mut watch);
+    let observed = &mut Observed::new(&mut world, &mut watch);
+    let ended = explore_with(&mut exploration, observed, |run| {
+        let choice = draw::open_choice(choose, run)?;
+        match choice {
+            Some(MappingChoice::Edge(edge)) => latest.set(edge),
+            Some(MappingChoice::Hypothesis(index)) => latest.set(run.hypotheses()[index]),
+            None => {}
+        }
+        Ok(choice)
+    });
     choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;
     claim("the run ends", ended.is_ok())?;

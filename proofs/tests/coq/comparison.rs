@@ -20,8 +20,8 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration},
     format::{named_world::NamedWorld, world_file},
     mapping::{
-        Algorithm1Run, Choices, MapWalk, MappingEvent, MovableMarkerRun, Nearest, Observer,
-        PartialMap, map_with_movable_marker, map_world,
+        Algorithm1Run, Explorer, MapWalk, MappingChoice, MappingEvent, MovableMarkerRun, Observed,
+        Observer, PartialMap, explore_with,
     },
     marker::Movable,
     world::GraphWorld,
@@ -63,30 +63,56 @@ impl Mapping {
         }
     }
 
-    /// The run of the running algorithm from a start, with these choices, in the format of
-    /// `compare/main.ml`.
-    fn run_line(self, start: &EmbeddedGraph, choices: &mut impl RecordedChoices) -> String {
+    /// The run of the running algorithm from a start, in the format of `compare/main.ml`. Without options, the choices
+    /// are the default ones, and are not recorded.
+    fn run_line(self, start: &EmbeddedGraph, options: Option<&mut Options>) -> String {
         let mut did = Actions(Vec::new());
+        let mut made = Vec::new();
+        let mut option = options.map(|choose| {
+            |of: usize| {
+                let of = u8::try_from(of).unwrap();
+                made.push((choose(of), of));
+                usize::from(made[made.len() - 1].0)
+            }
+        });
         let bound = start.dart_count();
         let known = match self {
             Self::Directional => {
                 let mut world = GraphWorld::new(start, Dart(0));
-                let mut exploration = Algorithm1Run::new(bound);
-                map_world(&mut world, choices, &mut exploration, &mut did)
-                    .map(|()| known(exploration.map(), exploration.robot()))
+                let mut run = Algorithm1Run::new(bound);
+                let world = &mut Observed::new(&mut world, &mut did);
+                let ended = explore_with(&mut run, world, |run| {
+                    let Some(option) = &mut option else { return run.choose() };
+                    let mut open = run.choices()?;
+                    // Options are numbered as Coq lists them: in the order of the darts.
+                    open.sort_unstable_by_key(|&choice| match choice {
+                        MappingChoice::Edge(edge) => edge,
+                        MappingChoice::Hypothesis(index) => run.hypotheses()[index],
+                    });
+                    Ok(if open.is_empty() { None } else { Some(open[option(open.len())]) })
+                });
+                ended.map(|()| known(run.map(), run.robot()))
             }
             Self::Movable => {
                 let mut world = GraphWorld::with_marker(start, Movable, Dart(0));
-                let mut search = MovableMarkerRun::new(bound);
-                map_with_movable_marker(&mut world, choices, &mut search, &mut did)
-                    .map(|()| known(search.map(), search.robot()))
+                let mut run = MovableMarkerRun::new(bound);
+                let world = &mut Observed::new(&mut world, &mut did);
+                let ended = explore_with(&mut run, world, |run| {
+                    let Some(option) = &mut option else { return run.choose() };
+                    let open = run.choices()?;
+                    Ok(if open.is_empty() { None } else { Some(open[option(open.len())]) })
+                });
+                ended.map(|()| known(run.map(), run.robot()))
             }
         };
         let known = known.unwrap_or_else(|error| error.to_string());
-        let chose = choices.made().iter().map(|(choice, of)| format!("{choice}/{of}"));
+        let chose = made.iter().map(|(choice, of)| format!("{choice}/{of}"));
         [listed("did", did.0.into_iter()), listed("chose", chose), known].join("; ")
     }
 }
+
+/// Chooses one of a number of options.
+type Options<'c> = dyn FnMut(u8) -> u8 + 'c;
 
 /// What the robot did, as text.
 struct Actions(Vec<String>);
@@ -108,56 +134,6 @@ pub(super) fn known(map: &PartialMap, robot: Dart) -> String {
         listed("robot", iter::once(robot.0)),
     ];
     known.join("; ")
-}
-
-/// Choices, and those that were made: the number of an option, and how many there were.
-trait RecordedChoices: Choices {
-    fn made(&self) -> &[(u8, u8)];
-}
-
-/// The default choices are not recorded.
-impl RecordedChoices for Nearest {
-    fn made(&self) -> &[(u8, u8)] {
-        &[]
-    }
-}
-
-/// Any choices. The options are numbered as Coq lists them: in the order of the darts.
-struct Chosen<'c, C> {
-    choose: &'c mut C,
-    made: Vec<(u8, u8)>,
-}
-
-impl<'c, C: Choose> Chosen<'c, C> {
-    fn new(choose: &'c mut C) -> Self {
-        Self { choose, made: Vec::new() }
-    }
-
-    fn option(&mut self, of: usize) -> usize {
-        let of = u8::try_from(of).unwrap();
-        let choice = self.choose.below(of);
-        self.made.push((choice, of));
-        choice.into()
-    }
-}
-
-impl<C: Choose> Choices for Chosen<'_, C> {
-    fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
-        let unexplored: Vec<_> = map.unexplored().collect();
-        unexplored[self.option(unexplored.len())]
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-        let mut places: Vec<_> = (0..hypotheses.len()).collect();
-        places.sort_unstable_by_key(|&place| hypotheses[place]);
-        places[self.option(places.len())]
-    }
-}
-
-impl<C: Choose> RecordedChoices for Chosen<'_, C> {
-    fn made(&self) -> &[(u8, u8)] {
-        &self.made
-    }
 }
 
 /// Random choices. The same seed makes the same ones.
@@ -226,7 +202,7 @@ pub(super) struct Case {
 impl Case {
     /// The run with the default choices.
     fn by_default(mapping: Mapping, start: EmbeddedGraph) -> Self {
-        let lines = vec![mapping.run_line(&start, &mut Nearest)];
+        let lines = vec![mapping.run_line(&start, None)];
         Self { algorithm: mapping.name(), start, given: "choices default".to_owned(), lines }
     }
 
@@ -234,7 +210,7 @@ impl Case {
     fn with_all_choices(mapping: Mapping, start: EmbeddedGraph) -> Self {
         let mut lines = Vec::new();
         let run = |choose: &mut ChoiceOdometer| {
-            lines.push(mapping.run_line(&start, &mut Chosen::new(choose)));
+            lines.push(mapping.run_line(&start, Some(&mut |of| choose.below(of))));
             Ok(())
         };
         ChoiceOdometer::exhaust(run, &mut |_| {}).unwrap();
@@ -243,9 +219,13 @@ impl Case {
 
     /// A run with random choices.
     fn at_random(mapping: Mapping, start: EmbeddedGraph, random: &mut Random) -> Self {
-        let mut chosen = Chosen::new(random);
-        let lines = vec![mapping.run_line(&start, &mut chosen)];
-        let given = listed("choices", chosen.made.iter().map(|(choice, _)| choice));
+        let mut chosen = Vec::new();
+        let mut choose = |of| {
+            chosen.push(random.below(of));
+            chosen[chosen.len() - 1]
+        };
+        let lines = vec![mapping.run_line(&start, Some(&mut choose))];
+        let given = listed("choices", chosen.iter());
         Self { algorithm: mapping.name(), start, given, lines }
     }
 

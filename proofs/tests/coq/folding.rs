@@ -7,7 +7,7 @@ use std::{fs, iter, mem};
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
-    mapping::{FoldingEvent, FoldingRun, MapWalk, MappingEvent, Observer, explore},
+    mapping::{FoldingEvent, FoldingRun, MapWalk, MappingEvent, Observed, Observer, explore},
     world::GraphWorld,
 };
 
@@ -100,10 +100,11 @@ impl Run {
         let mut world = GraphWorld::new(&start, Dart(0));
         let mut exploration = FoldingRun::new(start.dart_count());
         let mut recorded = Recorded::default();
-        let known = explore(&mut exploration, &mut world, &mut recorded).map_or_else(
-            |error| error.to_string(),
-            |()| known(exploration.map(), exploration.robot()),
-        );
+        let known = explore(&mut exploration, &mut Observed::new(&mut world, &mut recorded))
+            .map_or_else(
+                |error| error.to_string(),
+                |()| known(exploration.map(), exploration.robot()),
+            );
         let moves = listed("moves", iter::once(exploration.moves()));
         let did = listed("did", recorded.did.iter());
         let line = [did, "chose".to_owned(), known, moves].join("; ");

@@ -174,7 +174,7 @@ impl Stage {
 mod tests {
     use toposlam_model::{
         format::world_file,
-        mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, map_world},
+        mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, explore},
         world::GraphWorld,
     };
 
@@ -194,7 +194,7 @@ mod tests {
             }
         };
         let mut exploration = Algorithm1Run::new(1000);
-        map_world(&mut robot, &mut Nearest, &mut exploration, &mut watch).unwrap();
+        explore(&mut exploration, &mut Observed::new(&mut robot, &mut watch)).unwrap();
         (percepts, doors)
     }
 

@@ -12,7 +12,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
-    mapping::{Algorithm1Run, MapWalk, MappingEvent, Nearest, PartialMap, map_world},
+    mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, PartialMap, explore},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
 };
@@ -64,7 +64,8 @@ fn steps(plan: &FloorPlan, facing: Dart) -> Vec<MappingStep> {
         steps.push(MappingStep { walk: journey.clone(), event });
     };
     let mut world = GraphWorld::new(plan.graph(), facing);
-    map_world(&mut world, &mut Nearest, &mut Algorithm1Run::new(1000), &mut watch).unwrap();
+    let world = &mut Observed::new(&mut world, &mut watch);
+    explore(&mut Algorithm1Run::new(1000), world).unwrap();
     steps
 }
 

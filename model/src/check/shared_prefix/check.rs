@@ -41,7 +41,6 @@ pub struct SharedPrefixCheck {
 pub struct Probe {
     /// The product of the numbers of answers that were possible where one was drawn.
     pub weight: f64,
-    /// The counts of the subtree. The worst start is not looked for.
     pub tally: PartTally,
 }
 
@@ -64,22 +63,6 @@ impl FinishedUnits for () {
     fn finish(&self, _: usize, _: &PartTally) {}
 }
 
-/// A part of the tree of all runs: those that begin with the same answers.
-#[derive(Clone, Debug)]
-pub(super) struct Unit(Vec<Answer>);
-
-/// The counts of a part of the worlds: their number.
-pub(super) fn count_worlds(part: &EnumerationPart, watch: &dyn Watch) -> PartTally {
-    let mut found = PartTally::default();
-    let ended = part.for_each(&mut |_| {
-        found.worlds += 1;
-        check_stop(watch)
-    });
-    found.interrupted = ended.is_break();
-    found
-}
-
-/// The counts of two parts.
 fn merged(mut one: PartTally, other: PartTally) -> PartTally {
     one.merge(other);
     one
@@ -95,7 +78,6 @@ impl SharedPrefixCheck {
         Ok(Self { worlds, draft: Draft::new(class, edges)?, shard })
     }
 
-    /// The class of worlds.
     #[must_use]
     pub fn class(&self) -> Class {
         self.worlds.class()
@@ -113,31 +95,29 @@ impl SharedPrefixCheck {
         units: &dyn FinishedUnits,
         watch: &dyn Watch,
     ) -> Tally {
-        let all: Vec<_> = self.units(&new, watch).into_iter().enumerate().collect();
-        let most_moves = AtomicU64::new(0);
-        let check = |(index, unit): &(usize, Unit)| {
-            units.finished(*index).unwrap_or_else(|| {
-                let tally = self.check_unit(unit, new(), &most_moves, watch);
+        let pieces = CheckPieces::new(self, &new, watch);
+        let check = |&unit: &usize| {
+            units.finished(unit).unwrap_or_else(|| {
+                let tally = pieces.check(unit, new(), watch);
                 if !tally.interrupted {
-                    units.finish(*index, &tally);
+                    units.finish(unit, &tally);
                 }
                 tally
             })
         };
         // Some runs from all over the tree come first, so that few others can be the worst one.
+        let all: Vec<usize> = (0..pieces.unit_count()).collect();
         let sample = all.iter().step_by(all.len().div_ceil(SAMPLE).max(1));
-        let sample: BTreeMap<_, _> = sample.map(|unit| (unit.0, check(unit))).collect();
-        let check =
-            |unit: &(usize, Unit)| sample.get(&unit.0).cloned().unwrap_or_else(|| check(unit));
+        let sample: BTreeMap<_, _> = sample.map(|unit| (*unit, check(unit))).collect();
+        let check = |unit: &usize| sample.get(unit).cloned().unwrap_or_else(|| check(unit));
         let found = in_parts(&all, watch, PartTally::default, check, |tally| tally.starts, merged);
         // The progress is that of the runs.
-        let count = |part: &EnumerationPart| count_worlds(part, watch);
-        let parts = self.world_parts();
-        let worlds = in_parts(&parts, &(), PartTally::default, count, |found| found.worlds, merged);
-        Self::finished(merged(found, worlds), new)
+        let all: Vec<usize> = (pieces.unit_count()..pieces.count()).collect();
+        let count = |&piece: &usize| pieces.check(piece, new(), watch);
+        let worlds = in_parts(&all, &(), PartTally::default, count, |found| found.worlds, merged);
+        CheckPieces::finished(merged(found, worlds), new)
     }
 
-    /// The number of units of the shard.
     pub fn unit_count<E: Explorer>(&self, new: impl Fn() -> E) -> usize {
         // A count that stops early would be wrong.
         self.units(new, &()).len()
@@ -154,26 +134,12 @@ impl SharedPrefixCheck {
         Probe { weight, tally }
     }
 
-    /// The units of the shard. They do not depend on the number of threads.
-    pub(super) fn units<E: Explorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Unit> {
+    /// The units of the shard, by the answers with which their runs begin. They do not depend on the number of
+    /// threads.
+    fn units<E: Explorer>(&self, new: impl Fn() -> E, watch: &dyn Watch) -> Vec<Vec<Answer>> {
         let edges = self.draft.edges_left();
         let cut_at = edges.saturating_sub(prefix_edges(edges));
-        let all = prefixes(new(), self.draft.clone(), cut_at, watch);
-        self.shard.select(all.into_iter().map(Unit).collect())
-    }
-
-    /// Checks the starts of a unit.
-    pub(super) fn check_unit<E: Explorer>(
-        &self,
-        unit: &Unit,
-        explorer: E,
-        most_moves: &AtomicU64,
-        watch: &dyn Watch,
-    ) -> PartTally {
-        if watch.stop() {
-            return PartTally { interrupted: true, ..PartTally::default() };
-        }
-        self.check_subtree(PrefixSource::Given(unit.0.clone()), explorer, most_moves, watch).0
+        self.shard.select(prefixes(new(), self.draft.clone(), cut_at, watch))
     }
 
     /// Checks the starts of a subtree, and returns the weight of what was drawn.
@@ -191,25 +157,76 @@ impl SharedPrefixCheck {
         let (moves_made, interrupted) = (search.world.moves_made, ended.is_break());
         (PartTally { moves_made, interrupted, ..judge.tally }, search.world.weight)
     }
+}
 
-    /// The result, from the counts of all units and all worlds.
-    pub(super) fn finished<E: Explorer>(found: PartTally, new: impl Fn() -> E) -> Tally {
-        let failure = found.failure.as_ref().and_then(EnumeratedStart::start);
+/// The pieces of a [`SharedPrefixCheck`], which are done in any order and on any machine: its units, and then the parts
+/// of the worlds that are counted. Equal checks have equal pieces on every machine.
+#[derive(Debug)]
+pub struct CheckPieces {
+    check: SharedPrefixCheck,
+    units: Vec<Vec<Answer>>,
+    world_parts: Vec<EnumerationPart>,
+    /// The most moves of a run in a unit that was checked here.
+    most_moves: AtomicU64,
+}
+
+impl CheckPieces {
+    pub fn new<E: Explorer>(
+        check: &SharedPrefixCheck,
+        new: impl Fn() -> E,
+        watch: &dyn Watch,
+    ) -> Self {
+        Self {
+            units: check.units(new, watch),
+            world_parts: check.shard.select(check.worlds.parts()),
+            most_moves: AtomicU64::new(0),
+            check: check.clone(),
+        }
+    }
+
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.units.len() + self.world_parts.len()
+    }
+
+    #[must_use]
+    pub fn unit_count(&self) -> usize {
+        self.units.len()
+    }
+
+    /// The counts of a piece; none if there is no such piece.
+    pub fn check<E: Explorer>(&self, piece: usize, explorer: E, watch: &dyn Watch) -> PartTally {
+        let mut found = PartTally::default();
+        if let Some(unit) = self.units.get(piece) {
+            if watch.stop() {
+                return PartTally { interrupted: true, ..found };
+            }
+            let prefix = PrefixSource::Given(unit.clone());
+            return self.check.check_subtree(prefix, explorer, &self.most_moves, watch).0;
+        }
+        if let Some(part) = self.world_parts.get(piece - self.units.len()) {
+            let ended = part.for_each(&mut |_| {
+                found.worlds += 1;
+                check_stop(watch)
+            });
+            found.interrupted = ended.is_break();
+        }
+        found
+    }
+
+    /// The result, from the counts of all pieces. It is that of [`SharedPrefixCheck::run`].
+    pub fn finished<E: Explorer>(counts: PartTally, new: impl Fn() -> E) -> Tally {
+        let failure = counts.failure.as_ref().and_then(EnumeratedStart::start);
         let failure = failure.and_then(|(graph, facing)| {
             let judged = judge_start(&mut new(), &graph, facing, &mut Candidate::default());
             let (moves, flaw) = (Some(judged.0), judged.1.err()?);
             let false_step = first_false_step(new(), &graph, facing);
             Some(FailedStart { graph, facing, flaw, moves, false_step })
         });
-        let worst = found.worst.as_ref().and_then(|&(moves, ref start)| {
+        let worst = counts.worst.as_ref().and_then(|&(moves, ref start)| {
             let (graph, facing) = start.start()?;
             Some(WorstStart { graph, facing, moves })
         });
-        found.with_starts(worst, failure)
-    }
-
-    /// The parts of the embedded graphs of the shard.
-    pub(super) fn world_parts(&self) -> Vec<EnumerationPart> {
-        self.shard.select(self.worlds.parts())
+        counts.with_starts(worst, failure)
     }
 }

@@ -5,14 +5,14 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use super::{LazyWorld, search::LazyRunEnd, world::FACING};
+use super::{LazyWorld, search::LazyRunEnd};
 use crate::{
-    check::{EnumeratedStart, PartTally, judge_map, one_by_one::check_stop},
+    check::{EnumeratedStart, PartTally, judge::check_moves, judge_map, one_by_one::check_stop},
     embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     folding::MarkerTree,
     isomorphism::Candidate,
-    mapping::{Explorer, Flaw},
+    mapping::{Explorer, FACING, Flaw},
     marker::{Directional, Marker},
 };
 
@@ -69,9 +69,8 @@ impl<'m> LeafJudge<'m> {
         if !is_record {
             judge_map(&map, (graph, FACING), world.pose(), &mut self.candidate)?;
         }
-        let moves = world.robot().moves;
         let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
-        if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(()) }
+        check_moves(world.robot().moves, bound)
     }
 
     fn count(&mut self, graph: &EmbeddedGraph, moves: u64, is_right: bool) {

@@ -14,22 +14,11 @@ use crate::{
 /// The number of runs after which the watch is asked whether to stop.
 const RUNS_TO_A_QUESTION: u64 = 64;
 
-/// The end of a run.
 pub(super) enum LazyRunEnd {
-    /// The explorer returned its map.
     Done,
-    /// The explorer failed.
     Failed(Flaw),
     /// The run was cut after a step: enough edges are decided.
     Cut,
-}
-
-/// Whether a run goes on.
-enum StepProgress {
-    /// There is another step.
-    GoesOn,
-    /// The run has ended, and the map is there.
-    Done,
 }
 
 /// The explorer and its robot after the approach of a step.
@@ -43,7 +32,6 @@ struct Saved<E: Explorer> {
 pub(super) struct RunSearch<'w, E: Explorer> {
     pub(super) world: LazyWorld<E::Marker>,
     pub(super) explorer: E,
-    /// The choice of the next step.
     choice: Option<E::Choice>,
     /// The state before each step in which something was decided. Memory is kept.
     saved: Vec<Saved<E>>,
@@ -53,7 +41,6 @@ pub(super) struct RunSearch<'w, E: Explorer> {
 }
 
 impl<'w, E: Explorer> RunSearch<'w, E> {
-    /// A search through the runs that begin with these answers.
     pub(super) fn new(
         mut explorer: E,
         draft: Draft,
@@ -112,14 +99,14 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
     /// Runs from the present state to an end, which is `None` where no answer was left.
     fn run(&mut self) -> Option<LazyRunEnd> {
         loop {
-            let progress = self.make_step();
+            let goes_on = self.make_step();
             if self.world.dead_end {
                 return None;
             }
-            match progress {
+            match goes_on {
                 Err(flaw) => return Some(LazyRunEnd::Failed(flaw)),
-                Ok(StepProgress::Done) => return Some(LazyRunEnd::Done),
-                Ok(StepProgress::GoesOn) => {}
+                Ok(false) => return Some(LazyRunEnd::Done),
+                Ok(true) => {}
             }
             if self.cut_at.is_some_and(|left| self.world.draft.edges_left() <= left) {
                 return Some(LazyRunEnd::Cut);
@@ -132,19 +119,20 @@ impl<'w, E: Explorer> RunSearch<'w, E> {
         }
     }
 
-    /// Begins the run, or makes its next step; and then the approach of the step after it.
-    fn make_step(&mut self) -> Result<StepProgress, Flaw> {
+    /// Begins the run, or makes its next step; and then the approach of the step after it. Returns whether there is
+    /// one: otherwise the map is there.
+    fn make_step(&mut self) -> Result<bool, Flaw> {
         let Self { world, explorer, choice, .. } = self;
         if !world.robot().has_begun {
             world.open_start()?;
-            explorer.begin(world, &mut ())?;
+            explorer.begin(world)?;
         } else if let Some(choice) = *choice {
-            explorer.step(choice, world, &mut ())?;
+            explorer.step(choice, world)?;
         }
         *choice = explorer.choose()?;
-        let Some(choice) = *choice else { return Ok(StepProgress::Done) };
-        explorer.approach(choice, world, &mut ())?;
-        Ok(StepProgress::GoesOn)
+        let Some(choice) = *choice else { return Ok(false) };
+        explorer.approach(choice, world)?;
+        Ok(true)
     }
 }
 

@@ -3,13 +3,11 @@
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Answer, Answers, Draft},
+    mapping::{FACING, ObservedWorld},
     marker::Marker,
     percept::{Door, Percept, Sighting},
     world::{MarkerCarrier, RefusedAction, State, World},
 };
-
-/// The facing dart of every start.
-pub(super) const FACING: Dart = Dart(0);
 
 /// An answer of the world, and those that were not given yet.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +16,6 @@ pub(super) struct Decision {
     dart: Option<Dart>,
     answer: Answer,
     left: Answers,
-    /// The step of the run in which it was made.
     pub(super) step: usize,
 }
 
@@ -28,9 +25,7 @@ pub(super) enum PrefixSource {
     /// As all others: every answer is given.
     #[default]
     Open,
-    /// These answers are given.
     Given(Vec<Answer>),
-    /// Each number draws one answer.
     Drawn(Vec<u64>),
 }
 
@@ -53,15 +48,12 @@ pub struct LazyWorld<M> {
     pub(super) draft: Draft,
     marker: M,
     robot: RobotState,
-    /// The most moves of a run.
     bound: u64,
     pub(super) decisions: Vec<Decision>,
     prefix: PrefixSource,
-    /// The step that is being made.
     pub(super) step: usize,
     /// Whether no answer was left. The run then goes back.
     pub(super) dead_end: bool,
-    /// The moves made by all runs together.
     pub(super) moves_made: u64,
     /// The product of the numbers of answers from which some were drawn.
     pub(super) weight: f64,
@@ -69,14 +61,11 @@ pub struct LazyWorld<M> {
 
 impl<M: Marker> LazyWorld<M> {
     pub(super) fn new(draft: Draft, marker: M, bound: u64, prefix: PrefixSource) -> Self {
+        let state = State { pose: FACING, placed: None };
         Self {
             draft,
             marker,
-            robot: RobotState {
-                state: State { pose: FACING, placed: None },
-                moves: 0,
-                has_begun: false,
-            },
+            robot: RobotState { state, moves: 0, has_begun: false },
             bound,
             decisions: Vec::new(),
             prefix,
@@ -110,7 +99,6 @@ impl<M: Marker> LazyWorld<M> {
         self.draft.edges_left() > 1
     }
 
-    /// The answers so far.
     pub(super) fn answers(&self) -> Vec<Answer> {
         self.decisions.iter().map(|decision| decision.answer).collect()
     }
@@ -200,6 +188,8 @@ impl<M: Marker> LazyWorld<M> {
         }
     }
 }
+
+impl<M: Marker> ObservedWorld for LazyWorld<M> {}
 
 impl<M: Marker> World for LazyWorld<M> {
     type Error = RefusedAction;

@@ -1,22 +1,19 @@
 //! Smallest worlds against brute force over all small worlds.
 
-use std::ops::ControlFlow;
-
 use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    any_graph::any_graph,
-    enumerate::{Each, EnumeratedGraph, Enumeration},
+    any_graph::{any_graph, starts},
     folding::fold,
     isomorphism::code,
     marker::{Directional, NoMarker},
     percept::{Door, Percept, Sighting},
     trace::{
         Trace, TraceEventKind, poses,
-        tests::{explored, lollipop, walked},
+        tests::{explored, lollipop, recorded, walked},
     },
-    world::{GraphWorld, State, World},
+    world::{GraphWorld, State},
 };
 
 fn search(class: Class) -> WorldSearch {
@@ -32,35 +29,17 @@ fn smallest(trace: &Trace, class: Class) -> SmallestWorld {
 }
 
 /// Every start with this number of edges, with the marker along each of its darts, or without one.
-fn for_each_place(
-    class: Class,
-    edges: usize,
-    visit: &mut dyn FnMut(&EmbeddedGraph, Option<Dart>) -> ControlFlow<()>,
-) -> ControlFlow<()> {
-    let all = Enumeration::new(Each::Start, class, edges).unwrap();
-    let mut each = |found: EnumeratedGraph| {
-        found
-            .graph
-            .darts()
-            .map(Some)
-            .chain([None])
-            .try_for_each(|marker| visit(found.graph, marker))
-    };
-    all.for_each(&mut each)
+fn places(class: Class, edges: usize) -> impl Iterator<Item = (EmbeddedGraph, Option<Dart>)> {
+    starts(class, edges).into_iter().flat_map(|graph| {
+        let markers: Vec<_> = graph.darts().map(Some).chain([None]).collect();
+        markers.into_iter().map(move |marker| (graph.clone(), marker))
+    })
 }
 
 /// The number of edges of the smallest world, by trying them all.
 fn by_trying_all(trace: &Trace, class: Class, most: usize) -> Option<usize> {
-    (1..=most).find(|&edges| {
-        let mut visit = |graph: &EmbeddedGraph, marker| {
-            if explains(graph, marker, trace) {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        };
-        for_each_place(class, edges, &mut visit).is_break()
-    })
+    (1..=most)
+        .find(|&edges| places(class, edges).any(|(graph, marker)| explains(&graph, marker, trace)))
 }
 
 /// Whether a world explains a trace of a robot that starts with dart 0 behind it.
@@ -74,55 +53,41 @@ fn explains(graph: &EmbeddedGraph, marker: Option<Dart>, trace: &Trace) -> bool 
 
 /// A walk from dart 0 in a world with the marker along a dart.
 fn walk(graph: &EmbeddedGraph, facing: Dart, turns: &[u8]) -> Trace {
-    let mut world = GraphWorld::new(graph, facing);
-    world = world.clone().at(State { pose: Dart(0), ..world.state() });
-    let mut events = vec![TraceEventKind::Percept(world.sensed())];
-    for &turn in turns {
-        let door = Door(u32::from(turn) % world.sensed().degree);
-        world.traverse(door).unwrap();
-        events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
-    }
-    Trace::new(events).unwrap()
+    let world = GraphWorld::new(graph, facing);
+    let world = world.clone().at(State { pose: Dart(0), ..world.state() });
+    recorded(world, turns.iter().copied().map(u32::from))
 }
 
 #[test]
-fn a_ring_of_three_explains_a_walk_round_a_ring_of_four_without_a_marker() {
-    let corner = TraceEventKind::Percept(Percept { degree: 2, sighting: Sighting::Nothing });
-    let trace = Trace::new([corner, TraceEventKind::Door(Door(1))].repeat(4)).unwrap();
-    for (class, edges) in [(Class::Multigraph, 1), (Class::Simple, 3)] {
-        let SmallestWorld::World { graph, marker, limit: None } = smallest(&trace, class) else {
-            panic!("{class}")
-        };
-        assert_eq!((graph.edge_count(), marker), (edges, None));
-    }
-}
-
-/// Nothing but a vertex with four doors is known: two loops are a world, and without loops there are four
-/// dead ends.
-#[test]
-fn open_doors_are_joined_as_far_as_the_class_allows() {
-    let percept = Percept { degree: 4, sighting: Sighting::Pointing(Door::BACK) };
-    let trace = Trace::new([TraceEventKind::Percept(percept)]).unwrap();
-    for (class, edges) in [(Class::Multigraph, 2), (Class::Simple, 4), (Class::Planar, 4)] {
-        let SmallestWorld::World { graph, limit: None, .. } = smallest(&trace, class) else {
-            panic!("{class}")
-        };
-        assert_eq!(graph.edge_count(), edges, "{class}");
-    }
-    assert_eq!(smallest(&trace, Class::Corridor), SmallestWorld::NoWorld);
-}
-
-#[test]
-fn a_world_with_a_loop_explains_no_walk_through_a_simple_world() {
+fn the_smallest_world_depends_on_the_class() {
+    use Class::{Corridor, Multigraph, Planar, Simple};
+    let percept = |degree, sighting| TraceEventKind::Percept(Percept { degree, sighting });
+    // A walk round a ring of four, without a marker.
+    let corner = percept(2, Sighting::Nothing);
+    let ring = Trace::new([corner, TraceEventKind::Door(Door(1))].repeat(4)).unwrap();
+    // Nothing but a vertex with four doors is known: two loops are a world, and without loops there are four
+    // dead ends.
+    let crossing = Trace::new([percept(4, Sighting::Pointing(Door::BACK))]).unwrap();
     // A vertex with a loop at its marked dart, and a dead end.
-    let graph = EmbeddedGraph::from_edge_lists(&[
-        ("fork", vec!["loop", "loop", "way"]),
-        ("end", vec!["way"]),
-    ])
-    .unwrap();
-    let trace = walked(&graph, Dart(0), &[Door(0)]);
-    assert!(matches!(smallest(&trace, Class::Multigraph), SmallestWorld::World { .. }));
-    assert_eq!(smallest(&trace, Class::Simple), SmallestWorld::NoWorld);
+    let lists = [("fork", vec!["loop", "loop", "way"]), ("end", vec!["way"])];
+    let looped = walked(&EmbeddedGraph::from_edge_lists(&lists).unwrap(), Dart(0), &[Door(0)]);
+    for (trace, classes) in [
+        (ring, &[(Multigraph, Some(1)), (Simple, Some(3))][..]),
+        (
+            crossing,
+            &[(Multigraph, Some(2)), (Simple, Some(4)), (Planar, Some(4)), (Corridor, None)],
+        ),
+        (looped, &[(Multigraph, Some(2)), (Simple, None)]),
+    ] {
+        for &(class, edges) in classes {
+            let found = match smallest(&trace, class) {
+                SmallestWorld::World { graph, limit: None, .. } => Some(graph.edge_count()),
+                SmallestWorld::NoWorld => None,
+                other => panic!("{class}: {other:?}"),
+            };
+            assert_eq!(found, edges, "{class}");
+        }
+    }
 }
 
 #[test]
@@ -238,12 +203,9 @@ proptest! {
         prop_assume!(most <= 5);
         let mut worlds = HashSet::new();
         for edges in 1..=most {
-            let _ = for_each_place(Class::Multigraph, edges, &mut |graph, marker| {
-                if explains(graph, marker, &trace) {
-                    worlds.insert((code(graph, Dart(0)), marker));
-                }
-                ControlFlow::Continue(())
-            });
+            let found = places(Class::Multigraph, edges);
+            let found = found.filter(|(graph, marker)| explains(graph, *marker, &trace));
+            worlds.extend(found.map(|(graph, marker)| (code(&graph, Dart(0)), marker)));
         }
         // A marker that was not seen is anywhere else, or nowhere.
         let markers: HashSet<_> = worlds.iter().map(|(_, marker)| *marker).collect();

@@ -1,7 +1,5 @@
 //! The walk of a robot that does not know where it is, to the marker.
 
-use std::collections::VecDeque;
-
 use super::ways::Ways;
 use crate::{
     embedded_graph::Dart,
@@ -16,7 +14,6 @@ const MOVES_A_DART: u64 = 20;
 
 /// A walk of a robot that does not know where it is, to the marker.
 pub(super) struct MarkerWalk {
-    /// What is known, and the walk.
     trail: FoldedTrail,
     /// The number of darts of what is known. The darts of the walk are later ones.
     known: usize,
@@ -35,7 +32,6 @@ pub(super) struct MarkerWalk {
 const SUPPOSITIONS: usize = 4;
 
 impl MarkerWalk {
-    /// A walk of a robot that knows this.
     pub(super) fn new(known: FoldedTrail) -> Self {
         Self {
             known: known.dart_count(),
@@ -48,17 +44,14 @@ impl MarkerWalk {
         }
     }
 
-    /// The walk begins with a percept.
     pub(super) fn begin(&mut self, percept: Percept) -> Result<(), TrailError> {
         self.trail.begin_walk(percept)
     }
 
-    /// One move, and the percept behind it.
     pub(super) fn step(&mut self, door: Door, percept: Percept) -> Result<(), TrailError> {
         self.trail.step(door, percept)
     }
 
-    /// The most moves of the walk.
     pub(super) fn most_moves(&self) -> u64 {
         LEAST_SEARCH + MOVES_A_DART * self.known as u64
     }
@@ -113,32 +106,15 @@ impl MarkerWalk {
     fn find_way_to_open(&mut self) -> Option<()> {
         self.ways.clear();
         self.ways.find(&self.trail);
-        let depths = self.depths();
+        let mut from_start = Ways::default();
+        from_start.find_from(&self.trail, self.trail.root_of(Dart(self.known as u32)));
         let open = self.trail.open_darts().filter(|dart| dart.at() >= self.known);
         let near = open.min_by_key(|&dart| {
-            (depths[self.trail.vertex(dart)], self.ways.moves_to(&self.trail, dart))
+            (from_start.moves_to(&self.trail, dart), self.ways.moves_to(&self.trail, dart))
         })?;
         self.ways.darts_to(&self.trail, near, &mut self.way);
         self.way.push(near);
         self.way.reverse();
         Some(())
-    }
-
-    /// The moves from the beginning of the walk to each vertex of it.
-    fn depths(&self) -> Vec<usize> {
-        let start = self.trail.root_of(Dart(self.known as u32));
-        let mut depths = vec![usize::MAX; self.trail.trail_vertex_count()];
-        depths[self.trail.vertex(start)] = 0;
-        let mut queue = VecDeque::from([start]);
-        while let Some(dart) = queue.pop_front() {
-            let depth = depths[self.trail.vertex(dart)] + 1;
-            self.trail.for_each_neighbour(dart, |entry, vertex| {
-                if depths[vertex] == usize::MAX {
-                    depths[vertex] = depth;
-                    queue.push_back(entry);
-                }
-            });
-        }
-        depths
     }
 }

@@ -1,20 +1,14 @@
 //! The folding explorer: mapping with a directional marker, in fewer moves than Algorithm 1.
 //!
 //! It ends when no dart of the [folded trail](crate::folding) is open, and the folded trail is then the
-//! world. So two places are only ever proved to be *one*; that they are two follows at the end. The map
-//! is the *core*: places that are pairwise distinct. A *pending* place is behind an unexplored dart of
+//! world. The map is the *core*: places that are pairwise distinct. A *pending* place is behind an unexplored dart of
 //! the map. A *hypothesis* is that a pending place is entered by a certain unexplored dart. It is alive
 //! as long as the trail with the two poses united does not contradict itself.
 //!
-//! Ties are broken by the order in which darts were numbered: of open darts and pending places equally
-//! near, the one of the lowest dart of the map; of tests of equal cost, the one whose hypothesis is
-//! nearest to the marker, then with the nearest open dart, then with the lowest hypothesis, then with the
-//! open dart that was seen first.
-//!
-//! No [`InjectedFlaw`] is present outside of tests.
+//! Of open darts and pending places equally near, the one of the lowest dart of the map comes first; of tests of equal
+//! cost, the one whose hypothesis is nearest to the marker, then with the nearest open dart, then with the lowest
+//! hypothesis, then with the open dart that was seen first. No [`InjectedFlaw`] is present outside of tests.
 
-mod hypotheses;
-mod hypothesis_test;
 mod marker_walk;
 mod recovery;
 mod settle;
@@ -26,20 +20,20 @@ mod ways;
 use std::cmp::Reverse;
 
 use super::{
-    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, MappingError,
-    Observer, StepPurpose, map_walk::has_walk, tree::BreadthFirstTree,
+    Contradiction, CostOrder, Explorer, ExplorerInfo, InvalidStep, MapDart, MapWalk, Mapped,
+    MappingError, ObservedWorld, StepPurpose, map_walk::has_walk, tree::BreadthFirstTree,
 };
 use crate::{
     clone_in_place::clone_in_place,
     embedded_graph::Dart,
-    folding::{FoldedTrail, MAX_DARTS, TrailError},
+    folding::FoldedTrail,
     injected_flaw::InjectedFlaw,
     marker::{Directional, MarkerKind},
     percept::{Door, Sighting},
-    world::World,
 };
-use hypotheses::Hypotheses;
-pub use recovery::{MappedWorld, RecoveryConfig, Relocate, map_with_recovery};
+pub(crate) use recovery::map_with_recovery;
+pub use recovery::{MappedWorld, RecoveryConfig, Relocate};
+use settle::Hypotheses;
 pub use walks::{ArrivalMeasurement, EarlierWalk};
 use ways::Ways;
 
@@ -48,14 +42,12 @@ use ways::Ways;
 pub enum FoldingStep {
     /// It goes to an unexplored dart of the map that is open, and takes it.
     Explore(Dart),
-    /// It tests a hypothesis.
     Test(HypothesisTest),
 }
 
 /// A walk that confirms a hypothesis if it ends at the marker as expected. Less is made first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct HypothesisTest {
-    /// The moves to the marker.
     pub cost: usize,
     /// The moves from the place of the hypothesis to the marker, through the map.
     distance: u32,
@@ -65,7 +57,6 @@ pub struct HypothesisTest {
     pub hypothesis: Dart,
     /// The open dart of the trail that is taken.
     open: Dart,
-    /// The dart of the map that leads to the pending place.
     pub edge: Dart,
     /// The dart of the map by which the robot then comes in, if the hypothesis is true.
     entry: Dart,
@@ -74,7 +65,6 @@ pub struct HypothesisTest {
 /// A pending place: the far end of an edge of the map that is not known to be a place of the map.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
-    /// The dart of the map that leads there.
     edge: Dart,
     /// The pose behind it, a dart of the trail.
     far: Dart,
@@ -89,17 +79,15 @@ struct Pending {
 pub struct FoldingRun {
     /// Whether it only makes strict tests.
     strict: bool,
-    journey: MapWalk,
+    walk: MapWalk,
     trail: FoldedTrail,
     /// Each dart of the map, as a dart of the trail.
     in_trail: Vec<Dart>,
-    /// The unexplored darts of the map.
     unexplored: Vec<Dart>,
     /// Those of them that are open.
     open: Vec<Dart>,
     pending: Vec<Pending>,
     hypotheses: Hypotheses,
-    /// Shortest ways to the marker through the map.
     to_marker: BreadthFirstTree,
     /// Whether `to_marker` fits the present map.
     to_marker_is_current: bool,
@@ -112,7 +100,7 @@ pub struct FoldingRun {
 
 clone_in_place!(FoldingRun {
     strict,
-    journey,
+    walk,
     trail,
     in_trail,
     unexplored,
@@ -133,7 +121,7 @@ impl FoldingRun {
     pub fn new(bound: usize) -> Self {
         Self {
             strict: false,
-            journey: MapWalk::new(bound),
+            walk: MapWalk::new(bound),
             trail: FoldedTrail::default(),
             in_trail: Vec::new(),
             unexplored: Vec::new(),
@@ -155,7 +143,6 @@ impl FoldingRun {
         Self { strict: true, ..Self::default() }
     }
 
-    /// The folded trail.
     #[must_use]
     pub fn trail(&self) -> &FoldedTrail {
         &self.trail
@@ -167,9 +154,8 @@ impl FoldingRun {
         self.trail.is_complete() && self.map().complete().is_some()
     }
 
-    /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.journey.clear();
+        self.walk.clear();
         self.in_trail.clear();
         self.unexplored.clear();
         self.open.clear();
@@ -181,7 +167,7 @@ impl FoldingRun {
 }
 
 /// The folding explorer. Its default choices break every tie. The map is complete when its trail is
-/// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`] darts.
+/// [complete](FoldedTrail::is_complete); the trail has at most [`MAX_DARTS`](crate::folding::MAX_DARTS) darts.
 impl Explorer for FoldingRun {
     type Marker = MarkerKind;
     type Choice = FoldingStep;
@@ -198,24 +184,19 @@ impl Explorer for FoldingRun {
     }
 
     fn limit_darts(&mut self, max_darts: usize) {
-        self.journey.set_bound(max_darts);
+        self.walk.set_bound(max_darts);
     }
 
-    /// The marker lies at the first place of the map.
-    fn begin<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         self.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
-        self.journey.begin(percept, world, observer)?;
+        self.walk.begin(percept, world)?;
         self.trail.restart(percept)?;
         self.put_in_map(self.trail.pose());
-        self.settle(world, observer)
+        self.settle(world)
     }
 
     fn choose(&mut self) -> Result<Option<FoldingStep>, InvalidStep> {
@@ -225,44 +206,32 @@ impl Explorer for FoldingRun {
         }
     }
 
-    /// Every way to break its ties.
     fn choices(&mut self) -> Result<Vec<FoldingStep>, InvalidStep> {
         Ok(self.open_steps())
     }
 
     /// Goes through the trail to the open dart that the step takes.
-    fn approach<W: World>(
-        &mut self,
-        step: FoldingStep,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn approach<W: ObservedWorld>(&mut self, step: FoldingStep, world: &mut W) -> Mapped<W> {
         let open = match step {
             FoldingStep::Explore(edge) => self.in_trail[edge.at()],
             FoldingStep::Test(test) => test.open,
         };
-        self.go_to(open, world, observer)
+        self.go_to(open, world)
     }
 
-    /// Makes a step, and draws all conclusions.
-    fn step<W: World>(
-        &mut self,
-        step: FoldingStep,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn step<W: ObservedWorld>(&mut self, step: FoldingStep, world: &mut W) -> Mapped<W> {
         match step {
-            FoldingStep::Explore(edge) => self.explore(edge, world, observer)?,
+            FoldingStep::Explore(edge) => self.explore(edge, world)?,
             FoldingStep::Test(test) if InjectedFlaw::NotTested.is_present() => {
                 self.believe(test)?;
             }
-            FoldingStep::Test(test) => self.test(test, world, observer)?,
+            FoldingStep::Test(test) => self.test(test, world)?,
         }
-        self.settle(world, observer)
+        self.settle(world)
     }
 
     fn map_walk(&self) -> Option<&MapWalk> {
-        Some(&self.journey)
+        Some(&self.walk)
     }
 
     fn purpose(&self, step: Option<FoldingStep>) -> StepPurpose {
@@ -281,17 +250,6 @@ impl Explorer for FoldingRun {
         let (m, n) = (edges as u64, vertices as u64);
         let nm = n.saturating_mul(m);
         nm.saturating_mul(m).saturating_add(nm).saturating_mul(4).saturating_add(400)
-    }
-}
-
-impl<E> From<TrailError> for MappingError<E> {
-    fn from(error: TrailError) -> Self {
-        match error {
-            TrailError::Contradiction(reason) => {
-                Contradiction::Trail { reason, expected: None }.into()
-            }
-            TrailError::TooManyDarts => Self::Bound { bound: MAX_DARTS },
-        }
     }
 }
 

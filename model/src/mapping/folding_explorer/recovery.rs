@@ -2,19 +2,10 @@
 //! the robot got lost, and from the walks of an earlier run.
 //!
 //! All percepts since the start are kept as walks that begin or end at the marker. The robot begins another
-//! walk where it stands, and goes on until it sees the marker. On the way it tries the places that it
-//! knows: those that agree with the walk, the nearest to the marker first. Then it folds the walks again. If
-//! they contradict each other, it leaves out as few as it can: all in the order from the newest to the oldest,
-//! but for one suspect, which comes last; the suspect is the walk without which most others agree. With what is
-//! left, the folding explorer goes on.
-//!
-//! If the map becomes too large, it starts over without earlier walks.
-//!
-//! If the robot measures the lengths of hallways, they are compared after the audit. If they contradict each other,
-//! it was moved, perhaps to a place that looks the same, and looks for the marker once more.
-//!
-//! This makes no map that is not right: a map is complete when the folded trail of the walks that are left
-//! is, and an [audit] does not depend on any earlier percept.
+//! walk where it stands, and goes on until it sees the marker. Then it folds the walks again. If they contradict each
+//! other, it leaves out as few as it can. With what is left, the folding explorer goes on. If the map becomes too large,
+//! it starts over without earlier walks. This makes no map that is not right: a map is complete when the folded trail
+//! of the walks that are left is, and an [audit](crate::mapping::audit) does not depend on any earlier percept.
 
 use std::mem;
 
@@ -27,9 +18,9 @@ use crate::{
     embedded_graph::Dart,
     folding::FoldedTrail,
     mapping::{
-        Contradiction, Explorer, FACING, InvalidStep, MapWalk, MappingError, MappingEvent,
-        Observer, SafeguardEvent,
-        audit::{AuditError, AuditMove, audit, try_doors},
+        Contradiction, Explorer, FACING, InvalidStep, MapWalk, Mapped, MappingError, MappingEvent,
+        ObservedWorld, SafeguardEvent,
+        audit::{AuditMove, audit_times, try_doors},
         explore,
     },
     marker::Marker,
@@ -65,9 +56,7 @@ impl<M: Marker> Relocate for GraphWorld<'_, M> {}
 /// How much a robot does for a right map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecoveryConfig {
-    /// The number of audits of a complete map.
     pub audits: u32,
-    /// The robot gives up after this many recoveries.
     pub most_recoveries: u32,
     /// Whether it tries the doors that are blocked once more at the end.
     pub retries_blocked: bool,
@@ -85,7 +74,6 @@ impl Default for RecoveryConfig {
 /// A map that is complete, and what it took.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MappedWorld {
-    /// The robot's pose in the map.
     pub pose: Dart,
     /// All moves, with those of recoveries and audits. What a robot that got lost drives until it comes to a
     /// junction is no move.
@@ -94,7 +82,6 @@ pub struct MappedWorld {
     pub audit_moves: u64,
     /// The number of percepts in each audit of this map. All agreed with it.
     pub audited_percepts: Vec<u64>,
-    /// The number of recoveries.
     pub recoveries: u32,
     /// The darts of the map whose hallways are blocked: they lead to dead ends that are obstacles. The
     /// last audit has seen them.
@@ -109,20 +96,6 @@ struct Remembering<'w, W> {
     /// What was measured on the way to each of its percepts.
     measured: Vec<ArrivalMeasurement>,
     moves: u64,
-}
-
-impl<W> Remembering<'_, W> {
-    /// Ends the walk, and returns it.
-    fn take_walk(&mut self) -> EarlierWalk {
-        self.measured.clear();
-        mem::take(&mut self.walk)
-    }
-
-    /// Begins a walk where the robot stands. It does not matter how it has come there.
-    fn begin_walk(&mut self, seen: Percept) -> EarlierWalk {
-        self.measured = vec![ArrivalMeasurement::default()];
-        mem::replace(&mut self.walk, EarlierWalk::new(seen, [], false))
-    }
 }
 
 impl<W: Relocate> World for Remembering<'_, W> {
@@ -144,65 +117,57 @@ impl<W: Relocate> World for Remembering<'_, W> {
     }
 }
 
-/// An observer of the world behind the memory.
-struct Through<'o, O>(&'o mut O);
-
-impl<W, O: Observer<W>> Observer<Remembering<'_, W>> for Through<'_, O> {
-    fn event(&mut self, world: &mut Remembering<'_, W>, journey: &MapWalk, event: MappingEvent) {
-        self.0.event(world.world, journey, event);
+impl<W: Relocate + ObservedWorld> ObservedWorld for Remembering<'_, W> {
+    fn event(&mut self, walk: &MapWalk, event: MappingEvent) {
+        self.world.event(walk, event);
     }
 }
 
 impl FoldingRun {
     /// Goes on with a trail of earlier walks, with the robot where the marker lies. `seen` is its percept.
-    fn resume<W: World>(
+    fn resume<W: ObservedWorld>(
         &mut self,
         (trail, event): (FoldedTrail, SafeguardEvent),
         seen: Percept,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
-        let moves = self.journey.moves();
+    ) -> Mapped<W> {
+        let moves = self.walk.moves();
         self.clear();
-        self.journey.set_moves(moves);
+        self.walk.set_moves(moves);
         self.trail = trail;
-        let Some(marker) = self.trail.marker() else { return Err(InvalidStep::NoPlan.into()) };
+        let marker = self.trail.marker().ok_or(InvalidStep::NoPlan)?;
         let Percept { degree, sighting } = seen;
-        let start = Percept { degree, sighting: Sighting::Pointing(Door::BACK) };
-        self.journey.begin(start, world, &mut ())?;
+        self.walk.check_bound(degree)?;
+        self.walk.map.add_vertex(degree);
         if let Sighting::Pointing(door) = sighting {
             self.trail.stand_at(self.trail.behind(marker, door.inverse(degree)));
         }
         self.put_in_map(marker);
         self.find_robot();
-        observer.event(world, &self.journey, MappingEvent::Safeguard(event));
-        self.settle(world, observer)?;
+        world.event(&self.walk, MappingEvent::Safeguard(event));
+        self.settle(world)?;
         while let Some(choice) = self.choose()? {
-            self.step(choice, world, observer)?;
+            self.step(choice, world)?;
         }
         Ok(())
     }
 
-    /// Walks until the marker is seen, and returns the percept there.
-    fn find_marker<W: World>(
+    fn find_marker<W: ObservedWorld>(
         &mut self,
         known: FoldedTrail,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Percept, MappingError<W::Error>> {
+    ) -> Mapped<W, Percept> {
         let mut percept = world.percept().map_err(MappingError::World)?;
         let mut search = MarkerWalk::new(known);
         let mut step = search.begin(percept);
-        let begun = self.journey.moves();
+        let begun = self.walk.moves();
         while !sees_marker(&percept) {
             step?;
-            if self.journey.moves() - begun >= search.most_moves() {
+            if self.walk.moves() - begun >= search.most_moves() {
                 return Err(Contradiction::NoMarker.into());
             }
-            let Some(door) = search.next_door() else {
-                return Err(Contradiction::NoMarker.into());
-            };
-            percept = self.journey.go(door, world, observer)?;
+            let door = search.next_door().ok_or(Contradiction::NoMarker)?;
+            percept = self.walk.go(door, world)?;
             step = search.step(door, percept);
         }
         Ok(percept)
@@ -213,15 +178,13 @@ impl FoldingRun {
 /// robot stands at the marked vertex at its start, with its back to the facing door. With them it may stand anywhere:
 /// it looks for the marker, and goes on with what those walks have shown. Afterwards `exploration` holds the map.
 ///
-/// # Errors
-/// Returns an error if the world cannot go on, at the bound, or after too many recoveries.
-pub fn map_with_recovery<W: Relocate>(
+/// It is an error if the world cannot go on, at the bound, or after too many recoveries.
+pub(crate) fn map_with_recovery<W: Relocate + ObservedWorld>(
     world: &mut W,
     exploration: &mut FoldingRun,
     config: RecoveryConfig,
     earlier: &[EarlierWalk],
-    observer: &mut impl Observer<W>,
-) -> Result<MappedWorld, MappingError<W::Error>> {
+) -> Mapped<W, MappedWorld> {
     let mut walks = EarlierWalks::default();
     for walk in earlier {
         walks.add(walk.clone());
@@ -229,7 +192,6 @@ pub fn map_with_recovery<W: Relocate>(
     let mut recovery = Recovery {
         world: Remembering { world, walk: EarlierWalk::default(), measured: Vec::new(), moves: 0 },
         exploration,
-        observer: Through(observer),
         config,
         walks,
         has_failed: false,
@@ -238,66 +200,58 @@ pub fn map_with_recovery<W: Relocate>(
         audit_moves: 0,
         audited_percepts: Vec::new(),
     };
-    let begun = if earlier.is_empty() { recovery.begin() } else { recovery.go_on() };
-    recovery.finish(begun)
+    let mut ended = if earlier.is_empty() {
+        explore(recovery.exploration, &mut recovery.world)
+    } else {
+        recovery.go_on()
+    };
+    loop {
+        match ended.and_then(|()| recovery.check_map()) {
+            Ok((pose, blocked)) => {
+                let Recovery { world, audit_moves, audited_percepts, recoveries, .. } = recovery;
+                let moves = world.moves;
+                return Ok(MappedWorld {
+                    pose,
+                    moves,
+                    audit_moves,
+                    audited_percepts,
+                    recoveries,
+                    blocked,
+                });
+            }
+            Err(error) if recovery.recoveries == config.most_recoveries => return Err(error),
+            Err(error) => ended = recovery.recover(error),
+        }
+    }
 }
 
-/// A run that recovers.
-struct Recovery<'w, 'e, W, O> {
+struct Recovery<'w, 'e, W> {
     world: Remembering<'w, W>,
     exploration: &'e mut FoldingRun,
-    observer: Through<'w, O>,
     config: RecoveryConfig,
     walks: EarlierWalks,
     /// Whether the last search, for a junction or for the marker, was without success.
     has_failed: bool,
-    /// Whether the blocked doors were tried again.
     has_retried: bool,
     recoveries: u32,
     audit_moves: u64,
     audited_percepts: Vec<u64>,
 }
 
-impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
-    fn begin(&mut self) -> Result<(), MappingError<W::Error>> {
-        explore(self.exploration, &mut self.world, &mut self.observer)
-    }
-
-    /// Audits the map, and recovers as often as it must.
-    fn finish(
-        mut self,
-        begun: Result<(), MappingError<W::Error>>,
-    ) -> Result<MappedWorld, MappingError<W::Error>> {
-        let mut ended = begun;
-        loop {
-            match ended.and_then(|()| self.check_map()) {
-                Ok((pose, blocked)) => {
-                    let Self { world, audit_moves, audited_percepts, recoveries, .. } = self;
-                    let moves = world.moves;
-                    return Ok(MappedWorld {
-                        pose,
-                        moves,
-                        audit_moves,
-                        audited_percepts,
-                        recoveries,
-                        blocked,
-                    });
-                }
-                Err(error) if self.recoveries == self.config.most_recoveries => return Err(error),
-                Err(error) => ended = self.recover(error),
-            }
-        }
-    }
-
+impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
     fn report(&mut self, event: SafeguardEvent) {
-        let event = MappingEvent::Safeguard(event);
-        self.observer.event(&mut self.world, &self.exploration.journey, event);
+        self.world.event(&self.exploration.walk, MappingEvent::Safeguard(event));
+    }
+
+    fn keep_walk(&mut self) {
+        self.world.measured.clear();
+        self.walks.add(mem::take(&mut self.world.walk));
     }
 
     /// Leaves the place of a contradiction, looks for the marker and goes on with the walks that agree.
-    fn recover(&mut self, error: MappingError<W::Error>) -> Result<(), MappingError<W::Error>> {
+    fn recover(&mut self, error: MappingError<W::Error>) -> Mapped<W> {
         self.recoveries += 1;
-        self.walks.add(self.world.take_walk());
+        self.keep_walk();
         match error {
             MappingError::Contradiction(contradiction) => {
                 self.report(SafeguardEvent::Contradicted(contradiction));
@@ -319,7 +273,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
     }
 
     /// The percept that contradicts the others may be the false one, so the next walk begins at the next place.
-    fn leave_place(&mut self) -> Result<(), MappingError<W::Error>> {
+    fn leave_place(&mut self) -> Mapped<W> {
         match self.world.world.traverse(Door::BACK) {
             Ok(()) => self.world.moves += 1,
             Err(error) => self.relocate(error)?,
@@ -327,7 +281,7 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         Ok(())
     }
 
-    fn relocate(&mut self, error: W::Error) -> Result<(), MappingError<W::Error>> {
+    fn relocate(&mut self, error: W::Error) -> Mapped<W> {
         let relocated = self.world.world.relocate(error);
         relocated.map_err(|error| self.failed(MappingError::World(error)))
     }
@@ -341,29 +295,30 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         error
     }
 
-    /// Looks for the marker, and goes on with the walks that agree.
-    fn go_on(&mut self) -> Result<(), MappingError<W::Error>> {
+    /// Looks for the marker, and goes on with the walks that agree. The next walk begins at the marker.
+    fn go_on(&mut self) -> Mapped<W> {
         let (known, _) = self.walks.fold_most(0);
-        let found = self.exploration.find_marker(known, &mut self.world, &mut self.observer);
-        let seen = match found {
+        let seen = match self.exploration.find_marker(known, &mut self.world) {
             Err(error @ MappingError::Contradiction(Contradiction::NoMarker)) => {
                 return Err(self.failed(error));
             }
             found => found?,
         };
         self.has_failed = false;
-        self.walks.add(self.world.begin_walk(seen));
+        self.keep_walk();
+        self.world.walk = EarlierWalk::new(seen, [], false);
+        self.world.measured.push(ArrivalMeasurement::default());
         let (trail, kept) = match self.walks.fold_most(1) {
             folded if folded.0.marker().is_some() => folded,
             _ => (FoldedTrail::new(seen)?, 0),
         };
         let event = SafeguardEvent::MarkerFound { kept, walks: self.walks.len() };
-        self.exploration.resume((trail, event), seen, &mut self.world, &mut self.observer)
+        self.exploration.resume((trail, event), seen, &mut self.world)
     }
 
     /// Audits a complete map, and tries its blocked doors. Returns the robot's pose in it, and the darts of the
     /// blocked doors.
-    fn check_map(&mut self) -> Result<(Dart, Vec<Dart>), MappingError<W::Error>> {
+    fn check_map(&mut self) -> Mapped<W, (Dart, Vec<Dart>)> {
         let before = self.world.moves;
         let audited = self.audit_map();
         self.audit_moves += self.world.moves - before;
@@ -374,25 +329,21 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         }
         self.has_retried = true;
         self.report(SafeguardEvent::BlockedRetried { doors: blocked.len() });
-        let Some(map) = self.exploration.map().complete() else {
-            return Err(InvalidStep::NoPlan.into());
-        };
-        match try_doors(&mut self.world, map, FACING, pose, &blocked) {
+        let map = self.exploration.map().complete().ok_or(InvalidStep::NoPlan)?;
+        match try_doors(&mut self.world, map, pose, &blocked) {
             Ok(pose) => Ok((pose, blocked)),
-            Err(error) => {
-                if matches!(error, AuditError::Mismatch { .. }) && !self.world.world.is_blocked() {
-                    // A hallway is free now. What was seen while it was blocked is of another world.
-                    self.walks.add(self.world.take_walk());
-                    self.walks.forget_blocked();
-                    return Err(Contradiction::Unblocked.into());
-                }
-                Err(error.into())
+            Err(MappingError::Contradiction(_)) if !self.world.world.is_blocked() => {
+                // A hallway is free now. What was seen while it was blocked is of another world.
+                self.keep_walk();
+                self.walks.forget_blocked();
+                Err(Contradiction::Unblocked.into())
             }
+            Err(error) => Err(error),
         }
     }
 
     /// Compares what was measured since the robot last began a walk. All percepts of it agree with the map.
-    fn compare_measurements(&mut self) -> Result<(), MappingError<W::Error>> {
+    fn compare_measurements(&mut self) -> Mapped<W> {
         let (Some(noise), Some(map)) = (self.config.noise, self.exploration.map().complete())
         else {
             return Ok(());
@@ -402,27 +353,23 @@ impl<W: Relocate, O: Observer<W>> Recovery<'_, '_, W, O> {
         if check.contradictions.is_empty() { Ok(()) } else { Err(Contradiction::Moved.into()) }
     }
 
-    fn audit_map(&mut self) -> Result<(Dart, Vec<Dart>), MappingError<W::Error>> {
-        let mut pose = self.exploration.robot();
+    fn audit_map(&mut self) -> Mapped<W, (Dart, Vec<Dart>)> {
         let mut blocked = Vec::new();
-        self.audited_percepts.clear();
-        for _ in 0..self.config.audits {
-            self.report(SafeguardEvent::AuditBegun);
-            let Some(map) = self.exploration.map().complete() else {
-                return Err(InvalidStep::NoPlan.into());
-            };
-            blocked.clear();
-            let note = |world: &mut Remembering<W>, made: AuditMove| {
-                let dart = map.opposite(made.pose);
-                if world.world.is_blocked() && !blocked.contains(&dart) {
-                    blocked.push(dart);
-                }
-            };
-            let audited = audit(&mut self.world, map, FACING, pose, note)?;
-            pose = audited.pose;
-            self.audited_percepts.push(audited.percepts());
-            self.report(SafeguardEvent::AuditPassed { moves: audited.moves });
-        }
+        let walk = &self.exploration.walk;
+        let map = walk.map().complete().ok_or(InvalidStep::NoPlan)?;
+        let note = |world: &mut Remembering<W>, made: AuditMove| {
+            // The last audit counts.
+            if made.number == 1 {
+                blocked.clear();
+            }
+            let dart = map.opposite(made.pose);
+            if world.world.is_blocked() && !blocked.contains(&dart) {
+                blocked.push(dart);
+            }
+        };
+        let pose;
+        (pose, self.audited_percepts) =
+            audit_times(self.config.audits, &mut self.world, walk, note)?;
         blocked.sort_unstable();
         Ok((pose, blocked))
     }

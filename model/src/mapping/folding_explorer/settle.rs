@@ -1,36 +1,88 @@
-//! Conclusions from the trail: loops of the map are closed, and places join it.
+//! Conclusions from the trail: hypotheses are refuted, loops of the map are closed, and places join it.
 
 use std::mem;
 
-use super::{FoldingRun, Pending, hypotheses::Witness};
+use super::{FoldingRun, Pending};
 use crate::{
+    clone_in_place::clone_in_place,
     embedded_graph::Dart,
     injected_flaw::InjectedFlaw,
-    mapping::{MappingError, MappingEvent, Observer},
+    mapping::{Mapped, MappingEvent, ObservedWorld},
     percept::Door,
-    world::World,
 };
+
+/// What is known about the hypotheses that the place behind one dart of the map is entered by another.
+#[derive(Debug, Default)]
+pub(super) struct Hypotheses {
+    /// One bit for each pair of darts of the map. A refuted hypothesis stays refuted, because a trail
+    /// only grows.
+    refuted: Vec<u64>,
+    /// For each dart of the map, a hypothesis about its far end, and the number of moves after which it was alive.
+    witness: Vec<Option<Witness>>,
+}
+
+clone_in_place!(Hypotheses { refuted, witness });
+
+#[derive(Clone, Copy, Debug)]
+struct Witness {
+    hypothesis: Dart,
+    moves: usize,
+}
+
+/// A number for each pair, so that those of the first `n` darts are the first `n^2`.
+fn index(edge: Dart, hypothesis: Dart) -> usize {
+    let (edge, hypothesis) = (edge.at(), hypothesis.at());
+    if edge < hypothesis { hypothesis * hypothesis + edge } else { edge * edge + edge + hypothesis }
+}
+
+impl Hypotheses {
+    pub(super) fn clear(&mut self) {
+        self.refuted.clear();
+        self.witness.clear();
+    }
+
+    #[inline]
+    pub(super) fn is_refuted(&self, edge: Dart, hypothesis: Dart) -> bool {
+        let index = index(edge, hypothesis);
+        self.refuted.get(index / 64).is_some_and(|bits| bits >> (index % 64) & 1 == 1)
+    }
+
+    pub(super) fn refute(&mut self, edge: Dart, hypothesis: Dart) {
+        let index = index(edge, hypothesis);
+        if self.refuted.len() <= index / 64 {
+            self.refuted.resize(index / 64 + 1, 0);
+        }
+        self.refuted[index / 64] |= 1 << (index % 64);
+    }
+
+    fn witness(&self, edge: Dart) -> Option<Witness> {
+        *self.witness.get(edge.at())?
+    }
+
+    fn set_witness(&mut self, edge: Dart, witness: Option<Witness>) {
+        if self.witness.len() <= edge.at() {
+            self.witness.resize(edge.at() + 1, None);
+        }
+        self.witness[edge.at()] = witness;
+    }
+}
 
 impl FoldingRun {
     /// Joins the ends of edges that are both known, and puts pending places without a living hypothesis
     /// into the map, until nothing changes.
-    pub(super) fn settle<W: World>(
-        &mut self,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    pub(super) fn settle<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         loop {
-            self.close_loops(world, observer);
+            self.close_loops(world);
             let pending = mem::take(&mut self.pending);
             let new = pending.iter().find(|&&pending| self.is_new(pending)).copied();
             self.pending = pending;
             let Some(new) = new else { return Ok(()) };
-            self.add_place(new, world, observer)?;
+            self.add_place(new, world)?;
         }
     }
 
     /// Finds the edges of the map whose far ends are now known, and the pending places.
-    fn close_loops<W: World>(&mut self, world: &mut W, observer: &mut impl Observer<W>) {
+    fn close_loops(&mut self, world: &mut impl ObservedWorld) {
         let mut unexplored = mem::take(&mut self.unexplored);
         self.open.clear();
         self.pending.clear();
@@ -46,30 +98,24 @@ impl FoldingRun {
                 self.pending.push(Pending { edge, far, is_leaf: self.trail.is_leaf(far) });
                 return true;
             };
-            self.journey.map.join(edge, other);
+            self.walk.map.join(edge, other);
             self.to_marker_is_current = false;
-            observer.event(world, &self.journey, MappingEvent::LoopClosed { edge, other });
+            world.event(&self.walk, MappingEvent::LoopClosed { edge, other });
             false
         });
         self.unexplored = unexplored;
     }
 
-    /// A pending place is a new place of the map.
-    fn add_place<W: World>(
-        &mut self,
-        pending: Pending,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    fn add_place<W: ObservedWorld>(&mut self, pending: Pending, world: &mut W) -> Mapped<W> {
         let Pending { edge, far, .. } = pending;
         let degree = self.trail.degree(far);
-        self.journey.check_bound(degree)?;
-        let vertex = self.journey.map.add_vertex(degree);
-        self.journey.map.join(edge, self.journey.map.first_dart(vertex));
+        self.walk.check_bound(degree)?;
+        let vertex = self.walk.map.add_vertex(degree);
+        self.walk.map.join(edge, self.walk.map.first_dart(vertex));
         self.to_marker_is_current = false;
         self.put_in_map(far);
         self.find_robot();
-        observer.event(world, &self.journey, MappingEvent::VertexAdded { edge, vertex });
+        world.event(&self.walk, MappingEvent::VertexAdded { edge, vertex });
         Ok(())
     }
 
@@ -83,10 +129,9 @@ impl FoldingRun {
         }
     }
 
-    /// The robot's pose in the map, if it is known now.
     pub(super) fn find_robot(&mut self) {
         if let Some(robot) = self.trail.number(self.trail.pose()) {
-            self.journey.robot = Dart(robot);
+            self.walk.robot = Dart(robot);
         }
     }
 
@@ -95,7 +140,6 @@ impl FoldingRun {
         InjectedFlaw::PlaceAddedTooEarly.is_present() || !self.has_hypothesis(pending)
     }
 
-    /// Whether a hypothesis about a pending place is alive.
     fn has_hypothesis(&mut self, pending: Pending) -> bool {
         let moves = self.trail.moves();
         let witness = self.hypotheses.witness(pending.edge);
@@ -115,7 +159,6 @@ impl FoldingRun {
         alive.is_some()
     }
 
-    /// Whether a pending place may be entered by an unexplored dart of the map.
     pub(super) fn is_alive(&mut self, pending: Pending, hypothesis: Dart) -> bool {
         if self.hypotheses.is_refuted(pending.edge, hypothesis) {
             return false;

@@ -1,60 +1,38 @@
 //! The judge finds each flaw of the folding explorer.
 
-use std::{
-    ops::ControlFlow,
-    panic::{AssertUnwindSafe, catch_unwind},
-};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::*;
 use crate::{
-    check::judge,
-    embedded_graph::Dart,
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    any_graph::{Class, starts},
+    check::{
+        judge,
+        smallest_failure::{Failure, new},
+    },
     injected_flaw::{InjectedFlaw, inject},
     isomorphism::{Candidate, code},
     mapping::{Flaw, explore},
     world::GraphWorld,
 };
 
-/// The edges of the first start on which the explorer fails, its code, and what the judge reports.
-type Failure = (usize, Vec<u32>, String);
-
 /// The first start of the class `multigraph` with up to so many edges on which the explorer fails.
 fn first_failure(most: usize) -> Option<Failure> {
     let mut explorer = FoldingRun::default();
     let mut candidate = Candidate::default();
-    (1..=most).find_map(|edges| {
-        let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
-        let mut failure = None;
-        let mut visit = |found: EnumeratedGraph| {
-            // With a flaw, what the code relies on may be false. Overflows panic in tests.
-            let judged = catch_unwind(AssertUnwindSafe(|| {
-                let graph = found.graph;
-                let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
-                // The map may have more darts than the world.
-                let mut world = GraphWorld::new(graph, Dart(0)).with_bound(bound);
-                let ended = explore(&mut explorer, &mut world, &mut ()).map_err(Flaw::from);
-                let judged = ended
-                    .and_then(|()| judge(&explorer, Dart(0), &world, &mut candidate).map(|_| ()));
-                (world.moves(), judged)
-            }));
-            let report = match judged {
-                Ok((_, Ok(()))) => return ControlFlow::Continue(()),
-                Ok((moves, Err(flaw))) => format!("after {moves} moves: {flaw}"),
-                Err(_) => "it panics".to_owned(),
-            };
-            let words = code(found.graph, Dart(0)).words().to_vec();
-            failure = Some((edges, words, report));
-            ControlFlow::Break(())
-        };
-        let _: ControlFlow<()> = starts.for_each(&mut visit);
-        failure
+    (1..=most).flat_map(|edges| starts(Class::Multigraph, edges)).find_map(|graph| {
+        // With a flaw, what the code relies on may be false. Overflows panic in tests.
+        let judged = catch_unwind(AssertUnwindSafe(|| {
+            let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+            // The map may have more darts than the world.
+            let mut world = GraphWorld::new(&graph, Dart(0)).with_bound(bound);
+            let ended = explore(&mut explorer, &mut world).map_err(Flaw::from);
+            let judged =
+                ended.and_then(|()| judge(&explorer, Dart(0), &world, &mut candidate).map(|_| ()));
+            judged.map_err(|flaw| format!("after {} moves: {flaw}", world.moves()))
+        }));
+        let report = judged.unwrap_or_else(|_| Err("it panics".to_owned())).err()?;
+        Some((graph.edge_count(), code(&graph, Dart(0)).words().to_vec(), report))
     })
-}
-
-/// The word of a code for a new vertex.
-fn new(degree: u32) -> u32 {
-    u32::MAX - degree
 }
 
 #[test]

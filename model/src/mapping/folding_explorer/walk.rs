@@ -7,48 +7,40 @@ use crate::{
     embedded_graph::Dart,
     folding::TrailError,
     injected_flaw::InjectedFlaw,
-    mapping::{Contradiction, FoldingEvent, MappingError, MappingEvent, Observer},
+    mapping::{Contradiction, FoldingEvent, Mapped, MappingError, MappingEvent, ObservedWorld},
     percept::{Door, Percept},
-    world::World,
 };
 
 impl FoldingRun {
-    /// Goes to an open dart of the map and takes it.
-    pub(super) fn explore<W: World>(
-        &mut self,
-        edge: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    pub(super) fn explore<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
         let before = self.trail.vertex_count() + 1;
-        let percept = self.take_open(self.in_trail[edge.at()], world, observer)?;
-        self.report(FoldingEvent::Explored { edge, percept }, world, observer);
-        self.report_folding(before, world, observer);
+        let percept = self.take_open(self.in_trail[edge.at()], world)?;
+        self.report(FoldingEvent::Explored { edge, percept }, world);
+        self.report_folding(before, world);
         Ok(())
     }
 
     /// Walks to the marker as if a hypothesis were true, until it is confirmed or refuted.
-    pub(super) fn test<W: World>(
+    pub(super) fn test<W: ObservedWorld>(
         &mut self,
         test: HypothesisTest,
         world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    ) -> Mapped<W> {
         let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
-        self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world, observer);
+        self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world);
         let mut before = self.trail.vertex_count() + 1;
-        let mut perceived = self.take_open(open, world, observer)?;
+        let mut perceived = self.take_open(open, world)?;
         let mut believed = entry;
         loop {
             let expected = self.map().expected(believed);
             if perceived != expected {
                 self.hypotheses.refute(edge, hypothesis);
                 let event = FoldingEvent::Refuted { edge, hypothesis, expected, perceived };
-                self.report(event, world, observer);
+                self.report(event, world);
                 break;
             }
             let Some((door, next)) = self.to_marker.toward_root(self.map(), believed) else {
-                self.report(FoldingEvent::Confirmed { edge, hypothesis }, world, observer);
+                self.report(FoldingEvent::Confirmed { edge, hypothesis }, world);
                 if InjectedFlaw::ProofByOtherWalk.is_present() {
                     self.believe(test)?;
                 }
@@ -56,10 +48,10 @@ impl FoldingRun {
             };
             let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
             before = self.trail.vertex_count() + usize::from(open);
-            perceived = self.take(door, world, observer)?;
+            perceived = self.take(door, world)?;
             believed = next;
         }
-        self.report_folding(before, world, observer);
+        self.report_folding(before, world);
         Ok(())
     }
 
@@ -75,45 +67,27 @@ impl FoldingRun {
         Ok(())
     }
 
-    /// Goes to an open dart of the trail, takes it, and returns the percept behind it.
-    fn take_open<W: World>(
-        &mut self,
-        open: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Percept, MappingError<W::Error>> {
-        self.go_to(open, world, observer)?;
-        self.take(self.trail.door(self.trail.pose(), open), world, observer)
+    fn take_open<W: ObservedWorld>(&mut self, open: Dart, world: &mut W) -> Mapped<W, Percept> {
+        self.go_to(open, world)?;
+        self.take(self.trail.door(self.trail.pose(), open), world)
     }
 
-    /// Goes through the trail to the vertex of a dart.
-    pub(super) fn go_to<W: World>(
-        &mut self,
-        dart: Dart,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<(), MappingError<W::Error>> {
+    pub(super) fn go_to<W: ObservedWorld>(&mut self, dart: Dart, world: &mut W) -> Mapped<W> {
         if self.trail.vertex(dart) != self.trail.vertex(self.trail.pose()) {
             self.from_robot.find(&self.trail);
             let mut way = mem::take(&mut self.way);
             self.from_robot.darts_to(&self.trail, dart, &mut way);
             for &dart in &way {
                 let door = self.trail.door(self.trail.pose(), dart);
-                self.take(door, world, observer)?;
+                self.take(door, world)?;
             }
             self.way = way;
         }
         Ok(())
     }
 
-    /// Makes one move, and returns the percept after it.
-    fn take<W: World>(
-        &mut self,
-        door: Door,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) -> Result<Percept, MappingError<W::Error>> {
-        let percept = self.journey.go(door, world, observer)?;
+    fn take<W: ObservedWorld>(&mut self, door: Door, world: &mut W) -> Mapped<W, Percept> {
+        let percept = self.walk.go(door, world)?;
         if let Err(error) = self.trail.step(door, percept) {
             return Err(match error {
                 TrailError::Contradiction(reason) => {
@@ -127,24 +101,14 @@ impl FoldingRun {
     }
 
     /// Reports that the trail has fewer vertices, if it has: the robot has seen the marker.
-    fn report_folding<W: World>(
-        &self,
-        before: usize,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) {
+    fn report_folding(&self, before: usize, world: &mut impl ObservedWorld) {
         let after = self.trail.vertex_count();
         if after < before {
-            self.report(FoldingEvent::Folded { before, after }, world, observer);
+            self.report(FoldingEvent::Folded { before, after }, world);
         }
     }
 
-    fn report<W: World>(
-        &self,
-        event: FoldingEvent,
-        world: &mut W,
-        observer: &mut impl Observer<W>,
-    ) {
-        observer.event(world, &self.journey, MappingEvent::Folding(event));
+    fn report(&self, event: FoldingEvent, world: &mut impl ObservedWorld) {
+        world.event(&self.walk, MappingEvent::Folding(event));
     }
 }

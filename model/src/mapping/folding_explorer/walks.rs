@@ -10,7 +10,6 @@ use crate::{
     percept::{Door, Percept, Sighting},
 };
 
-/// A walk: percepts, and the doors between them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EarlierWalk {
     percepts: Vec<Percept>,
@@ -22,7 +21,6 @@ pub struct EarlierWalk {
 /// What a robot measures besides its percepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArrivalMeasurement {
-    /// The hallway by which it came.
     pub hallway: Option<HallwayMeasurement>,
     /// The shape of the junction, if its doors are at right angles and the hallways are straight.
     pub shape: Option<JunctionShape>,
@@ -46,7 +44,6 @@ impl EarlierWalk {
         Self { percepts, doors, is_blocked }
     }
 
-    /// Whether nothing was perceived.
     pub(super) fn is_empty(&self) -> bool {
         self.percepts.is_empty()
     }
@@ -61,7 +58,6 @@ impl EarlierWalk {
         is_new
     }
 
-    /// The robot takes a door.
     pub(super) fn leave(&mut self, door: Door) {
         if !self.is_empty() {
             self.doors.push(door);
@@ -121,7 +117,6 @@ impl EarlierWalk {
         measured.iter().enumerate().map(visit).collect()
     }
 
-    /// Adds the walk to a trail, as another visit of the same world.
     fn fold_into(&self, trail: &mut FoldedTrail) -> Result<(), TrailError> {
         let mut percepts = self.percepts.iter();
         let Some(&first) = percepts.next() else { return Ok(()) };
@@ -138,7 +133,6 @@ impl EarlierWalk {
 pub(super) struct EarlierWalks(Vec<EarlierWalk>);
 
 impl EarlierWalks {
-    /// Adds the parts of a walk.
     pub(super) fn add(&mut self, walk: EarlierWalk) {
         self.0.extend(walk.split_at_marker());
     }
@@ -151,7 +145,6 @@ impl EarlierWalks {
         self.0.clear();
     }
 
-    /// Forgets the walks on which the robot turned round at an obstacle.
     pub(super) fn forget_blocked(&mut self) {
         self.0.retain(|walk| !walk.is_blocked);
     }

@@ -18,36 +18,34 @@ pub(super) struct Ways {
 
 clone_in_place!(Ways { way, found_after; scratch queue });
 
-/// A shortest way to a vertex.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     moves: u32,
-    /// The dart by which it comes in.
     entry: Dart,
 }
 
-/// The moves to a vertex that is not reached.
 const UNREACHED: u32 = u32::MAX;
 
 impl Ways {
-    /// Forgets an earlier run.
     pub(super) fn clear(&mut self) {
         self.found_after = None;
     }
 
     /// Finds the ways from the robot's present vertex, unless they are known.
     pub(super) fn find(&mut self, trail: &FoldedTrail) {
-        if self.found_after.replace(trail.moves()) == Some(trail.moves()) {
-            return;
+        if self.found_after.replace(trail.moves()) != Some(trail.moves()) {
+            self.find_from(trail, trail.pose());
         }
+    }
+
+    pub(super) fn find_from(&mut self, trail: &FoldedTrail, start: Dart) {
         let Self { way, queue, .. } = self;
-        let pose = trail.pose();
         way.clear();
-        way.resize(trail.trail_vertex_count(), Way { moves: UNREACHED, entry: pose });
-        let here = trail.vertex(pose);
+        way.resize(trail.trail_vertex_count(), Way { moves: UNREACHED, entry: start });
+        let here = trail.vertex(start);
         way[here].moves = 0;
         queue.clear();
-        queue.push((pose, here));
+        queue.push((start, here));
         let mut next = 0;
         while let Some(&(pose, vertex)) = queue.get(next) {
             next += 1;
@@ -62,7 +60,6 @@ impl Ways {
         }
     }
 
-    /// The moves to a dart's vertex.
     #[inline]
     pub(super) fn moves_to(&self, trail: &FoldedTrail, dart: Dart) -> usize {
         self.moves_to_vertex(trail.vertex(dart))

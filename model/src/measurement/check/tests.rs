@@ -3,7 +3,9 @@ use std::f64::consts::FRAC_PI_2;
 use super::*;
 use crate::{
     driving::visit::JunctionShape,
-    measurement::{FALSE_ALARMS, HallwayMeasurement, two_degrees},
+    measurement::{
+        ContradictoryMeasurement, FALSE_ALARMS, HallwayMeasurement, ONE_DEGREE, two_degrees,
+    },
     percept::Door,
 };
 

@@ -1,0 +1,70 @@
+//! The smallest start on which a broken variant of an algorithm fails.
+
+use super::{Check, FailedStart, RunChoices, Shard};
+use crate::{enumerate::Class, isomorphism::code, mapping::Explorer};
+
+/// The edges of a start, its code, and what went wrong there.
+pub(crate) type Failure = (usize, Vec<u32>, String);
+
+/// The first start of a class with up to so many edges on which an explorer fails.
+pub(crate) fn smallest_failure<E: Explorer>(
+    new: impl Fn() -> E + Sync,
+    class: Class,
+    most: usize,
+) -> Failure {
+    let failure = (1..=most).find_map(|edges| {
+        let check = Check::new(class, edges, Shard::WHOLE).unwrap();
+        let tally = check.run(&new, RunChoices::Default, &());
+        assert_eq!(tally.failed() > 0, tally.failure.is_some());
+        let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
+        let words = code(&graph, facing).words().to_vec();
+        let step = false_step
+            .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());
+        Some((edges, words, format!("{step}: {flaw}")))
+    });
+    failure.expect("the check catches it")
+}
+
+/// The word of a code for a new vertex. The word for an edge to a known vertex is the number of a dart.
+pub(crate) fn new(degree: u32) -> u32 {
+    u32::MAX - degree
+}
+
+/// A wrong addition to the map, after which it becomes larger than the world.
+pub(crate) fn too_large(step: &str, darts: u32) -> String {
+    format!("{step}: more than {darts} darts (edge ends) are known, and the map is not complete")
+}
+
+/// The items of an [`Explorer`] that are those of its field `run`.
+macro_rules! delegate_to_run {
+    ($marker:ident, $choice:ty) => {
+        type Marker = $marker;
+        type Choice = $choice;
+
+        fn marker(&self) -> $marker {
+            self.run.marker()
+        }
+
+        fn limit_darts(&mut self, max_darts: usize) {
+            self.run.limit_darts(max_darts);
+        }
+
+        fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
+            self.run.begin(world)
+        }
+
+        fn choose(&mut self) -> Result<Option<$choice>, InvalidStep> {
+            self.run.choose()
+        }
+
+        fn map_walk(&self) -> Option<&MapWalk> {
+            self.run.map_walk()
+        }
+
+        fn state_key(&self) -> Option<StateKey> {
+            self.run.state_key()
+        }
+    };
+}
+
+pub(crate) use delegate_to_run;
