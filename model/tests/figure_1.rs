@@ -9,8 +9,8 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
     isomorphism::isomorphism,
     marker::{Marker, named},
-    percept::{Door, Percept, Sighting},
-    world::{Action, State},
+    percept::Door,
+    world::State,
 };
 
 fn read(name: &str) -> NamedWorld {
@@ -76,19 +76,6 @@ fn the_cases_of_the_printed_proof() {
         *cases.entry(case).or_insert(0) += 1;
     }
     assert_eq!(cases.into_values().collect::<Vec<_>>(), [8, 8, 8, 8]);
-}
-
-#[test]
-fn a_directional_marker_tells_the_worlds_of_figure_1_apart_in_three_moves() {
-    let [a, b] = [read("figure-1a"), read("figure-1b")];
-    let comparison = comparison(named("directional").unwrap(), [&a, &b]);
-    let walk = comparison.walk(starts([&a, &b])).unwrap();
-    assert_eq!(walk.actions, [0, 1, 1].map(|door| Action::Take(Door(door))));
-    let pointing = |door| Percept { degree: 4, sighting: Sighting::Pointing(Door(door)) };
-    assert_eq!(walk.percepts, [pointing(1), pointing(3)]);
-    let [one, other] = comparison.starts(starts([&a, &b]));
-    assert!(walk.verify(&one, &other));
-    assert_eq!(comparison.relation(starts([&a, &b])), None);
 }
 
 // paper: marker.none-cycles, marker.none-insufficient

@@ -14,9 +14,6 @@ mod smooth;
 
 pub use fault::{GraphError, ListError, clockwise_fault, opposite_fault, size_fault};
 pub use petgraph_traits::{EdgeView, PetgraphError, VisitedVertices};
-pub use smooth::Smoothed;
-
-use std::hash::{Hash, Hasher};
 
 use crate::clone_in_place::clone_in_place;
 
@@ -51,8 +48,10 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 /// The darts of a vertex stand side by side in clockwise order, and the vertices one after the
 /// other: `clockwise` is "the next number at the same vertex", and a door is an addition. Every
 /// constructor numbers the darts in this way.
+///
+/// Two graphs are equal if they are isomorphic and have the same numbers.
 // paper: world.graph, world.embedding
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq, Hash)]
 pub struct EmbeddedGraph {
     darts_of: Vec<Darts>,
     darts: Vec<DartPlace>,
@@ -60,28 +59,8 @@ pub struct EmbeddedGraph {
 
 clone_in_place!(EmbeddedGraph { darts_of, darts });
 
-/// Two graphs are equal if they are isomorphic and have the same numbers.
-impl PartialEq for EmbeddedGraph {
-    fn eq(&self, other: &Self) -> bool {
-        // The degrees determine the vertices of the darts.
-        self.darts_of == other.darts_of
-            && self.darts().all(|dart| self.opposite(dart) == other.opposite(dart))
-    }
-}
-
-impl Eq for EmbeddedGraph {}
-
-impl Hash for EmbeddedGraph {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.darts_of.hash(state);
-        for place in &self.darts {
-            place.opposite.hash(state);
-        }
-    }
-}
-
 /// All that is known of a dart, side by side, so that a motion needs one look-up.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct DartPlace {
     opposite: Dart,
     vertex: Vertex,

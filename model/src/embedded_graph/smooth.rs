@@ -2,17 +2,11 @@
 
 use super::{Dart, EmbeddedGraph};
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Smoothed {
-    pub graph: EmbeddedGraph,
-    pub darts: Vec<Dart>,
-}
-
 impl EmbeddedGraph {
     /// The same graph without corners: of each vertex with two darts, the two edges are one. The vertices that
     /// stay have the same darts, in the same order; the faces, and so the genus, are the same. Of a cycle, in
-    /// which all vertices are corners, the first one stays.
-    pub fn smoothed(&self) -> Smoothed {
+    /// which all vertices are corners, the first one stays. And for each of its darts, the dart of this graph.
+    pub fn smoothed(&self) -> (Self, Vec<Dart>) {
         let mut stays: Vec<bool> = self.vertices().map(|vertex| self.degree(vertex) != 2).collect();
         if !stays.contains(&true) {
             stays[0] = true;
@@ -26,8 +20,7 @@ impl EmbeddedGraph {
             }
             far
         };
-        let (graph, _) = self.rearranged(&darts, opposite);
-        Smoothed { graph, darts }
+        (self.rearranged(&darts, opposite).0, darts)
     }
 }
 
@@ -44,7 +37,7 @@ mod tests {
     #[test]
     fn a_cycle_becomes_a_loop_and_a_chain_an_edge() {
         for edges in 1..6_usize {
-            let smooth = EmbeddedGraph::cycle(edges).smoothed().graph;
+            let smooth = EmbeddedGraph::cycle(edges).smoothed().0;
             assert_eq!((smooth.vertex_count(), smooth.edge_count(), smooth.genus()), (1, 1, 0));
         }
         let chain = EmbeddedGraph::from_neighbour_lists(&[
@@ -52,9 +45,9 @@ mod tests {
             ("b", vec!["a", "c"]),
             ("c", vec!["b"]),
         ]);
-        let smooth = chain.unwrap().smoothed();
-        assert_eq!((smooth.graph.vertex_count(), smooth.graph.edge_count()), (2, 1));
-        assert_eq!(smooth.darts, [Dart(0), Dart(3)]);
+        let (smooth, darts) = chain.unwrap().smoothed();
+        assert_eq!((smooth.vertex_count(), smooth.edge_count()), (2, 1));
+        assert_eq!(darts, [Dart(0), Dart(3)]);
     }
 
     /// The graph with a corner on an edge.
@@ -76,11 +69,11 @@ mod tests {
         ) {
             let corners = graph.vertices().filter(|&vertex| graph.degree(vertex) == 2).count();
             let removed = if corners == graph.vertex_count() { corners - 1 } else { corners };
-            let Smoothed { graph: smooth, darts } = graph.smoothed();
+            let (smooth, darts) = graph.smoothed();
             prop_assert_eq!(smooth.vertex_count(), graph.vertex_count() - removed);
             prop_assert_eq!(smooth.edge_count(), graph.edge_count() - removed);
             prop_assert_eq!(smooth.genus(), graph.genus());
-            prop_assert_eq!(&smooth.smoothed().graph, &smooth, "it is smooth already");
+            prop_assert_eq!(&smooth.smoothed().0, &smooth, "it is smooth already");
             for dart in smooth.darts() {
                 let degree = graph.degree_around(darts[dart.at()]);
                 prop_assert_eq!(smooth.degree_around(dart), degree);
@@ -96,7 +89,7 @@ mod tests {
             edges in prop::collection::vec(0..8_usize, 0..6),
         ) {
             let cornered = edges.iter().fold(graph.clone(), |graph, &edge| with_corner(&graph, edge));
-            let [one, other] = [&graph, &cornered].map(|graph| graph.smoothed().graph);
+            let [one, other] = [&graph, &cornered].map(|graph| graph.smoothed().0);
             prop_assert!(isomorphism(&one, &other).is_ok());
             // The first dart stays the first, if its vertex is no corner.
             if graph.degree_around(Dart(0)) != 2 {

@@ -1,9 +1,6 @@
 //! The walls of a floor plan: the border of the union of its floors. Section 2.4.
 
-use super::{FloorPlan, Rectangle};
-
-/// Coordinates with a smaller difference are equal, in metres.
-const TOLERANCE: f64 = 1e-6;
+use super::{FloorPlan, Rectangle, TOLERANCE};
 
 /// A straight wall along an axis, with floor on one side of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

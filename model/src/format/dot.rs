@@ -3,12 +3,14 @@
 use super::named_world::NamedWorld;
 use crate::embedded_graph::Dart;
 
+/// Points of 1/72 inch for a metre: a quarter inch.
+const POINTS: f64 = 18.0;
+
 /// The world in DOT.
 ///
 /// Each end of an edge has its door, counted clockwise from the vertex's first dart. The vertex of the
 /// start has a double border, and its facing edge is bold, with an arrow away from it. The vertices of
-/// a floor plan are pinned to their positions (`neato -n`), in points of 1/72 inch, a quarter inch for
-/// a metre.
+/// a floor plan are pinned to their positions (`neato -n`).
 pub fn write(world: &NamedWorld) -> String {
     let mut text = format!("graph {} {{\n", quoted(&world.name));
     if !world.about.is_empty() {
@@ -23,7 +25,7 @@ pub fn write(world: &NamedWorld) -> String {
             attributes.push("shape=doublecircle".to_owned());
         }
         if let Some([x, y]) = world.positions.as_ref().map(|at| at[vertex.at()]) {
-            attributes.push(format!("pos=\"{},{}\"", points(x), points(y)));
+            attributes.push(format!("pos=\"{},{}\"", POINTS * x, POINTS * y));
         }
         let attributes = bracketed(&attributes);
         line(&mut text, &format!("{}{attributes}", quoted(name)));
@@ -53,10 +55,6 @@ fn facing(start: Option<Dart>, tail: Dart, head: Dart) -> Option<String> {
         _ => return None,
     };
     Some(format!("style=bold, dir={direction}"))
-}
-
-fn points(metres: f64) -> f64 {
-    18.0 * metres
 }
 
 fn bracketed(attributes: &[String]) -> String {

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, Smoothed, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
     marker::Marker,
@@ -82,7 +82,7 @@ impl NamedWorld {
     /// the result is not simple: an edge gets the name of its first part.
     #[must_use]
     pub fn smoothed(&self) -> Self {
-        let Smoothed { graph, darts } = self.graph.smoothed();
+        let (graph, darts) = self.graph.smoothed();
         let kept = |new: Vertex| self.graph.vertex(darts[graph.first_dart(new).at()]).at();
         let numbered = Self::numbered(&self.name, &self.about, graph.clone(), None);
         let edge_names = self.edge_names.as_ref().map(|names| {

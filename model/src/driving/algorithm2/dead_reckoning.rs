@@ -36,15 +36,16 @@ pub(super) enum Round {
 }
 
 /// Where the robot is on its path, by odometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Stage {
     /// At a junction that it has not left.
+    #[default]
     AtJunction,
     /// On its way to the next junction, which it may have seen.
     OnTheWay,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeadReckoning {
     now: Odometry,
     stage: Stage,
@@ -66,20 +67,7 @@ pub(super) struct DeadReckoning {
 
 impl DeadReckoning {
     pub(super) fn at_junction(entry: f64) -> Self {
-        Self {
-            now: Odometry::default(),
-            stage: Stage::AtJunction,
-            entry,
-            leg: 0.0,
-            known: wrapped(entry + PI),
-            asked: None,
-            since_turn: 0.0,
-            unknowns: 0,
-            crept: 0.0,
-            stalls: 0,
-            idle: 0,
-            leg_bound: LEG,
-        }
+        Self { entry, known: wrapped(entry + PI), leg_bound: LEG, ..Self::default() }
     }
 
     /// On the way in a direction of the frame of odometry, from a junction that lies this far behind.
