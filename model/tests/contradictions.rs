@@ -17,12 +17,12 @@ type Error = MappingError<RefusedAction>;
 const BOUND: usize = 60;
 
 /// A percept without a marker.
-fn plain(degree: u32) -> Percept {
+pub(crate) fn plain(degree: u32) -> Percept {
     Percept { degree, sighting: Sighting::Nothing }
 }
 
 /// A percept with a directional marker that points along a door.
-fn marked(degree: u32, door: u32) -> Percept {
+pub(crate) fn marked(degree: u32, door: u32) -> Percept {
     Percept { degree, sighting: Sighting::Pointing(Door(door)) }
 }
 

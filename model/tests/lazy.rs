@@ -20,7 +20,7 @@ use toposlam_model::{
         Algorithm1Run, ExploredMap, Explorer, Flaw, FoldingRun, InvalidStep, Mapped,
         MappingAlgorithm, MappingError, MovableMarkerRun, ObservedWorld,
     },
-    marker::{DirectedEdge, Directional, Marker, TwoIdentical},
+    marker::{DirectedEdge, Directional, Marker, MarkerKind, TwoIdentical},
     percept::Door,
 };
 
@@ -133,7 +133,7 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
     }
 }
 
-fn still(map: EmbeddedGraph) -> Walker<Directional> {
+fn still(map: EmbeddedGraph) -> Walker<MarkerKind> {
     Walker { marker: Directional, moves: 0, most: 0, map }
 }
 

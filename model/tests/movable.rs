@@ -8,7 +8,7 @@ use toposlam_model::{
     enumerate::Class,
     isomorphism::{Candidate, code, isomorphism},
     mapping::{Flaw, MappingAlgorithm, MovableMarkerRun, explore},
-    marker::{MarkerKind, Movable},
+    marker::Movable,
     world::GraphWorld,
 };
 

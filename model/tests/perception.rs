@@ -8,8 +8,8 @@ use toposlam_model::{
 };
 
 use crate::{
+    contradictions::{marked, plain},
     markers::junction,
-    scripted_world::{marked, plain},
 };
 
 /// The percepts along a door sequence, the first at the start.

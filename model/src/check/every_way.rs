@@ -299,7 +299,7 @@ mod tests {
         check::smallest_failure::delegate_to_run,
         enumerate::Class,
         mapping::{Algorithm1Run, InvalidStep, Mapped, MappingChoice, MappingError, ObservedWorld},
-        marker::Directional,
+        marker::MarkerKind,
     };
 
     struct Stopped;
@@ -335,7 +335,7 @@ mod tests {
     }
 
     impl Explorer for Altered {
-        delegate_to_run!(Directional, MappingChoice);
+        delegate_to_run!(MappingChoice);
 
         fn choices(&mut self) -> Result<Vec<MappingChoice>, InvalidStep> {
             let choices = self.run.choices()?.into_iter().map(|choice| match choice {

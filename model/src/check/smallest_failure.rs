@@ -37,11 +37,11 @@ pub(crate) fn too_large(step: &str, darts: u32) -> String {
 
 /// The items of an [`Explorer`] that are those of its field `run`.
 macro_rules! delegate_to_run {
-    ($marker:ident, $choice:ty) => {
-        type Marker = $marker;
+    ($choice:ty) => {
+        type Marker = MarkerKind;
         type Choice = $choice;
 
-        fn marker(&self) -> $marker {
+        fn marker(&self) -> MarkerKind {
             self.run.marker()
         }
 

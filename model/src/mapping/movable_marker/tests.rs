@@ -120,7 +120,7 @@ impl Flaw {
 }
 
 impl Explorer for Broken {
-    delegate_to_run!(Movable, Dart);
+    delegate_to_run!(Dart);
 
     fn step<W: ObservedWorld>(&mut self, edge: Dart, world: &mut W) -> Mapped<W> {
         let Self { flaw, run } = self;
