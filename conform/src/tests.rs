@@ -73,13 +73,15 @@ impl Log {
     }
 
     fn inferred(&self) -> Vec<CheckedEvent> {
-        let mut inferred = InferredEvents::new(true);
-        for (message, (reckoned, line)) in self.lines.iter().enumerate() {
-            if let EventKind::Frame(Frame { scene: Some(scene), .. }) = line {
-                inferred.see(source(message, reckoned), scene, &reckoned.odometry);
-            }
-        }
-        inferred.finish()
+        let seen = |(message, (reckoned, line)): (usize, &(TimedOdometry, EventKind))| match line {
+            EventKind::Frame(Frame { scene: Some(scene), .. }) => Some(SensedScene {
+                source: source(message, reckoned),
+                scene: scene.clone(),
+                odometry: reckoned.odometry,
+            }),
+            _ => None,
+        };
+        infer_events(&self.lines.iter().enumerate().filter_map(seen).collect::<Vec<_>>(), true)
     }
 }
 

@@ -13,6 +13,7 @@ use toposlam_model::{
     trace::{Trace, TraceEventKind},
     world::{GraphWorld, World},
 };
+use toposlam_vision::visits::ApproachParams;
 
 use super::{
     oracle::{Place, is_explained_by_small, takes_doors, witness},
@@ -140,7 +141,7 @@ impl Options {
         let mut events = log.recorded();
         if self.inferred {
             events.events = log.inferred();
-            events.measurement_noise.standing = params::SceneEventParams::DEFAULT.near;
+            events.measurement_noise.standing = ApproachParams::DEFAULT.near;
         }
         for event in &mut events.events {
             match &mut event.kind {
