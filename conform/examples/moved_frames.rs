@@ -14,18 +14,18 @@ use std::{env, error::Error, fs, path::Path, sync::Arc};
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use serde_json::Value;
-use toposlam_conform::{CheckedKind, EventSource, LaserEvents};
 use toposlam_logs::{
     entries::Content,
     reader::Log,
     record::{EventKind, Frame},
     topic_map::TopicMap,
 };
-use toposlam_model::{driving::odometry::Odometry, percept::Door};
+use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::{
     geometry::{self, direction, distance},
     laser::{params::LaserParams, scan::Scan},
     params,
+    visits::Visits,
 };
 
 /// Turns of the frame in degrees, each with a shift along both axes in metres.
@@ -122,25 +122,16 @@ fn derived<'a>(
     scans: impl Iterator<Item = (&'a Arc<Scan>, Odometry)>,
     params: &LaserParams,
 ) -> (Vec<Visit>, usize) {
-    let mut events = LaserEvents::new(*params);
-    for (number, (scan, odometry)) in scans.enumerate() {
-        let source = EventSource { time: number as u64, ..EventSource::default() };
-        events.see(source, scan, &odometry);
+    let mut visits = Visits::by_laser(*params);
+    for (scan, odometry) in scans {
+        visits.see((), scan, &odometry);
     }
-    let (mut visits, mut undecided): (Vec<Visit>, _) = (Vec::new(), 0);
-    for event in events.finish() {
-        match event.kind {
-            CheckedKind::Arrival { arrival, .. } => visits.push((arrival.degree.into(), None)),
-            CheckedKind::Door { door: Door(door), .. } => {
-                if let Some(last) = visits.last_mut() {
-                    last.1 = Some(door.into());
-                }
-            }
-            CheckedKind::Undecided(_) => undecided += 1,
-            CheckedKind::TurnedBack | CheckedKind::LeftBetweenDoors { .. } => {}
-        }
-    }
-    (visits, undecided)
+    let mut visits = visits.finish().visits;
+    let all = visits.len();
+    visits.retain(|visit| visit.doubt.is_none());
+    let undecided = all - visits.len();
+    let percepts = visits.iter().map(|visit| visit.percept());
+    (percepts.map(|seen| (seen.degree.into(), seen.door.map(u64::from))).collect(), undecided)
 }
 
 fn print_row(

@@ -10,6 +10,7 @@ use toposlam_model::{
     percept::{Door, Percept, Sighting},
     trace::{RecordedVisit, Trace, TraceEvent, TraceEventKind, TraceOrderError},
 };
+pub use toposlam_vision::visits::UndecidedCause;
 
 /// The log message that an event came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,17 +59,6 @@ pub enum CheckedKind {
     TurnedBack,
     /// The robot was, or may have been, at a junction that could not be recognised.
     Undecided(UndecidedCause),
-}
-
-/// Why a visit is undecided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UndecidedCause {
-    /// Its images or scans do not show the junction clearly.
-    Unclear,
-    /// There may be an arm that the laser scanner did not look into.
-    UnseenArm,
-    /// The robot drove in a direction in which the laser scanner did not look.
-    UnseenWay,
 }
 
 /// The part of a run that is checked.

@@ -18,18 +18,20 @@ use toposlam_vision::{
     laser::{
         drift::{DriftMeter, ROUNDS},
         params::LaserParams,
+        sensor::LaserSensor,
     },
     sensing::Sensor,
+    visits::{ApproachParams, Visits},
 };
 
 use super::{
-    InferredEvents, LaserEvents, RecordedEvents,
+    RecordedEvents,
     events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents, UndecidedCause},
     marked_visits::{TimedSighting, VisitedJunction},
     message_clock::MessageClock,
-    params::SCENES,
     placed_scenes::{PlacedScenes, SceneClockError, SensedScene},
     scan_odometry::{PlacedScan, ScanOdometry},
+    visit_events::visit_events,
 };
 
 /// The source of events.
@@ -38,33 +40,27 @@ pub enum Evidence {
     /// Recorded percepts and doors.
     #[default]
     Recorded,
-    /// Recorded scenes and odometry.
     Scenes,
-    /// Images and odometry.
     Images,
-    /// Laser scans and odometry.
+    /// Laser scans.
     Laser,
 }
 
 /// From what events are extracted, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtractConfig<'s> {
-    /// The source of the events.
     pub evidence: Evidence,
     /// Senses images, if they are the source.
     pub sensor: Option<&'s Sensor>,
     /// Whether the robot puts its marker down at its start. This matters only for inferred events.
     pub marked: bool,
-    /// The parameters for laser scans.
     pub laser: LaserParams,
 }
 
 /// The events of a log.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ExtractedRun {
-    /// The events, and the end of the run.
     pub events: RunEvents,
-    /// Their source.
     pub evidence: Evidence,
     /// The head of the log, if it has one.
     pub run: Option<messages::Run>,
@@ -76,7 +72,6 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
-    /// The messages that were skipped.
     pub skipped: SkippedMessages,
     /// The widest field of view of a scan, in radians.
     pub field_of_view: f64,
@@ -100,13 +95,10 @@ pub struct SkippedMessages {
 /// Why events cannot be extracted.
 #[derive(Debug, Error)]
 pub enum ExtractError {
-    /// The log cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The topic map does not fit it.
     #[error(transparent)]
     TopicMap(#[from] TopicMapError),
-    /// No source of events is mapped.
     #[error(
         "no topics are known for percepts and doors, nor for scenes, images or laser scans with odometry; \
          `toposlam info` lists the topics"
@@ -117,29 +109,16 @@ pub enum ExtractError {
     NoSensor,
     /// There are laser scans, and no odometry.
     #[error("no odometry is recorded with its {scans} laser scans")]
-    NoOdometry {
-        /// The number of scans.
-        scans: u64,
-    },
+    NoOdometry { scans: u64 },
     /// An image is not of the calibrated camera.
     #[error("message {message}: {cause}")]
-    Size {
-        /// The number of the message.
-        message: u64,
-        /// Why it cannot be sensed.
-        cause: SensingError,
-    },
+    Size { message: u64, cause: SensingError },
     /// The odometry at the time of an image or a scene is not known.
     #[error(transparent)]
     SceneClock(#[from] SceneClockError),
     /// The time of a percept or door is before that of the last one.
     #[error("message {message}: {order}")]
-    OutOfOrder {
-        /// The number of the message.
-        message: u64,
-        /// The times.
-        order: OutOfOrder,
-    },
+    OutOfOrder { message: u64, order: OutOfOrder },
 }
 
 /// The number of images that are sensed in parallel.
@@ -174,15 +153,10 @@ impl Evidence {
     /// Whether a topic map has this source of events.
     #[must_use]
     pub fn is_in(self, mapping: &TopicMap) -> bool {
-        let needed = match self {
-            Self::Recorded => [Role::Percept, Role::Door],
-            Self::Scenes => [Role::Scene, Role::Odometry],
-            Self::Images => [Role::Image, Role::Odometry],
-            Self::Laser => [Role::Scan, Role::Odometry],
-        };
-        needed.iter().all(|role| mapping.carrier(*role).is_some())
+        self.roles().iter().take(2).all(|role| mapping.carrier(*role).is_some())
     }
 
+    /// The roles that it needs, two of them, and what it uses besides.
     fn roles(self) -> &'static [Role] {
         match self {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
@@ -213,8 +187,6 @@ pub fn extract(
 ) -> Result<ExtractedRun, ExtractError> {
     let ExtractConfig { evidence, sensor, marked, mut laser } = *config;
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
-    let threads = rayon::current_num_threads();
-    let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
     let bound = mapping.only(asked).bind(log)?;
     let is_matched = evidence != Evidence::Laser || laser.matching.rounds > 0;
     let drift = if is_matched { None } else { measured_drift(log, &bound, &laser) };
@@ -222,79 +194,49 @@ pub fn extract(
     if drift.is_some() {
         laser.matching.rounds = ROUNDS;
     }
+    let threads = rayon::current_num_threads();
+    let events = RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() };
     let mut extraction = Extraction {
+        run: ExtractedRun { events, evidence, drift, ..ExtractedRun::default() },
         recorded: RecordedEvents::default(),
         scenes: PlacedScenes::default(),
         waiting: Vec::new(),
-        run: None,
         last: 0,
-        events: RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() },
-        sensors,
+        sensors: sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]),
         watch,
-        images: 0,
-        unreadable: 0,
-        evidence,
-        laser: LaserEvents::new(laser),
+        laser: Visits::by_laser(laser),
         placing: ScanOdometry::default(),
-        scans: 0,
-        field_of_view: 0.0,
-        sightings: Vec::new(),
     };
-    let mut skipped = extraction.read_entries(log, &bound)?;
-    let Extraction {
-        recorded,
-        scenes,
-        run,
-        mut events,
-        images,
-        unreadable,
-        laser,
-        scans,
-        field_of_view,
-        sightings,
-        ..
-    } = extraction;
-    let scans = scans - skipped.scans_without_odometry;
-    let (seen, scenes_off_clock) = scenes.finish()?;
-    skipped.off_clock += scenes_off_clock;
-    if run.is_some() {
+    extraction.read_entries(log, &bound)?;
+    let Extraction { mut run, recorded, scenes, laser, .. } = extraction;
+    run.scans -= run.skipped.scans_without_odometry;
+    let (seen, off_clock) = scenes.finish()?;
+    run.seen = seen;
+    run.skipped.off_clock += off_clock;
+    if run.run.is_some() {
         let noise = log_noise();
-        events.measurement_noise = match evidence {
+        run.events.measurement_noise = match evidence {
             Evidence::Recorded => noise,
             Evidence::Scenes | Evidence::Images => {
-                MeasurementNoise { standing: SCENES.near, ..noise }
+                MeasurementNoise { standing: ApproachParams::DEFAULT.near, ..noise }
             }
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };
     }
-    let mut junctions = Vec::new();
-    if evidence == Evidence::Laser && events.end.is_some() {
+    if evidence == Evidence::Laser && run.events.end.is_some() {
         // Corners and dead ends are no visits: the recorded moves and map are those of another graph.
-        (events.has_head, events.end, events.map) = (false, None, None);
+        (run.events.has_head, run.events.end, run.events.map) = (false, None, None);
     }
-    events.events = match evidence {
+    run.events.events = match evidence {
         Evidence::Recorded => recorded.finish(),
-        Evidence::Scenes | Evidence::Images => infer_events(&seen, marked),
+        Evidence::Scenes | Evidence::Images => infer_events(&run.seen, marked),
         Evidence::Laser => {
-            let (events, visited) = laser.finish_with_junctions();
-            junctions = visited;
+            let (events, junctions) = visit_events(laser.finish());
+            run.junctions = junctions;
             events
         }
     };
-    Ok(ExtractedRun {
-        events,
-        evidence,
-        run,
-        seen,
-        images,
-        unreadable,
-        scans,
-        skipped,
-        field_of_view,
-        drift,
-        junctions,
-        sightings,
-    })
+    Ok(run)
 }
 
 /// The drift of the heading of the odometry of a log with laser scans, in radians in 10 m. `None` if it is too
@@ -313,16 +255,11 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             }
             _ => return,
         };
-        for placed in &placed {
-            meter.see(&placed.scan, &placed.odometry);
-        }
+        placed.iter().for_each(|placed| meter.see(&placed.scan, &placed.odometry));
     };
     let mut clock = MessageClock::default();
-    for entry in log.entries(bound) {
-        let Ok(entry) = entry else { break };
-        if is_timed(&entry) {
-            clock.next(entry.time, entry).into_iter().for_each(&mut take);
-        }
+    for entry in log.entries(bound).map_while(Result::ok).filter(is_timed) {
+        clock.next(entry.time, entry).into_iter().for_each(&mut take);
     }
     clock.finish().0.into_iter().for_each(take);
     meter.finish()
@@ -342,48 +279,37 @@ fn is_timed(entry: &Entry) -> bool {
 /// The events that are inferred from scenes.
 #[must_use]
 pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
-    let mut derivation = InferredEvents::new(marked);
+    let mut visits = Visits::by_camera(marked);
     for SensedScene { source, scene, odometry } in seen {
-        derivation.see(*source, scene, odometry);
+        visits.see(*source, scene, odometry);
     }
-    derivation.finish()
+    visit_events(visits.finish()).0
 }
 
 struct Extraction<'w, W> {
+    /// What is extracted so far.
+    run: ExtractedRun,
     recorded: RecordedEvents,
     /// The scenes that are the evidence, or those of its images.
     scenes: PlacedScenes,
     /// Frames that have not been sensed, with their times.
     waiting: Vec<(EventSource, u64, Frame)>,
-    run: Option<messages::Run>,
     /// The time of the last percept or door.
     last: u64,
-    events: RunEvents,
     /// One for each thread.
     sensors: Vec<Sensor>,
     watch: &'w W,
-    images: u64,
-    unreadable: u64,
-    evidence: Evidence,
-    laser: LaserEvents,
+    laser: Visits<LaserSensor, EventSource>,
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
-    scans: u64,
-    field_of_view: f64,
-    sightings: Vec<TimedSighting>,
 }
 
 impl<W: Watch> Extraction<'_, W> {
-    /// Takes the entries of a log. Returns the number of those that are skipped.
-    fn read_entries(
-        &mut self,
-        log: &Log,
-        bound: &BoundTopicMap,
-    ) -> Result<SkippedMessages, ExtractError> {
+    fn read_entries(&mut self, log: &Log, bound: &BoundTopicMap) -> Result<(), ExtractError> {
         let mut clock = MessageClock::default();
         for entry in log.entries(bound) {
             let entry = entry?;
-            if self.evidence == Evidence::Laser && is_timed(&entry) {
+            if self.run.evidence == Evidence::Laser && is_timed(&entry) {
                 clock.next(entry.time, entry).into_iter().try_for_each(|entry| self.take(entry))?;
             } else {
                 self.take(entry)?;
@@ -393,12 +319,15 @@ impl<W: Watch> Extraction<'_, W> {
         rest.into_iter().try_for_each(|entry| self.take(entry))?;
         self.look()?;
         let scans_without_odometry = self.placing.without_odometry();
+        self.run.skipped = SkippedMessages { off_clock, scans_without_odometry };
         match std::mem::take(&mut self.placing).finish() {
             Some(waiting) => waiting.for_each(|placed| self.see(&placed)),
-            None if self.scans > 0 => return Err(ExtractError::NoOdometry { scans: self.scans }),
+            None if self.run.scans > 0 => {
+                return Err(ExtractError::NoOdometry { scans: self.run.scans });
+            }
             None => {}
         }
-        Ok(SkippedMessages { off_clock, scans_without_odometry })
+        Ok(())
     }
 
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
@@ -406,27 +335,25 @@ impl<W: Watch> Extraction<'_, W> {
         let stamp = stamp.nanoseconds();
         let source = EventSource { time, id, offset };
         let kind = match content {
+            Content::Event(kind) => kind,
             Content::Run(run) => {
-                self.events.has_head = true;
-                self.run = Some(run);
+                self.run.events.has_head = true;
+                self.run.run = Some(run);
+                return Ok(());
+            }
+            Content::Fiducial(sighting) => {
+                self.run.sightings.push((time, sighting));
+                return Ok(());
+            }
+            Content::TurnedBack => {
+                self.recorded.note(source, CheckedKind::TurnedBack);
+                return Ok(());
+            }
+            Content::Undecided => {
+                self.recorded.note(source, CheckedKind::Undecided(UndecidedCause::Unclear));
                 return Ok(());
             }
             Content::Hypothesis(_) => return Ok(()),
-            Content::Fiducial(sighting) => {
-                self.sightings.push((time, sighting));
-                return Ok(());
-            }
-            Content::TurnedBack | Content::Undecided => {
-                let turned = content == Content::TurnedBack;
-                let kind = if turned {
-                    CheckedKind::TurnedBack
-                } else {
-                    CheckedKind::Undecided(UndecidedCause::Unclear)
-                };
-                self.recorded.note(source, kind);
-                return Ok(());
-            }
-            Content::Event(kind) => kind,
         };
         if matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. }) {
             let before = std::mem::replace(&mut self.last, stamp);
@@ -439,7 +366,7 @@ impl<W: Watch> Extraction<'_, W> {
                 for placed in self.placing.odometry(stamp, odometry) {
                     self.see(&placed);
                 }
-                if matches!(self.evidence, Evidence::Scenes | Evidence::Images) {
+                if matches!(self.run.evidence, Evidence::Scenes | Evidence::Images) {
                     self.scenes.add_odometry(id, stamp, odometry);
                 }
             }
@@ -447,13 +374,10 @@ impl<W: Watch> Extraction<'_, W> {
                 self.scenes.add_scene(source, stamp, scene);
             }
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
-                self.scans += 1;
-                self.field_of_view = self.field_of_view.max(scan.field_of_view());
-                if let Some(placed) =
-                    self.placing.scan(stamp, PlacedScan { source, scan, odometry })
-                {
-                    self.see(&placed);
-                }
+                self.run.scans += 1;
+                self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
+                let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
+                placed.iter().for_each(|placed| self.see(placed));
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));
@@ -461,8 +385,8 @@ impl<W: Watch> Extraction<'_, W> {
                     self.look()?;
                 }
             }
-            EventKind::End(end) => self.events.end = Some(end),
-            EventKind::Map(map) => self.events.map = Some(map),
+            EventKind::End(end) => self.run.events.end = Some(end),
+            EventKind::Map(map) => self.run.events.map = Some(map),
             _ => {}
         }
         Ok(())
@@ -492,10 +416,10 @@ impl<W: Watch> Extraction<'_, W> {
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
         self.watch.part_done(seen.len() as u64);
-        self.images += seen.len() as u64;
+        self.run.images += seen.len() as u64;
         for ((source, time, _), scene) in self.waiting.drain(..).zip(seen) {
             match scene {
-                Err(SensingError::Image(_)) => self.unreadable += 1,
+                Err(SensingError::Image(_)) => self.run.unreadable += 1,
                 Err(cause) => return Err(ExtractError::Size { message: source.id.0, cause }),
                 Ok(scene) => self.scenes.add_scene(source, time, scene),
             }

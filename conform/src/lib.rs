@@ -4,7 +4,6 @@
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
-mod bends;
 mod budget_check;
 mod check;
 mod config;
@@ -15,28 +14,23 @@ mod events;
 mod extract;
 pub mod fuzz;
 mod impossible;
-mod inferred_events;
 mod json;
 mod judgement;
 mod known_world;
-mod laser_events;
-mod laser_visit;
 mod log_head;
 mod marked_visits;
 mod measured_hallways;
 mod message_clock;
-pub mod params;
 mod placed_scenes;
 mod quirks;
 mod recorded_events;
 mod report;
 mod scan_odometry;
-mod seen_junctions;
 mod shorten;
 mod shorten_measured;
 mod tolerance;
 mod twin;
-mod unseen_way;
+mod visit_events;
 pub mod words;
 
 #[cfg(test)]
@@ -54,11 +48,9 @@ pub use extract::{
     Evidence, ExtractConfig, ExtractError, ExtractedRun, SkippedMessages, extract, infer_events,
 };
 pub use impossible::Impossibility;
-pub use inferred_events::InferredEvents;
 pub use json::LogsLine;
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::{Known, KnownWorld};
-pub use laser_events::{LaserEvents, StandingPercept, StandingPlace};
 pub use log_head::{LogHead, MarkerNotShown, RESUMED_REMARK};
 pub use marked_visits::{
     AddedMarker, MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits,
@@ -76,3 +68,4 @@ pub use report::{
 };
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};
 pub use twin::TwinWorld;
+pub use visit_events::visit_events;

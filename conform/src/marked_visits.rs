@@ -1,28 +1,34 @@
 //! Completes the visits of a laser log with what the robot sees of its marker: sightings of a fiducial, or a
 //! marker that is assumed to have lain at a place. Section 2.3.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 use toposlam_logs::{fiducials::FiducialSighting, topic_map::MarkerPlace};
 use toposlam_model::{
-    driving::scene::wrapped,
     marker::{Directional, Marker, Undirected},
     percept::{Door, Sighting},
 };
-
-use super::{
-    events::{CheckedEvent, CheckedKind},
-    params::LASER,
+use toposlam_vision::{
+    geometry::{angle, unit},
+    place::nearest_direction,
 };
+
+use super::events::{CheckedEvent, CheckedKind};
+
+/// A junction contains a place that is at most this much farther from its centre than its extent, in metres: half of the
+/// shortest way between two junctions.
+const BESIDE: f64 = 1.5;
 
 /// A junction that the robot visited, in the frame of odometry at that time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisitedJunction {
     /// The index of the event: an arrival, or a visit that is undecided.
     pub event: usize,
-    /// In metres.
     pub centre: [f64; 2],
     /// The distance from the centre to the nearest wall, in metres.
     pub clearance: f64,
+    /// What is nearer to the centre is within the junction, in metres.
+    pub extent: f64,
     /// The directions of the doors, in radians, clockwise from the entry door; none if the visit is undecided.
     pub doors: Vec<f64>,
 }
@@ -39,13 +45,8 @@ pub enum AddedMarker {
         /// The number of visits at which it would have been seen.
         seen: usize,
     },
-    /// A fiducial.
-    Fiducial {
-        /// The number of all sightings.
-        sightings: usize,
-        /// The number of them at no junction that the robot visited.
-        elsewhere: usize,
-    },
+    /// A fiducial, and how many of its sightings were at no junction that the robot visited.
+    Fiducial { sightings: usize, elsewhere: usize },
 }
 
 /// A sighting, and when it was, in nanoseconds.
@@ -54,28 +55,20 @@ pub type TimedSighting = (u64, FiducialSighting);
 /// Why the visits cannot be completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MarkedVisitsError {
-    /// The marker points somewhere, and the place does not.
     #[error("a directional marker needs a heading: at = [x, y, heading]")]
     NoHeading,
-    /// Sightings at junctions are of these markers only.
     #[error("the marker `{0}` cannot be assumed at a place")]
     Marker(&'static str),
 }
 
 impl VisitedJunction {
-    /// Whether a place is in the junction.
-    #[must_use]
-    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+    fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let off = (self.centre[0] - x).hypot(self.centre[1] - y);
-        off <= self.clearance.max(LASER.inside) + LASER.marked_beside
+        off <= self.extent + BESIDE
     }
 
-    /// The door nearest to a direction.
     fn door(&self, heading: f64) -> Option<Door> {
-        let off = |door: usize| wrapped(self.doors[door] - heading).abs();
-        let doors = 0..self.doors.len();
-        let nearest = doors.min_by(|&one, &other| off(one).total_cmp(&off(other)))?;
-        Some(Door(nearest as u32))
+        nearest_direction(&self.doors, heading).map(|door| Door(door as u32))
     }
 }
 
@@ -121,20 +114,19 @@ pub fn mark_visits(
 ) -> Result<usize, MarkedVisitsError> {
     let directional = is_directional(marker)?;
     // The sum of the unit vectors of the headings at each visit.
-    let mut seen: Vec<Option<[f64; 2]>> = vec![None; junctions.len()];
+    let mut seen: Vec<Option<Vector2<f64>>> = vec![None; junctions.len()];
     let mut elsewhere = 0;
     for &(time, FiducialSighting { position, heading }) in sightings {
-        let apart = |visit: usize| {
-            let begun = events.get(junctions[visit].event).map_or(0, |event| event.source.time);
-            let next =
-                events.get(junctions[visit].event + 1).map_or(begun, |event| event.source.time);
+        let apart = |visit: &usize| {
+            let event = junctions[*visit].event;
+            let begun = events.get(event).map_or(0, |event| event.source.time);
+            let next = events.get(event + 1).map_or(begun, |event| event.source.time);
             begun.saturating_sub(time).max(time.saturating_sub(next))
         };
         let here = (0..junctions.len()).filter(|&visit| junctions[visit].contains(position));
-        match here.min_by_key(|&visit| apart(visit)) {
+        match here.min_by_key(apart) {
             Some(visit) => {
-                let [x, y] = seen[visit].unwrap_or_default();
-                seen[visit] = Some([x + heading.cos(), y + heading.sin()]);
+                seen[visit] = Some(seen[visit].unwrap_or_default() + unit(heading));
             }
             None => elsewhere += 1,
         }
@@ -142,7 +134,7 @@ pub fn mark_visits(
     let mut seen = seen.into_iter();
     complete(events, junctions, |_| {
         let heading = seen.next().flatten()?;
-        Some(Some(heading[1].atan2(heading[0])).filter(|_| directional))
+        Some(Some(angle(heading)).filter(|_| directional))
     });
     Ok(elsewhere)
 }
@@ -192,25 +184,30 @@ mod tests {
     use super::*;
     use crate::EventSource;
 
+    const NONE: Option<Sighting> = Some(Sighting::Nothing);
+    const LIES: Option<Sighting> = Some(Sighting::Lying(1));
+
+    fn along(door: u32) -> Option<Sighting> {
+        Some(Sighting::Pointing(Door(door)))
+    }
+
     /// Visits of junctions with these centres, one second each, every ten seconds. The robot comes from the
     /// west; the doors are west, north and east.
-    fn visits(centres: &[[f64; 2]]) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
+    fn visits(centres: [[f64; 2]; 3]) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
         let doors = vec![PI, FRAC_PI_2, 0.0];
-        let mut events = Vec::new();
-        let mut junctions = Vec::new();
-        for (number, &centre) in (1_u64..).zip(centres) {
-            let event = events.len();
-            junctions.push(VisitedJunction { event, centre, clearance: 1.2, doors: doors.clone() });
-            let (seconds, entry) = (10 * number, Some(PI));
-            let source = |seconds: u64| EventSource {
-                time: seconds * 1_000_000_000,
-                ..EventSource::default()
-            };
+        let (mut events, mut junctions) = (Vec::new(), Vec::new());
+        for (number, centre) in (1_u64..).zip(centres) {
+            let (event, doors) = (events.len(), doors.clone());
+            junctions.push(VisitedJunction { event, centre, clearance: 1.2, extent: 1.2, doors });
+            let entry = Some(PI);
             let arrival = Arrival { number: None, degree: 3, sighting: None, form: None, entry };
             let arrived = CheckedKind::Arrival { arrival, entry_off: None, hallway: None };
-            events.push(CheckedEvent { source: source(seconds), kind: arrived });
             let left = CheckedKind::Door { door: Door(1), number: None, off: None };
-            events.push(CheckedEvent { source: source(seconds + 1), kind: left });
+            for (seconds, kind) in [(0, arrived), (1, left)] {
+                let time = (10 * number + seconds) * 1_000_000_000;
+                let source = EventSource { time, ..EventSource::default() };
+                events.push(CheckedEvent { source, kind });
+            }
         }
         (events, junctions)
     }
@@ -223,36 +220,30 @@ mod tests {
         arrivals.collect()
     }
 
-    const NONE: Option<Sighting> = Some(Sighting::Nothing);
-
     #[test]
     fn an_assumed_marker_is_seen_at_each_visit_of_its_junction() {
-        let centres = [[0.0, 0.0], [20.0, 0.0], [0.5, -0.5]];
-        let (mut events, junctions) = visits(&centres);
-        let place = MarkerPlace { position: [0.0, 2.0], heading: Some(FRAC_PI_2 - 0.7) };
-        assert_eq!(assume_marker(&mut events, &junctions, &Directional, place), Ok(2));
-        let north = Some(Sighting::Pointing(Door(1)));
-        assert_eq!(sightings(&events), [north, NONE, north]);
-        assert_eq!(assume_marker(&mut events, &junctions, &Undirected, place), Ok(2));
-        let lies = Some(Sighting::Lying(1));
-        assert_eq!(sightings(&events), [lies, NONE, lies]);
-        // In no junction.
-        let place = MarkerPlace { position: [10.0, 0.0], heading: None };
-        assert_eq!(assume_marker(&mut events, &junctions, &Undirected, place), Ok(0));
-        let without = assume_marker(&mut events, &junctions, &Directional, place);
-        assert_eq!(without, Err(MarkedVisitsError::NoHeading));
-        let without = assume_marker(&mut events, &junctions, &NoMarker, place);
-        assert_eq!(without, Err(MarkedVisitsError::Marker("none")));
+        let (mut events, junctions) = visits([[0.0, 0.0], [20.0, 0.0], [0.5, -0.5]]);
+        let here = MarkerPlace { position: [0.0, 2.0], heading: Some(FRAC_PI_2 - 0.7) };
+        let nowhere = MarkerPlace { position: [10.0, 0.0], heading: None };
+        for (marker, place, seen, expected) in [
+            (&Directional as &dyn Marker, here, Ok(2), [along(1), NONE, along(1)]),
+            (&Undirected, here, Ok(2), [LIES, NONE, LIES]),
+            (&Undirected, nowhere, Ok(0), [NONE; 3]),
+            (&Directional, nowhere, Err(MarkedVisitsError::NoHeading), [NONE; 3]),
+            (&NoMarker, here, Err(MarkedVisitsError::Marker("none")), [NONE; 3]),
+        ] {
+            assert_eq!(assume_marker(&mut events, &junctions, marker, place), seen);
+            assert_eq!(sightings(&events), expected);
+        }
     }
 
     #[test]
     fn the_marker_at_the_start_points_along_the_way_back() {
-        let (mut events, mut junctions) = visits(&[[3.0, 4.0], [20.0, 0.0], [3.0, 4.0]]);
+        let (mut events, mut junctions) = visits([[3.0, 4.0], [20.0, 0.0], [3.0, 4.0]]);
         let place = marker_at_start(&junctions).unwrap();
         assert_eq!(place, MarkerPlace { position: [3.0, 4.0], heading: Some(PI) });
         assume_marker(&mut events, &junctions, &Directional, place).unwrap();
-        let back = Some(Sighting::Pointing(Door(0)));
-        assert_eq!(sightings(&events), [back, NONE, back]);
+        assert_eq!(sightings(&events), [along(0), NONE, along(0)]);
         // A visit that is undecided has no doors.
         junctions[0].doors.clear();
         assert_eq!(marker_at_start(&junctions).unwrap().position, [20.0, 0.0]);
@@ -260,27 +251,22 @@ mod tests {
 
     #[test]
     fn a_sighting_belongs_to_the_visit_nearest_in_time() {
-        let (mut events, junctions) = visits(&[[0.0, 0.0], [20.0, 0.0], [0.0, 0.0]]);
+        let (mut events, junctions) = visits([[0.0, 0.0], [20.0, 0.0], [0.0, 0.0]]);
         let at = |milliseconds: u64, position, heading| {
             (milliseconds * 1_000_000, FiducialSighting { position, heading })
         };
         // Seen before the last visit, west on average; and a tag in a corridor.
-        let seen = [
-            at(26_000, [1.0, 0.0], PI - 0.9),
-            at(28_000, [1.0, 0.5], PI + 0.8),
-            at(12_000, [10.0, 0.0], 0.0),
-        ];
-        assert_eq!(mark_visits(&mut events, &junctions, &Directional, &seen), Ok(1));
-        assert_eq!(sightings(&events), [NONE, NONE, Some(Sighting::Pointing(Door(0)))]);
-        assert_eq!(mark_visits(&mut events, &junctions, &Undirected, &seen[..1]), Ok(0));
-        assert_eq!(sightings(&events), [NONE, NONE, Some(Sighting::Lying(1))]);
-        // The first visit ended at 11 s, the last one began at 30 s. North on average.
-        let [before, after] = [20_400, 20_600].map(|time| at(time, [1.0, 0.0], 1.5));
-        for (seen, expected) in [
-            (before, [Some(Sighting::Pointing(Door(1))), NONE, NONE]),
-            (after, [NONE, NONE, Some(Sighting::Pointing(Door(1)))]),
+        let last = [at(26_000, [1.0, 0.0], PI - 0.9), at(28_000, [1.0, 0.5], PI + 0.8)];
+        let and_elsewhere = [last[0], last[1], at(12_000, [10.0, 0.0], 0.0)];
+        // The first visit ended at 11 s, the last one began at 30 s.
+        let [before, after] = [20_400, 20_600].map(|time| [at(time, [1.0, 0.0], 1.5)]);
+        for (marker, seen, elsewhere, expected) in [
+            (&Directional as &dyn Marker, &and_elsewhere[..], 1, [NONE, NONE, along(0)]),
+            (&Undirected, &last[..1], 0, [NONE, NONE, LIES]),
+            (&Directional, &before, 0, [along(1), NONE, NONE]),
+            (&Directional, &after, 0, [NONE, NONE, along(1)]),
         ] {
-            assert_eq!(mark_visits(&mut events, &junctions, &Directional, &[seen]), Ok(0));
+            assert_eq!(mark_visits(&mut events, &junctions, marker, seen), Ok(elsewhere));
             assert_eq!(sightings(&events), expected);
         }
     }

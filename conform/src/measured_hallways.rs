@@ -21,9 +21,7 @@ use super::{
 /// How many hallways of a run were measured by odometry, and compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MeasuredHallways {
-    /// The number of moves.
     pub moves: usize,
-    /// The number of moves with a measurement.
     pub measured: usize,
     /// The number of those whose hallway was measured before.
     pub compared: usize,

@@ -20,9 +20,8 @@ pub(super) struct MessageClock<T> {
     together: Vec<T>,
     /// Those before them that are few, too, until many have stood together.
     apart: Vec<T>,
-    /// Whether many have stood together.
+    /// Whether many have stood together, and whether the last ones are many.
     is_set: bool,
-    /// Whether the last messages are many.
     are_many: bool,
     skipped: u64,
 }
@@ -79,15 +78,11 @@ impl<T> MessageClock<T> {
 mod tests {
     use super::*;
 
-    const SECOND: u64 = 1_000_000_000;
-
     /// The times in seconds that are not skipped, and the number of those that are.
-    fn kept(times: impl IntoIterator<Item = u64>) -> (Vec<u64>, u64) {
+    fn kept(times: &[u64]) -> (Vec<u64>, u64) {
         let mut clock = MessageClock::default();
-        let mut kept = Vec::new();
-        for time in times {
-            kept.extend(clock.next(time * SECOND, time));
-        }
+        let next = |&time: &u64| clock.next(time * 1_000_000_000, time);
+        let mut kept: Vec<u64> = times.iter().flat_map(next).collect();
         let (rest, skipped) = clock.finish();
         kept.extend(rest);
         (kept, skipped)
@@ -95,27 +90,26 @@ mod tests {
 
     #[test]
     fn a_message_far_from_all_others_is_skipped() {
-        let steady = || 5000..5100;
-        let all: Vec<_> = steady().collect();
-        assert_eq!(kept(steady()), (all.clone(), 0));
-        assert_eq!(kept(steady().chain([4_294_970_000])), (all.clone(), 1));
-        assert_eq!(kept([0, 1].into_iter().chain(steady())), (all.clone(), 2));
-        // An hour is a pause; more messages than a few are not wrong.
-        assert_eq!(kept(steady().chain([5099 + 3600])).1, 0);
-        assert_eq!(kept(steady().chain([5099 + 3601])), (all, 1));
-        let later = 9_000_000..9_000_000 + MANY as u64;
-        assert_eq!(
-            kept(steady().chain(later)),
-            (steady().chain(9_000_000..9_000_010).collect(), 0)
-        );
-    }
-
-    #[test]
-    fn in_a_log_of_a_few_messages_none_is_skipped() {
-        let few = [0, 5000, 5001, 4_294_970_000];
-        assert_eq!(kept(few), (few.to_vec(), 0));
-        // Nor if there are many, each far from the next.
-        let hours: Vec<_> = (0..2 * WAITING as u64).map(|hour| hour * 7200).collect();
-        assert_eq!(kept(hours.clone()), (hours, 0));
+        let steady: Vec<u64> = (5000..5100).collect();
+        let with = |before: &[u64], after: &[u64]| [before, &steady, after].concat();
+        let many: Vec<u64> = (9_000_000..9_000_000 + MANY as u64).collect();
+        let hours: Vec<u64> = (0..2 * WAITING as u64).map(|hour| hour * 7200).collect();
+        let few = vec![0, 5000, 5001, 4_294_970_000];
+        for (times, expected) in [
+            (steady.clone(), &steady),
+            (with(&[], &[4_294_970_000]), &steady),
+            (with(&[0, 1], &[]), &steady),
+            // An hour is a pause.
+            (with(&[], &[5099 + 3600]), &with(&[], &[5099 + 3600])),
+            (with(&[], &[5099 + 3601]), &steady),
+            // More messages than a few are not wrong, ...
+            (with(&[], &many), &with(&[], &many)),
+            // ... nor are all of a log: a few, or many, each far from the next.
+            (few.clone(), &few),
+            (hours.clone(), &hours),
+        ] {
+            let skipped = times.len() - expected.len();
+            assert_eq!(kept(&times), (expected.clone(), skipped as u64), "{times:?}");
+        }
     }
 }

@@ -21,9 +21,7 @@ const LATE: u64 = 1_000_000_000;
 pub struct SensedScene {
     /// Its message, or that of its image.
     pub source: EventSource,
-    /// The scene.
     pub scene: Scene,
-    /// The odometry at that time.
     pub odometry: Odometry,
 }
 
@@ -45,34 +43,20 @@ struct Timed<T> {
 /// Why the odometry at the time of a scene is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SceneClockError {
-    /// The clock of one topic goes back.
+    /// The clock of one topic goes back, from the latest time before it to this one, in nanoseconds.
     #[error(
         "message {message}: its clock goes back, from {:.3} s to {:.3} s",
         *.before as f64 / 1e9,
         *.time as f64 / 1e9
     )]
-    Back {
-        /// The number of the message.
-        message: u64,
-        /// Its time, in nanoseconds.
-        time: u64,
-        /// The latest time before it on its topic.
-        before: u64,
-    },
-    /// Many images or scenes together have another clock than the odometry.
+    Back { message: u64, time: u64, before: u64 },
+    /// Many images or scenes together, of which this is the first, have another clock than the odometry.
     #[error(
         "message {message}: its time, {:.3} s, is more than an hour from that of all odometry, as are those of \
          all {many} images or scenes from there on; they have another clock",
         *.time as f64 / 1e9
     )]
-    Other {
-        /// The number of the first message of them.
-        message: u64,
-        /// Its time, in nanoseconds.
-        time: u64,
-        /// Their number.
-        many: usize,
-    },
+    Other { message: u64, time: u64, many: usize },
 }
 
 impl PlacedScenes {
@@ -174,18 +158,15 @@ mod tests {
     const SECOND: u64 = 1_000_000_000;
     const FAR: u64 = 4_294_970_000;
 
-    /// Where the robot was at the scenes, which have the times in seconds of this log: odometry and scenes, in
+    /// Where the robot was at the scenes, which have these times in seconds: the odometry, and the scenes, in
     /// turn. It drives a metre in a second.
-    fn places(
-        odometry: impl IntoIterator<Item = u64>,
-        scenes: impl IntoIterator<Item = u64>,
-    ) -> Result<(Vec<f64>, u64), SceneClockError> {
+    fn places(odometry: &[u64], scenes: &[u64]) -> Result<(Vec<f64>, u64), SceneClockError> {
         let mut log = PlacedScenes::default();
-        for (index, time) in odometry.into_iter().enumerate() {
+        for (index, time) in odometry.iter().enumerate() {
             let at = Odometry { position: [index as f64, 0.0], heading: 0.0 };
             log.add_odometry(EventId(index as u64), time * SECOND, at);
         }
-        for (index, time) in scenes.into_iter().enumerate() {
+        for (index, time) in scenes.iter().enumerate() {
             let source = EventSource { id: EventId(100 + index as u64), ..EventSource::default() };
             let scene = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
             log.add_scene(source, time * SECOND, scene);
@@ -194,81 +175,78 @@ mod tests {
         Ok((placed.iter().map(|scene| scene.odometry.position[0]).collect(), skipped))
     }
 
+    fn times(range: std::ops::Range<u64>) -> Vec<u64> {
+        range.collect()
+    }
+
     /// These times with other ones in the place of some.
-    fn with(times: std::ops::Range<u64>, others: &[(usize, u64)]) -> Vec<u64> {
-        let mut times: Vec<_> = times.collect();
-        for &(index, other) in others {
-            times[index] = other;
-        }
+    fn with(range: std::ops::Range<u64>, others: &[(usize, u64)]) -> Vec<u64> {
+        let mut times = times(range);
+        others.iter().for_each(|&(index, other)| times[index] = other);
         times
     }
 
     #[test]
-    fn a_few_scenes_and_readings_with_a_wrong_time_are_skipped() {
-        let steady = || 5000..5030;
-        assert_eq!(places(steady(), [5003, 5004]), Ok((vec![3.0, 4.0], 0)));
-        // A scene that is far from all odometry has no place.
-        assert_eq!(places(steady(), [5003, FAR, 5004, 0]), Ok((vec![3.0, 4.0], 2)));
-        // The scenes lie between the readings that are right.
-        let jumped = with(steady(), &[(3, FAR), (20, 0)]);
-        assert_eq!(places(jumped, [5003, 5020]), Ok((vec![3.0, 20.0], 2)));
-        // An hour is no jump.
-        assert_eq!(places(steady(), [5003, 5029 + 3600]), Ok((vec![3.0, 29.0], 0)));
-        assert_eq!(places(steady(), [5003, 5029 + 3601]), Ok((vec![3.0], 1)));
+    fn a_few_scenes_and_readings_with_a_wrong_time_are_skipped_and_late_ones_put_in_order() {
+        let steady = times(5000..5030);
+        let alone: Vec<u64> = (5003..5015).flat_map(|time| [time, FAR]).collect();
+        let each: Vec<f64> = (3..15).map(f64::from).collect();
+        for (odometry, scenes, expected, skipped) in [
+            (&steady, &[5003, 5004][..], &[3.0, 4.0][..], 0),
+            // A scene that is far from all odometry has no place.
+            (&steady, &[5003, FAR, 5004, 0], &[3.0, 4.0], 2),
+            (&steady, &alone, &each, 12),
+            // The scenes lie between the readings that are right.
+            (&with(5000..5030, &[(3, FAR), (20, 0)]), &[5003, 5020], &[3.0, 20.0], 2),
+            // An hour is no jump.
+            (&steady, &[5003, 5029 + 3600], &[3.0, 29.0], 0),
+            (&steady, &[5003, 5029 + 3601], &[3.0], 1),
+            // The reading of the time 6 s is the sixth of the log, that of 5 s the seventh.
+            (&with(0..20, &[(5, 6), (6, 5)]), &[6, 5], &[6.0, 5.0], 0),
+            (&steady, &[], &[], 0),
+        ] {
+            assert_eq!(places(odometry, scenes), Ok((expected.to_vec(), skipped)), "{scenes:?}");
+        }
     }
 
     #[test]
-    fn messages_that_are_late_by_a_second_are_put_in_order() {
-        // The reading of the time 6 s is the sixth of the log, that of 5 s the seventh.
-        let late = with(0..20, &[(5, 6), (6, 5)]);
-        assert_eq!(places(late, [6, 5]), Ok((vec![6.0, 5.0], 0)));
-    }
-
-    #[test]
-    fn a_clock_that_goes_back_is_an_error_with_its_message() {
-        let back = |message, time, before| {
-            let [time, before] = [time, before].map(|seconds: u64| seconds * SECOND);
+    fn a_clock_that_goes_back_and_one_of_the_scenes_alone_are_errors() {
+        let back = |message, time: u64, before: u64| {
+            let (time, before) = (time * SECOND, before * SECOND);
             Err(SceneClockError::Back { message, time, before })
         };
-        assert_eq!(places(0..20, [6, 4]), back(101, 4, 6));
-        assert_eq!(places(with(0..20, &[(5, 7)]), [6]), Ok((vec![6.0], 0)));
-        assert_eq!(places(with(0..20, &[(5, 8)]), [6]), back(6, 6, 8));
-        // Many readings are not skipped.
-        let far = (0..20).chain(FAR..FAR + MANY as u64).chain(20..40);
-        assert_eq!(places(far, [6]), back(30, 20, FAR + MANY as u64 - 1));
-    }
-
-    #[test]
-    fn scenes_with_another_clock_than_the_odometry_are_an_error() {
-        let other = |message, seconds: u64, many| {
-            Err(SceneClockError::Other { message, time: seconds * SECOND, many })
+        let other = |message, time: u64, many| {
+            Err(SceneClockError::Other { message, time: time * SECOND, many })
         };
-        assert_eq!(places(0..20, (3..9).chain(FAR..FAR + 9)).unwrap().1, 9);
-        assert_eq!(places(0..20, (3..9).chain(FAR..FAR + 10)), other(106, FAR, 10));
-        // Many, each beside one that is right.
-        let alone: Vec<u64> = (3..15).flat_map(|time| [time, FAR]).collect();
-        assert_eq!(places(0..20, alone).unwrap().1, 12);
+        let steady = times(0..20);
+        assert_eq!(places(&steady, &[6, 4]), back(101, 4, 6));
+        assert!(places(&with(0..20, &[(5, 7)]), &[6]).is_ok());
+        assert_eq!(places(&with(0..20, &[(5, 8)]), &[6]), back(6, 6, 8));
+        // Many readings are not skipped.
+        let far = [times(0..20), times(FAR..FAR + MANY as u64), times(20..40)].concat();
+        assert_eq!(places(&far, &[6]), back(30, 20, FAR + MANY as u64 - 1));
+        let scenes = |many: u64| [times(3..9), times(FAR..FAR + many)].concat();
+        assert_eq!(places(&steady, &scenes(9)).unwrap().1, 9);
+        assert_eq!(places(&steady, &scenes(10)), other(106, FAR, 10));
         // All of them, although they are few.
-        assert_eq!(places(0..20, [FAR, FAR + 1]), other(100, FAR, 2));
-        assert_eq!(places([], [5]), other(100, 5, 1));
-        assert_eq!(places(0..20, []), Ok((vec![], 0)));
+        assert_eq!(places(&steady, &[FAR, FAR + 1]), other(100, FAR, 2));
+        assert_eq!(places(&[], &[5]), other(100, 5, 1));
     }
 
     #[test]
     fn between_two_readings_a_robot_is_between_two_places() {
         let odometry = |x, heading| Odometry { position: [x, 0.0], heading };
         let track = [(10, odometry(0.0, 3.0)), (20, odometry(1.0, -3.0))];
-        let at = |time| at(&track, time).unwrap();
-        assert_eq!(
-            (at(5), at(10), at(20), at(30)),
-            (track[0].1, track[0].1, track[1].1, track[1].1)
-        );
-        let half = at(15);
+        for (time, place) in [(5, track[0].1), (10, track[0].1), (20, track[1].1), (30, track[1].1)]
+        {
+            assert_eq!(at(&track, time), Some(place));
+        }
+        let half = at(&track, 15).unwrap();
         assert_eq!(half.position, [0.5, 0.0]);
         assert!((half.heading.abs() - std::f64::consts::PI).abs() < 1e-12, "{half:?}");
-        assert_eq!(super::at(&[], 5), None);
+        assert_eq!(at(&[], 5), None);
         // A CARMEN log has the odometry of a scan after that of the wheels, with the same time.
         let scan = odometry(5.0, 3.0);
-        assert_eq!(super::at(&[track[0], (10, scan), track[1]], 10), Some(scan));
+        assert_eq!(at(&[track[0], (10, scan), track[1]], 10), Some(scan));
     }
 }

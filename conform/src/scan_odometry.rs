@@ -15,21 +15,20 @@ pub(super) struct PlacedScan {
     pub odometry: Odometry,
 }
 
+/// Readings farther apart than this, in nanoseconds, are not of the same clock, or have a gap in between.
+const GAP: u64 = 1_000_000_000;
+/// More scans do not wait.
+const WAITING: usize = 50;
+
 /// Scans that wait for the next odometry.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ScanOdometry {
     /// The last odometry, with its time.
     last: Option<(u64, Odometry)>,
-    /// With the time of each.
     waiting: VecDeque<(u64, PlacedScan)>,
     /// The number of scans that waited in vain.
     without_odometry: u64,
 }
-
-/// Readings farther apart than this, in nanoseconds, are not of the same clock, or have a gap in between.
-const GAP: u64 = 1_000_000_000;
-/// More scans do not wait.
-const WAITING: usize = 50;
 
 impl ScanOdometry {
     /// Takes the next odometry. Returns the scans that have waited for it.
@@ -102,6 +101,7 @@ mod tests {
         Odometry { position: [x, 0.0], heading: 0.0 }
     }
 
+    /// A scan that has the odometry -1 before it in the log.
     fn scan() -> PlacedScan {
         let geometry =
             ScanGeometry { angle_min: 0.0, angle_increment: 1.0, range_min: 0.1, range_max: 9.0 };
@@ -109,38 +109,30 @@ mod tests {
         PlacedScan { source: EventSource::default(), scan: Arc::new(scan), odometry: at(-1.0) }
     }
 
-    fn places(scans: &[PlacedScan]) -> Vec<f64> {
-        scans.iter().map(|scan| scan.odometry.position[0]).collect()
-    }
-
     #[test]
-    fn a_scan_between_two_readings_is_between_two_places() {
-        let mut placing = ScanOdometry::default();
-        assert!(placing.odometry(10 * SECOND, at(1.0)).is_empty());
-        assert!(placing.scan(10 * SECOND + SECOND / 4, scan()).is_none());
-        assert_eq!(places(&placing.odometry(10 * SECOND + SECOND / 2, at(2.0))), [1.5]);
-        // A scan with the time of the last reading does not wait.
-        let now = placing.scan(10 * SECOND + SECOND / 2, scan());
-        assert_eq!(places(now.as_slice()), [2.0]);
-    }
-
-    #[test]
-    fn where_the_clock_jumps_the_odometry_before_the_scan_counts() {
-        let mut placing = ScanOdometry::default();
-        placing.odometry(10 * SECOND, at(1.0));
-        placing.scan(4_294_970_000 * SECOND, scan());
-        assert_eq!(places(&placing.odometry(11 * SECOND, at(2.0))), [-1.0]);
-        // After a gap too.
-        placing.scan(12 * SECOND, scan());
-        assert_eq!(places(&placing.odometry(60 * SECOND, at(3.0))), [-1.0]);
+    fn a_scan_between_two_readings_is_between_two_places_unless_the_clock_jumps() {
+        let places = |scans: &[PlacedScan]| {
+            scans.iter().map(|scan| scan.odometry.position[0]).collect::<Vec<_>>()
+        };
+        for (time, next, expected) in [
+            (10 * SECOND + SECOND / 4, 10 * SECOND + SECOND / 2, 1.5),
+            (4_294_970_000 * SECOND, 11 * SECOND, -1.0),
+            // After a gap.
+            (12 * SECOND, 60 * SECOND, -1.0),
+        ] {
+            let mut placing = ScanOdometry::default();
+            assert!(placing.odometry(10 * SECOND, at(1.0)).is_empty());
+            assert!(placing.scan(time, scan()).is_none());
+            assert_eq!(places(&placing.odometry(next, at(2.0))), [expected]);
+            // A scan with the time of the last reading does not wait.
+            assert_eq!(places(placing.scan(next, scan()).as_slice()), [2.0]);
+        }
     }
 
     #[test]
     fn without_odometry_no_scan_has_a_place() {
         let mut placing = ScanOdometry::default();
-        for time in 0..200 {
-            assert!(placing.scan(time, scan()).is_none());
-        }
+        assert!((0..200).all(|time| placing.scan(time, scan()).is_none()));
         assert_eq!(placing.without_odometry(), 150);
         assert!(placing.finish().is_none());
     }

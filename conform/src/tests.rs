@@ -91,13 +91,15 @@ impl Log {
     }
 
     fn inferred(&self) -> Vec<CheckedEvent> {
-        let mut inferred = InferredEvents::new(true);
-        for (message, (timed, line)) in self.lines.iter().enumerate() {
-            if let EventKind::Frame(Frame { scene: Some(scene), .. }) = line {
-                inferred.see(source(message, timed), scene, &timed.odometry);
-            }
-        }
-        inferred.finish()
+        let seen = |(message, (timed, line)): (usize, &(TimedOdometry, EventKind))| match line {
+            EventKind::Frame(Frame { scene: Some(scene), .. }) => Some(SensedScene {
+                source: source(message, timed),
+                scene: scene.clone(),
+                odometry: timed.odometry,
+            }),
+            _ => None,
+        };
+        infer_events(&self.lines.iter().enumerate().filter_map(seen).collect::<Vec<_>>(), true)
     }
 }
 

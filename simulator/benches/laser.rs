@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use divan::{Bencher, counter::ItemsCount};
-use toposlam_conform::{EventSource, LaserEvents};
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_simulator::{
     LaserScanner, ScannedBuilding, ScannerParams,
@@ -15,7 +14,10 @@ use toposlam_simulator::{
         walk::{LaserWalk, WalkStep},
     },
 };
-use toposlam_vision::laser::{params::LaserParams, scan::Scan, scene::ScanPlaceSensor};
+use toposlam_vision::{
+    laser::{params::LaserParams, scan::Scan, scene::ScanPlaceSensor},
+    visits::Visits,
+};
 
 fn main() {
     divan::main();
@@ -38,16 +40,16 @@ fn scans() -> Vec<(Scan, Odometry)> {
     walk.steps.iter().enumerate().map(scan).collect()
 }
 
-/// Visits from scans: the whole of sensing, and the events.
+/// Visits from scans: the whole of sensing.
 #[divan::bench(sample_count = 5)]
 fn visits(bencher: Bencher) {
     let scans = scans();
     bencher.counter(ItemsCount::new(scans.len())).bench(|| {
-        let mut events = LaserEvents::new(LaserParams::default());
+        let mut visits = Visits::by_laser(LaserParams::default());
         for (scan, odometry) in &scans {
-            events.see(EventSource::default(), scan, odometry);
+            visits.see((), scan, odometry);
         }
-        events.finish()
+        visits.finish()
     });
 }
 

@@ -9,7 +9,7 @@ use std::{
 };
 
 use nalgebra::{Isometry2, Vector2};
-use toposlam_conform::{CheckedKind, EventSource, LaserEvents, RunEvents, UndecidedCause};
+use toposlam_conform::{CheckedKind, EventSource, RunEvents, UndecidedCause, visit_events};
 use toposlam_logs::{
     entries::Content,
     reader::Log,
@@ -24,6 +24,7 @@ use toposlam_vision::{
         params::LaserParams,
         scan::{Scan, ScanGeometry},
     },
+    visits::Visits,
 };
 
 /// A straight corridor: the ends of its middle line, and its width.
@@ -106,12 +107,12 @@ fn events_of_scanner(
     way: &[[f64; 2]],
     drift: f64,
 ) -> RunEvents {
-    let mut inferred = LaserEvents::new(*params);
+    let mut inferred = Visits::by_laser(*params);
     for (number, (scan, odometry)) in drive(degrees, corridors, way, drift).iter().enumerate() {
         let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
         inferred.see(source, scan, odometry);
     }
-    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+    RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() }
 }
 
 /// The scans of that robot, and its odometry.
@@ -277,11 +278,12 @@ fn junctions_are_not_known_where_a_robot_drives_backwards_with_a_scanner_that_do
     for degrees in [90, 180, 270, 340, 350, 360] {
         // In reverse order, the scans of a robot that drives towards the first end are those of one that drives
         // away from it, backwards.
-        let mut inferred = LaserEvents::new(LaserParams::default());
+        let mut inferred = Visits::by_laser(LaserParams::default());
         for (scan, odometry) in drive(degrees, &comb(), &back, 0.0).iter().rev() {
             inferred.see(EventSource::default(), scan, odometry);
         }
-        let events = RunEvents { events: inferred.finish(), ..RunEvents::default() };
+        let events =
+            RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() };
         let first = &events.events[0].kind;
         if degrees < 345 {
             assert_eq!(*first, CheckedKind::Undecided(UndecidedCause::UnseenWay), "{degrees}");
@@ -386,12 +388,12 @@ fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
 }
 
 fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
-    let mut inferred = LaserEvents::new(*params);
+    let mut inferred = Visits::by_laser(*params);
     for (number, (scan, odometry)) in scans.iter().enumerate() {
         let source = EventSource { time: number as u64, ..EventSource::default() };
         inferred.see(source, scan, odometry);
     }
-    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+    RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() }
 }
 
 /// The visits in a recorded log are those that were marked by hand.

@@ -16,7 +16,7 @@
 //! * [`sensing`]: all of these steps;
 //! * [`annotate`]: a picture of each step.
 //!
-//! And [`laser`]: sensing with a laser scanner.
+//! And [`laser`]: sensing with a laser scanner; [`place`] and [`visits`]: what both see, and the visits of places.
 
 // Tests compare numbers exactly and list many wrong files.
 #![cfg_attr(test, allow(clippy::float_cmp, clippy::too_many_lines))]
@@ -41,7 +41,9 @@ pub mod line;
 pub mod marker;
 pub mod outline;
 pub mod params;
+pub mod place;
 pub mod sensing;
+pub mod visits;
 pub mod wall;
 
 #[cfg(test)]

@@ -1,8 +1,12 @@
 //! Sensing: from an image to a scene. Section 3, Figure 5.
 
 use image::RgbImage;
+use nalgebra::{Isometry2, Point2};
 use thiserror::Error;
-use toposlam_model::driving::scene::{Place, Reason, Scene};
+use toposlam_model::driving::{
+    odometry::Odometry,
+    scene::{Place, Reason, Scene},
+};
 
 use crate::{
     boundary::{Bearings, Boundary},
@@ -10,12 +14,14 @@ use crate::{
     cluster::{Cluster, clusters},
     colour::{ColourModel, ColourTable, FloorRing, Stripe, StripeKind},
     corner::{Corner, corners},
+    geometry::from_robot,
     ground_view::{GroundView, Unwrapping},
     hallway::{FittedHallway, hallway},
     junction::{FittedJunction, JunctionSearch, junction},
     line::{WallLine, lines},
     marker::marker,
     params::SensingParams,
+    place::{PlaceArm, PlaceSensor, PlaceView, SeenPlace, ViewSector},
     wall::{WallFrame, WallSegment, confirmed},
 };
 
@@ -30,6 +36,34 @@ pub struct Sensor {
     colours: ColourTable,
     view: GroundView,
     params: SensingParams,
+}
+
+/// Sees places in the scenes of a camera, sensed now or recorded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SceneSensor;
+
+impl PlaceSensor for SceneSensor {
+    type Frame = Scene;
+
+    fn view(&mut self, scene: &Scene, odometry: &Odometry) -> Option<PlaceView> {
+        let places = match &scene.place {
+            Place::Junction(junction) => {
+                let doors = junction.doors.iter().map(|door| odometry.whither(door.direction));
+                let centre = from_robot(odometry) * Point2::from(junction.turning_point);
+                let arms = doors.map(PlaceArm::certain).collect();
+                vec![SeenPlace { centre, clearance: 0.0, arms }]
+            }
+            Place::Hallway(_) | Place::Unknown(_) => Vec::new(),
+        };
+        Some(PlaceView {
+            robot: *odometry,
+            odometry_from_map: Isometry2::identity(),
+            possible_places: places.clone(),
+            places,
+            sector: ViewSector::ALL_AROUND,
+            scene: Some(scene.clone()),
+        })
+    }
 }
 
 /// An image of another size than the camera's.

@@ -12,6 +12,7 @@ use toposlam_model::{
     marker::{Marker, NoMarker, Undirected},
     trace::{Trace, TraceEventKind},
 };
+use toposlam_vision::visits::ApproachParams;
 
 use super::{
     oracle::{Position, is_explained_by_small, takes_doors, witness},
@@ -120,7 +121,7 @@ impl Options {
         let mut events = log.recorded();
         if self.inferred {
             events.events = log.inferred();
-            events.measurement_noise.standing = params::SceneEventParams::DEFAULT.near;
+            events.measurement_noise.standing = ApproachParams::DEFAULT.near;
         }
         for event in &mut events.events {
             match &mut event.kind {

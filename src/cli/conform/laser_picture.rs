@@ -78,7 +78,7 @@ fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError>
 /// The visits, with the door of each.
 fn visits(events: &RunEvents, junctions: &[VisitedJunction]) -> Vec<DrawnVisit> {
     let visit = |junction: &VisitedJunction| {
-        let VisitedJunction { event, centre, clearance, ref doors } = *junction;
+        let VisitedJunction { event, centre, clearance, ref doors, .. } = *junction;
         let exit = match events.events.get(event + 1).map(|event| &event.kind) {
             Some(CheckedKind::Door { door, .. }) => Some(door.0 as usize),
             _ => None,

@@ -13,11 +13,11 @@ use toposlam_model::enumerate::Watch;
 use toposlam_vision::{
     geometry::from_robot,
     laser::{
-        junctions::LaserJunction,
         pictures,
         scan::Scan,
-        sensor::{LaserSensor, LaserView},
+        sensor::{LaserSensor, LocalMap},
     },
+    place::{PlaceSensor, PlaceView, SeenPlace},
 };
 
 use super::SenseArguments;
@@ -48,13 +48,13 @@ struct JunctionLine {
 }
 
 impl JunctionLine {
-    fn new(junction: &LaserJunction, view: &LaserView) -> Self {
+    fn new(junction: &SeenPlace, view: &PlaceView) -> Self {
         let robot_from_map = from_robot(&view.robot).inverse();
-        let door = |&arm: &f64| rounded_angle(view.robot.seen(arm), std::f64::consts::PI);
+        let door = |arm: f64| rounded_angle(view.robot.seen(arm), std::f64::consts::PI);
         Self {
             degree: junction.arms.len(),
             position: (robot_from_map * junction.centre).map(rounded).into(),
-            doors: junction.arms.iter().map(door).collect(),
+            doors: junction.directions().map(door).collect(),
         }
     }
 
@@ -104,13 +104,13 @@ impl SenseArguments {
             if self.scans.as_ref().is_some_and(|scans| scan_number > scans.last) {
                 break;
             }
-            let Some(view) = sensor.see(&scan, &odometry) else { continue };
+            let Some(view) = sensor.view(&scan, &odometry) else { continue };
             if self.scans.as_ref().is_some_and(|scans| scan_number < scans.first) {
                 continue;
             }
             let stamp = entry.stamp.nanoseconds() as f64 / 1e9;
             self.print_scan(path, scan_number, stamp, &view, out)?;
-            self.write_stages(path, scan_number, &view, &scan)?;
+            self.write_stages(path, scan_number, &view, sensor.map(), &scan)?;
         }
         match self.scans {
             Some(scans) if scans.first >= number => {
@@ -126,11 +126,11 @@ impl SenseArguments {
         path: &Path,
         scan: u64,
         stamp: f64,
-        view: &LaserView,
+        view: &PlaceView,
         out: &mut dyn Write,
     ) -> Result<(), CliError> {
-        let line = |junction: &LaserJunction| JunctionLine::new(junction, view);
-        let mut junctions: Vec<_> = view.junctions.iter().map(line).collect();
+        let line = |junction: &SeenPlace| JunctionLine::new(junction, view);
+        let mut junctions: Vec<_> = view.places.iter().map(line).collect();
         let far = |junction: &JunctionLine| junction.position[0].hypot(junction.position[1]);
         junctions.sort_by(|one, other| far(one).total_cmp(&far(other)));
         if self.json {
@@ -149,14 +149,15 @@ impl SenseArguments {
         &self,
         path: &Path,
         number: u64,
-        view: &LaserView,
+        view: &PlaceView,
+        map: Option<&LocalMap>,
         scan: &Scan,
     ) -> Result<(), CliError> {
-        let Some(folder) = &self.stages else { return Ok(()) };
-        for (stage, picture) in &pictures::stages(view, scan) {
+        let (Some(folder), Some(map)) = (&self.stages, map) else { return Ok(()) };
+        for (stage, picture) in &pictures::stages(view, map, scan) {
             let mut name = input::stem(path);
             name.push(format!("-{number}-{stage}.png"));
-            let legend = pictures::legend(stage, view.grid.cell);
+            let legend = pictures::legend(stage, map.grid.cell);
             picture_file::write_stage(&folder.join(name), &legend, picture)?;
         }
         Ok(())

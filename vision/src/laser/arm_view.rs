@@ -13,7 +13,6 @@ use super::{
 };
 use crate::geometry::{direction, distance, unit};
 
-/// The view along an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ArmView {
     /// Free space is seen far enough on one straight line: what is beside it does not matter.
@@ -28,10 +27,8 @@ pub(super) enum ArmView {
     },
 }
 
-/// The parameters.
 const VIEW: ArmViewParams = ArmViewParams::DEFAULT;
 
-/// A ray on the local map.
 #[derive(Clone, Copy)]
 struct Ray {
     from: Point2<f64>,

@@ -1,13 +1,11 @@
-//! How far free cells of the local map are from walls and from what is unknown, and how far one sees.
+//! How far free cells of the local map are from walls and from what is unknown, by the Euclidean distance transform of
+//! Meijster, Roerdink and Hesselink (2000); and how far one sees.
 
-use std::f64::consts::SQRT_2;
+use std::{f64::consts::SQRT_2, ops::Range};
 
 use nalgebra::Point2;
 
-use super::{
-    distance::squared_distances,
-    grid::{Cell, Grid, floor},
-};
+use super::grid::{Cell, Grid, floor};
 use crate::geometry::unit;
 
 /// Squared distances of each free cell, in cells; the numbers of the others mean nothing.
@@ -20,20 +18,29 @@ pub struct Clearances {
 }
 
 impl Clearances {
-    /// The distances on a map.
-    #[must_use]
-    pub fn new(grid: &Grid) -> Self {
-        let is_free = |cell| cell == Cell::Free;
-        let wall =
-            squared_distances(grid.columns, &grid.cells, |cell| cell == Cell::Occupied, is_free);
-        let border = squared_distances(grid.columns, &grid.cells, |cell| !is_free(cell), is_free);
-        Self { wall, border }
+    pub(super) fn new(grid: &Grid) -> Self {
+        let distances =
+            |is_site: fn(Cell) -> bool| squared_distances(grid.columns, &grid.cells, is_site);
+        Self {
+            wall: distances(|cell| cell == Cell::Occupied),
+            border: distances(|cell| cell != Cell::Free),
+        }
+    }
+
+    /// Whether a free cell is beside the unknown, and not beside a wall, where that means nothing.
+    pub(super) fn is_unknown_border(&self, grid: &Grid, at: usize) -> bool {
+        grid.cells[at] == Cell::Free && self.border[at] == 1 && self.wall[at] >= 2
     }
 
     /// How far one sees on the map from a point in a direction: the length up to the first cell that is not
     /// free, or to a limit, in metres; and what that cell is. The line is sampled twice for each cell.
-    #[must_use]
-    pub fn sight(&self, grid: &Grid, from: Point2<f64>, direction: f64, limit: f64) -> (f64, Cell) {
+    pub(crate) fn sight(
+        &self,
+        grid: &Grid,
+        from: Point2<f64>,
+        direction: f64,
+        limit: f64,
+    ) -> (f64, Cell) {
         let step = grid.cell / 2.0;
         let last = ((limit / step).floor().max(-1.0) as i64).saturating_add(1);
         let (columns, rows) = (grid.columns as i64, grid.rows() as i64);
@@ -55,6 +62,83 @@ impl Clearances {
             let free = f64::from(self.border[index]).sqrt() - SQRT_2;
             sample = (sample + 1 + (2.0 * free).max(0.0) as i64).min(last);
         }
+    }
+}
+
+/// For each free cell of a rectangle with this many columns, the squared distance, in cells, to the nearest one of the
+/// sites. It is at least the square of the longer side if there is none. The numbers of the other cells mean nothing.
+fn squared_distances(columns: usize, cells: &[Cell], is_site: fn(Cell) -> bool) -> Vec<u32> {
+    let distances = column_distances(columns, cells, is_site);
+    let mut squared = vec![0; cells.len()];
+    let mut envelope = Vec::with_capacity(columns);
+    let rows = distances.chunks_exact(columns).zip(cells.chunks_exact(columns));
+    for ((row, cells), squared) in rows.zip(squared.chunks_exact_mut(columns)) {
+        // Sites divide a row: no cell is nearer to what is behind one.
+        let mut from = 0;
+        while from < columns {
+            let to = (from..columns).find(|&x| row[x] == 0).unwrap_or(columns);
+            if cells[from..to].contains(&Cell::Free) {
+                row_distances(row, from..to, &mut envelope, squared);
+            }
+            from = to + 1;
+        }
+    }
+    squared
+}
+
+/// The distance to the nearest site in the same column.
+fn column_distances(columns: usize, cells: &[Cell], is_site: fn(Cell) -> bool) -> Vec<i32> {
+    let far = (columns + cells.len() / columns.max(1)) as i32;
+    let mut distances: Vec<i32> =
+        cells.iter().map(|&cell| if is_site(cell) { 0 } else { far }).collect();
+    for at in columns..distances.len() {
+        distances[at] = distances[at].min(distances[at - columns] + 1);
+    }
+    for at in (0..distances.len().saturating_sub(columns)).rev() {
+        distances[at] = distances[at].min(distances[at + columns] + 1);
+    }
+    distances
+}
+
+/// The squared distances of cells of a row between two sites, or its ends: the lower envelope of the parabolas
+/// of their columns and of those of the sites.
+fn row_distances(
+    row: &[i32],
+    between: Range<usize>,
+    envelope: &mut Vec<(usize, usize)>,
+    squared: &mut [u32],
+) {
+    let value = |x: usize, site: usize| (x as i32 - site as i32).pow(2) + row[site].pow(2);
+    // The columns on the envelope, each with the first place where it is the lowest.
+    envelope.clear();
+    for site in between.start.saturating_sub(1)..(between.end + 1).min(row.len()) {
+        while let Some(&(below, from)) = envelope.last()
+            && value(from, below) > value(from, site)
+        {
+            envelope.pop();
+        }
+        let from = match envelope.last() {
+            None => between.start,
+            Some(&(below, _)) => {
+                let (one, other) = (below as i32, site as i32);
+                let off = other.pow(2) - one.pow(2) + row[site].pow(2) - row[below].pow(2);
+                // Most are neighbours, and a shift is faster than a division.
+                let apart = other - one;
+                let last = if apart == 1 { off >> 1 } else { off.div_euclid(2 * apart) };
+                usize::try_from(last + 1).unwrap_or_default()
+            }
+        };
+        if from < between.end {
+            envelope.push((site, from));
+        }
+    }
+    let mut lowest = envelope.iter().peekable();
+    let mut site = between.start;
+    for x in between {
+        while let Some(&(next, _)) = lowest.next_if(|&&(_, from)| from <= x) {
+            site = next;
+        }
+        squared[x] = u32::try_from(value(x, site)).unwrap_or(u32::MAX);
     }
 }
 
@@ -94,25 +178,49 @@ mod tests {
                 let part: f64 = part[axis];
                 grid.origin[axis] + part * grid.cell * sides[axis] as f64
             });
-            let seen = Clearances::new(&grid).sight(&grid, from.into(), direction, limit);
-            let (sine, cosine) = direction.sin_cos();
+            let from = Point2::from(from);
+            let seen = Clearances::new(&grid).sight(&grid, from, direction, limit);
             let step = grid.cell / 2.0;
-            let samples = (0_u32..).map(|number| f64::from(number) * step);
+            let start = (from - grid.origin) / grid.cell;
             let at = |length: f64| {
-                let place = [(length, cosine), (length, sine)].map(|(length, part)| {
-                    length / step * (0.5 * part)
-                });
-                let start = [0, 1].map(|axis| (from[axis] - grid.origin[axis]) / grid.cell);
-                let [column, row] = [0, 1].map(|axis| (start[axis] + place[axis]).floor());
-                let is_on = |at: f64, side: usize| (0.0..side as f64).contains(&at);
+                let [column, row] = (start + length / step * (0.5 * unit(direction))).into();
+                let is_on = |at: f64, side: usize| (0.0..side as f64).contains(&at.floor());
                 let is_on_map = is_on(column, sides[0]) && is_on(row, sides[1]);
-                let index = row as usize * columns + column as usize;
-                if is_on_map { grid.cells[index] } else { Cell::Unknown }
+                if is_on_map { grid.cells[row as usize * columns + column as usize] } else { Cell::Unknown }
             };
-            let expected = samples
-                .map(|length| (length, at(length)))
-                .find(|&(length, cell)| cell != Cell::Free || length > limit);
-            prop_assert_eq!(Some(seen), expected);
+            let mut samples = (0_u32..).map(|number| f64::from(number) * step);
+            let end = samples.find(|&length| at(length) != Cell::Free || length > limit).unwrap();
+            prop_assert_eq!(seen, (end, at(end)));
         }
+
+        #[test]
+        fn distances_are_those_to_the_nearest_site(
+            columns in 1_usize..12,
+            cells in prop::collection::vec(
+                prop_oneof![
+                    4 => Just(Cell::Unknown), 4 => Just(Cell::Free), 1 => Just(Cell::Occupied)
+                ],
+                1..100,
+            ),
+        ) {
+            let cells = &cells[..cells.len() / columns * columns];
+            prop_assume!(cells.contains(&Cell::Occupied));
+            let squared = squared_distances(columns, cells, |cell| cell == Cell::Occupied);
+            for (at, &distance) in squared.iter().enumerate() {
+                let off = |site: usize| {
+                    let [x, y] = [at % columns, at / columns];
+                    x.abs_diff(site % columns).pow(2) + y.abs_diff(site / columns).pow(2)
+                };
+                let sites = (0..cells.len()).filter(|&site| cells[site] == Cell::Occupied);
+                let is_nearest = Some(distance as usize) == sites.map(off).min();
+                prop_assert!(is_nearest || cells[at] != Cell::Free);
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_site_everything_is_far() {
+        let squared = squared_distances(5, &[Cell::Free; 20], |_| false);
+        assert!(squared.into_iter().all(|squared| squared >= 25));
     }
 }

@@ -9,7 +9,7 @@ use super::{
 };
 
 /// Measures the drift of the heading of odometry.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DriftMeter {
     params: LaserParams,
     matcher: ScanMatcher,
@@ -25,31 +25,20 @@ pub struct DriftMeter {
 
 /// The rounds of matching with which drift is measured and corrected.
 pub const ROUNDS: usize = DRIFT.rounds;
-/// The parameters.
 const DRIFT: DriftParams = DriftParams::DEFAULT;
 
 impl DriftMeter {
-    /// A meter that has seen nothing yet.
     #[must_use]
     pub fn new(mut params: LaserParams) -> Self {
         params.matching.rounds = ROUNDS;
         let matcher = ScanMatcher::new(params.matching);
-        Self { params, matcher, way: 0.0, last: None, begun: None, changes: Vec::new() }
+        Self { params, matcher, ..Self::default() }
     }
 
-    /// Takes the next scan, and the odometry at its time.
     pub fn see(&mut self, scan: &Scan, odometry: &Odometry) {
         let params = self.params.map;
-        if let Some(last) = self.last {
-            let driven = last.distance(odometry);
-            let turned = wrapped(odometry.heading - last.heading).abs();
-            // Neither is what is not a number.
-            if !(driven >= params.every || turned >= params.every_turn) {
-                return;
-            }
-            self.way += driven;
-        }
-        self.last = Some(*odometry);
+        let Some(driven) = params.driven(&mut self.last, odometry) else { return };
+        self.way += driven;
         self.matcher.see(scan, odometry, self.way, self.way - params.memory);
         let correction = self.matcher.correction().rotation.angle();
         let (begun, before) = *self.begun.get_or_insert((self.way, correction));

@@ -1,11 +1,8 @@
 //! The ends of the ways around the robot: where free space goes on unseen, and where it was seen to end.
 
-use super::{
-    clearances::Clearances,
-    counting_sort::sorted_by_key,
-    grid::{Cell, Grid},
-    params::LaserParams,
-};
+use std::cmp::Reverse;
+
+use super::{clearances::Clearances, grid::Grid, params::LaserParams};
 
 /// How a way ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +18,7 @@ pub enum WayEnd {
 /// An end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
-    /// Its cell.
     pub cell: usize,
-    /// How it ends.
     pub end: WayEnd,
     /// The width of the gap behind it, in metres.
     pub gap: f64,
@@ -102,7 +97,9 @@ pub(super) fn ends(
     let prominence = (params.arm.min_prominence / grid.cell * f64::from(STRAIGHT)) as u32;
     for cell in maxima(ways, lengths, grid, prominence) {
         if !at_gap[cell] {
-            let goes_on = is_near(&borders, cell, grid, params.arm.border_near);
+            // The number of whole cells.
+            let near = (params.arm.border_near / grid.cell).floor() * grid.cell + 1e-9;
+            let goes_on = grid.cells_near(grid.point(cell), near).any(|at| borders[at]);
             let end = if goes_on { WayEnd::Unclear } else { WayEnd::Closed };
             ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
         }
@@ -110,41 +107,22 @@ pub(super) fn ends(
     ends
 }
 
-/// The free cells on long stretches of border to the unknown. Beside a wall such a border means nothing.
+/// The free cells on long stretches of border to the unknown.
 fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -> Vec<bool> {
     let mut borders = vec![false; grid.cells.len()];
-    let is_border = |at: usize| {
-        grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
-    };
-    let all: Vec<usize> = (0..grid.cells.len()).filter(|&at| is_border(at)).collect();
-    for border in grid.groups(&all) {
-        if border.len() as f64 * grid.cell >= params.arm.border {
-            for at in border {
-                borders[at] = true;
-            }
-        }
+    let all = (0..grid.cells.len()).filter(|&at| clearances.is_unknown_border(grid, at));
+    for border in grid.groups(&all.collect::<Vec<_>>()) {
+        let is_long = border.len() as f64 * grid.cell >= params.arm.border;
+        border.into_iter().for_each(|at| borders[at] = is_long);
     }
     borders
-}
-
-/// Whether a cell of a set is within a distance of this one, in metres.
-fn is_near(set: &[bool], cell: usize, grid: &Grid, distance: f64) -> bool {
-    let reach = (distance / grid.cell) as usize;
-    let around = |at: usize, count: usize| at.saturating_sub(reach)..=(at + reach).min(count - 1);
-    let (x, y) = (cell % grid.columns, cell / grid.columns);
-    around(y, grid.rows()).any(|row| {
-        around(x, grid.columns).any(|column| {
-            let off = row.abs_diff(y).pow(2) + column.abs_diff(x).pow(2);
-            set[row * grid.columns + column] && off <= reach * reach
-        })
-    })
 }
 
 /// The maxima of a function on a set of cells from which one must descend at least this far to reach a
 /// greater one.
 fn maxima(set: &[usize], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
-    let highest = set.iter().map(|&at| value[at]).max().unwrap_or_default();
-    let order = sorted_by_key(set, |at| highest - value[at]);
+    let mut order = set.to_vec();
+    order.sort_by_key(|&at| Reverse(value[at]));
     // Components of the cells so far, each with its maximum as its root.
     let mut parent: Vec<u32> = vec![NONE; value.len()];
     let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();

@@ -18,13 +18,12 @@ pub enum Cell {
 /// A rectangle of cells. Those on its border are unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// The number of cells in a row.
     pub columns: usize,
     /// The side of a cell, in metres.
     pub cell: f64,
     /// The corner with the least coordinates, in metres in the frame of the local map.
     pub origin: Point2<f64>,
-    /// The cells, row by row.
+    /// Row by row.
     pub cells: Vec<Cell>,
 }
 
@@ -35,15 +34,12 @@ pub(super) fn floor(number: f64) -> i64 {
 }
 
 impl Grid {
-    /// The number of rows.
-    #[must_use]
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.cells.len() / self.columns.max(1)
     }
 
     /// The index of the cell at a point, if it is on the map.
-    #[must_use]
-    pub fn index(&self, point: Point2<f64>) -> Option<usize> {
+    pub(super) fn index(&self, point: Point2<f64>) -> Option<usize> {
         let [column, row] = self.column_row(point);
         let within = |at: i64, count: usize| (0..count as i64).contains(&at);
         let is_on_map = within(column, self.columns) && within(row, self.rows());
@@ -51,14 +47,11 @@ impl Grid {
     }
 
     /// The column and the row of a point, on the map or not.
-    #[must_use]
-    pub fn column_row(&self, point: Point2<f64>) -> [i64; 2] {
+    pub(super) fn column_row(&self, point: Point2<f64>) -> [i64; 2] {
         ((point - self.origin) / self.cell).map(floor).into()
     }
 
-    /// The middle of a cell.
-    #[must_use]
-    pub fn point(&self, index: usize) -> Point2<f64> {
+    pub(super) fn point(&self, index: usize) -> Point2<f64> {
         let [column, row] = [index % self.columns, index / self.columns];
         self.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
     }
@@ -69,23 +62,30 @@ impl Grid {
         point: Point2<f64>,
         within: f64,
     ) -> impl Iterator<Item = usize> + '_ {
+        self.cells_around(point, within)
+            .filter(move |&at| distance(&self.point(at), &point) <= within)
+    }
+
+    /// The cells that are at most this far from a point along both axes, in metres, in their order.
+    pub(super) fn cells_around(
+        &self,
+        point: Point2<f64>,
+        within: f64,
+    ) -> impl Iterator<Item = usize> + '_ {
         let reach = (within / self.cell).ceil() as i64;
         let [column, row] = self.column_row(point);
         let around = move |at: i64, count: usize| {
             let last = count as i64 - 1;
             (at - reach).clamp(0, last)..=(at + reach).clamp(0, last)
         };
-        let rows = around(row, self.rows());
-        let cells = rows.flat_map(move |row| {
+        around(row, self.rows()).flat_map(move |row| {
             around(column, self.columns)
                 .map(move |column| row as usize * self.columns + column as usize)
-        });
-        cells.filter(move |&at| distance(&self.point(at), &point) <= within)
+        })
     }
 
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.
-    #[must_use]
-    pub fn neighbours(&self, index: usize) -> [usize; 8] {
+    pub(super) fn neighbours(&self, index: usize) -> [usize; 8] {
         let row = self.columns;
         [
             index - row - 1,
@@ -155,57 +155,24 @@ impl Grid {
         }
     }
 
-    /// The cells of groups that are not free and smaller than this many cells along both axes.
+    /// The cells of groups that are not free and smaller than this many cells along both axes. What reaches the border of
+    /// the map may be larger.
     fn small_obstacles(&self, limit: usize) -> Vec<usize> {
-        let is_free = |at: usize| self.cells[at] == Cell::Free;
         let column_row = |at: usize| [at % self.columns, at / self.columns];
-        let border = [self.columns - 1, self.rows() - 1];
-        let is_border =
-            |place: [usize; 2]| (0..2).any(|axis| place[axis] == 0 || place[axis] == border[axis]);
-        // The number of the group, from 1; a large group is left before all of its cells are seen.
-        let mut group = vec![0_u32; self.cells.len()];
-        let mut large = vec![true];
-        let mut small = Vec::new();
-        let mut members = Vec::new();
-        // The first cell of a row of a group has a free one before it.
-        for start in (1..self.cells.len()).filter(|&at| !is_free(at) && is_free(at - 1)) {
-            if group[start] > 0 {
-                continue;
-            }
-            let number = large.len() as u32;
-            group[start] = number;
-            members.clear();
-            members.push(start);
-            let (mut low, mut high) = (column_row(start), column_row(start));
-            let mut next = 0;
-            let is_large = loop {
-                let Some(&at) = members.get(next) else { break false };
-                next += 1;
-                let place = column_row(at);
-                low = [0, 1].map(|axis| low[axis].min(place[axis]));
-                high = [0, 1].map(|axis| high[axis].max(place[axis]));
-                if is_border(place) || (0..2).any(|axis| high[axis] - low[axis] >= limit) {
-                    break true;
-                }
-                let near = self.neighbours(at);
-                let is_of_large = |&near: &usize| {
-                    group[near] > 0 && group[near] != number && large[group[near] as usize]
-                };
-                if near.iter().any(|near| !is_free(*near) && is_of_large(near)) {
-                    break true;
-                }
-                for near in near {
-                    if !is_free(near) && group[near] != number {
-                        group[near] = number;
-                        members.push(near);
-                    }
-                }
-            };
-            large.push(is_large);
-            if !is_large {
-                small.extend_from_slice(&members);
-            }
-        }
-        small
+        let last = [self.columns - 1, self.rows() - 1];
+        let inner = |&at: &usize| {
+            let place = column_row(at);
+            (0..2).all(|axis| (1..last[axis]).contains(&place[axis]))
+        };
+        let is_taken = |&at: &usize| self.cells[at] != Cell::Free;
+        let taken: Vec<usize> = (0..self.cells.len()).filter(is_taken).filter(inner).collect();
+        let is_small = |group: &Vec<usize>| {
+            (0..2).all(|axis| {
+                let places = || group.iter().map(|&at| column_row(at)[axis]);
+                let (low, high) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
+                low > 1 && high + 1 < last[axis] && high - low < limit
+            })
+        };
+        self.groups(&taken).into_iter().filter(is_small).flatten().collect()
     }
 }

@@ -10,25 +10,22 @@ use super::{
     params::{ArmParams, CornerParams, LaserParams},
     way_graph::{Way, WayGraph, WayNode},
 };
-use crate::geometry::{direction, distance};
+use crate::{
+    geometry::{direction, distance},
+    place::{Certainty, PlaceArm, SeenPlace},
+};
 
-/// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LaserJunction {
-    /// Its centre, in metres on the local map.
-    pub centre: Point2<f64>,
-    /// The distance from the centre to the nearest wall, in metres.
-    pub clearance: f64,
-    /// The direction of each arm on the local map, in radians, clockwise.
-    pub arms: Vec<f64>,
-    /// The directions of those that are not certain to be arms.
-    pub uncertain: Vec<f64>,
+impl SeenPlace {
+    /// A place with its arms in clockwise order.
+    fn new(centre: Point2<f64>, clearance: f64, mut arms: Vec<PlaceArm>) -> Self {
+        arms.sort_by(|one, other| other.direction.total_cmp(&one.direction));
+        Self { centre, clearance, arms }
+    }
 }
 
 impl WayGraph {
     /// The junctions, and the corners and dead ends if they are vertices.
-    #[must_use]
-    pub fn junctions(&self, params: &LaserParams) -> Vec<LaserJunction> {
+    pub(super) fn places(&self, params: &LaserParams) -> Vec<SeenPlace> {
         let mut junctions = self.meets(&params.arm);
         if params.corner.corners {
             junctions.extend(self.dead_ends(&params.arm, &params.corner));
@@ -38,7 +35,7 @@ impl WayGraph {
     }
 
     /// Meet points, of which those in one place are one.
-    fn meets(&self, params: &ArmParams) -> Vec<LaserJunction> {
+    fn meets(&self, params: &ArmParams) -> Vec<SeenPlace> {
         let degrees = self.degrees();
         // Each meet point is in the group of the first that is joined to it by short ways.
         let mut group: Vec<usize> = (0..self.nodes.len()).collect();
@@ -66,7 +63,7 @@ impl WayGraph {
             let clearances = members.iter().map(|&node| self.nodes[node].clearance);
             let clearance = clearances.fold(0.0, f64::max);
             let gate = clearance + params.direction;
-            let (mut arms, mut uncertain) = (Vec::new(), Vec::new());
+            let mut arms = Vec::new();
             for way in &self.ways {
                 let inner = group[way.nodes[0]] == group[way.nodes[1]]
                     && way.length < params.merge * clearance;
@@ -75,47 +72,42 @@ impl WayGraph {
                     if group[node] != leader || inner {
                         continue;
                     }
-                    let beyond = line.iter().find(|(point, _)| distance(*point, centre) >= gate);
-                    if let Some(&(point, _)) = beyond.or(line.last()) {
-                        arms.push(direction(centre, point));
-                        uncertain.extend((!way.is_certain).then(|| direction(centre, point)));
-                    }
+                    let certainty =
+                        if way.is_certain { Certainty::Certain } else { Certainty::Possible };
+                    let direction = direction_beyond(&line, centre, gate);
+                    arms.extend(direction.map(|direction| PlaceArm { direction, certainty }));
                 }
             }
-            arms.sort_by(|one, other| other.total_cmp(one));
-            junctions.push(LaserJunction { centre, clearance, arms, uncertain });
+            junctions.push(SeenPlace::new(centre, clearance, arms));
         }
         junctions
     }
+
     /// The ends of long ways that were seen to end.
-    fn dead_ends<'a>(
-        &'a self,
-        arm: &'a ArmParams,
-        params: &'a CornerParams,
-    ) -> impl Iterator<Item = LaserJunction> + 'a {
-        (0..self.nodes.len()).filter_map(move |node| {
-            let WayNode { point, clearance, end } = self.nodes[node];
-            let [way] = self.at(node)[..] else { return None };
-            let way = self.ways[way].clone().from_node(node);
-            if end?.end != WayEnd::Closed || way.length < params.min_way {
+    fn dead_ends(&self, arm: &ArmParams, params: &CornerParams) -> Vec<SeenPlace> {
+        let dead_end = |(number, node): (usize, &WayNode)| {
+            let [way] = self.at(number)[..] else { return None };
+            let way = self.ways[way].clone().from_node(number);
+            if node.end?.end != WayEnd::Closed || way.length < params.min_way {
                 return None;
             }
-            let gate = clearance + arm.direction;
-            let beyond = way.line.iter().find(|(at, _)| distance(*at, point) >= gate);
-            let &(towards, _) = beyond.or(way.line.last())?;
-            Some(LaserJunction {
-                centre: point,
-                clearance,
-                arms: vec![direction(point, towards)],
-                uncertain: Vec::new(),
-            })
-        })
+            let gate = node.clearance + arm.direction;
+            let arm = PlaceArm::certain(direction_beyond(&way.line, node.point, gate)?);
+            Some(SeenPlace::new(node.point, node.clearance, vec![arm]))
+        };
+        self.nodes.iter().enumerate().filter_map(dead_end).collect()
     }
+}
+
+/// The direction from a point to where a line from there is this far away.
+fn direction_beyond(line: &[(Point2<f64>, f64)], from: Point2<f64>, gate: f64) -> Option<f64> {
+    let beyond = line.iter().find(|(point, _)| distance(*point, from) >= gate);
+    beyond.or(line.last()).map(|&(point, _)| direction(from, point))
 }
 
 impl Way {
     /// The places where the middle line bends most, if it is by enough for a corner.
-    fn corners(&self, params: &CornerParams) -> Vec<LaserJunction> {
+    fn corners(&self, params: &CornerParams) -> Vec<SeenPlace> {
         // The steps of cells are no bends.
         let line: Vec<_> = self.line.iter().step_by(4).chain(self.line.last()).collect();
         let mut lengths = vec![0.0];
@@ -131,17 +123,15 @@ impl Way {
             (turn >= params.min_turn).then_some((turn, arms))
         };
         let mut corners = Vec::new();
-        let mut sharpest: Option<(f64, LaserJunction)> = None;
+        let mut sharpest: Option<(f64, SeenPlace)> = None;
         for (at, &&(centre, clearance)) in line.iter().enumerate() {
-            let Some((turn, mut arms)) = bend(at) else {
+            let Some((turn, arms)) = bend(at) else {
                 corners.extend(sharpest.take().map(|(_, corner)| corner));
                 continue;
             };
             if sharpest.as_ref().is_none_or(|(most, _)| turn > *most) {
-                arms.sort_by(|one, other| other.total_cmp(one));
-                let (arms, uncertain) = (arms.to_vec(), Vec::new());
-                let corner = LaserJunction { centre, clearance, arms, uncertain };
-                sharpest = Some((turn, corner));
+                let arms = arms.map(PlaceArm::certain).to_vec();
+                sharpest = Some((turn, SeenPlace::new(centre, clearance, arms)));
             }
         }
         corners.extend(sharpest.map(|(_, corner)| corner));
@@ -169,9 +159,10 @@ mod tests {
             nodes: vec![node([0.0; 2]), node([-10.0, 0.0])],
             ways: vec![way([0, 0], &corners), way([0, 1], &straight)],
         };
-        let junctions = graph.junctions(&LaserParams::default());
-        let [LaserJunction { arms, .. }] = &junctions[..] else { panic!("{junctions:?}") };
-        let degrees: Vec<i32> = arms.iter().map(|arm| arm.to_degrees().round() as i32).collect();
+        let junctions = graph.places(&LaserParams::default());
+        let [junction] = &junctions[..] else { panic!("{junctions:?}") };
+        let degrees: Vec<i32> =
+            junction.directions().map(|arm| arm.to_degrees().round() as i32).collect();
         assert_eq!(degrees, [180, 90, 0]);
     }
 }

@@ -15,8 +15,8 @@ use crate::{
 };
 
 /// Matches scans with the walls of earlier ones.
-#[derive(Clone, Debug)]
-pub struct ScanMatcher {
+#[derive(Clone, Debug, Default)]
+pub(super) struct ScanMatcher {
     params: MatchingParams,
     /// Points of walls, by the square metre where they are.
     walls: BTreeMap<[i64; 2], Vec<WallPoint>>,
@@ -24,7 +24,6 @@ pub struct ScanMatcher {
     last: Option<[Odometry; 2]>,
 }
 
-/// A point of a wall.
 #[derive(Clone, Copy, Debug)]
 struct WallPoint {
     point: Point2<f64>,
@@ -35,16 +34,13 @@ struct WallPoint {
 }
 
 impl ScanMatcher {
-    /// A matcher that has seen nothing yet.
-    #[must_use]
-    pub fn new(params: MatchingParams) -> Self {
-        Self { params, walls: BTreeMap::new(), last: None }
+    pub(super) fn new(params: MatchingParams) -> Self {
+        Self { params, ..Self::default() }
     }
 
     /// The motion from the frame in which scans are placed to that of the local map, at the last scan. They are the same
     /// at first.
-    #[must_use]
-    pub fn correction(&self) -> Isometry2<f64> {
+    pub(super) fn correction(&self) -> Isometry2<f64> {
         self.last
             .map_or_else(Isometry2::identity, |[odometry, pose]| motion_between(&odometry, &pose))
     }
@@ -52,7 +48,13 @@ impl ScanMatcher {
     /// Takes the next scan, the odometry at its time, and the length of the robot's way until then, in
     /// metres. Walls that were last seen before `forgotten` on that way are forgotten. Returns the pose in
     /// the frame of the local map.
-    pub fn see(&mut self, scan: &Scan, odometry: &Odometry, way: f64, forgotten: f64) -> Odometry {
+    pub(super) fn see(
+        &mut self,
+        scan: &Scan,
+        odometry: &Odometry,
+        way: f64,
+        forgotten: f64,
+    ) -> Odometry {
         if self.params.rounds == 0 {
             return *odometry;
         }
@@ -71,7 +73,6 @@ impl ScanMatcher {
         pose
     }
 
-    /// The pose at which the points of walls lie best on those that are known.
     fn matched(
         &self,
         points: &[WallPoint],
@@ -133,35 +134,27 @@ impl ScanMatcher {
         normal: Vector2<f64>,
         gate: f64,
     ) -> Option<(Vector2<f64>, f64)> {
-        let mut nearest = None;
-        let mut least = self.params.reach;
         let [column, row] = square(at);
-        for square in (-1..=1).flat_map(|x| (-1..=1).map(move |y| [column + x, row + y])) {
-            for wall in self.walls.get(&square).into_iter().flatten() {
-                let off = wall.point - at;
-                let across = off.dot(&wall.normal);
-                let away = off.norm();
-                if away < least
-                    && across.abs() <= gate
-                    && normal.dot(&wall.normal) > self.params.same_direction
-                {
-                    least = away;
-                    nearest = Some((wall.normal, across));
-                }
-            }
-        }
-        nearest
+        let squares = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [column + x, row + y]));
+        let walls = squares.filter_map(|square| self.walls.get(&square)).flatten();
+        let matched = walls.filter_map(|wall| {
+            let off = wall.point - at;
+            let across = off.dot(&wall.normal);
+            let is_same = off.norm() < self.params.reach
+                && across.abs() <= gate
+                && normal.dot(&wall.normal) > self.params.same_direction;
+            is_same.then(|| (off.norm(), wall.normal, across))
+        });
+        let nearest = matched.min_by(|one, other| one.0.total_cmp(&other.0));
+        nearest.map(|(_, normal, across)| (normal, across))
     }
 
     /// Adds points of walls, in the robot's frame, where there are none yet.
     fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
         let map_from_robot = from_robot(pose);
-        for point in points {
-            let added = WallPoint {
-                point: map_from_robot * point.point,
-                normal: map_from_robot * point.normal,
-                way: point.way,
-            };
+        for &WallPoint { point, normal, way } in points {
+            let (point, normal) = (map_from_robot * point, map_from_robot * normal);
+            let added = WallPoint { point, normal, way };
             let near = self.walls.entry(square(added.point)).or_default();
             let is_known = near.iter().any(|known| {
                 distance(known.point, added.point) < self.params.spacing

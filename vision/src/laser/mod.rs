@@ -4,14 +4,14 @@
 //!
 //! * [`params`]: the thresholds of all steps;
 //! * [`scan`]: one sweep of the scanner;
-//! * [`matching`]: where it was taken, by odometry and by the walls of earlier scans;
+//! * `matching`: where it was taken, by odometry and by the walls of earlier scans;
 //! * [`drift`]: how much the heading of odometry drifts;
-//! * [`grid`]: the local map, of the cells where rays of the last scans have passed and ended;
-//! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall, and lines of sight;
-//! * [`ends`]: where the ways around the robot go on unseen, and where they end;
-//! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
+//! * `grid`: the local map, of the cells where rays of the last scans have passed and ended;
+//! * `clearances`: the distance of each cell to the nearest wall, and lines of sight;
+//! * `ends`: where the ways around the robot go on unseen, and where they end;
+//! * `skeleton`: their middle lines, the generalised Voronoi graph;
 //! * `arm_view`: how far one sees along an arm, and beside which walls; `viewpoint`: where no scan looked;
-//! * [`way_graph`]: its meet points and the arms that count, and [`junctions`]: junctions, corners and dead ends;
+//! * [`way_graph`]: its meet points and the arms that count, and `junctions`: junctions, corners and dead ends;
 //! * [`sensor`]: all of these steps, and [`pictures`] of them.
 //!
 //! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
@@ -19,21 +19,18 @@
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
 mod arm_view;
-pub mod clearances;
-mod counting_sort;
-pub mod distance;
+mod clearances;
 pub mod drift;
-pub mod ends;
-pub mod grid;
-pub mod junctions;
-pub mod matching;
+mod ends;
+mod grid;
+mod junctions;
+mod matching;
 pub mod params;
 pub mod pictures;
 mod ray_counts;
 pub mod scan;
 pub mod scene;
 pub mod sensor;
-pub mod skeleton;
+mod skeleton;
 mod viewpoint;
-mod wall_frame;
 pub mod way_graph;

@@ -19,6 +19,10 @@
 //! * [`LocalMapParams::memory`], if odometry drifts more than a cell on 18 m;
 //! * [`VisitParams::views`] and [`VisitParams::agree`], if the robot passes junctions faster than it takes scans.
 
+use std::f64::consts::PI;
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
 use crate::params;
 
 params! {
@@ -38,8 +42,7 @@ params! {
 
     /// Scan matching: where a scan was taken, by odometry and by the walls of earlier scans.
     MatchingParams {
-        /// Walls farther from the scanner than this are not matched. Geometry: there the angle between two
-        /// rays is as wide as a small step of a wall.
+        /// Walls farther from the scanner are not matched. Geometry: there two rays are a small step of a wall apart.
         range: f64 = 15.0,
         /// A point is on a wall if its neighbours make a straight line at least this long. Geometry.
         line: f64 = 0.4,
@@ -53,11 +56,11 @@ params! {
         reach: f64 = 1.0,
         /// The cosine of the angle between two pieces of the same wall. Geometry: 30 degrees.
         same_direction: f64 = 0.866,
-        /// The number of times that points are matched and the pose is improved; 8 are enough. With 0
-        /// odometry alone decides: on the logs, which do not drift, more junctions are right then. Logs.
+        /// How often points are matched and the pose is improved; 8 are enough. With 0 odometry alone decides: on the
+        /// logs, which do not drift, more junctions are right then. Logs.
         rounds: usize = 0 => 0.0..=100.0,
-        /// If the heading of the odometry of a log drifts by more than this in 10 m, its scans are matched
-        /// nevertheless. Geometry: far fewer scans are off the walls of a local map by a cell with less.
+        /// If the heading of the odometry of a log drifts by more in 10 m, its scans are matched nevertheless. Geometry:
+        /// with less, few scans are a cell off the walls of a local map.
         max_drift: f64 = 0.02,
         /// Matched walls are at most this far apart in the first round. Geometry: a quarter of a corridor.
         first_gate: f64 = 0.6,
@@ -77,14 +80,13 @@ params! {
         turn_per_metre: f64 = 0.025,
         /// More of it, for each radian that the robot turns. Geometry.
         turn_per_radian: f64 = 0.1,
-        /// Odometry that seems to be wrong by more than this many standard deviations decides alone: the
-        /// match is wrong. Geometry.
+        /// A match so many standard deviations off odometry is wrong. Geometry.
         max_deviations: f64 = 3.0,
     }
 
     /// The local map: what the last scans have shown around the robot.
     LocalMapParams {
-        /// The side of a cell; a map of more cells would need too much memory. Geometry: a quarter of the narrowest way, an eighth of a corridor.
+        /// The side of a cell. Geometry: an eighth of the narrowest way.
         cell: f64 = 0.15 => 0.02..=1.0,
         /// Junctions and their arms are looked for up to this far from the robot, along both axes.
         /// Geometry: more than [`ArmParams::min_arm`] from a junction a few metres away.
@@ -98,12 +100,11 @@ params! {
         every_turn: f64 = 0.3,
         /// A cell is an obstacle if at least this part of the rays that reached it ended there. Logs.
         occupied: f64 = 0.2,
-        /// Neighbouring rays that end on one straight line end on one wall if the ends are nearer to each
-        /// other than this. Geometry: along a corridor rays meet its walls far apart.
+        /// Two neighbouring rays end on one wall if their ends are nearer to each other than this, and on a line with a
+        /// third. Geometry: along a corridor rays meet its walls far apart.
         bridge: f64 = 3.0,
-        /// Readings without a return between two others that are at most this far apart show free space up to
-        /// the nearer one of these. Geometry: along a corridor, the walls on both sides end at the scanner's
-        /// range, which is at least 26 m.
+        /// Readings without a return between two others that are at most this far apart show free space up to the nearer
+        /// one of these. Geometry: the walls of a corridor end at the scanner's range, at least 26 m away.
         max_silence: f64 = 0.1,
         /// Obstacles smaller than this along both axes do not divide a way. Geometry: people, chairs.
         small_obstacle: f64 = 1.0,
@@ -115,16 +116,15 @@ params! {
 
     /// The arms of a junction.
     ArmParams {
-        /// An arm that is seen to end nearer than this, along the free space from the junction's centre,
-        /// does not count. Geometry: rooms and entrances are less deep.
+        /// An arm that is seen to end nearer than this, along the free space from the junction's centre, does not count.
+        /// Geometry: rooms and entrances are less deep.
         min_arm: f64 = 10.0,
         /// An arm counts if free space is seen this far on a straight line from the junction's centre.
         /// Geometry: what is left to [`Self::min_arm`] are the cells at both ends.
         sight: f64 = 9.5,
         /// An arm of which one sees less than this and that is not seen to end does not count, ... Logs.
         min_sight: f64 = 2.9,
-        /// ... nor does one without a straight wall along this part of what is seen on one side, ... Logs
-        /// and simulated buildings.
+        /// ... nor without a straight wall along this part of what is seen on one side, ... Logs, simulated buildings.
         min_wall: f64 = 0.75,
         /// ... or along this part on both sides, ... Logs and simulated buildings.
         min_walls: f64 = 0.17,
@@ -140,20 +140,17 @@ params! {
         max_width: f64 = 2.45,
         /// ... and the gap at its end is at least this part of its width, and ... Logs.
         min_gap: f64 = 0.6,
-        /// ... at most this many times its width: it is a room otherwise, of which one sees a part
-        /// through a door. Logs.
+        /// ... at most this many times its width: otherwise it is a room, seen through a door. Logs.
         max_gap: f64 = 2.1,
-        /// An arm that does not count is in doubt if it is not seen to end because the scanner did not look
-        /// there: with an unobstructed view of its gap, the gap lay this far beyond the field of view, ...
-        /// Logs and simulated buildings.
+        /// An arm that does not count is in doubt if the scanner did not look at its end: with an unobstructed view, the
+        /// gap there lay this far beyond the field of view, ... Logs and simulated buildings.
         unseen_turn: f64 = 0.82,
-        /// ... the gap is this many times as wide as the arm, because the edge of the field of view cuts the
-        /// arm obliquely, ... Simulated buildings.
+        /// ... is this many times as wide as the arm, because the edge of the field of view cuts the arm obliquely, ...
+        /// Simulated buildings.
         unseen_gap: f64 = 1.3,
         /// ... and it is at least this wide between its walls. Logs: the doors of rooms are narrower.
         unseen_width: f64 = 1.76,
-        /// An arm narrower than [`Self::min_width`] whose gap is more than this many times as wide is a room behind a
-        /// door. Logs.
+        /// An arm narrower than [`Self::min_width`] whose gap is this many times as wide is a room behind a door. Logs.
         room_gap: f64 = 3.5,
         /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this long lies
         /// around a corner, within [`Self::border_near`] of the end. Logs.
@@ -181,11 +178,15 @@ params! {
         arm: f64 = 2.5,
         /// A bend by at least this angle is a corner. Geometry: between 45 and 90 degrees.
         min_turn: f64 = 1.05,
+        /// A robot whose way bends by more turns back, and passes no corner. Geometry.
+        max_turn: f64 = 2.2,
+        /// The way is remembered for this many times [`Self::arm`]. Geometry.
+        memory: f64 = 8.0,
         /// A way that ends is a dead end if it is at least this long. Geometry: more than a room.
         min_way: f64 = 5.0,
     }
 
-    /// Visits of junctions.
+    /// Visits of places.
     VisitParams {
         /// A junction is seen from up to this far behind its walls. Logs.
         range: f64 = 4.0,
@@ -195,6 +196,10 @@ params! {
         /// Arms nearer to each other than this in two views are the same. Geometry: under half of the
         /// angle between two arms of a junction with eight.
         same_arm: f64 = 0.6,
+        /// The ways in and out are of an arm if they are this near to it. Geometry: they are measured at the walls.
+        same_way: f64 = 0.8,
+        /// A robot this near to the centre of a junction is inside, and so is one up to its walls. Geometry.
+        inside: f64 = 1.0,
         /// A robot this near to the end of a way visits the dead end. Geometry: robots turn before a wall.
         dead_end: f64 = 3.0,
         /// A robot farther than this behind the walls of a junction has left it. Geometry.
@@ -205,8 +210,27 @@ params! {
         views: usize = 8,
         /// An arm counts if it is seen in at least this part of them ... Logs.
         agree: f64 = 0.4,
-        /// ... and the visit is undecided if the part is as near as this to it. Logs.
+        /// ... or in this part, if the robot came or left by it, ... Logs.
+        traversed: f64 = 0.25,
+        /// ... and the visit is undecided if the part is as near as this to [`Self::agree`]. Logs.
         doubt: f64 = 0.02,
+        /// An arm in doubt matters if it is in so many views of a junction. Logs.
+        doubted_views: usize = 2,
+        /// A junction that was not seen on this length of the way is forgotten. Geometry: odometry drifts.
+        memory: f64 = 30.0,
+        /// A robot this near to where it was before goes back. Geometry: less than half of a corridor.
+        retraced: f64 = 0.6,
+        /// A robot has turned back once it has gone back for half of this length. Geometry: less is manoeuvring.
+        turned_back: f64 = 4.0,
+        /// A robot that has not driven farther than this since the log began was always there. Geometry.
+        beginning: f64 = 2.0,
+        /// The direction of a robot's way is compared with the field of view over this length. Geometry.
+        unseen_step: f64 = 0.5,
+        /// A scanner that looks within this angle of the robot's way sees the hallway there. Geometry.
+        unseen_angle: f64 = PI / 24.0,
+        /// A way of this length on which the scanner does not look ahead may pass a junction. Geometry: a shorter one
+        /// is manoeuvring.
+        unseen_way: f64 = 2.0,
     }
 
     /// What is seen along an arm of a junction.
@@ -284,6 +308,27 @@ params! {
     }
 }
 
+impl LocalMapParams {
+    /// How far the robot has driven since the last scan that was used, in metres; `None` if this one is not used, because the
+    /// robot has hardly moved.
+    pub(super) fn driven(&self, last: &mut Option<Odometry>, odometry: &Odometry) -> Option<f64> {
+        let driven = last.map_or(0.0, |last| last.distance(odometry));
+        let turned = last.map_or(0.0, |last| wrapped(odometry.heading - last.heading).abs());
+        let is_used = last.is_none() || driven >= self.every || turned >= self.every_turn;
+        is_used.then(|| {
+            *last = Some(*odometry);
+            driven
+        })
+    }
+}
+
+impl VisitParams {
+    /// A robot this near to the centre of a junction is inside, in metres.
+    pub(crate) fn radius(&self, clearance: f64) -> f64 {
+        clearance.max(self.inside)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,42 +345,40 @@ mod tests {
     }
 
     #[test]
-    fn the_defaults_are_read_as_they_are_written() {
-        let text = toml::to_string(&LaserParams::default()).unwrap();
-        assert!(text.contains("min_arm = 10.0"), "{text}");
-        assert_eq!(read(&text), Ok(LaserParams::default()));
-    }
-
-    #[test]
     fn unknown_keys_and_impossible_numbers_are_errors() {
-        let message = |text: &str| read::<LaserParams>(text).unwrap_err().to_string();
-        let unknown = message("[corner]\n[arm]\nmin = 2.0");
-        assert!(
-            unknown
-                .starts_with("line 3, column 1: arm.min: unknown key; expected one of: min_arm, "),
-            "{unknown}"
-        );
-        assert_eq!(
-            message("min_arm = 2.0"),
-            "line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit"
-        );
-        assert_eq!(
-            message("[arm]\nmin_arm = \"far\""),
-            "line 2, column 11: arm.min_arm: expected a number, found a text"
-        );
-        for (text, place, range) in [
-            ("[arm]\nmin_arm = -1.0", "line 2, column 11: arm.min_arm: -1 ", "0 and 1000"),
-            ("[arm]\nmin_arm = nan", "line 2, column 11: arm.min_arm: NaN ", "0 and 1000"),
-            ("[map]\ncell = 0.0001", "line 2, column 8: map.cell: 0.0001 ", "0.02 and 1"),
-            ("[map]\nreach = inf", "line 2, column 9: map.reach: inf ", "2 and 40"),
-            ("[visit]\nviews = 0", "line 2, column 9: visit.views: 0 ", "1 and 1000"),
+        let out = "is out of range; this parameter lies between";
+        for (text, error) in [
+            (
+                "[arm]\nmin = 2.0",
+                "line 2, column 1: arm.min: unknown key; expected one of: min_arm, ",
+            ),
+            (
+                "min_arm = 2.0",
+                "line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit",
+            ),
+            (
+                "[arm]\nmin_arm = \"far\"",
+                "line 2, column 11: arm.min_arm: expected a number, found a text",
+            ),
+            (
+                "[arm]\nmin_arm = -1.0",
+                &format!("line 2, column 11: arm.min_arm: -1 {out} 0 and 1000"),
+            ),
+            (
+                "[arm]\nmin_arm = nan",
+                &format!("line 2, column 11: arm.min_arm: NaN {out} 0 and 1000"),
+            ),
+            (
+                "[map]\ncell = 0.0001",
+                &format!("line 2, column 8: map.cell: 0.0001 {out} 0.02 and 1"),
+            ),
+            ("[map]\nreach = inf", &format!("line 2, column 9: map.reach: inf {out} 2 and 40")),
+            ("[visit]\nviews = 0", &format!("line 2, column 9: visit.views: 0 {out} 1 and 1000")),
+            ("[arm", "line "),
+            ("[corner]\ncorners = yes", "line "),
         ] {
-            let range = format!("{place}is out of range; this parameter lies between {range}");
-            assert_eq!(message(text), range);
-        }
-        for text in ["[arm", "[corner]\ncorners = yes"] {
-            let message = message(text);
-            assert!(message.starts_with("line ") && !message.contains('\n'), "{message}");
+            let message = read::<LaserParams>(text).unwrap_err().to_string();
+            assert!(message.starts_with(error) && !message.contains('\n'), "{message}");
         }
     }
 }

@@ -4,24 +4,16 @@
 use image::{Rgb, RgbImage};
 use nalgebra::Point2;
 
-use super::{
-    ends::WayEnd,
-    grid::{Cell, Grid},
-    junctions::LaserJunction,
-    scan::Scan,
-    sensor::LaserView,
-};
+use super::{ends::WayEnd, grid::Grid, scan::Scan, sensor::LocalMap};
 use crate::{
     annotate::{BODY, CYAN, DARK, GREEN, LegendSign, ORANGE, REACH, RED, StageLegend, WHITE},
     draw,
     geometry::{from_robot, unit},
+    place::{PlaceView, SeenPlace},
 };
 
 /// The names of the steps, in their order.
 pub const STAGES: [&str; 4] = ["1-scan", "2-map", "3-ways", "4-junctions"];
-
-/// The name of each step, and its picture.
-pub type LaserStages = [(&'static str, RgbImage); 4];
 
 /// The pixels of a side of a cell.
 const ZOOM: usize = 4;
@@ -36,11 +28,18 @@ const DOOR: f64 = 1.5;
 /// The radius of the robot, in metres.
 const ROBOT: f64 = 0.25;
 
-/// A picture of each step from a scan to what is seen with it. The x axis of odometry points to the right.
+/// The name of each step from a scan to what is seen with it, and its picture. The x axis of the map points to the right.
 #[must_use]
-pub fn stages(view: &LaserView, scan: &Scan) -> LaserStages {
-    let [one, two, three, four] = STAGES;
-    [(one, rays(view, scan)), (two, map(view)), (three, ways(view)), (four, junctions(view))]
+pub fn stages(view: &PlaceView, map: &LocalMap, scan: &Scan) -> [(&'static str, RgbImage); 4] {
+    let background = [DARK, DIM, WALL];
+    let canvases = [
+        rays(Canvas::new(&map.grid, [DARK; 3]), view, scan),
+        Canvas::new(&map.grid, [DARK, FREE, WHITE]),
+        ways(Canvas::new(&map.grid, background), map),
+        junctions(Canvas::new(&map.grid, background), view, map),
+    ];
+    let mut pictures = canvases.map(|canvas| canvas.with_robot(view)).into_iter();
+    STAGES.map(|stage| (stage, pictures.next().unwrap_or_default()))
 }
 
 /// The legend of the picture of a step, by the step's name; empty for any other name.
@@ -80,24 +79,22 @@ pub fn legend(stage: &str, cell: f64) -> StageLegend {
     StageLegend { entries, metre: Some(ZOOM as f64 / cell) }
 }
 
-/// A picture of a map.
 struct Canvas<'g> {
     picture: RgbImage,
     grid: &'g Grid,
 }
 
 impl<'g> Canvas<'g> {
-    /// Each cell in the colour of its kind.
-    fn new(grid: &'g Grid, colour: impl Fn(Cell) -> Rgb<u8>) -> Self {
+    /// Each cell in the colour of its kind: unknown, free or occupied.
+    fn new(grid: &'g Grid, colours: [Rgb<u8>; 3]) -> Self {
         let [width, height] = [grid.columns, grid.rows()].map(|count| (count * ZOOM) as u32);
         let picture = RgbImage::from_fn(width, height, |u, v| {
             let [column, row] = [u, height - 1 - v].map(|at| at as usize / ZOOM);
-            colour(grid.cells[row * grid.columns + column])
+            colours[grid.cells[row * grid.columns + column] as usize]
         });
         Self { picture, grid }
     }
 
-    /// The pixel of a point.
     fn at(&self, point: Point2<f64>) -> [f32; 2] {
         let pixel = |axis: usize| {
             ((point[axis] - self.grid.origin[axis]) / self.grid.cell * ZOOM as f64) as f32
@@ -114,14 +111,6 @@ impl<'g> Canvas<'g> {
         draw::line(&mut self.picture, from, to, colour);
     }
 
-    fn thick(&mut self, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
-        let (from, to) = (self.at(from), self.at(to));
-        for [right, down] in [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
-            let pen = |[u, v]: [f32; 2]| [u + right, v + down];
-            draw::line(&mut self.picture, pen(from), pen(to), colour);
-        }
-    }
-
     fn ring(&mut self, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
         let at = self.pixel(point);
         for radius in [radius, radius - 1] {
@@ -134,8 +123,7 @@ impl<'g> Canvas<'g> {
         draw::disc(&mut self.picture, at, radius, colour);
     }
 
-    /// The picture with the robot on it.
-    fn with_robot(mut self, view: &LaserView) -> RgbImage {
+    fn with_robot(mut self, view: &PlaceView) -> RgbImage {
         let radius = (ROBOT / self.grid.cell * ZOOM as f64) as i32;
         let robot = Point2::from(view.robot.position);
         self.dot(robot, radius, BODY);
@@ -145,69 +133,41 @@ impl<'g> Canvas<'g> {
     }
 }
 
-fn rays(view: &LaserView, scan: &Scan) -> RgbImage {
-    let mut canvas = Canvas::new(&view.grid, |_| DARK);
+fn rays<'g>(mut canvas: Canvas<'g>, view: &PlaceView, scan: &Scan) -> Canvas<'g> {
     let map_from_robot = from_robot(&view.robot);
     let hits: Vec<Point2<f64>> = scan.hits().map(|hit| map_from_robot * hit).collect();
     let scanner = map_from_robot * scan.scanner();
-    for &hit in &hits {
-        canvas.line(scanner, hit, REACH);
-    }
-    for &hit in &hits {
-        canvas.dot(hit, 1, WHITE);
-    }
-    canvas.with_robot(view)
+    hits.iter().for_each(|&hit| canvas.line(scanner, hit, REACH));
+    hits.iter().for_each(|&hit| canvas.dot(hit, 1, WHITE));
+    canvas
 }
 
-fn map(view: &LaserView) -> RgbImage {
-    let colour = |cell| match cell {
-        Cell::Unknown => DARK,
-        Cell::Free => FREE,
-        Cell::Occupied => WHITE,
-    };
-    Canvas::new(&view.grid, colour).with_robot(view)
-}
-
-/// The local map in the background.
-fn background(grid: &Grid) -> Canvas<'_> {
-    Canvas::new(grid, |cell| match cell {
-        Cell::Unknown => DARK,
-        Cell::Free => DIM,
-        Cell::Occupied => WALL,
-    })
-}
-
-fn ways(view: &LaserView) -> RgbImage {
-    let mut canvas = background(&view.grid);
-    if let Some(skeleton) = &view.skeleton {
-        for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
-            canvas.dot(view.grid.point(at), 1, CYAN);
-        }
-        for end in &skeleton.ends {
-            let colour = match end.end {
-                WayEnd::Open | WayEnd::Unclear => ORANGE,
-                WayEnd::Closed => RED,
-            };
-            canvas.ring(view.grid.point(end.cell), 6, colour);
-        }
+fn ways<'g>(mut canvas: Canvas<'g>, map: &LocalMap) -> Canvas<'g> {
+    let Some(skeleton) = &map.skeleton else { return canvas };
+    for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
+        canvas.dot(map.grid.point(at), 1, CYAN);
     }
-    canvas.with_robot(view)
+    for end in &skeleton.ends {
+        let colour = if end.end == WayEnd::Closed { RED } else { ORANGE };
+        canvas.ring(map.grid.point(end.cell), 6, colour);
+    }
+    canvas
 }
 
-fn junctions(view: &LaserView) -> RgbImage {
-    let mut canvas = background(&view.grid);
-    for way in &view.graph.ways {
-        for two in way.line.windows(2) {
-            canvas.line(two[0].0, two[1].0, CYAN);
-        }
+fn junctions<'g>(mut canvas: Canvas<'g>, view: &PlaceView, map: &LocalMap) -> Canvas<'g> {
+    for two in map.graph.ways.iter().flat_map(|way| way.line.windows(2)) {
+        canvas.line(two[0].0, two[1].0, CYAN);
     }
-    for LaserJunction { centre, clearance, arms, .. } in &view.junctions {
-        for &arm in arms {
+    for place @ SeenPlace { centre, clearance, .. } in &view.places {
+        for arm in place.directions() {
             let [near, far] =
-                [*clearance, clearance + DOOR].map(|range| centre + range * unit(arm));
-            canvas.thick(near, far, GREEN);
+                [*clearance, clearance + DOOR].map(|range| canvas.at(centre + range * unit(arm)));
+            for [right, down] in [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                let pen = |[u, v]: [f32; 2]| [u + right, v + down];
+                draw::line(&mut canvas.picture, pen(near), pen(far), GREEN);
+            }
         }
         canvas.dot(*centre, 5, WHITE);
     }
-    canvas.with_robot(view)
+    canvas
 }

@@ -45,12 +45,10 @@ impl RayCounts {
         }
     }
 
-    /// Adds rays.
     pub(super) fn add(&mut self, rays: &Rays) {
         self.count(rays, |count| *count = count.saturating_add(1));
     }
 
-    /// Removes rays that were added.
     pub(super) fn remove(&mut self, rays: &Rays) {
         self.count(rays, |count| *count = count.saturating_sub(1));
     }

@@ -1,20 +1,21 @@
 //! One sweep of a laser scanner: ranges at equal steps of the angle, as `sensor_msgs/LaserScan` and CARMEN
 //! record them.
 
-use std::f64::consts::TAU;
-
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use thiserror::Error;
 use toposlam_model::driving::scene::wrapped;
 
-use crate::geometry::unit;
+use crate::{
+    geometry::{angle, unit},
+    place::ViewSector,
+};
 
 /// The angles and the limits of a scan, as they are recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanGeometry {
-    /// The angle of the first reading, in radians counter-clockwise from the scanner's x axis.
+    /// Of the first reading, in radians counter-clockwise from the scanner's x axis.
     pub angle_min: f64,
-    /// The angle from one reading to the next, in radians; negative if the scanner turns clockwise.
+    /// In radians; negative if the scanner turns clockwise.
     pub angle_increment: f64,
     /// Shorter readings are invalid, in metres.
     pub range_min: f64,
@@ -37,31 +38,25 @@ pub enum Reading {
     Hit(f64),
     /// No surface up to the scanner's range.
     NoReturn,
-    /// No measurement.
     Invalid,
 }
 
 /// Why numbers are not a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ScanError {
-    /// It has no readings.
     #[error("the scan has no readings")]
     NoReadings,
-    /// The angle from one reading to the next is 0 or not finite.
     #[error("the angle increment of the scan is {0}")]
     Increment(f64),
-    /// The angle of the first reading, or the pose of the scanner, is not finite.
     #[error("the first angle of the scan, or the pose of its scanner, is not a number")]
     NotFinite,
     /// No range lies between the limits.
     #[error("the ranges of the scan go from {min} m to {max} m")]
-    Limits {
-        /// The shortest range.
-        min: f64,
-        /// The longest range.
-        max: f64,
-    },
+    Limits { min: f64, max: f64 },
 }
+
+/// Hits of successive readings that are farther apart are on different surfaces, in metres.
+const ONE_WALL: f64 = 1.0;
 
 impl Scan {
     /// A scan. Readings in clockwise order are reversed.
@@ -97,7 +92,6 @@ impl Scan {
         Ok(Self { geometry, ranges, robot_from_scanner })
     }
 
-    /// The angles and the limits; the increment is positive.
     #[must_use]
     pub fn geometry(&self) -> ScanGeometry {
         self.geometry
@@ -109,15 +103,12 @@ impl Scan {
         self.ranges.len().saturating_sub(1) as f64 * self.geometry.angle_increment
     }
 
-    /// The angle between a direction and the nearest one in which the scanner looks, in radians; 0 if it looks there.
-    /// Directions are counter-clockwise from the robot's heading.
-    #[must_use]
-    pub fn angle_off(&self, bearing: f64) -> f64 {
-        let from_first = (bearing - self.heading() - self.geometry.angle_min).rem_euclid(TAU);
-        (from_first - self.field_of_view()).max(0.0).min(TAU - from_first)
+    /// Where the scanner looks.
+    pub(super) fn sector(&self) -> ViewSector {
+        let first = self.heading() + self.geometry.angle_min;
+        ViewSector { first, angle: self.field_of_view() }
     }
 
-    /// The ranges as they are recorded, in counter-clockwise order, in metres.
     #[must_use]
     pub fn ranges(&self) -> &[f32] {
         &self.ranges
@@ -152,18 +143,41 @@ impl Scan {
         })
     }
 
+    /// The same with the range of each hit, in metres. A reading without a return shows nothing: glass and black
+    /// surfaces give none.
+    pub(super) fn ranges_hit(&self) -> impl Iterator<Item = (f64, Option<f64>)> + '_ {
+        self.readings().map(|(bearing, reading)| match reading {
+            Reading::Hit(range) => (bearing, Some(range)),
+            Reading::NoReturn | Reading::Invalid => (bearing, None),
+        })
+    }
+
     /// The points that were hit, in metres in the robot's frame, in counter-clockwise order.
     pub fn hits(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.readings().filter_map(|(bearing, reading)| match reading {
-            Reading::Hit(range) => Some(self.point(bearing, range)),
-            Reading::NoReturn | Reading::Invalid => None,
-        })
+        self.ranges_hit().filter_map(|(bearing, range)| Some(self.point(bearing, range?)))
     }
 
     /// The point at a bearing and a range from the scanner, in metres in the robot's frame.
     #[must_use]
     pub fn point(&self, bearing: f64, range: f64) -> Point2<f64> {
         self.scanner() + range * unit(bearing)
+    }
+
+    /// The direction along or across most of the walls, relative to the robot, in radians from -pi/4 to pi/4: the mean over
+    /// their lengths. It is 0 if there are none.
+    pub(super) fn direction_of_walls(&self) -> f64 {
+        let point = |(bearing, range): (f64, Option<f64>)| Some(self.point(bearing, range?));
+        let hits: Vec<Option<Point2<f64>>> = self.ranges_hit().map(point).collect();
+        let mut sum = Vector2::zeros();
+        for pair in hits.windows(2) {
+            let [Some(one), Some(other)] = *pair else { continue };
+            let along = other - one;
+            if along.norm() < ONE_WALL {
+                // Four times the direction is the same along a wall and across it.
+                sum += along.norm() * unit(4.0 * angle(along));
+            }
+        }
+        angle(sum) / 4.0
     }
 
     fn reading(&self, range: f64) -> Reading {
@@ -178,10 +192,20 @@ impl Scan {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::{FRAC_PI_2, PI};
+impl Scan {
+    /// A scan with a reading each degree, from this one on; a function returns the range at a bearing.
+    pub(super) fn each_degree(first: i32, count: u16, range: impl Fn(f64) -> f64) -> Self {
+        let angle_min = f64::from(first).to_radians();
+        let angle_increment = 1_f64.to_radians();
+        let geometry = ScanGeometry { angle_min, angle_increment, range_min: 0.1, range_max: 30.0 };
+        let range = |index| range(angle_min + f64::from(index) * angle_increment) as f32;
+        Self::new(geometry, (0..count).map(range).collect(), Isometry2::identity()).unwrap()
+    }
+}
 
-    use nalgebra::Vector2;
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     use super::*;
     use crate::geometry::distance;
@@ -226,6 +250,17 @@ mod tests {
     }
 
     #[test]
+    fn the_walls_of_a_corridor_are_along_an_axis_whatever_the_robots_heading() {
+        for degrees in [-80.0, -30.0, 0.0, 10.0, 44.0, 135.0_f64] {
+            let turned = degrees.to_radians();
+            let corridor = |bearing: f64| (1.0 / (bearing + turned).sin().abs()).min(1e6);
+            let walls = turned + Scan::each_degree(-180, 360, corridor).direction_of_walls();
+            let off = (walls + FRAC_PI_4).rem_euclid(FRAC_PI_2) - FRAC_PI_4;
+            assert!(off.abs() < 1e-3, "{degrees}: {walls}");
+        }
+    }
+
+    #[test]
     fn bearings_and_points_are_those_of_the_robot() {
         // A scanner 0.2 m behind the centre that looks back.
         let behind = Isometry2::new(Vector2::new(-0.2, 0.0), PI);
@@ -243,16 +278,36 @@ mod tests {
 
     #[test]
     fn impossible_numbers_are_errors() {
-        assert_eq!(scan(HALF_CIRCLE, &[]), Err(ScanError::NoReadings));
-        for increment in [0.0, f64::NAN, f64::INFINITY] {
-            let geometry = ScanGeometry { angle_increment: increment, ..HALF_CIRCLE };
-            assert!(matches!(scan(geometry, &[1.0]), Err(ScanError::Increment(_))), "{increment}");
-        }
-        let geometry = ScanGeometry { angle_min: f64::NAN, ..HALF_CIRCLE };
-        assert_eq!(scan(geometry, &[1.0]), Err(ScanError::NotFinite));
-        for (min, max) in [(2.0, 1.0), (1.0, 1.0), (-2.0, -1.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
-            let geometry = ScanGeometry { range_min: min, range_max: max, ..HALF_CIRCLE };
-            assert!(matches!(scan(geometry, &[1.0]), Err(ScanError::Limits { .. })), "{min} {max}");
+        let scan_with = |change: fn(&mut ScanGeometry)| {
+            let mut geometry = HALF_CIRCLE;
+            change(&mut geometry);
+            scan(geometry, &[1.0]).unwrap_err().to_string()
+        };
+        for (error, expected) in [
+            (scan(HALF_CIRCLE, &[]).unwrap_err().to_string(), "the scan has no readings"),
+            (scan_with(|it| it.angle_increment = 0.0), "the angle increment of the scan is 0"),
+            (
+                scan_with(|it| it.angle_increment = f64::NAN),
+                "the angle increment of the scan is NaN",
+            ),
+            (
+                scan_with(|it| it.angle_increment = f64::INFINITY),
+                "the angle increment of the scan is inf",
+            ),
+            (scan_with(|it| it.angle_min = f64::NAN), "the first angle of the scan, or "),
+            (scan_with(|it| it.range_max = 0.1), "the ranges of the scan go from 0.1 m to 0.1 m"),
+            (scan_with(|it| it.range_max = 0.05), "the ranges of the scan go from 0.1 m to 0.05 m"),
+            (
+                scan_with(|it| (it.range_min, it.range_max) = (-2.0, -1.0)),
+                "the ranges of the scan go from -2 m to -1 m",
+            ),
+            (scan_with(|it| it.range_min = f64::NAN), "the ranges of the scan go from NaN m"),
+            (
+                scan_with(|it| it.range_max = f64::NAN),
+                "the ranges of the scan go from 0.1 m to NaN m",
+            ),
+        ] {
+            assert!(error.starts_with(expected), "{error}");
         }
         let nowhere = Isometry2::translation(0.0, f64::NAN);
         assert_eq!(Scan::new(HALF_CIRCLE, vec![1.0], nowhere), Err(ScanError::NotFinite));

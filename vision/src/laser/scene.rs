@@ -15,10 +15,7 @@ use toposlam_model::driving::{
     scene::{HallwayStatus, HallwayView, JunctionView, Place, Reason, Unclear, wrapped},
 };
 
-use super::{
-    params::PlaceParams,
-    scan::{Reading, Scan},
-};
+use super::{params::PlaceParams, scan::Scan};
 use crate::{
     boundary::{BEARINGS, Boundary, Sight},
     geometry::{angle, from_robot, unit},
@@ -42,7 +39,6 @@ pub struct ScanPlaceSensor {
 /// without length.
 type WallPiece = [Point2<f64>; 2];
 
-/// A hallway that was sensed.
 #[derive(Clone, Copy, Debug)]
 struct SensedHallway {
     /// Where it was sensed last.
@@ -52,11 +48,9 @@ struct SensedHallway {
     width: f64,
 }
 
-/// The parameters.
 const PLACE: PlaceParams = PlaceParams::DEFAULT;
 
 impl ScanPlaceSensor {
-    /// Sensing with other parameters than the defaults.
     #[must_use]
     pub fn with_params(params: &SensingParams) -> Self {
         Self { params: *params, ..Self::default() }
@@ -89,8 +83,7 @@ impl ScanPlaceSensor {
             return Vec::new();
         }
         let has_looked_here = self.looked.is_some_and(|looked| {
-            looked.distance(odometry) < PLACE.look_again
-                && wrapped(looked.heading - odometry.heading).abs() < PLACE.look_again_turn
+            is_near(&looked, odometry, PLACE.look_again, PLACE.look_again_turn)
         });
         let is_seen = match self.place(scan, odometry) {
             Place::Hallway(_) => self.looked.is_some(),
@@ -106,7 +99,6 @@ impl ScanPlaceSensor {
         self.looked = Some(*odometry);
     }
 
-    /// Remembers a scan, and the odometry when it was taken.
     pub fn remember(&mut self, scan: &Scan, odometry: &Odometry) {
         let odometry_from_robot = from_robot(odometry);
         let place = |piece: WallPiece| piece.map(|end| odometry_from_robot * end);
@@ -117,7 +109,6 @@ impl ScanPlaceSensor {
         }
     }
 
-    /// The place in a scan and the last ones.
     fn place(&self, scan: &Scan, odometry: &Odometry) -> Place {
         let (place, trace) = place_within(self.boundary(scan, odometry), 0.0, &self.params);
         match &place {
@@ -142,24 +133,19 @@ impl ScanPlaceSensor {
         let (left, right) = (view.left - aside, view.right + aside);
         let slack = PLACE.wall_slack + width - view.left - view.right;
         let mut beside = [0, 0];
-        for (bearing, reading) in scan.readings() {
+        for (bearing, range) in scan.ranges_hit() {
             let aside = wrapped(bearing - heading);
             let is_beside = (aside.abs() - FRAC_PI_2).abs() < FRAC_PI_6;
-            match reading {
-                Reading::Hit(range) => {
-                    let point = scan.point(bearing, range);
-                    let (ahead, across) = (along(point, heading), across(point, heading));
-                    let is_in_way =
-                        (0.0..PLACE.free_ahead).contains(&ahead) && across.abs() < PLACE.free_aside;
-                    let is_open = is_beside && (across > left + slack || -across > right + slack);
-                    if is_in_way || is_open {
-                        return None;
-                    }
-                    beside[usize::from(aside < 0.0)] += usize::from(is_beside);
-                }
-                // Glass gives no return.
-                Reading::NoReturn | Reading::Invalid => {}
+            let Some(range) = range else { continue };
+            let point = scan.point(bearing, range);
+            let (ahead, across) = (unit(heading).dot(&point.coords), across(point, heading));
+            let is_in_way =
+                (0.0..PLACE.free_ahead).contains(&ahead) && across.abs() < PLACE.free_aside;
+            let is_open = is_beside && (across > left + slack || -across > right + slack);
+            if is_in_way || is_open {
+                return None;
             }
+            beside[usize::from(aside < 0.0)] += usize::from(is_beside);
         }
         (beside[0] > 0 && beside[1] > 0).then_some(HallwayView {
             heading,
@@ -196,20 +182,15 @@ impl ScanPlaceSensor {
                 }
             }
         }
-        let mut sights: Vec<Sight> = sights
-            .into_iter()
-            .map(|range| range.map_or_else(Sight::default, Sight::measured))
-            .collect();
-        let readings: Vec<(f64, Option<f64>)> = scan
-            .readings()
-            .map(|(bearing, reading)| match reading {
-                Reading::Hit(range) => {
-                    let (bearing, range) = polar(scan.point(bearing, range));
-                    (bearing, Some(range))
-                }
-                Reading::NoReturn | Reading::Invalid => (bearing, None),
-            })
-            .collect();
+        let mut sights: Vec<Sight> = sights.into_iter().map(sight).collect();
+        let seen_by_robot = |(bearing, range): (f64, Option<f64>)| match range {
+            Some(range) => {
+                let (bearing, range) = polar(scan.point(bearing, range));
+                (bearing, Some(range))
+            }
+            None => (bearing, None),
+        };
+        let readings: Vec<_> = scan.ranges_hit().map(seen_by_robot).collect();
         let next = readings.iter().cycle().skip(1);
         for (&(from, near), &(to, far)) in readings.iter().zip(next) {
             let turn = wrapped(to - from);
@@ -223,12 +204,11 @@ impl ScanPlaceSensor {
         Boundary { sights }
     }
 
-    /// Remembers a scan now and then.
     fn remember_on_the_way(&mut self, scan: &Scan, odometry: &Odometry) {
-        let moved = self.last.back().is_none_or(|(last, _)| {
-            last.distance(odometry) > PLACE.every
-                || wrapped(last.heading - odometry.heading).abs() > PLACE.every_turn
-        });
+        let moved = self
+            .last
+            .back()
+            .is_none_or(|(last, _)| !is_near(last, odometry, PLACE.every, PLACE.every_turn));
         // What is seen all around needs no memory.
         if moved && !sees_all_round(scan) {
             self.remember(scan, odometry);
@@ -236,7 +216,11 @@ impl ScanPlaceSensor {
     }
 }
 
-/// Whether a scan covers a full circle.
+/// Whether a robot has moved by less than a distance, and turned by less than an angle.
+fn is_near(one: &Odometry, other: &Odometry, distance: f64, turn: f64) -> bool {
+    one.distance(other) < distance && wrapped(one.heading - other.heading).abs() < turn
+}
+
 fn sees_all_round(scan: &Scan) -> bool {
     scan.geometry().angle_increment * scan.ranges().len() as f64 > TAU - PLACE.next
 }
@@ -262,12 +246,9 @@ fn is_behind_its_wall(junction: &JunctionView) -> bool {
 
 /// The pieces of wall that a scan has hit, in the robot's frame.
 fn wall_pieces(scan: &Scan) -> Vec<WallPiece> {
-    let hit = |(bearing, reading)| match reading {
-        Reading::Hit(range) => Some((range, scan.point(bearing, range))),
-        Reading::NoReturn | Reading::Invalid => None,
-    };
+    let hit = |(bearing, range): (f64, Option<f64>)| Some((range?, scan.point(bearing, range?)));
     let mut pieces = Vec::new();
-    let mut readings = scan.readings().map(hit).peekable();
+    let mut readings = scan.ranges_hit().map(hit).peekable();
     while let Some(reading) = readings.next() {
         let Some((near, from)) = reading else { continue };
         let next = readings.peek().copied().flatten();
@@ -288,12 +269,10 @@ fn bearings_between(from: f64, turn: f64) -> impl Iterator<Item = (usize, f64)> 
     })
 }
 
-/// The bearing of a boundary that is nearest to a direction.
 fn nearest_bearing(direction: f64) -> usize {
     (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
 }
 
-/// Whether the hits of two successive readings are on one wall.
 fn are_on_one_wall(one: f64, other: f64) -> bool {
     (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other)
 }
@@ -312,29 +291,25 @@ fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
         }
         _ => nearest,
     };
+    sight(range)
+}
+
+fn sight(range: Option<f64>) -> Sight {
     range.map_or_else(Sight::default, Sight::measured)
 }
 
-/// How far a point is along a direction, and to the left of it.
-fn along(point: Point2<f64>, direction: f64) -> f64 {
-    unit(direction).dot(&point.coords)
-}
-
+/// How far a point is to the left of a direction.
 fn across(point: Point2<f64>, direction: f64) -> f64 {
     unit(direction).perp(&point.coords)
 }
 
-/// The bearing and the range of a point.
 fn polar(point: Point2<f64>) -> (f64, f64) {
     (angle(point.coords), point.coords.norm())
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Isometry2;
-
     use super::*;
-    use crate::laser::scan::ScanGeometry;
 
     /// A wall or another surface: its ends, in metres.
     type Surface = [[f64; 2]; 2];
@@ -367,62 +342,51 @@ mod tests {
         (range > 0.0 && within.contains(&hit)).then_some(range)
     }
 
-    /// The places that a robot senses on its way along the x-axis, each 0.25 m.
-    fn sensed(surfaces: &[Surface], until: f64) -> Vec<(f64, Place)> {
+    /// The places that a robot senses on its way along the x-axis, each 0.25 m, and whether each is a hallway whose walls
+    /// are hidden.
+    fn sensed(others: &[Surface], until: f64) -> Vec<(f64, Place, bool)> {
         let mut sensor = ScanPlaceSensor::default();
-        let geometry = ScanGeometry {
-            angle_min: -PI,
-            angle_increment: PI / 180.0,
-            range_min: 0.1,
-            range_max: 30.0,
-        };
-        let steps = (until / 0.25).round() as u32;
+        let surfaces = [&HALLWAY[..], others].concat();
         let place = |step| {
             let odometry = Odometry { position: [0.25 * f64::from(step), 0.0], heading: 0.0 };
-            let ray = |degree: u32| {
-                let bearing = -PI + f64::from(degree).to_radians();
+            let scan = Scan::each_degree(-180, 360, |bearing| {
                 let ranges =
                     surfaces.iter().filter_map(|&one| range(odometry.position, bearing, one));
-                ranges.fold(f64::INFINITY, f64::min) as f32
-            };
-            let scan = Scan::new(geometry, (0..360).map(ray).collect(), Isometry2::identity());
-            (odometry.position[0], sensor.sense(&scan.unwrap(), &odometry))
+                ranges.fold(f64::INFINITY, f64::min)
+            });
+            let place = sensor.sense(&scan, &odometry);
+            let is_hidden = matches!(
+                place,
+                Place::Hallway(hallway) if hallway.confidence == PLACE.hidden_confidence
+            );
+            (odometry.position[0], place, is_hidden)
         };
-        (0..=steps).map(place).collect()
-    }
-
-    fn is_hidden(place: &Place) -> bool {
-        matches!(place, Place::Hallway(hallway) if hallway.confidence == PLACE.hidden_confidence)
+        (0..=(until / 0.25).round() as u32).map(place).collect()
     }
 
     #[test]
     fn a_hallway_goes_on_beside_furniture() {
-        let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0)].concat(), 5.0);
-        for (x, place) in &places {
+        let places = sensed(&cabinet(2.0, 4.0), 5.0);
+        for (x, place, is_hidden) in &places {
             let Place::Hallway(hallway) = place else { panic!("{place:?} after {x} m") };
             assert!(hallway.heading.abs() < 0.1, "{hallway:?}");
-            assert!((hallway.left - 0.8).abs() < 0.1 || !is_hidden(place), "{hallway:?}");
+            assert!((hallway.left - 0.8).abs() < 0.1 || !is_hidden, "{hallway:?}");
         }
-        assert!(places.iter().any(|(_, place)| is_hidden(place)));
+        assert!(places.iter().any(|place| place.2));
     }
 
     #[test]
-    fn a_door_beside_the_robot_ends_a_hidden_hallway() {
-        let places = sensed(&[&HALLWAY[..], &cabinet(5.0, 9.5)].concat(), 9.0);
-        let hidden: Vec<_> = places.iter().filter(|(_, place)| is_hidden(place)).collect();
-        assert!(!hidden.is_empty());
-        for (x, _) in hidden {
-            assert!(!(7.0..9.0).contains(x), "after {x} m");
-        }
-    }
-
-    #[test]
-    fn what_is_in_the_way_ends_a_hidden_hallway() {
+    fn a_door_beside_the_robot_and_what_is_in_its_way_end_a_hidden_hallway() {
         let crate_ahead = [[[3.4, -0.45], [3.4, 0.1]]];
-        let places = sensed(&[&HALLWAY[..], &cabinet(2.0, 4.0), &crate_ahead].concat(), 3.3);
-        assert!(places.iter().any(|(_, place)| is_hidden(place)));
-        for (x, place) in places {
-            assert!(!is_hidden(&place) || x < 3.4 - PLACE.free_ahead, "after {x} m");
+        let in_way = [&cabinet(2.0, 4.0)[..], &crate_ahead].concat();
+        for (others, until, end) in [
+            (&cabinet(5.0, 9.5)[..], 9.0, 7.0..9.0),
+            (&in_way, 3.3, 3.4 - PLACE.free_ahead..f64::MAX),
+        ] {
+            let places = sensed(others, until);
+            let hidden: Vec<f64> =
+                places.iter().filter(|place| place.2).map(|place| place.0).collect();
+            assert!(!hidden.is_empty() && !hidden.iter().any(|x| end.contains(x)), "{hidden:?}");
         }
     }
 
@@ -446,38 +410,23 @@ mod tests {
 
     #[test]
     fn a_robot_looks_around_if_its_scanner_does_not_see_all_round() {
-        let scan = |count: u16| {
-            let geometry = ScanGeometry {
-                angle_min: -f64::from(count / 2).to_radians(),
-                angle_increment: PI / 180.0,
-                range_min: 0.1,
-                range_max: 30.0,
-            };
-            let ranges = vec![2.0; count.into()];
-            Scan::new(geometry, ranges, Isometry2::identity()).unwrap()
-        };
-        let headings = |count| {
-            ScanPlaceSensor::default()
-                .headings_to_look_around(&scan(count), &Odometry::default())
-                .len()
-        };
-        assert_eq!(headings(360), 0);
-        assert!(headings(181) > 0 && headings(271) > 0);
+        for (count, looks) in [(360, false), (181, true), (271, true)] {
+            let scan = Scan::each_degree(-(i32::from(count) / 2), count, |_| 2.0);
+            let sensor = ScanPlaceSensor::default();
+            let headings = sensor.headings_to_look_around(&scan, &Odometry::default());
+            assert_eq!(!headings.is_empty(), looks, "{count}");
+        }
     }
 
     #[test]
     fn no_bearing_passes_between_two_hits_on_one_wall() {
-        // Two hits on a wall, 0.3 m apart, 1 m to the left of where the robot is later.
+        // Two hits on a wall, 0.4 m apart, 1 m to the left of where the robot is later.
         let mut sensor = ScanPlaceSensor::default();
-        let geometry =
-            ScanGeometry { angle_min: 0.2, angle_increment: 0.01, range_min: 0.1, range_max: 30.0 };
-        let ranges = [0.2_f64, 0.21].map(|bearing| (1.0 / bearing.sin()) as f32);
-        let scan = Scan::new(geometry, ranges.to_vec(), Isometry2::identity()).unwrap();
+        let scan = Scan::each_degree(11, 2, |bearing| 1.0 / bearing.sin());
         sensor.remember(&scan, &Odometry::default());
         let later = Odometry { position: [4.8, 0.0], heading: 0.0 };
-        let nothing = Scan::new(geometry, vec![f32::NAN], Isometry2::identity()).unwrap();
-        let boundary = sensor.boundary(&nothing, &later);
-        let seen = boundary.points().count();
+        let nothing = Scan::each_degree(11, 1, |_| f64::NAN);
+        let seen = sensor.boundary(&nothing, &later).points().count();
         assert!(seen > 10, "{seen}");
     }
 }

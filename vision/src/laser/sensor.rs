@@ -9,20 +9,21 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use super::{
     clearances::Clearances,
     grid::Grid,
-    junctions::LaserJunction,
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
     ray_counts::{RayCounts, Rays},
-    scan::{Reading, Scan},
+    scan::Scan,
     skeleton::Skeleton,
     viewpoint::Viewpoint,
-    wall_frame::to_walls,
     way_graph::{ArmJudge, CountedArms, WayGraph},
 };
-use crate::geometry::{distance, from_robot, moved};
+use crate::{
+    geometry::{distance, from_robot, moved},
+    place::{PlaceSensor, PlaceView},
+};
 
 /// Senses junctions with a laser scanner.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LaserSensor {
     params: LaserParams,
     matcher: ScanMatcher,
@@ -40,27 +41,19 @@ pub struct LaserSensor {
     way: f64,
     /// Where the last scan was taken that was used.
     last: Option<Odometry>,
+    /// That of the last view.
+    map: Option<LocalMap>,
 }
 
-/// What the last scans show.
+/// The local map, and the ways on it.
 #[derive(Clone, Debug)]
-pub struct LaserView {
-    /// Where the robot is, in the frame of the local map.
-    pub robot: Odometry,
-    /// The motion from the frame of the local map to that of odometry. It is right near the robot.
-    pub odometry_from_map: Isometry2<f64>,
-    /// The local map.
+pub struct LocalMap {
     pub grid: Grid,
-    /// The distances on it.
     pub clearances: Clearances,
     /// The middle lines of its ways; `None` if the robot has no way.
     pub skeleton: Option<Skeleton>,
     /// Those that count.
     pub graph: WayGraph,
-    /// Where they meet.
-    pub junctions: Vec<LaserJunction>,
-    /// Where they meet if the arms in doubt are arms, too: those that the scanner did not look into.
-    pub possible_junctions: Vec<LaserJunction>,
 }
 
 /// Odometry beyond this is wrong, in metres; cells near it would have no place.
@@ -72,80 +65,15 @@ const CORNERS: [Vector2<f64>; 2] = [Vector2::new(0.0, 0.0), Vector2::new(0.5, 0.
 const MARGIN: usize = 3;
 
 impl LaserSensor {
-    /// A sensor that has seen nothing yet.
     #[must_use]
     pub fn new(params: LaserParams) -> Self {
-        let matcher = ScanMatcher::new(params.matching);
-        Self {
-            params,
-            matcher,
-            frame: None,
-            counts: Vec::new(),
-            views: 0,
-            scans: VecDeque::new(),
-            viewpoints: VecDeque::new(),
-            way: 0.0,
-            last: None,
-        }
+        Self { params, matcher: ScanMatcher::new(params.matching), ..Self::default() }
     }
 
-    /// Takes the next scan, and the odometry at its time. Returns what is seen now, or `None` if the robot
-    /// has hardly moved since the last view, or if the odometry is more than 10,000 km from its origin.
-    pub fn see(&mut self, scan: &Scan, odometry: &Odometry) -> Option<LaserView> {
-        let params = self.params.map;
-        let pose = odometry.position.into_iter().chain([odometry.heading]);
-        if pose.into_iter().any(|number| !(-FARTHEST..=FARTHEST).contains(&number)) {
-            return None;
-        }
-        if let Some(last) = self.last {
-            let driven = last.distance(odometry);
-            let turned = wrapped(odometry.heading - last.heading).abs();
-            if driven < params.every && turned < params.every_turn {
-                return None;
-            }
-            self.way += driven;
-        }
-        self.last = Some(*odometry);
-        let frame = *self.frame.get_or_insert_with(|| to_walls(scan, odometry));
-        let placed = moved(&frame, odometry);
-        let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
-        let position = Point2::from(robot.position);
-        let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
-        self.add(rays(scan, &robot, &params), position, side);
-        self.viewpoints.push_back(Viewpoint::new(scan, &robot));
-        let counts = self.counts.get(self.views % self.counts.len().max(1))?;
-        self.views += 1;
-        let mut grid = counts.window(position, side, &params);
-        grid.clean(&params);
-        let clearances = Clearances::new(&grid);
-        let skeleton = Skeleton::new(&grid, &clearances, position, &self.params);
-        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
-        let ways = ways.unwrap_or_default();
-        let judge = ArmJudge {
-            robot: position,
-            grid: &grid,
-            clearances: &clearances,
-            viewpoints: self.viewpoints.make_contiguous(),
-            params: &self.params.arm,
-        };
-        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
-        let junctions = graph.junctions(&self.params);
-        let possible_junctions = if any_in_doubt {
-            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.junctions(&self.params)
-        } else {
-            junctions.clone()
-        };
-        let odometry_from_map = (self.matcher.correction() * frame).inverse();
-        Some(LaserView {
-            robot,
-            odometry_from_map,
-            grid,
-            clearances,
-            skeleton,
-            graph,
-            junctions,
-            possible_junctions,
-        })
+    /// The map of the last view.
+    #[must_use]
+    pub fn map(&self) -> Option<&LocalMap> {
+        self.map.as_ref()
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
@@ -175,17 +103,73 @@ impl LaserSensor {
     }
 }
 
-/// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
+impl PlaceSensor for LaserSensor {
+    type Frame = Scan;
+
+    /// `None` if the robot has hardly moved since the last view, or if the odometry is more than 10,000 km from its origin.
+    fn view(&mut self, scan: &Scan, odometry: &Odometry) -> Option<PlaceView> {
+        let params = self.params.map;
+        let pose = odometry.position.into_iter().chain([odometry.heading]);
+        if pose.into_iter().any(|number| !(-FARTHEST..=FARTHEST).contains(&number)) {
+            return None;
+        }
+        self.way += params.driven(&mut self.last, odometry)?;
+        // Where the robot was at first, with the axes along the walls: what is seen in cells depends a little on how walls
+        // lie in them, and must not depend on the frame of odometry.
+        let frame = *self.frame.get_or_insert_with(|| {
+            let heading = odometry.heading + scan.direction_of_walls();
+            from_robot(&Odometry { heading, ..*odometry }).inverse()
+        });
+        let placed = moved(&frame, odometry);
+        let robot = self.matcher.see(scan, &placed, self.way, self.way - params.memory);
+        let position = Point2::from(robot.position);
+        let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
+        self.add(rays(scan, &robot, &params), position, side);
+        self.viewpoints.push_back(Viewpoint::new(scan, &robot));
+        let counts = self.counts.get(self.views % self.counts.len().max(1))?;
+        self.views += 1;
+        let mut grid = counts.window(position, side, &params);
+        grid.clean(&params);
+        let clearances = Clearances::new(&grid);
+        let skeleton = Skeleton::new(&grid, &clearances, position, &self.params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
+        let ways = ways.unwrap_or_default();
+        let judge = ArmJudge {
+            robot: position,
+            grid: &grid,
+            clearances: &clearances,
+            viewpoints: self.viewpoints.make_contiguous(),
+            params: &self.params.arm,
+        };
+        let (graph, any_in_doubt) = ways.clone().pruned(&judge, CountedArms::Seen);
+        let places = graph.places(&self.params);
+        let possible_places = if any_in_doubt {
+            ways.pruned(&judge, CountedArms::SeenOrInDoubt).0.places(&self.params)
+        } else {
+            places.clone()
+        };
+        self.map = Some(LocalMap { grid, clearances, skeleton, graph });
+        Some(PlaceView {
+            robot,
+            odometry_from_map: (self.matcher.correction() * frame).inverse(),
+            places,
+            possible_places,
+            sector: scan.sector(),
+            scene: None,
+        })
+    }
+
+    fn sight(&self, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
+        let map = self.map.as_ref();
+        map.map_or(0.0, |map| map.clearances.sight(&map.grid, from, direction, limit).0)
+    }
+}
+
+/// The rays of a scan.
 fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     let map_from_robot = from_robot(robot);
     let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
-    let readings: Vec<(f64, Option<f64>)> = scan
-        .readings()
-        .map(|(bearing, reading)| match reading {
-            Reading::Hit(range) => (bearing, Some(range)),
-            Reading::NoReturn | Reading::Invalid => (bearing, None),
-        })
-        .collect();
+    let readings: Vec<(f64, Option<f64>)> = scan.ranges_hit().collect();
     // Nothing beyond is on the map while the scan is remembered.
     let farthest = 2.0 * params.reach + params.memory;
     let point = |bearing: f64, range: f64| map_from_robot * scan.point(bearing, range);
@@ -253,31 +237,22 @@ fn met(
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
-    use crate::{
-        geometry::unit,
-        laser::{grid::Cell, scan::ScanGeometry},
-    };
+    use crate::{geometry::unit, laser::grid::Cell};
 
     /// A scan all around from the middle of an endless corridor, 2 m wide, along the x axis. Nothing
     /// comes back from beyond 30 m.
     fn along_corridor(is_silent: impl Fn(f64) -> bool) -> Scan {
-        let step = PI / 180.0;
-        let geometry =
-            ScanGeometry { angle_min: -PI, angle_increment: step, range_min: 0.1, range_max: 30.0 };
-        let range = |index: u32| {
-            let bearing = -PI + f64::from(index) * step;
+        Scan::each_degree(-180, 360, |bearing| {
             let range = 1.0 / bearing.sin().abs();
-            if range > 30.0 || is_silent(bearing) { f32::INFINITY } else { range as f32 }
-        };
-        Scan::new(geometry, (0..360).map(range).collect(), Isometry2::identity()).unwrap()
+            if range > 30.0 || is_silent(bearing) { f64::INFINITY } else { range }
+        })
     }
 
     fn cells(scan: &Scan, points: &[Point2<f64>]) -> Vec<Cell> {
-        let view = LaserSensor::new(LaserParams::default()).see(scan, &Odometry::default());
-        let grid = view.unwrap().grid;
+        let mut sensor = LaserSensor::new(LaserParams::default());
+        assert!(sensor.view(scan, &Odometry::default()).is_some());
+        let grid = &sensor.map().unwrap().grid;
         points.iter().map(|&point| grid.cells[grid.index(point).unwrap()]).collect()
     }
 

@@ -6,7 +6,6 @@ use nalgebra::Point2;
 
 use super::{
     clearances::Clearances,
-    counting_sort::sorted_by_key,
     ends::{End, ends, way_lengths},
     grid::{Cell, Grid},
     params::LaserParams,
@@ -15,7 +14,7 @@ use super::{
 /// The cells in the middle of the ways that the robot can take.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
-    /// Whether a cell belongs to it.
+    /// Whether each cell belongs to it.
     pub cells: Vec<bool>,
     /// Where ways end.
     pub ends: Vec<End>,
@@ -23,8 +22,7 @@ pub struct Skeleton {
 
 impl Skeleton {
     /// The skeleton of the ways from a robot at a point; `None` if there is none.
-    #[must_use]
-    pub fn new(
+    pub(super) fn new(
         grid: &Grid,
         clearances: &Clearances,
         robot: Point2<f64>,
@@ -44,29 +42,22 @@ impl Skeleton {
     }
 }
 
-/// The cell of a set that is nearest to a point, within a distance in metres.
+/// The cell of a set that is nearest to a point, within a distance in metres along both axes.
 fn nearest(set: &[bool], grid: &Grid, point: Point2<f64>, within: f64) -> Option<usize> {
-    let reach = (within / grid.cell).ceil() as i64;
     let [x, y] = grid.column_row(point);
-    let around = |at: i64, count: usize| {
-        let last = count as i64 - 1;
-        (at - reach).clamp(0, last)..=(at + reach).clamp(0, last)
+    let off = |at: usize| {
+        let [column, row] = [at % grid.columns, at / grid.columns].map(|at| at as i64);
+        ((row - y).pow(2) + (column - x).pow(2), at)
     };
-    around(y, grid.rows())
-        .flat_map(|row| around(x, grid.columns).map(move |column| (row, column)))
-        .map(|(row, column)| {
-            let off = (row - y).pow(2) + (column - x).pow(2);
-            (off, (row * grid.columns as i64 + column) as usize)
-        })
-        .filter(|&(_, at)| set[at])
-        .min()
-        .map(|(_, at)| at)
+    let cells = grid.cells_around(point, within).filter(|&at| set[at]);
+    cells.map(off).min().map(|(_, at)| at)
 }
 
 /// Removes cells whose removal does not change the topology, those nearest to a wall or to the unknown first.
 fn thin(cells: &mut [bool], ways: &[usize], clearances: &Clearances, ends: &[End], grid: &Grid) {
     let is_end = |at: usize| ends.iter().any(|end| end.cell == at);
-    let mut left = sorted_by_key(ways, |at| clearances.border[at]);
+    let mut left = ways.to_vec();
+    left.sort_by_key(|&at| clearances.border[at]);
     loop {
         let before = left.len();
         left.retain(|&at| {
@@ -80,37 +71,10 @@ fn thin(cells: &mut [bool], ways: &[usize], clearances: &Clearances, ends: &[End
     }
 }
 
-/// Whether the removal of a cell changes no topology.
+/// Whether the removal of a cell changes no topology: Yokoi's connectivity number of its eight neighbours is one.
 fn is_simple(cells: &[bool], at: usize, grid: &Grid) -> bool {
-    let near = grid.neighbours(at);
-    let around =
-        (0..8).fold(0, |around, number| around | usize::from(cells[near[number]]) << number);
-    IS_SIMPLE[around]
+    let around = grid.neighbours(at).map(|near| cells[near]);
+    let begins_group =
+        |&direct: &usize| !around[direct] && (around[(direct + 1) % 8] || around[(direct + 2) % 8]);
+    [1, 3, 5, 7].iter().filter(|direct| begins_group(direct)).count() == 1
 }
-
-/// Whether a cell may be removed, by which of its eight neighbours there are: Yokoi's connectivity number of the
-/// neighbourhood is one.
-const IS_SIMPLE: [bool; 256] = {
-    let mut is_simple = [false; 256];
-    let mut around = 0;
-    while around < 256 {
-        let mut number = 0;
-        let mut direct = 1;
-        while direct < 8 {
-            let empty = [direct, (direct + 1) % 8, (direct + 2) % 8];
-            let mut all = true;
-            let mut next = 0;
-            while next < 3 {
-                all &= around >> empty[next] & 1 == 0;
-                next += 1;
-            }
-            if around >> direct & 1 == 0 && !all {
-                number += 1;
-            }
-            direct += 2;
-        }
-        is_simple[around] = number == 1;
-        around += 1;
-    }
-    is_simple
-};

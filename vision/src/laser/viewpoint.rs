@@ -43,7 +43,6 @@ pub(super) enum Look {
 const FARTHEST: f64 = 10.0;
 
 impl Viewpoint {
-    /// The viewpoint of a scan that a robot took.
     pub(super) fn new(scan: &Scan, robot: &Odometry) -> Self {
         let half = scan.field_of_view() / 2.0;
         let invalid: Vec<bool> =
@@ -115,27 +114,13 @@ fn is_wall_within(
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
-
-    use nalgebra::Isometry2;
+    use std::f64::consts::FRAC_PI_4;
 
     use super::*;
-    use crate::laser::scan::ScanGeometry;
 
-    /// How far a point lies beyond the edge of a sector on a map.
-    fn turn_to(viewpoint: &Viewpoint, point: Point2<f64>, grid: &Grid) -> Option<f64> {
-        viewpoint.turn_to(point, grid, &Clearances::new(grid))
-    }
-
-    /// The viewpoint of a robot that looks east from the middle of a free square of 10 m.
-    fn viewpoint(readings: usize) -> (Viewpoint, Grid) {
-        let geometry = ScanGeometry {
-            angle_min: -FRAC_PI_2,
-            angle_increment: PI / 180.0,
-            range_min: 0.0,
-            range_max: 80.0,
-        };
-        let scan = Scan::new(geometry, vec![1.0; readings], Isometry2::identity()).unwrap();
+    /// The viewpoint of a robot that looks east, with so many readings, from the middle of a free square of 10 m.
+    fn viewpoint(readings: u16, range: impl Fn(f64) -> f64) -> (Viewpoint, Grid) {
+        let scan = Scan::each_degree(-90, readings, range);
         let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
         let cells = vec![Cell::Free; 100 * 100];
         let grid = Grid { columns: 100, cell: 0.1, origin: Point2::origin(), cells };
@@ -144,59 +129,52 @@ mod tests {
 
     #[test]
     fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
-        let (viewpoint, mut grid) = viewpoint(181);
-        assert_eq!(turn_to(&viewpoint, [6.05, 6.05].into(), &grid), None, "ahead");
-        let turn = turn_to(&viewpoint, [4.05, 6.05].into(), &grid).unwrap();
+        let turn_to = |viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid| {
+            viewpoint.turn_to(point.into(), grid, &Clearances::new(grid))
+        };
+        let (half, mut grid) = viewpoint(181, |_| 1.0);
+        assert_eq!(turn_to(&half, [6.05, 6.05], &grid), None, "ahead");
+        let turn = turn_to(&half, [4.05, 6.05], &grid).unwrap();
         assert!((turn - FRAC_PI_4).abs() < 1e-9, "{turn}");
         let wall = grid.index([4.55, 5.55].into()).unwrap();
         grid.cells[wall] = Cell::Occupied;
-        assert_eq!(turn_to(&viewpoint, [4.05, 6.05].into(), &grid), None, "behind a wall");
-    }
-
-    #[test]
-    fn nothing_is_beyond_a_sector_that_goes_all_around() {
-        let (viewpoint, grid) = viewpoint(361);
+        assert_eq!(turn_to(&half, [4.05, 6.05], &grid), None, "behind a wall");
+        let (all_around, grid) = viewpoint(361, |_| 1.0);
         for point in [[4.0, 6.0], [4.0, 5.0], [4.0, 4.0]] {
-            assert_eq!(turn_to(&viewpoint, point.into(), &grid), None);
+            assert_eq!(turn_to(&all_around, point, &grid), None);
         }
     }
 
     #[test]
     fn a_scan_looks_at_what_is_in_its_sector_and_neither_behind_a_wall_nor_too_far_away() {
-        let (viewpoint, mut grid) = viewpoint(181);
-        let look = |point, grid: &Grid| viewpoint.look(point, grid, &Clearances::new(grid));
+        let (viewpoint, mut grid) = viewpoint(181, |_| 1.0);
+        let look = |viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid| {
+            viewpoint.look(point.into(), grid, &Clearances::new(grid))
+        };
         let ahead = [8.05, 5.05];
-        assert_eq!(look(ahead.into(), &grid), Look::At);
-        assert_eq!(look([2.05, 5.05].into(), &grid), Look::Aside);
+        assert_eq!(look(&viewpoint, ahead, &grid), Look::At);
+        assert_eq!(look(&viewpoint, [2.05, 5.05], &grid), Look::Aside);
         let between = grid.index([6.55, 5.05].into()).unwrap();
         grid.cells[between] = Cell::Unknown;
-        assert_eq!(look(ahead.into(), &grid), Look::At, "what is unknown hides nothing");
+        assert_eq!(look(&viewpoint, ahead, &grid), Look::At, "what is unknown hides nothing");
         grid.cells[between] = Cell::Occupied;
-        assert_eq!(look(ahead.into(), &grid), Look::Hidden, "behind a wall");
+        assert_eq!(look(&viewpoint, ahead, &grid), Look::Hidden, "behind a wall");
         let near = Viewpoint { range: 2.0, ..viewpoint.clone() };
-        assert_eq!(near.look([8.05, 6.05].into(), &grid, &Clearances::new(&grid)), Look::Hidden);
-        let sparse = Viewpoint { step: 0.1, ..viewpoint.clone() };
-        assert_eq!(sparse.look([8.05, 6.05].into(), &grid, &Clearances::new(&grid)), Look::Hidden);
+        let sparse = Viewpoint { step: 0.1, ..viewpoint };
+        for viewpoint in [near, sparse] {
+            assert_eq!(look(&viewpoint, [8.05, 6.05], &grid), Look::Hidden);
+        }
     }
 
     #[test]
     fn a_scan_does_not_look_where_readings_are_invalid_and_one_alone_is_a_failure() {
-        let (_, grid) = viewpoint(181);
-        let look = |invalid: std::ops::Range<usize>| {
-            let geometry = ScanGeometry {
-                angle_min: -FRAC_PI_2,
-                angle_increment: PI / 180.0,
-                range_min: 0.1,
-                range_max: 80.0,
-            };
-            let mut ranges = vec![f32::INFINITY; 181];
-            ranges[invalid].fill(0.0);
-            let scan = Scan::new(geometry, ranges, Isometry2::identity()).unwrap();
-            let robot = Odometry { position: [5.05, 5.05], heading: 0.0 };
-            Viewpoint::new(&scan, &robot).look([8.05, 5.05].into(), &grid, &Clearances::new(&grid))
-        };
-        assert_eq!(look(0..0), Look::At);
-        assert_eq!(look(80..100), Look::Aside);
-        assert_eq!(look(90..91), Look::At);
+        for (invalid, expected) in [(0..0, Look::At), (80..100, Look::Aside), (90..91, Look::At)] {
+            let is_invalid =
+                |bearing: f64| invalid.contains(&((bearing.to_degrees() + 90.0).round() as i32));
+            let range = |bearing| if is_invalid(bearing) { 0.0 } else { f64::INFINITY };
+            let (viewpoint, grid) = viewpoint(181, range);
+            let look = viewpoint.look([8.05, 5.05].into(), &grid, &Clearances::new(&grid));
+            assert_eq!(look, expected);
+        }
     }
 }

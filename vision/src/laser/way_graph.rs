@@ -16,38 +16,31 @@ use super::{
 };
 use crate::geometry::distance;
 
-/// A meet point, or the end of a way.
+/// A meet point, or the end of a way. Lengths are in metres on the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayNode {
-    /// Where it is, in metres on the local map.
     pub point: Point2<f64>,
-    /// The distance to the nearest wall, in metres.
+    /// The distance to the nearest wall.
     pub clearance: f64,
-    /// The end; `None` at a meet point.
+    /// `None` at a meet point.
     pub end: Option<End>,
 }
 
 /// A way between two nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// The indices of its nodes.
     pub nodes: [usize; 2],
-    /// Its middle line from the first node to the second, in metres on the local map, with the
-    /// distance to the nearest wall.
+    /// Its middle line from the first node to the second, with the distance to the nearest wall.
     pub line: Vec<(Point2<f64>, f64)>,
-    /// Its length, in metres.
     pub length: f64,
     /// Whether it is certain that the way is an arm, if it leads to an end: the robot was there, or it is seen far
     /// enough. Otherwise what is seen of it only suggests that it goes on.
     pub is_certain: bool,
 }
 
-/// The graph.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WayGraph {
-    /// Meet points and ends.
     pub nodes: Vec<WayNode>,
-    /// The ways between them.
     pub ways: Vec<Way>,
 }
 
@@ -76,15 +69,11 @@ enum ArmStatus {
 /// What the arms of a graph are judged by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ArmJudge<'a> {
-    /// Where the robot is.
     pub robot: Point2<f64>,
-    /// The local map.
     pub grid: &'a Grid,
-    /// The distances on it.
     pub clearances: &'a Clearances,
-    /// Where its scans were taken.
+    /// Where the scans were taken.
     pub viewpoints: &'a [Viewpoint],
-    /// The limits.
     pub params: &'a ArmParams,
 }
 
@@ -102,12 +91,9 @@ struct UnseenBorder {
 }
 
 impl ArmJudge<'_> {
-    /// The unseen border near an end of a way.
     fn unseen_border(&self, end: Point2<f64>) -> UnseenBorder {
         let Self { grid, clearances, params, .. } = *self;
-        let is_border = |&at: &usize| {
-            grid.cells[at] == Cell::Free && clearances.border[at] == 1 && clearances.wall[at] >= 2
-        };
+        let is_border = |&at: &usize| clearances.is_unknown_border(grid, at);
         let mut unseen = UnseenBorder::default();
         for at in grid.cells_near(end, params.border_near).filter(is_border) {
             let direct = grid.neighbours(at).into_iter().skip(1).step_by(2);
@@ -122,7 +108,6 @@ impl ArmJudge<'_> {
         unseen
     }
 
-    /// Whether the scans looked at an unknown point.
     fn look(&self, point: Point2<f64>) -> Look {
         let (mut at, mut aside) = (0, false);
         for viewpoint in self.viewpoints {
@@ -146,7 +131,6 @@ fn length(line: &[(Point2<f64>, f64)]) -> f64 {
 }
 
 impl WayGraph {
-    /// The graph of a skeleton.
     #[must_use]
     pub fn new(skeleton: &Skeleton, grid: &Grid, clearances: &Clearances) -> Self {
         let clearance = |at: usize| f64::from(clearances.wall[at]).sqrt() * grid.cell;
@@ -191,7 +175,6 @@ impl WayGraph {
         all.filter(|&(end, _)| end == node).map(|(_, index)| index).collect()
     }
 
-    /// The number of ways at each node.
     pub(super) fn degrees(&self) -> Vec<usize> {
         let mut degrees = vec![0; self.nodes.len()];
         for node in self.ways.iter().flat_map(|way| way.nodes) {
@@ -214,17 +197,11 @@ impl WayGraph {
             ways.iter_mut().enumerate().for_each(|(index, way)| *way = index);
             ways.sort_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
             let shortest = ways.iter().find(|&&way| {
-                let Some([meet, leaf]) = self.arm(way, &degrees) else { return false };
-                let status = *known
-                    .entry([meet, leaf])
-                    .or_insert_with(|| self.arm_status(way, [meet, leaf], judge));
+                let Some(arm) = self.arm(way, &degrees) else { return false };
+                let status = *known.entry(arm).or_insert_with(|| self.arm_status(way, arm, judge));
                 any_in_doubt |= status == ArmStatus::InDoubt;
-                match counted {
-                    CountedArms::Seen => {
-                        matches!(status, ArmStatus::InDoubt | ArmStatus::None)
-                    }
-                    CountedArms::SeenOrInDoubt => status == ArmStatus::None,
-                }
+                let is_counted = counted == CountedArms::SeenOrInDoubt;
+                status == ArmStatus::None || status == ArmStatus::InDoubt && !is_counted
             });
             let Some(&shortest) = shortest else {
                 if self.prune_loop(judge, &mut degrees) {
@@ -266,7 +243,6 @@ impl WayGraph {
         true
     }
 
-    /// The meet point and the end of a way that has both.
     fn arm(&self, way: usize, degrees: &[usize]) -> Option<[usize; 2]> {
         let [one, other] = self.ways[way].nodes;
         match (degrees[one], degrees[other]) {
@@ -361,20 +337,14 @@ impl WayGraph {
         if one == other {
             return false;
         }
-        let second = self.ways[other].clone().from_node(node);
-        let first = &mut self.ways[one];
-        *first = std::mem::take(first).into_node(node);
-        first.line.extend(second.line.into_iter().skip(1));
-        first.nodes[1] = second.nodes[1];
-        first.length += second.length;
+        let [first, second] = [one, other].map(|way| self.ways[way].clone().from_node(node));
+        let mut joined = first.reversed();
+        joined.line.extend(second.line.into_iter().skip(1));
+        joined.nodes[1] = second.nodes[1];
+        joined.length += second.length;
+        self.ways[one] = joined;
         self.ways.swap_remove(other);
         true
-    }
-}
-
-impl Default for Way {
-    fn default() -> Self {
-        Self { nodes: [0; 2], line: Vec::new(), length: 0.0, is_certain: true }
     }
 }
 
@@ -389,10 +359,6 @@ impl Way {
     pub(super) fn lines(&self) -> [Vec<(Point2<f64>, f64)>; 2] {
         let back = self.line.iter().rev().copied().collect();
         [self.line.clone(), back]
-    }
-
-    fn into_node(self, node: usize) -> Self {
-        if self.nodes[1] == node { self } else { self.reversed() }
     }
 
     fn reversed(mut self) -> Self {
@@ -418,16 +384,12 @@ impl Skeleton {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, PI};
+    use std::f64::consts::FRAC_PI_2;
 
-    use nalgebra::Isometry2;
     use toposlam_model::driving::odometry::Odometry;
 
     use super::*;
-    use crate::laser::{
-        params::LaserParams,
-        scan::{Scan, ScanGeometry},
-    };
+    use crate::laser::{params::LaserParams, scan::Scan};
 
     /// A map with walls everywhere but in free rectangles: their first and last columns and rows.
     fn map(columns: usize, rows: usize, free: &[[[usize; 2]; 2]]) -> Grid {
@@ -449,17 +411,9 @@ mod tests {
         Grid { columns, cell: 0.15, origin: [0.0; 2].into(), cells }
     }
 
-    /// The number of arms of each junction on a map.
-    fn degrees(grid: &Grid, robot: Point2<f64>) -> Vec<usize> {
-        degrees_from(&[], CountedArms::Seen, grid, robot)
-    }
-
-    fn degrees_from(
-        viewpoints: &[Viewpoint],
-        counted: CountedArms,
-        grid: &Grid,
-        robot: Point2<f64>,
-    ) -> Vec<usize> {
+    /// The number of arms of each junction on a map, for a robot in the corridor.
+    fn degrees(viewpoints: &[Viewpoint], counted: CountedArms, grid: &Grid) -> Vec<usize> {
+        let robot = Point2::new(10.0, 2.4);
         let params = LaserParams::default();
         let clearances = Clearances::new(grid);
         let skeleton = Skeleton::new(grid, &clearances, robot, &params).unwrap();
@@ -467,7 +421,7 @@ mod tests {
             ArmJudge { robot, grid, clearances: &clearances, viewpoints, params: &params.arm };
         let ways = WayGraph::new(&skeleton, grid, &clearances);
         let (graph, _) = ways.pruned(&judge, counted);
-        graph.junctions(&params).iter().map(|junction| junction.arms.len()).collect()
+        graph.places(&params).iter().map(|place| place.arms.len()).collect()
     }
 
     #[test]
@@ -489,14 +443,10 @@ mod tests {
                 ],
             )
         };
-        let robot = [10.0, 2.4];
-        // The pillar is 1.05 m wide.
-        assert!(degrees(&around(26, 9), robot.into()).is_empty());
-        // The block is 9.15 m wide.
-        assert_eq!(
-            degrees(&around(86, 12), robot.into()).iter().filter(|&&arms| arms == 3).count(),
-            2
-        );
+        // The pillar is 1.05 m wide, the block 9.15 m.
+        assert!(degrees(&[], CountedArms::Seen, &around(26, 9)).is_empty());
+        let block = degrees(&[], CountedArms::Seen, &around(86, 12));
+        assert_eq!(block.iter().filter(|&&arms| arms == 3).count(), 2);
     }
 
     #[test]
@@ -506,22 +456,14 @@ mod tests {
         for row in 60..66 {
             grid.cells[row * grid.columns + 136] = Cell::Unknown;
         }
-        let robot = [10.0, 2.4];
         // Two scans of half a circle at the alcove's mouth, by a robot with this heading.
         let scans = |heading| {
-            let geometry = ScanGeometry {
-                angle_min: -FRAC_PI_2,
-                angle_increment: PI / 180.0,
-                range_min: 0.1,
-                range_max: 30.0,
-            };
-            let scan = Scan::new(geometry, vec![1.0; 181], Isometry2::identity()).unwrap();
             let at = Odometry { position: [19.6, 3.5], heading };
-            vec![Viewpoint::new(&scan, &at); LOOKS]
+            vec![Viewpoint::new(&Scan::each_degree(-90, 181, |_| 1.0), &at); LOOKS]
         };
         let seen = |viewpoints: &[Viewpoint]| {
             [CountedArms::Seen, CountedArms::SeenOrInDoubt]
-                .map(|counted| degrees_from(viewpoints, counted, &grid, robot.into()))
+                .map(|counted| degrees(viewpoints, counted, &grid))
         };
         assert_eq!(seen(&[]), [vec![3], vec![3]], "no scan could see it");
         assert_eq!(seen(&scans(-FRAC_PI_2)), [vec![], vec![3]], "no scan looked there");

@@ -3,15 +3,15 @@
 use std::{f64::consts::TAU, sync::Arc};
 
 use nalgebra::Point2;
-use toposlam_conform::{CheckedEvent, CheckedKind, EventSource, LaserEvents};
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     enumerate::Watch,
-    percept::Door,
 };
 use toposlam_vision::{
     geometry::{distance, motion_between},
-    laser::{junctions::LaserJunction, params::LaserParams, sensor::LaserView},
+    laser::params::LaserParams,
+    place::{PlaceView, SeenPlace},
+    visits::{Visit, VisitPercept, Visits},
 };
 
 use super::{
@@ -153,15 +153,14 @@ impl WalkSampler {
         let params = self.scanner_of(number);
         let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
         let scanner = LaserScanner::new(building, &params, seed);
-        let mut events = LaserEvents::new(self.sensing);
+        let mut visits = Visits::by_laser(self.sensing);
         let (mut views, mut corridor_views) = (Vec::new(), [0; 2]);
         for (number, step) in walk.steps.iter().enumerate() {
             if watch.stop() {
                 return None;
             }
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
-            let source = EventSource { time: number as u64, ..EventSource::default() };
-            let Some(view) = events.see(source, &scan, &step.odometry) else { continue };
+            let Some(view) = visits.see(number, &scan, &step.odometry) else { continue };
             match self.judge_view(&world, step.pose, &view) {
                 Some(SeenFrom::Junction(verdict)) => views.push(verdict),
                 Some(SeenFrom::Corridor(is_wrong)) => {
@@ -171,21 +170,21 @@ impl WalkSampler {
                 None => {}
             }
         }
-        let (visits, invented) = compared(&world, &walk, &events.finish());
+        let (visits, invented) = compared(&world, &walk, &visits.finish().visits);
         let field_of_view = params.field_of_view;
         Some(JudgedWalk { number, field_of_view, visits, invented, views, corridor_views })
     }
 
     /// Compares the junctions in a view with the nearest one that is there.
-    fn judge_view(&self, world: &CorridorWorld, pose: Pose, view: &LaserView) -> Option<SeenFrom> {
+    fn judge_view(&self, world: &CorridorWorld, pose: Pose, view: &PlaceView) -> Option<SeenFrom> {
         let robot = pose.position;
         let junctions = (0..world.places.len()).filter(|&place| world.arms(place).len() >= 3);
         let near = |place: &usize| distance(world.places[*place], robot);
         let place = junctions.min_by(|one, other| near(one).total_cmp(&near(other)))?;
         let range = self.sensing.visit.range;
-        let seen = &view.junctions;
+        let seen = &view.places;
         if near(&place) > FAR {
-            let here = |junction: &LaserJunction| {
+            let here = |junction: &SeenPlace| {
                 distance(junction.centre, view.robot.position) < range + junction.clearance
             };
             return Some(SeenFrom::Corridor(seen.iter().any(here)));
@@ -196,14 +195,14 @@ impl WalkSampler {
         let Pose { position, heading } = pose;
         let map_from_plan = motion_between(&Odometry { position, heading }, &view.robot);
         let centre = map_from_plan * Point2::from(world.places[place]);
-        let off = |junction: &&LaserJunction| distance(junction.centre, centre);
+        let off = |junction: &&SeenPlace| distance(junction.centre, centre);
         let found = seen.iter().filter(|junction| off(junction) < SAME.max(world.clearance(place)));
         let found = found.min_by(|one, other| off(one).total_cmp(&off(other)));
         let Some(found) = found else { return Some(SeenFrom::Junction(JunctionVerdict::Unseen)) };
         let arms = world.arms(place);
         let is_seen = |direction: f64| {
             let direction = direction + map_from_plan.rotation.angle();
-            found.arms.iter().any(|&arm| wrapped(arm - direction).abs() < SAME_ARM)
+            found.directions().any(|arm| wrapped(arm - direction).abs() < SAME_ARM)
         };
         let is_right =
             found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
@@ -223,12 +222,12 @@ enum SeenFrom {
 fn compared(
     world: &CorridorWorld,
     walk: &LaserWalk,
-    events: &[CheckedEvent],
+    visits: &[Visit<usize>],
 ) -> (Vec<JudgedLaserVisit>, Vec<(u32, f64)>) {
     let junctions = || walk.passed.iter().filter(|place| place.arms.len() >= 3);
     let mut found: Vec<Vec<Derived>> = vec![Vec::new(); junctions().count()];
     let mut invented = Vec::new();
-    for derived in derived(walk, events) {
+    for derived in visits.iter().map(|visit| derived(walk, visit)) {
         let off = |(_, place): &(usize, &PassedPlace)| (place.way - derived.way).abs();
         let nearest = junctions().enumerate().min_by(|one, other| off(one).total_cmp(&off(other)));
         match nearest.filter(|place| off(place) < NEAR) {
@@ -237,7 +236,7 @@ fn compared(
             None => invented.extend(derived.degree.map(|degree| (degree, derived.way))),
         }
     }
-    let mut visits = Vec::new();
+    let mut judged = Vec::new();
     for (place, mut found) in junctions().zip(found) {
         let door = place.door as u32;
         let degree = place.arms.len() as u32;
@@ -254,7 +253,7 @@ fn compared(
         };
         // A second visit of one junction is one that did not happen.
         invented.extend(found.iter().filter_map(|more| Some((more.degree?, more.way))));
-        visits.push(JudgedLaserVisit {
+        judged.push(JudgedLaserVisit {
             features: features(world, place),
             way: place.way,
             door,
@@ -263,7 +262,7 @@ fn compared(
             turning_right: nearest.map(|found| found.turned_back == place.turned_back),
         });
     }
-    (visits, invented)
+    (judged, invented)
 }
 
 /// A derived visit.
@@ -277,28 +276,12 @@ struct Derived {
     turned_back: bool,
 }
 
-fn derived(walk: &LaserWalk, events: &[CheckedEvent]) -> Vec<Derived> {
-    let mut all: Vec<Derived> = Vec::new();
-    let mut turned_back = false;
-    for event in events {
-        let way = walk.steps.get(event.source.time as usize).map_or(0.0, |step| step.way);
-        let mut visit = |degree| {
-            let turned_back = std::mem::take(&mut turned_back);
-            all.push(Derived { way, degree, door: None, turned_back });
-        };
-        match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => visit(Some(arrival.degree)),
-            CheckedKind::Undecided(_) => visit(None),
-            CheckedKind::Door { door: Door(door), .. } => {
-                if let Some(last) = all.last_mut() {
-                    last.door = Some(*door);
-                }
-            }
-            CheckedKind::TurnedBack => turned_back = true,
-            CheckedKind::LeftBetweenDoors { .. } => {}
-        }
-    }
-    all
+fn derived(walk: &LaserWalk, visit: &Visit<usize>) -> Derived {
+    let way = walk.steps.get(visit.at).map_or(0.0, |step| step.way);
+    let percept = visit.doubt.is_none().then(|| visit.percept());
+    let degree = percept.map(|VisitPercept { degree, .. }| degree);
+    let door = percept.and_then(|percept| percept.door);
+    Derived { way, degree, door, turned_back: !visit.turned_back.is_empty() }
 }
 
 fn features(world: &CorridorWorld, passed: &PassedPlace) -> JunctionFeatures {

@@ -8,7 +8,6 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Isometry2, Point2};
 use thiserror::Error;
-use toposlam_conform::{EventSource, LaserEvents, StandingPercept, StandingPlace};
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     embedded_graph::Dart,
@@ -19,10 +18,9 @@ use toposlam_model::{
 };
 use toposlam_vision::{
     geometry::{direction, distance, motion_between},
-    laser::{
-        junctions::LaserJunction, params::LaserParams, scan::Scan, sensor::LaserView,
-        way_graph::WayGraph,
-    },
+    laser::{params::LaserParams, scan::Scan, sensor::LaserSensor, way_graph::WayGraph},
+    place::{Certainty, PlaceArm, PlaceView, SeenPlace},
+    visits::Visits,
 };
 
 use super::{
@@ -71,7 +69,7 @@ pub(super) struct LaserRobot<'w> {
     pub(super) smoothed: &'w SmoothedWorld,
     pub(super) pilot: CorridorPilot<'w>,
     pub(super) scanner: LaserScanner,
-    pub(super) events: LaserEvents,
+    pub(super) visits: Visits<LaserSensor, ()>,
     pub(super) driver: WalkDriver,
     pub(super) params: LaserParams,
     /// The facing dart: where the marker lies.
@@ -82,7 +80,7 @@ pub(super) struct LaserRobot<'w> {
     /// From the local map to the frame of odometry, in the last view.
     pub(super) odometry_from_map: Isometry2<f64>,
     /// What may be junctions, in each view since it began to look around.
-    pub(super) seen: Vec<Vec<LaserJunction>>,
+    pub(super) seen: Vec<Vec<SeenPlace>>,
     /// The centre and the extent of the place that it left last, while it is near, on the local map.
     pub(super) left: Option<([f64; 2], f64)>,
     /// Where it turned around last, on the local map, and the length of its way then.
@@ -108,7 +106,7 @@ enum LegResult {
     /// Beside an opening, where it has looked around.
     LookedAround,
     /// Within what may be a junction, and the direction on the plan from there to where it came in.
-    AtPlace(StandingPlace, f64),
+    AtPlace(SeenPlace, f64),
 }
 
 /// The parameters.
@@ -178,10 +176,10 @@ impl LaserRobot<'_> {
     /// Drives along a leg until it is in the middle of what may be a junction, if it comes to one.
     fn drive_leg(&mut self, leg: &PilotLeg) -> Result<LegResult, ScanFailure> {
         self.driver.drive_near(leg.to);
-        let mut nearest: Option<(f64, StandingPlace)> = None;
+        let mut nearest: Option<(f64, SeenPlace)> = None;
         while self.sensed < self.driver.step_count() {
             self.sense_step()?;
-            let place = self.events.standing().filter(|place| !self.is_left(place));
+            let place = self.visits.status().filter(|place| !self.is_left(place));
             let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
             match (place, &nearest) {
                 (None, None) if self.is_at_opening => {
@@ -203,7 +201,7 @@ impl LaserRobot<'_> {
     }
 
     /// Goes to the centre of a place, if it can stand there.
-    fn go_to(&mut self, place: &StandingPlace) -> Result<(), ScanFailure> {
+    fn go_to(&mut self, place: &SeenPlace) -> Result<(), ScanFailure> {
         let centre = self.plan_from_map() * place.centre;
         if self.pilot.has_space_at(centre.into()) && distance(centre, self.driver.at()) > 0.2 {
             self.driver.drive_to(centre.into());
@@ -214,18 +212,14 @@ impl LaserRobot<'_> {
 
     /// The directions on the plan of the doors of the place where it stands, clockwise from the entry; `None` if it is no
     /// junction.
-    fn decide(
-        &mut self,
-        place: StandingPlace,
-        entry: f64,
-    ) -> Result<Option<Vec<f64>>, ScanFailure> {
+    fn decide(&mut self, place: SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, ScanFailure> {
         self.look_around()?;
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
         let (mut last, mut has_moved, mut tries) = (place, false, 0);
         for _ in 0..ROBOT.looks {
-            let Some(place) = self.events.standing() else {
-                let off = |seen: &&LaserJunction| distance(seen.centre, self.on_local_map());
+            let Some(place) = self.visits.status() else {
+                let off = |seen: &&SeenPlace| distance(seen.centre, self.on_local_map());
                 let near = self
                     .seen
                     .last()
@@ -237,10 +231,9 @@ impl LaserRobot<'_> {
                     self.left = Some((last.centre.into(), last.clearance));
                     return Ok(None);
                 };
-                let (centre, clearance) = (seen.centre, seen.clearance);
                 has_moved = true;
-                let percept = StandingPercept::Undecided;
-                self.go_to(&StandingPlace { centre, clearance, percept })?;
+                let seen = seen.clone();
+                self.go_to(&seen)?;
                 self.look_around()?;
                 continue;
             };
@@ -254,23 +247,22 @@ impl LaserRobot<'_> {
                 known.push((arm, is_arm));
                 continue;
             }
-            let doors = match place.percept {
-                StandingPercept::Junction(doors) => doors,
-                StandingPercept::Corridor => Vec::new(),
-                StandingPercept::Undecided if tries < 2 && known.is_empty() => {
+            let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
+            if is_undecided && known.is_empty() {
+                if tries < 2 {
                     tries += 1;
                     let towards = entry + PI * f64::from(tries);
                     self.look_from_further(towards)?;
                     continue;
                 }
-                StandingPercept::Undecided if known.is_empty() => {
-                    self.left = Some((place.centre.into(), place.clearance));
-                    return Err(ScanFailure::Undecided);
-                }
-                StandingPercept::Undecided => {
-                    let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
-                    Self::seen_at(view, &place).map(|seen| seen.arms.clone()).unwrap_or_default()
-                }
+                self.left = Some((place.centre.into(), place.clearance));
+                return Err(ScanFailure::Undecided);
+            }
+            let doors: Vec<f64> = if is_undecided {
+                let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
+                Self::seen_at(view, &place).into_iter().flat_map(SeenPlace::directions).collect()
+            } else {
+                place.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
             };
             let mut doors: Vec<f64> = doors.into_iter().map(|door| wrapped(door + turn)).collect();
             for &(arm, is_arm) in &known {
@@ -338,7 +330,7 @@ impl LaserRobot<'_> {
 
     /// Whether a view shows ways that meet where the robot is, if its scanner does not look behind it and it has not
     /// turned around nearby.
-    fn is_opening(&self, view: &LaserView, scan: &Scan) -> bool {
+    fn is_opening(&self, view: &PlaceView, scan: &Scan) -> bool {
         let robot = view.robot.position;
         let has_looked = self.looked.is_some_and(|(at, way)| {
             distance(at, robot) < ROBOT.looked && self.driver_way() - way < ROBOT.look_memory
@@ -346,8 +338,9 @@ impl LaserRobot<'_> {
         if has_looked || scan.field_of_view() > ROBOT.all_around {
             return false;
         }
-        let Some(skeleton) = &view.skeleton else { return false };
-        let ways = WayGraph::new(skeleton, &view.grid, &view.clearances);
+        let Some(map) = self.visits.sensor().map() else { return false };
+        let Some(skeleton) = &map.skeleton else { return false };
+        let ways = WayGraph::new(skeleton, &map.grid, &map.clearances);
         let is_meet = |&node: &usize| ways.at(node).len() >= 3;
         let near = |node: &usize| distance(ways.nodes[*node].point, robot) < ROBOT.opening;
         (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))
@@ -359,23 +352,23 @@ impl LaserRobot<'_> {
     }
 
     /// What may be a junction at a place, in a view.
-    fn seen_at<'v>(view: &'v [LaserJunction], place: &StandingPlace) -> Option<&'v LaserJunction> {
-        let off = |seen: &&LaserJunction| distance(seen.centre, place.centre);
+    fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace) -> Option<&'v SeenPlace> {
+        let off = |seen: &&SeenPlace| distance(seen.centre, place.centre);
         let near = view.iter().filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre));
         near.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
     /// The directions of the arms of a place that are not certain in most of the last views.
-    fn uncertain_arms(&self, place: &StandingPlace) -> Vec<f64> {
+    fn uncertain_arms(&self, place: &SeenPlace) -> Vec<f64> {
         let views = &self.seen[self.seen.len().saturating_sub(ROBOT.views)..];
         // The direction, the number of views that show the arm, and of those in which it is certain.
         let mut arms: Vec<(f64, usize, usize)> = Vec::new();
         for seen in views.iter().filter_map(|view| Self::seen_at(view, place)) {
-            for &arm in &seen.arms {
-                let certain = usize::from(!seen.uncertain.contains(&arm));
-                match arms.iter_mut().find(|known| is_same(known.0, arm)) {
+            for arm @ &PlaceArm { direction, .. } in &seen.arms {
+                let certain = usize::from(arm.is_certain());
+                match arms.iter_mut().find(|known| is_same(known.0, direction)) {
                     Some(known) => (known.1, known.2) = (known.1 + 1, known.2 + certain),
-                    None => arms.push((arm, 1, certain)),
+                    None => arms.push((direction, 1, certain)),
                 }
             }
         }
@@ -385,7 +378,7 @@ impl LaserRobot<'_> {
     }
 
     /// The direction on the plan from a place to where the robot was before.
-    fn came_from(&self, place: &StandingPlace) -> f64 {
+    fn came_from(&self, place: &SeenPlace) -> f64 {
         let centre = self.plan_from_map() * place.centre;
         let far = place.clearance.max(1.0) + ROBOT.came_from;
         self.driver.before_entering(centre.into(), far).map_or_else(
@@ -395,7 +388,7 @@ impl LaserRobot<'_> {
     }
 
     /// Whether a place is the one that it left last.
-    fn is_left(&self, place: &StandingPlace) -> bool {
+    fn is_left(&self, place: &SeenPlace) -> bool {
         self.left.is_some_and(|(centre, clearance)| {
             distance(centre, place.centre) < ROBOT.left_behind.max(1.5 * clearance)
         })
@@ -419,11 +412,10 @@ impl LaserRobot<'_> {
         let Ok(scan) = self.scanner.scan(step.pose, number as u64, step.time) else {
             return Ok(());
         };
-        let source = EventSource { time: number as u64, ..EventSource::default() };
-        if let Some(view) = self.events.see(source, &scan, &step.odometry) {
+        if let Some(view) = self.visits.see((), &scan, &step.odometry) {
             self.odometry_from_map = view.odometry_from_map;
             self.is_at_opening = self.is_opening(&view, &scan);
-            self.seen.push(view.possible_junctions);
+            self.seen.push(view.possible_places);
         }
         let at = self.on_local_map();
         if self.left.is_some_and(|(left, clearance)| {

@@ -4,7 +4,6 @@ use std::{borrow::Cow, sync::Arc};
 
 use nalgebra::Isometry2;
 use rand::seq::IndexedRandom;
-use toposlam_conform::LaserEvents;
 use toposlam_model::{
     check::judge_map,
     embedded_graph::Dart,
@@ -12,6 +11,7 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
+use toposlam_vision::visits::Visits;
 
 use super::{
     super::parallel::made_in_turn,
@@ -102,7 +102,7 @@ impl WalkSampler {
             smoothed: &smoothed,
             pilot: CorridorPilot::new(&world),
             scanner: LaserScanner::new(building, &params, seed),
-            events: LaserEvents::new(self.sensing),
+            visits: Visits::by_laser(self.sensing),
             driver,
             params: self.sensing,
             facing,

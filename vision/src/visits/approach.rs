@@ -1,0 +1,323 @@
+//! Visits of a robot with a camera: approaches to a junction, one after the other.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::Point2;
+use toposlam_model::driving::{
+    odometry::{Odometry, WayLength},
+    scene::{JunctionView, MarkerView, Place, Scene, wrapped},
+    visit::{JunctionEstimate, JunctionShape},
+};
+
+use super::visit::{UndecidedCause, Visit, VisitExit, VisitLog};
+use crate::{
+    geometry::{distance, unit},
+    params,
+    place::{PlaceArm, PlaceView, SeenPlace, nearest_direction},
+};
+
+params! {
+    /// Visits by the scenes of a camera.
+    ApproachParams {
+        /// A junction is visited if its turning point comes this near, in metres.
+        near: f64 = 0.3,
+        /// A turning point this far from the last one is of another junction, in metres.
+        another: f64 = 1.5,
+        /// A robot this far from the turning point has left the junction, in metres. Nearer, a hallway is ignored.
+        away: f64 = 0.6,
+    }
+}
+
+const PARAMS: ApproachParams = ApproachParams::DEFAULT;
+
+#[derive(Clone, Debug)]
+pub(super) struct ApproachRule<S> {
+    approach: Option<Approach<S>>,
+    /// The estimate from the scenes since the last junction.
+    seen: JunctionEstimate,
+    /// The heading when the robot was last in a hallway.
+    hallway: Option<f64>,
+    /// The way since the last visit.
+    way: WayLength,
+}
+
+/// Consecutive scenes of one junction.
+#[derive(Clone, Debug)]
+struct Approach<S> {
+    first: S,
+    estimate: JunctionEstimate,
+    /// The direction of the entry door in the frame of odometry.
+    entry: f64,
+    /// In that frame.
+    turning_point: Point2<f64>,
+    /// The smallest distance to the turning point, in metres, and its scene.
+    nearest: f64,
+    visited: S,
+    /// The length of the way to the nearest scene, in metres, and the way since then.
+    driven: Option<f64>,
+    onwards: WayLength,
+}
+
+impl<S: Copy> ApproachRule<S> {
+    pub(super) fn new(marked: bool) -> Self {
+        let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
+        Self { approach: None, seen, hallway: None, way: WayLength::default() }
+    }
+
+    pub(super) fn see(&mut self, log: &mut VisitLog<S>, at: S, view: &PlaceView) {
+        let Some(scene) = &view.scene else { return };
+        let onwards = self.approach.as_mut().map(|approach| &mut approach.onwards);
+        for way in [&mut self.way].into_iter().chain(onwards) {
+            way.add(view.robot);
+        }
+        match (&scene.place, &view.places[..]) {
+            (Place::Hallway(_), _) => self.in_hallway(log, at, scene, &view.robot),
+            (Place::Junction(junction), [place]) => {
+                let is_other = |it: &mut Approach<S>| {
+                    distance(it.turning_point, place.centre) > PARAMS.another
+                };
+                if let Some(approach) = self.approach.take_if(is_other) {
+                    self.leave(log, at, &approach, view.robot.heading);
+                    self.hallway = Some(view.robot.heading);
+                }
+                let junction = junction.clone();
+                self.at_junction(at, junction, scene.marker, place, &view.robot);
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn status(&self) -> Option<SeenPlace> {
+        let approach = self.approach.as_ref().filter(|approach| approach.is_visit())?;
+        let arms = approach.estimate.form().map_or_else(Vec::new, |shape| approach.arms(shape));
+        Some(SeenPlace { centre: approach.turning_point, clearance: 0.0, arms })
+    }
+
+    pub(super) fn finish(mut self, log: &mut VisitLog<S>) {
+        if let Some(approach) = self.approach.take().filter(Approach::is_visit) {
+            self.visited(log, &approach, None);
+        }
+    }
+
+    fn in_hallway(&mut self, log: &mut VisitLog<S>, at: S, scene: &Scene, robot: &Odometry) {
+        if let Some(mut approach) = self.approach.take() {
+            if !approach.is_over(robot) {
+                // A junction that is still ahead looks like a hallway; its marker is visible.
+                if !approach.is_visit() {
+                    approach.estimate.see(scene);
+                }
+                self.approach = Some(approach);
+                return;
+            }
+            self.leave(log, at, &approach, robot.heading);
+        } else if let Some(before) = self.hallway
+            && wrapped(robot.heading - before).abs() > FRAC_PI_2
+        {
+            log.turned_back.push(at);
+            self.seen = JunctionEstimate::default();
+        }
+        self.hallway = Some(robot.heading);
+        self.seen.see(scene);
+    }
+
+    /// The robot has left a junction or passed it.
+    fn leave(&mut self, log: &mut VisitLog<S>, at: S, approach: &Approach<S>, heading: f64) {
+        if approach.is_visit() {
+            self.visited(log, approach, Some((at, heading)));
+        } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
+            log.turned_back.push(at);
+        } else {
+            log.push(approach.undecided(approach.first), |_| None);
+        }
+    }
+
+    fn at_junction(
+        &mut self,
+        at: S,
+        junction: JunctionView,
+        marker: Option<MarkerView>,
+        place: &SeenPlace,
+        robot: &Odometry,
+    ) {
+        let driven = self.way.length();
+        let seen = &mut self.seen;
+        let approach = self.approach.get_or_insert_with(|| Approach {
+            first: at,
+            estimate: std::mem::take(seen),
+            entry: place.arms.first().map_or(0.0, |entry| entry.direction),
+            turning_point: place.centre,
+            nearest: f64::INFINITY,
+            visited: at,
+            driven,
+            onwards: WayLength::default(),
+        });
+        let off = distance(place.centre, robot.position);
+        if off < approach.nearest {
+            (approach.nearest, approach.visited, approach.driven) = (off, at, driven);
+            approach.onwards = WayLength::default();
+            approach.onwards.add(*robot);
+        }
+        let junction = junction.entered_from(robot.seen(approach.entry));
+        approach.estimate.see(&Scene { place: Place::Junction(junction), marker });
+    }
+
+    /// Adds a visit; it is undecided if the images do not decide the percept.
+    fn visited(&mut self, log: &mut VisitLog<S>, approach: &Approach<S>, exit: Option<(S, f64)>) {
+        let undecided = approach.undecided(approach.visited);
+        let Approach { estimate, driven, onwards, .. } = approach;
+        let (Some(shape), Some(percept)) = (estimate.form(), estimate.percept()) else {
+            log.push(undecided, |_| None);
+            return;
+        };
+        let arms = approach.arms(shape);
+        let exit = exit.map(|(at, direction)| {
+            let doors: Vec<f64> = arms.iter().map(|arm| arm.direction).collect();
+            let off = nearest_direction(&doors, direction)
+                .map(|door| wrapped(direction - doors[door]).abs());
+            VisitExit { at, direction, off }
+        });
+        let (shape, sighting) = (Some(shape), Some(percept.sighting));
+        log.push(Visit { arms, exit, shape, sighting, doubt: None, ..undecided }, |_| *driven);
+        self.way = *onwards;
+    }
+}
+
+impl<S: Copy> Approach<S> {
+    fn is_visit(&self) -> bool {
+        self.nearest <= PARAMS.near
+    }
+
+    /// Whether a robot in a hallway has left this junction: it is away from it after a visit, has passed it
+    /// without one, or faces back.
+    fn is_over(&self, robot: &Odometry) -> bool {
+        let off = Point2::from(robot.position) - self.turning_point;
+        let inwards = -off.dot(&unit(self.entry));
+        let looks_back = wrapped(robot.heading - self.entry).abs() < FRAC_PI_2;
+        off.norm() >= PARAMS.away && (self.is_visit() || looks_back || inwards >= PARAMS.away)
+    }
+
+    /// The arms of a shape, clockwise from the entry door.
+    fn arms(&self, shape: JunctionShape) -> Vec<PlaceArm> {
+        let arm = |quarter| wrapped(self.entry - f64::from(quarter) * FRAC_PI_2);
+        shape.quarters().into_iter().map(|quarter| PlaceArm::certain(arm(quarter))).collect()
+    }
+
+    /// A visit of which nothing is known.
+    fn undecided(&self, at: S) -> Visit<S> {
+        Visit {
+            at,
+            centre: self.turning_point,
+            clearance: 0.0,
+            extent: PARAMS.near,
+            arms: Vec::new(),
+            least_degree: 1,
+            exit: None,
+            doubt: Some(UndecidedCause::Unclear),
+            shape: None,
+            sighting: None,
+            turned_back: Vec::new(),
+            hallway: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_4, PI};
+
+    use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
+
+    use super::*;
+    use crate::visits::Visits;
+
+    type Seen = (Place, [f64; 2], f64);
+
+    /// What a robot sees that looks along x and has come along it; the junction has a door behind it and
+    /// one to its left.
+    fn junction(ahead: f64) -> Place {
+        let through = [ahead, 0.0];
+        let line = |direction| CentreLine { through, direction };
+        let doors = vec![line(PI), line(FRAC_PI_2)];
+        Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
+    }
+
+    fn hallway(position: [f64; 2], heading: f64) -> Seen {
+        let status = HallwayStatus::Clear;
+        let view = HallwayView { heading: 0.0, left: 0.8, right: 0.8, status, confidence: 1.0 };
+        (Place::Hallway(view), position, heading)
+    }
+
+    /// A robot that comes along x to a junction at the origin, and visits it.
+    fn visit() -> Vec<Seen> {
+        let from = |x: f64| (junction(-x), [x, 0.0], 0.0);
+        vec![hallway([-2.0, 0.0], 0.0), from(-0.8), from(-0.5), from(-0.2)]
+    }
+
+    fn visits(places: &[Seen], marked: bool) -> VisitLog<usize> {
+        let mut visits = Visits::by_camera(marked);
+        for (number, (place, position, heading)) in places.iter().enumerate() {
+            let scene = Scene { place: place.clone(), marker: None };
+            visits.see(number, &scene, &Odometry { position: *position, heading: *heading });
+        }
+        visits.finish()
+    }
+
+    /// The door of each visit; `None` for what is undecided, and where the robot turned back.
+    fn events(places: &[Seen], marked: bool) -> (Vec<Option<u32>>, Vec<usize>) {
+        let VisitLog { visits, turned_back } = visits(places, marked);
+        let door = |visit: &Visit<usize>| {
+            visit.percept().door.filter(|_| visit.doubt.is_none() && visit.turned_back.is_empty())
+        };
+        (visits.iter().map(door).collect(), turned_back)
+    }
+
+    #[test]
+    fn a_visit_is_a_percept_and_the_door_by_which_it_ends() {
+        let away = hallway([0.0, 1.0], FRAC_PI_2);
+        let mut places = [visit(), vec![away]].concat();
+        let seen = visits(&places, false).visits;
+        let [Visit { at: 3, exit: Some(VisitExit { at: 4, off: Some(off), .. }), .. }] = &seen[..]
+        else {
+            panic!("{seen:?}")
+        };
+        assert!(*off < 1e-9 && seen[0].percept().degree == 2);
+        assert_eq!(seen[0].alternatives(), [Some(seen[0].percept())]);
+        assert_eq!(events(&places, false), (vec![Some(1)], vec![]));
+        // What cannot be recognised, and a hallway beside the turning point, change nothing.
+        let unknown = (Place::Unknown(Reason::NothingFits), [0.0; 2], 0.0);
+        places.splice(4..4, [unknown, hallway([0.0, 0.1], 0.0)]);
+        assert_eq!(events(&places, false), (vec![Some(1)], vec![]));
+        // Between the doors.
+        let seen = visits(&[visit(), vec![hallway([0.7, 0.7], FRAC_PI_4)]].concat(), false).visits;
+        assert!((seen[0].exit.unwrap().off.unwrap() - FRAC_PI_4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn turning_back_is_noticed_in_a_hallway_and_before_a_junction() {
+        let mut places = visit();
+        places.push(hallway([0.0, 2.0], FRAC_PI_2));
+        places.push(hallway([0.0, 1.9], -FRAC_PI_2));
+        assert_eq!(events(&places, false), (vec![Some(1)], vec![5]));
+        let mut places = visit()[..3].to_vec();
+        places.push(hallway([-0.7, 0.0], PI));
+        assert_eq!(events(&places, false), (vec![], vec![3]));
+    }
+
+    #[test]
+    fn a_junction_that_is_passed_or_seen_once_is_undecided() {
+        let passed = [visit()[..2].to_vec(), vec![hallway([0.7, 0.0], 0.0)]].concat();
+        assert_eq!(events(&passed, false), (vec![None], vec![]));
+        let once = [(junction(0.2), [-0.2, 0.0], 0.0), hallway([0.0, 1.0], FRAC_PI_2)];
+        assert_eq!(events(&once, false), (vec![None], vec![]));
+        assert_eq!(visits(&once, false).visits[0].alternatives(), [], "anything is possible");
+    }
+
+    #[test]
+    fn a_robot_that_begins_with_a_marker_has_it_along_its_entry() {
+        let here = (junction(0.0), [0.0; 2], 0.0);
+        let places = [here.clone(), here, hallway([-1.0, 0.0], PI)];
+        assert_eq!(events(&places, true), (vec![Some(0)], vec![]));
+        // Without a marker it would have to be looked at from farther off.
+        assert_eq!(events(&places, false), (vec![None], vec![]));
+    }
+}

@@ -1,0 +1,103 @@
+//! Visits: where a robot came in and left, and which percepts its views cannot exclude. Sections 3 to 5.
+//!
+//! One machine for all sensors, live and from logs: the [`PlaceView`]s of a [`PlaceSensor`] in, [`Visit`]s out. What is
+//! common is here: the arms and alternatives of a visit, turning back, and the hallway since the visit before. When a
+//! visit begins and ends, and which arms count, differs in what the sensors show, so there is one file for each:
+//!
+//! * `approach`: a camera sees one junction at a time, in a few views, but its shape exactly, and how far its turning
+//!   point is. A robot turns there, and faces the hallway by which it leaves.
+//! * `mapped`: a laser scanner sees many places, with arms at any angle, all the time. An arm may show only when the robot
+//!   is past it, so a visit is decided later; and where the robot left is only known by its position, since it may cut
+//!   corners and need not look ahead. The two rules share no threshold: half a metre beside the turning point no camera
+//!   has visited a junction, and for a scanner the robot is in the middle of it.
+//!
+//! Only certain facts accuse a robot. A scanner does not measure by which arm the robot left: the arm nearest to its
+//! position is the one that it drove. If none is near, an arm may be missing, and the visit is undecided.
+
+mod approach;
+mod mapped;
+mod tracked_places;
+mod visit;
+mod way;
+
+use toposlam_model::driving::odometry::Odometry;
+
+pub use self::{
+    approach::ApproachParams,
+    visit::{UndecidedCause, Visit, VisitExit, VisitLog, VisitPercept},
+};
+use self::{approach::ApproachRule, mapped::MappedRule};
+use crate::{
+    laser::{params::LaserParams, sensor::LaserSensor},
+    place::{PlaceSensor, PlaceView, SeenPlace},
+    sensing::SceneSensor,
+};
+
+/// Makes visits of what a sensor sees. `S` identifies a frame.
+#[derive(Clone, Debug)]
+pub struct Visits<P, S> {
+    sensor: P,
+    rule: VisitRule<S>,
+    log: VisitLog<S>,
+}
+
+#[derive(Clone, Debug)]
+enum VisitRule<S> {
+    Approach(ApproachRule<S>),
+    Mapped(Box<MappedRule<S>>),
+}
+
+impl<S: Copy + Default> Visits<LaserSensor, S> {
+    /// The visits of a robot with a laser scanner.
+    #[must_use]
+    pub fn by_laser(params: LaserParams) -> Self {
+        let rule = VisitRule::Mapped(Box::new(MappedRule::new(params)));
+        Self { sensor: LaserSensor::new(params), rule, log: VisitLog::default() }
+    }
+}
+
+impl<S: Copy + Default> Visits<SceneSensor, S> {
+    /// The visits of a robot with a camera; if it is `marked`, it puts its marker down at its start.
+    #[must_use]
+    pub fn by_camera(marked: bool) -> Self {
+        let rule = VisitRule::Approach(ApproachRule::new(marked));
+        Self { sensor: SceneSensor, rule, log: VisitLog::default() }
+    }
+}
+
+impl<P: PlaceSensor, S: Copy + Default> Visits<P, S> {
+    /// Takes the next frame, and the odometry at its time. Returns the view in it, as [`PlaceSensor::view`] does.
+    pub fn see(&mut self, at: S, frame: &P::Frame, odometry: &Odometry) -> Option<PlaceView> {
+        let view = self.sensor.view(frame, odometry)?;
+        match &mut self.rule {
+            VisitRule::Approach(rule) => rule.see(&mut self.log, at, &view),
+            VisitRule::Mapped(rule) => rule.see(&mut self.log, at, &view, &self.sensor),
+        }
+        Some(view)
+    }
+
+    #[must_use]
+    pub fn sensor(&self) -> &P {
+        &self.sensor
+    }
+
+    /// The place in which the robot is now, in the frame of the map: a junction, or what looked like one in some view;
+    /// `None` within a corridor. It has no arms if it is none, and possible ones if the views do not decide.
+    #[must_use]
+    pub fn status(&self) -> Option<SeenPlace> {
+        match &self.rule {
+            VisitRule::Approach(rule) => rule.status(),
+            VisitRule::Mapped(rule) => rule.status(),
+        }
+    }
+
+    /// The visits, after the last frame.
+    #[must_use]
+    pub fn finish(mut self) -> VisitLog<S> {
+        match self.rule {
+            VisitRule::Approach(rule) => rule.finish(&mut self.log),
+            VisitRule::Mapped(rule) => rule.finish(&mut self.log),
+        }
+        self.log
+    }
+}

@@ -1,0 +1,217 @@
+//! A visit, and the bookkeeping of several.
+
+use std::f64::consts::PI;
+
+use nalgebra::Point2;
+use toposlam_model::{
+    driving::{scene::wrapped, visit::JunctionShape},
+    measurement::HallwayMeasurement,
+    percept::Sighting,
+};
+
+use crate::place::{Certainty, PlaceArm, nearest_direction};
+
+/// The visits of a robot, in their order.
+#[derive(Clone, Debug, Default)]
+pub struct VisitLog<S> {
+    pub visits: Vec<Visit<S>>,
+    /// Where the robot has turned back since the last one.
+    pub turned_back: Vec<S>,
+}
+
+/// A robot's stay at a place. Points and directions are in the frame of odometry at that time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visit<S> {
+    pub at: S,
+    /// In metres.
+    pub centre: Point2<f64>,
+    /// The distance from the centre to the nearest wall, in metres; 0 by a camera.
+    pub clearance: f64,
+    /// What is nearer to the centre is within the place, in metres.
+    pub extent: f64,
+    /// Clockwise from the entry door; empty if nothing is known of the place.
+    pub arms: Vec<PlaceArm>,
+    /// A place with fewer arms is no vertex.
+    pub least_degree: usize,
+    /// How the robot left; `None` if the log ends there.
+    pub exit: Option<VisitExit<S>>,
+    /// Why it is undecided.
+    pub doubt: Option<UndecidedCause>,
+    /// `None` if the sensor sees any shape.
+    pub shape: Option<JunctionShape>,
+    /// `None` if the sensor sees no markers.
+    pub sighting: Option<Sighting>,
+    /// Where the robot has turned back since the visit before.
+    pub turned_back: Vec<S>,
+    /// The hallway since the visit before; `None` if the robot turned back in it, or that visit is undecided.
+    pub hallway: Option<HallwayMeasurement>,
+}
+
+/// How a robot left a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VisitExit<S> {
+    pub at: S,
+    /// In radians.
+    pub direction: f64,
+    /// The angle between the door and the direction of the hallway that the robot is in, in radians; `None` if the sensor
+    /// does not measure it.
+    pub off: Option<f64>,
+}
+
+/// What was perceived, and the door that was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct VisitPercept {
+    pub degree: u32,
+    /// `None` if the robot has not left.
+    pub door: Option<u32>,
+}
+
+/// Why a visit is undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UndecidedCause {
+    /// Its images or scans do not show the junction clearly.
+    Unclear,
+    /// There may be an arm that the laser scanner did not look into.
+    UnseenArm,
+    /// The robot drove in a direction in which the laser scanner did not look.
+    UnseenWay,
+}
+
+impl<S> VisitLog<S> {
+    /// Adds a visit. `length` returns the length of the hallway since the visit before, in metres.
+    pub(super) fn push(
+        &mut self,
+        mut visit: Visit<S>,
+        length: impl FnOnce(&Visit<S>) -> Option<f64>,
+    ) {
+        visit.turned_back = std::mem::take(&mut self.turned_back);
+        let before = self.visits.last().filter(|before| before.doubt.is_none());
+        let before = before.filter(|_| visit.turned_back.is_empty() && visit.doubt.is_none());
+        visit.hallway = before.and_then(|before| {
+            let ends = before.exit_arm().zip(visit.entry());
+            let turn = ends.map(|(exit, entry)| wrapped(entry + PI - exit));
+            Some(HallwayMeasurement { length: length(before)?, turn })
+        });
+        self.visits.push(visit);
+    }
+}
+
+impl<S> Visit<S> {
+    /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known.
+    #[must_use]
+    pub fn alternatives(&self) -> Vec<Option<VisitPercept>> {
+        if self.arms.is_empty() {
+            return Vec::new();
+        }
+        let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
+        let alternative = |chosen: u32| {
+            let mut next = 0;
+            let is_there = |arm: &&PlaceArm| match arm.certainty {
+                Certainty::Certain => true,
+                Certainty::Excluded => false,
+                Certainty::Possible => {
+                    next += 1;
+                    chosen >> (next - 1) & 1 == 1
+                }
+            };
+            let arms: Vec<f64> =
+                self.arms.iter().filter(is_there).map(|arm| arm.direction).collect();
+            (arms.len() >= self.least_degree).then(|| self.percept_with(&arms))
+        };
+        let mut all: Vec<_> = (0..1 << possible.min(8)).map(alternative).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// The percept of the arms that are certain, and the door that was taken.
+    #[must_use]
+    pub fn percept(&self) -> VisitPercept {
+        self.percept_with(&self.doors())
+    }
+
+    fn percept_with(&self, arms: &[f64]) -> VisitPercept {
+        let door = self.exit.as_ref().and_then(|exit| nearest_direction(arms, exit.direction));
+        VisitPercept { degree: arms.len() as u32, door: door.map(|door| door as u32) }
+    }
+
+    /// The directions of the arms that are certain, clockwise from the entry door.
+    #[must_use]
+    pub fn doors(&self) -> Vec<f64> {
+        self.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
+    }
+
+    /// The direction of the entry door.
+    #[must_use]
+    pub fn entry(&self) -> Option<f64> {
+        self.arms.first().map(|arm| arm.direction)
+    }
+
+    /// The direction of the door by which the robot left.
+    fn exit_arm(&self) -> Option<f64> {
+        let doors = self.doors();
+        Some(doors[nearest_direction(&doors, self.exit.as_ref()?.direction)?])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    /// A visit by a robot that came from the west and left to the east, with a possible arm in the north.
+    fn visit(least_degree: usize) -> Visit<()> {
+        let arm = |direction, certainty| PlaceArm { direction, certainty };
+        let (north, south) = (FRAC_PI_2, -FRAC_PI_2);
+        Visit {
+            at: (),
+            centre: Point2::origin(),
+            clearance: 1.0,
+            extent: 1.0,
+            arms: vec![
+                arm(PI, Certainty::Certain),
+                arm(north, Certainty::Possible),
+                arm(0.0, Certainty::Certain),
+                arm(south, Certainty::Excluded),
+            ],
+            least_degree,
+            exit: Some(VisitExit { at: (), direction: 0.1, off: None }),
+            doubt: Some(UndecidedCause::UnseenArm),
+            shape: None,
+            sighting: None,
+            turned_back: Vec::new(),
+            hallway: None,
+        }
+    }
+
+    #[test]
+    fn an_arm_that_is_possible_makes_alternatives_and_one_that_is_excluded_none() {
+        let percept = |degree, door| Some(VisitPercept { degree, door: Some(door) });
+        assert_eq!(visit(3).alternatives(), [None, percept(3, 2)]);
+        assert_eq!(visit(1).alternatives(), [percept(2, 1), percept(3, 2)]);
+        let mut unknown = visit(3);
+        unknown.arms.clear();
+        assert_eq!(unknown.alternatives(), []);
+    }
+
+    #[test]
+    fn a_hallway_is_measured_between_two_visits_that_are_decided() {
+        let turned = |turned_back: bool, doubts: [bool; 2]| {
+            let mut log = VisitLog::default();
+            for doubt in doubts {
+                let doubt = doubt.then_some(UndecidedCause::Unclear);
+                log.push(Visit { doubt, ..visit(3) }, |_| Some(7.0));
+                log.turned_back.extend(turned_back.then_some(()));
+            }
+            log.visits[1].hallway.map(|hallway| (hallway.length, hallway.turn))
+        };
+        // It went straight on.
+        assert_eq!(turned(false, [false, false]), Some((7.0, Some(0.0))));
+        for (turned_back, doubts) in
+            [(true, [false, false]), (false, [true, false]), (false, [false, true])]
+        {
+            assert_eq!(turned(turned_back, doubts), None);
+        }
+    }
+}
