@@ -24,13 +24,13 @@ pub struct MarkerNotShown {
     pub algorithm: MappingAlgorithm,
 }
 
-impl LogHead<'_> {
-    fn marker_name(&self) -> Option<&str> {
+impl<'r> LogHead<'r> {
+    fn marker_name(self) -> Option<&'r str> {
         self.0.map(|run| run.marker.as_str()).filter(|name| !name.is_empty())
     }
 
     /// The marker of the robot: without a record, a directional one.
-    pub(crate) fn marker(&self) -> Result<&'static dyn Marker, UnknownMarker> {
+    pub(crate) fn marker(self) -> Result<&'static dyn Marker, UnknownMarker> {
         self.marker_name().map_or(Ok(&Directional), marker::named)
     }
 
@@ -54,14 +54,14 @@ impl LogHead<'_> {
     }
 
     /// The start, if the log was recorded in this world.
-    pub(crate) fn start(&self, world: &NamedWorld) -> Option<Dart> {
+    pub(crate) fn start(self, world: &NamedWorld) -> Option<Dart> {
         let run = self.0?;
         let start = world.start_from_text(&run.start).ok()?;
         (world_hash(&world.graph, start) == run.world_hash).then_some(start)
     }
 
     /// Whether the log was recorded in another world.
-    pub(crate) fn is_of_other_world(&self, graph: &EmbeddedGraph) -> bool {
+    pub(crate) fn is_of_other_world(self, graph: &EmbeddedGraph) -> bool {
         let recorded = self.0.map_or("", |run| &run.world_hash);
         !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
     }
@@ -69,7 +69,7 @@ impl LogHead<'_> {
     /// Whether doors can be compared with an algorithm, which needs a marker: it is recorded, or a percept shows
     /// it, or may.
     pub(crate) fn check_marker(
-        &self,
+        self,
         events: &RunEvents,
         algorithm: MappingAlgorithm,
     ) -> Result<(), MarkerNotShown> {

@@ -1,5 +1,4 @@
-//! `toposlam simulate --log`: what is in a log, by readers in Python that share nothing with its writer;
-//! and what is left of one whose writer was killed.
+//! `toposlam simulate --log`: what is in a log, by readers in Python that share nothing with its writer.
 
 use std::{fs, path::Path, process::Command};
 

@@ -302,7 +302,7 @@ fn assert_same_events(whole: &[CheckedEvent], short: &[CheckedEvent]) {
         let before = place(event).unwrap();
         match (&event.kind, &whole[before].kind) {
             (CheckedKind::Arrival { hallway: None, arrival, .. }, CheckedKind::Arrival { .. }) => {
-                assert_eq!((at, arrival.number), (0, Some(0)))
+                assert_eq!((at, arrival.number), (0, Some(0)));
             }
             (CheckedKind::Arrival { hallway: now, .. }, CheckedKind::Arrival { hallway, .. }) => {
                 assert_eq!(now, hallway);
