@@ -24,7 +24,6 @@ use crate::{
 /// The time after which the watch is asked again whether to stop.
 const BETWEEN_QUESTIONS: Duration = Duration::from_millis(50);
 
-/// Work for the thread of timely dataflow.
 type Command = Box<dyn FnOnce(&mut TimelyWorker) + Send>;
 
 /// Why a cluster has no result.
@@ -39,7 +38,6 @@ pub enum ClusterError {
     Interrupted,
 }
 
-/// What a thread of a process did.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ThreadUse {
     pub process: usize,

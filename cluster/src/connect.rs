@@ -17,16 +17,13 @@ use toposlam_model::enumerate::Watch;
 
 use crate::Hosts;
 
-/// The first bytes of a connection.
 const MAGIC: [u8; 8] = *b"toposlam";
-/// The most bytes of the settings.
 const LONGEST: u32 = 1 << 20;
 
 /// The time in which all processes must be there.
 const PATIENCE: Duration = Duration::from_secs(600);
 /// The time after which missing processes are named.
 const SOON: Duration = Duration::from_secs(3);
-/// The time in which a process answers.
 const ANSWER: Duration = Duration::from_secs(5);
 const BETWEEN_TRIES: Duration = Duration::from_millis(50);
 
@@ -50,14 +47,12 @@ pub enum ConnectError {
     Interrupted,
 }
 
-/// What a process sends first.
 #[derive(Serialize, Deserialize)]
 struct Greeting {
     process: usize,
     settings: Vec<Setting>,
 }
 
-/// Connects a process with all others.
 pub(crate) struct Connector<'w> {
     pub(crate) hosts: &'w Hosts,
     pub(crate) process: usize,

@@ -49,7 +49,6 @@ use timely::{
     scheduling::SyncActivator,
 };
 
-/// What processes send to each other.
 pub(crate) trait JobMessage:
     Clone + Serialize + DeserializeOwned + Send + Sync + 'static
 {
@@ -65,7 +64,6 @@ pub(crate) trait Job: Send + Sync + 'static {
     /// What becomes of all records of some keys.
     type Group: JobMessage;
 
-    /// Does a task.
     fn work(&self, task: usize) -> (Self::Output, Vec<Self::Record>);
 
     /// The key of a record. Equal keys meet in one process.
@@ -75,13 +73,11 @@ pub(crate) trait Job: Send + Sync + 'static {
     fn group(&self, records: Vec<Self::Record>) -> Self::Group;
 }
 
-/// The rounds of the loop.
 type Round = u64;
 
 /// The output of an operator that sends nothing.
 type Nothing<'o> = OutputBuilderSession<'o, Round, CapacityContainerBuilder<Vec<()>>>;
 
-/// The events that a process receives.
 pub(crate) enum JobEvent<J: Job> {
     /// In process 0: a task is done.
     Done(usize, J::Output),
@@ -91,7 +87,6 @@ pub(crate) enum JobEvent<J: Job> {
     Complete,
 }
 
-/// What a process has at the end.
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct ProcessEnd<G> {
     pub(crate) process: usize,
@@ -116,7 +111,6 @@ struct Assignment {
     tasks: Vec<usize>,
 }
 
-/// An assignment that a thread has done.
 struct Finished<J: Job> {
     done: Vec<(usize, J::Output)>,
     records: Vec<J::Record>,
@@ -258,10 +252,8 @@ fn work<'s, J: Job>(
     (reports, records)
 }
 
-/// Where tasks run.
 struct Pool<J> {
     job: Arc<J>,
-    /// Wakes the worker.
     wake: Arc<SyncActivator>,
 }
 

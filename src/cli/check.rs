@@ -31,7 +31,9 @@ use super::{
     edge_range::EdgeRange,
     exit_codes::help_end,
     input,
-    mapping_marker::{algorithm_for, check_worlds, mapping_marker, movable_not_sufficient},
+    mapping_marker::{
+        algorithm_for, check_worlds, is_directional, mapping_marker, movable_not_sufficient,
+    },
     method_options::algorithms,
     output,
     progress::Progress,
@@ -267,8 +269,8 @@ impl CheckArguments {
         let mut sizes = work.into_iter();
         let (mut is_done, mut all_mapped) = (true, true);
         for (edges, work) in sizes.by_ref() {
-            let line = SizeLine::new(edges, self.class(), self.from.as_deref(), self.marker);
-            let (line, of_size) = self.check_size(line, &work, mapper, cluster.as_mut())?;
+            let (line, of_size) =
+                self.check_size(self.line(edges), &work, mapper, cluster.as_mut())?;
             is_done = !line.interrupted;
             all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
             cases.push(line.ci_case());
@@ -292,15 +294,11 @@ impl CheckArguments {
             return Ok(outcome);
         }
         if !all_mapped {
-            let names = sizes.map(|(edges, _)| {
-                let line = SizeLine::new(edges, self.class(), self.from.as_deref(), self.marker);
-                SizeLine { shard: self.named_shard(), ..line }.name()
-            });
-            let checked = cases.len();
-            CiCase::add_not_checked(&mut cases, names, self.from.as_deref());
-            if cases.len() > checked {
+            let names: Vec<_> = sizes.map(|(edges, _)| self.line(edges).name()).collect();
+            if !names.is_empty() {
                 remark!("worlds with more edges are not checked; --keep-going checks them");
             }
+            CiCase::add_not_checked(&mut cases, names.into_iter(), self.from.as_deref());
         }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
@@ -357,8 +355,7 @@ impl CheckArguments {
             Work::Enumerated(_) => (Tally::default(), None),
         };
         progress.finish();
-        let line = line.of_algorithm((algorithm, choices), self.shard, &tally, moves_made);
-        Ok((line, tally.worst))
+        Ok((line.of_algorithm((algorithm, choices), &tally, moves_made), tally.worst))
     }
 
     /// Checks starts whose runs share their beginnings, with a journal if one is asked for.
@@ -428,9 +425,19 @@ impl CheckArguments {
         self.class.unwrap_or(usual)
     }
 
-    /// The share of the starts, if it is not the whole.
-    fn named_shard(&self) -> Option<String> {
-        (self.shard != Shard::WHOLE).then(|| self.shard.to_string())
+    /// The line of a size without counts.
+    fn line(&self, edges: usize) -> SizeLine {
+        let marker = self.marker;
+        SizeLine {
+            edges,
+            class: self.from.is_none().then(|| self.class().name().to_owned()),
+            from: self.from.as_ref().map(|path| path.display().to_string()),
+            marker: marker.name().to_owned(),
+            certificate_total: is_directional(marker).then_some(0),
+            shard: (self.shard != Shard::WHOLE).then(|| self.shard.to_string()),
+            version: (self.shard != Shard::WHOLE).then(|| version().to_owned()),
+            ..SizeLine::default()
+        }
     }
 
     /// The worlds with a number of edges.

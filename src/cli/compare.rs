@@ -20,7 +20,7 @@ use super::{
     exit_codes::help_end,
     input,
     json::print_line,
-    marker_kinds,
+    marker_kinds, output,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
@@ -115,7 +115,7 @@ impl CompareArguments {
         }
         let worlds = [&worlds[0], &worlds[1]];
         if let Some(path) = &self.html {
-            walk_page::check_place(path)?;
+            output::check_place(path, &["html", "htm"])?;
         }
         let robots = self.robots(worlds)?;
         let walk = match (&self.walk, &robots) {
@@ -181,7 +181,6 @@ impl CompareArguments {
     }
 }
 
-/// The fields of an object.
 fn fields(object: Value) -> Map<String, Value> {
     if let Value::Object(fields) = object { fields } else { Map::new() }
 }
@@ -242,7 +241,6 @@ impl GraphComparison<'_> {
         Ok(())
     }
 
-    /// Each dart of A with its image in B.
     fn pairs(&self, bijection: &Bijection) -> impl Iterator<Item = [String; 2]> {
         let [a, b] = self.worlds;
         let images = a.graph.darts().zip(bijection.images());

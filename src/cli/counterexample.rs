@@ -22,7 +22,7 @@ use super::{
     marker_kinds, output,
     progress::Progress,
     text::counted,
-    use_threads, walk_page,
+    use_threads,
 };
 use memory::MemoryLimit;
 use pairs::WorldPairs;
@@ -146,7 +146,7 @@ impl CounterexampleArguments {
         let searches = MARKERS.into_iter().filter(wanted).map(search);
         let searches: Vec<(&dyn Marker, _)> = searches.collect::<Result<_, CliError>>()?;
         if let Some(path) = &self.html {
-            walk_page::check_place(path)?;
+            output::check_place(path, &["html", "htm"])?;
             if searches.len() != 1 {
                 let cause = "a page shows one marker; choose it with --marker";
                 return Err(CliError::at("--html", cause));

@@ -146,12 +146,10 @@ enum RunPrinter<'o, W: Write> {
     Doors(Vec<Value>),
     /// Counts, at the end.
     Summary(Summary),
-    /// Each round.
     Story(Box<PrintedStory<&'o mut W>>),
 }
 
 impl ExploreArguments {
-    /// Whether the run is summarised.
     fn summarises(&self, world: &NamedWorld) -> bool {
         let story = self.story || self.full || self.doors;
         self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)

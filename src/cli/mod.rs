@@ -163,7 +163,8 @@ pub fn run(revision: Option<&str>) -> ExitCode {
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Info(verb)) => verb.run(&mut out),
         Some(Verb::Conform(verb)) => verb.run(&mut out),
-        None => print_help(&mut out),
+        None => write!(out, "{}", CommandLine::command().render_help())
+            .map_or_else(|error| Err(error.into()), |()| Ok(Outcome::Holds)),
     };
     match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(CliError::from)) {
         Ok(outcome) => outcome.into(),
@@ -185,10 +186,4 @@ fn parse(arguments: &[OsString]) -> CommandLine {
     let parsed = command.try_get_matches_from_mut(arguments);
     let parsed = parsed.and_then(|matches| CommandLine::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| error.format(&mut command).exit())
-}
-
-/// Prints the help of `toposlam` without a verb.
-fn print_help(out: &mut dyn Write) -> Result<Outcome, CliError> {
-    write!(out, "{}", CommandLine::command().render_help())?;
-    Ok(Outcome::Holds)
 }

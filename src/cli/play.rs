@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     embedded_graph::Dart,
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    enumerate::{Class, Each, Enumeration},
     format::named_world::NamedWorld,
 };
 
@@ -109,18 +109,14 @@ impl PlayArguments {
             .map_err(|error| CliError::at("--edges", error))?;
         let progress = Progress::endless("random world", "starts")?;
         let mut count: u64 = 0;
-        let mut step = |_: EnumeratedGraph| {
+        let counted_all = starts.for_each(&mut |_| {
             count += 1;
             // It takes seconds to count many starts.
-            if count.is_multiple_of(1 << 16) && must_stop() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        };
-        let counted_all = starts.for_each(&mut step).is_continue();
+            let stops = count.is_multiple_of(1 << 16) && must_stop();
+            if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         progress.finish();
-        if !counted_all {
+        if counted_all.is_break() {
             return Err(CliError::Interrupted);
         }
         if count == 0 {

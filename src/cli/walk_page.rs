@@ -15,11 +15,6 @@ use super::{
 };
 use crate::page::{WalkPage, page};
 
-/// Checks that a page can be written to a path, before long work begins.
-pub(crate) fn check_place(path: &Path) -> Result<(), CliError> {
-    output::check_place(path, &["html", "htm"])
-}
-
 /// The most states of a world on a page.
 const MOST_STATES: usize = 20_000;
 

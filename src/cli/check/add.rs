@@ -135,7 +135,6 @@ fn by_size(mut shards: Vec<FoundShard>) -> Result<(Vec<SizeLine>, Vec<SizeLine>)
 /// The most problems that are listed. A wrong number of shards can be huge.
 const MOST_PROBLEMS: usize = 100;
 
-/// Reads the lines of a file.
 fn read_shards(path: &Path, shards: &mut Vec<FoundShard>) -> Result<(), CliError> {
     let bytes = input::read(path)?;
     for (number, text) in (1..).zip(bytes.split(|&byte| byte == b'\n')) {

@@ -36,7 +36,6 @@ const MEASURED: f64 = 0.1;
 /// 95 % of a normal distribution are within this many standard deviations of its mean.
 const STANDARD_DEVIATIONS: f64 = 1.96;
 
-/// The options of an estimate.
 #[derive(clap::Args, Debug)]
 pub(super) struct EstimateOptions {
     /// Do not check: predict starts, moves and time by random probes, with 95 % confidence intervals
@@ -132,7 +131,6 @@ struct EstimateLine<'a> {
     starts: Option<Interval>,
     /// Of one run for each start.
     moves_total: Option<Interval>,
-    /// Those that the check makes.
     moves_made: Option<Interval>,
     /// On `threads` threads.
     seconds: Option<Interval>,

@@ -24,10 +24,8 @@ use toposlam_model::{
 
 use crate::cli::{CliError, output, version::release};
 
-/// The check that a journal is of.
 #[derive(Serialize, Deserialize)]
 pub(super) struct JournalHeader {
-    /// The version of the format.
     pub(super) journal: u32,
     pub(super) version: String,
     pub(super) class: String,
@@ -39,10 +37,8 @@ pub(super) struct JournalHeader {
 }
 
 impl JournalHeader {
-    /// The version of the format.
     pub(super) const FORMAT: u32 = 1;
 
-    /// The first thing in which a check differs from another.
     fn difference(&self, other: &Self) -> Option<String> {
         let fields = |of: &Self| {
             [
@@ -62,19 +58,16 @@ impl JournalHeader {
     }
 }
 
-/// A finished unit.
 #[derive(Serialize, Deserialize)]
 struct FinishedUnit {
     unit: usize,
     counts: PartTally,
 }
 
-/// An open journal.
 pub(super) struct CheckJournal {
     path: PathBuf,
     finished: BTreeMap<usize, PartTally>,
     file: Mutex<Result<fs::File, io::Error>>,
-    /// Whether a line could not be written.
     is_broken: AtomicBool,
 }
 
@@ -96,7 +89,6 @@ fn object_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     (checksum == expected.as_bytes()).then(|| serde_json::from_slice(json).ok()).flatten()
 }
 
-/// The cause if a file is not a journal.
 const NOT_A_JOURNAL: &str = "line 1: this is not the first line of a journal";
 
 /// The finished units in the journal of a check, and the bytes of its whole lines. A line without an end was being
@@ -163,7 +155,6 @@ impl CheckJournal {
         JournalWatch { journal: self, other }
     }
 
-    /// The number of units that were finished before.
     pub(super) fn finished_before(&self) -> usize {
         self.finished.len()
     }

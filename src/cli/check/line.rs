@@ -1,25 +1,21 @@
 //! The result for one number of edges: a line of `check --json`, a row of the table, a case for CI. `--add` reads
 //! the lines of shards.
 
-use std::{collections::BTreeMap, fmt::Write as _, ops::Not, path::Path};
+use std::{collections::BTreeMap, fmt::Write as _, ops::Not};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use toposlam_model::{
-    check::{EnumeratedStart, FailedStart, Shard, Tally, WorstStart},
+    check::{EnumeratedStart, FailedStart, Tally, WorstStart},
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     mapping::MappingAlgorithm,
-    marker::Marker,
 };
 
 use crate::cli::{
     CliError, Outcome, RunChoices,
     ci_report::CiCase,
-    mapping_marker::is_directional,
     text::{counted, grouped},
-    version::version,
 };
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -171,23 +167,6 @@ impl From<CountOverflow> for CliError {
 }
 
 impl SizeLine {
-    /// A line without counts, for worlds of a class or from a file.
-    pub(super) fn new(
-        edges: usize,
-        class: Class,
-        from: Option<&Path>,
-        marker: &dyn Marker,
-    ) -> Self {
-        Self {
-            edges,
-            class: from.is_none().then(|| class.name().to_owned()),
-            from: from.map(|path| path.display().to_string()),
-            marker: marker.name().to_owned(),
-            certificate_total: is_directional(marker).then_some(0),
-            ..Self::default()
-        }
-    }
-
     /// The same line with the counts of a check.
     pub(super) fn with_counts<F>(self, tally: &Tally<WorstStart, F>) -> Self {
         let certificate = |value| self.certificate_total.and(Some(value));
@@ -211,19 +190,15 @@ impl SizeLine {
     pub(super) fn of_algorithm(
         self,
         (algorithm, choices): (MappingAlgorithm, RunChoices),
-        shard: Shard,
         tally: &Tally,
         moves_made: Option<u64>,
     ) -> Self {
-        let is_shard = shard != Shard::WHOLE;
         let below = self.certificate_total.and(Some(tally.below_certificate));
         let mut line = Self {
             algorithm: Some(algorithm.info().title.to_owned()),
             moves_made,
             below_certificate: below,
             largest_ratio: Some(tally.largest_ratio(self.edges, algorithm.info().order)),
-            shard: is_shard.then(|| shard.to_string()),
-            version: is_shard.then(|| version().to_owned()),
             failure: tally.failure.as_ref().map(|it| FailureLine::of_algorithm(algorithm, it)),
             ..self
         };
@@ -268,7 +243,6 @@ impl SizeLine {
         }
     }
 
-    /// The number of starts that reached a limit.
     pub(super) fn reached(&self, limit: &str) -> u64 {
         self.limits.as_ref().and_then(|limits| limits.get(limit)).copied().unwrap_or_default()
     }
@@ -355,7 +329,6 @@ impl SizeLine {
         Ok(())
     }
 
-    /// The worlds, in words.
     pub(super) fn worlds_in_words(&self) -> String {
         let worlds = match &self.from {
             Some(path) => format!("the worlds of {path}"),
@@ -367,12 +340,10 @@ impl SizeLine {
         }
     }
 
-    /// What is checked.
     pub(super) fn name(&self) -> String {
         format!("{}, {}", counted(self.edges, "edge"), self.worlds_in_words())
     }
 
-    /// The result for CI systems.
     pub(super) fn ci_case(&self) -> CiCase {
         let (mapped, starts) = (grouped(self.mapped.into()), grouped(self.starts.into()));
         let mut message = format!("{mapped} of {starts} starts mapped correctly");

@@ -25,7 +25,6 @@ struct PrintedSize<'l> {
     verdict: &'static str,
 }
 
-/// Prints each result when it is there.
 pub(super) struct CheckReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
@@ -54,7 +53,6 @@ impl<'o> CheckReport<'o> {
         Ok(self.total.add(line)?)
     }
 
-    /// Reports how busy the threads of a cluster were.
     pub(super) fn threads(
         &mut self,
         cluster: &mut Box<dyn ClusterSession>,
@@ -258,11 +256,7 @@ impl<'o> CheckReport<'o> {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{
-        check::{Shard, Tally},
-        enumerate::Class,
-        marker::Directional,
-    };
+    use toposlam_model::check::Tally;
 
     use super::*;
     use crate::cli::RunChoices;
@@ -271,8 +265,7 @@ mod tests {
     fn more_runs_than_64_bits_hold_are_printed_and_read_exactly() {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
         let all = (MappingAlgorithm::Algorithm1, RunChoices::All { budget: 9 });
-        let line = SizeLine::new(1, Class::Simple, None, &Directional);
-        let line = line.of_algorithm(all, Shard::WHOLE, &tally, None);
+        let line = SizeLine::default().of_algorithm(all, &tally, None);
         let mut out = Vec::new();
         CheckReport::new(&mut out, true, None).size(line).unwrap();
         let text = String::from_utf8(out).unwrap();

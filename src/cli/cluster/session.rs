@@ -22,7 +22,6 @@ use crate::cli::{
     version::version,
 };
 
-/// A process of a cluster.
 pub(super) struct ConnectedSession {
     cluster: ClusterProcess,
     /// What each thread of each process did in the last work; only process 0 knows it.
@@ -43,7 +42,6 @@ fn failure(error: ClusterError) -> CliError {
     }
 }
 
-/// Connects to the other processes.
 pub(super) fn connect(
     path: &Path,
     process: usize,

@@ -185,16 +185,14 @@ impl<'w> RobotComparison<'w> {
         })
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let [a, b] = self.worlds;
         let start = a.start_text(self.start);
         writeln!(out)?;
         print_paragraph(out, &format!("{} marker: {}", self.marker.name(), self.marker.about()))?;
         match &self.bisimulation {
-            Some(Bisimulation::Relation(relation)) => {
-                return Ok(self.print_relation(relation, out)?);
-            }
-            Some(Bisimulation::Classes(classes)) => return Ok(self.print_classes(classes, out)?),
+            Some(Bisimulation::Relation(relation)) => return self.print_relation(relation, out),
+            Some(Bisimulation::Classes(classes)) => return self.print_classes(classes, out),
             None => {}
         }
         for (pose, walk) in self.others.iter().take(PRINTED_STARTS) {
@@ -211,13 +209,11 @@ impl<'w> RobotComparison<'w> {
                 print_hanging(out, "  B: ", &other.to_string())?;
             }
         }
-        match self.others.len().saturating_sub(PRINTED_STARTS) {
-            0 => {}
-            more => {
-                let more = counted(more, "more start");
-                let text = format!("A walk also distinguishes them from {more} in B (see --json).");
-                print_paragraph(out, &text)?;
-            }
+        let more = self.others.len().saturating_sub(PRINTED_STARTS);
+        if more > 0 {
+            let more = counted(more, "more start");
+            let text = format!("A walk also distinguishes them from {more} in B (see --json).");
+            print_paragraph(out, &text)?;
         }
         Ok(())
     }
@@ -234,24 +230,21 @@ impl<'w> RobotComparison<'w> {
         let printed = relation.0.iter().take(PRINTED_PAIRS);
         let pairs: Vec<_> = printed.map(|pair| self.pair_text(pair).join("~")).collect();
         print_columns(out, &pairs)?;
-        match relation.0.len().saturating_sub(PRINTED_PAIRS) {
-            0 => Ok(()),
-            more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
-        }
+        print_rest(out, relation.0.len().saturating_sub(PRINTED_PAIRS))
     }
 
     /// Why no walk distinguishes the worlds, if there are many pairs of states.
     fn print_classes(&self, classes: &StateClasses, out: &mut dyn Write) -> io::Result<()> {
         let [start, other] = self.starts_text();
+        let number = match classes.count() {
+            1 => "is 1 class".to_owned(),
+            count => format!("are {} classes", grouped(count as u128)),
+        };
         let verdict = format!(
             "No walk distinguishes the worlds from {start} in A and {other} in B. The robots can be \
              in more than {} pairs of states. Two states of one class are indistinguishable, and each \
-             action leads from them to states of one class. There {}:",
+             action leads from them to states of one class. There {number}:",
             grouped(MOST_PAIRS as u128),
-            match classes.count() {
-                1 => "is 1 class".to_owned(),
-                count => format!("are {} classes", grouped(count as u128)),
-            }
         );
         print_paragraph(out, &verdict)?;
         for (number, states) in (1..=PRINTED_CLASSES).zip(classes.classes()) {
@@ -265,9 +258,13 @@ impl<'w> RobotComparison<'w> {
             let text = format!("{one} of A{here} and {other} of B{there}");
             print_hanging(out, &format!("  {number:>3}  "), &text)?;
         }
-        match classes.count().saturating_sub(PRINTED_CLASSES) {
-            0 => Ok(()),
-            more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
-        }
+        print_rest(out, classes.count().saturating_sub(PRINTED_CLASSES))
+    }
+}
+
+fn print_rest(out: &mut dyn Write, more: usize) -> io::Result<()> {
+    match more {
+        0 => Ok(()),
+        more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
     }
 }

@@ -34,11 +34,8 @@ fn full_size(class: Class) -> usize {
     }
 }
 
-/// The smallest pair of a marker in each class.
-struct Row {
-    marker: &'static dyn Marker,
-    found: Vec<WorldPairs>,
-}
+/// A marker, and its smallest pair in each class.
+type Row = (&'static dyn Marker, Vec<WorldPairs>);
 
 /// Writes the atlas. `edges` limits the sizes of the worlds.
 pub(super) fn write(
@@ -63,15 +60,13 @@ pub(super) fn write(
                 Err(unfinished) => return pairs::report_unfinished(&unfinished),
             }
         }
-        rows.push(Row { marker, found });
+        rows.push((marker, found));
     }
-    for Row { found, .. } in &rows {
-        for found in found {
-            found.write(folder)?;
-            for world in &found.worlds {
-                let path = folder.join(format!("{}.svg", world.name));
-                output::write_whole(&path, svg(&WorldPicture::from(world)).as_bytes())?;
-            }
+    for found in rows.iter().flat_map(|(_, found)| found) {
+        found.write(folder)?;
+        for world in &found.worlds {
+            let path = folder.join(format!("{}.svg", world.name));
+            output::write_whole(&path, svg(&WorldPicture::from(world)).as_bytes())?;
         }
     }
     let limit = edges.map(|edges| format!(" --max-edges {edges}")).unwrap_or_default();
@@ -88,26 +83,24 @@ fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
     };
     line(&format!("| marker | {} |", Class::ALL.map(Class::name).join(" | ")));
     line(&format!("| --- |{}", " --- |".repeat(Class::ALL.len())));
-    for Row { marker, found } in rows {
+    for (marker, found) in rows {
         let cells = Class::ALL.into_iter().zip(found).zip(sizes);
         let cells: Vec<_> =
             cells.map(|((class, found), edges)| cell(*marker, class, found, edges)).collect();
         line(&format!("| {} | {} |", marker.name(), cells.join(" | ")));
     }
-    for Row { marker, found } in rows {
+    for (marker, found) in rows {
         line(&format!("\n## {}\n", marker.name()));
         line(&format!("{}\n", sentence(marker.about())));
         if found.iter().all(|found| found.pairs().is_empty()) {
             line(&no_pair(*marker));
             continue;
         }
-        let mut header = true;
+        line("| class | one world | the other |\n| --- | --- | --- |");
         for (found, class) in found.iter().zip(Class::ALL) {
-            if let Some([one, other]) = found.pairs().first() {
-                if std::mem::take(&mut header) {
-                    line("| class | one world | the other |\n| --- | --- | --- |");
-                }
-                line(&format!("| {class} | {} | {} |", pictured(one), pictured(other)));
+            if let Some(pair) = found.pairs().first() {
+                let [one, other] = pair.map(|world| format!("![{0}]({0}.svg)", world.name));
+                line(&format!("| {class} | {one} | {other} |"));
             }
         }
     }
@@ -180,8 +173,4 @@ fn cell(marker: &dyn Marker, class: Class, found: &WorldPairs, edges: usize) -> 
     let theorem =
         proved(marker, class, false).map(|theorem| format!(": `{theorem}`")).unwrap_or_default();
     format!("{} and {}{theorem}", file(pair[0]), file(pair[1]))
-}
-
-fn pictured(world: &NamedWorld) -> String {
-    format!("![{0}]({0}.svg)", world.name)
 }

@@ -23,7 +23,6 @@ pub(super) enum ExplorerFault {
     })]
     Ended {
         status: Option<String>,
-        /// Whether the status is that of a failure.
         failed: bool,
     },
     #[error("{}", refusal(refused))]
@@ -68,7 +67,6 @@ fn refusal(refused: &RefusedAction) -> String {
     }
 }
 
-/// The name of a fault that is a limit on moves.
 const MAX_MOVES: &str = "max-moves";
 
 impl ExplorerFault {

@@ -13,7 +13,6 @@ use std::time::Duration;
 pub(super) use process::ExplorerCommand;
 pub(super) use sweep::ExplorerSweep;
 
-/// The options of an explorer that is another program.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Your own explorer")]
 pub(super) struct ExplorerOptions {
@@ -51,7 +50,6 @@ pub(super) struct ExplorerOptions {
     restarts: u64,
 }
 
-/// Parses a number of seconds.
 fn seconds(text: &str) -> Result<Duration, String> {
     const MOST: f64 = 86_400.0;
     match text.parse() {

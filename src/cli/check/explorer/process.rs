@@ -33,7 +33,6 @@ const TO_END: Duration = Duration::from_secs(1);
 /// The longest time between two looks at whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// A command: a program and its arguments.
 #[derive(Clone, Debug)]
 pub(in crate::cli::check) struct ExplorerCommand {
     /// As on the command line.
@@ -55,7 +54,6 @@ impl FromStr for ExplorerCommand {
 }
 
 impl ExplorerCommand {
-    /// Starts a process.
     pub(super) fn start(&self) -> Result<ExplorerProcess, CliError> {
         let mut words = self.words.iter();
         let program = words.next().map_or("", String::as_str);
@@ -84,14 +82,12 @@ impl ExplorerCommand {
     }
 }
 
-/// A running process.
 pub(super) struct ExplorerProcess {
     running: RunningProgram,
     /// `None` after the end of its input.
     requests: Option<Sender<String>>,
     /// The lines that come back; closed after the end of its output.
     received: Receiver<Result<Vec<u8>, ExplorerFault>>,
-    /// The end of its standard error.
     errors: Arc<Mutex<VecDeque<u8>>>,
     /// Receives when its standard error is closed.
     ended: Receiver<()>,
@@ -179,7 +175,6 @@ fn converse(
     }
 }
 
-/// Reads a stream and keeps its end.
 fn keep_end(mut stream: impl Read, kept: &Mutex<VecDeque<u8>>) {
     let mut buffer = [0; 1024];
     while let Ok(count @ 1..) = stream.read(&mut buffer) {
@@ -190,7 +185,6 @@ fn keep_end(mut stream: impl Read, kept: &Mutex<VecDeque<u8>>) {
     }
 }
 
-/// How a process ended.
 fn status_text(status: ExitStatus) -> String {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {

@@ -1,6 +1,7 @@
 //! The lines between the check and an explorer that is another program: docs/protocol.md.
 
-use serde_json::{Map, Value};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use toposlam_model::{
     embedded_graph::Dart,
     mapping::{ExploredMap, Flaw},
@@ -13,7 +14,6 @@ use super::fault::ExplorerFault;
 /// The most characters of a line that a message shows.
 const SHOWN: usize = 60;
 
-/// The line of a percept.
 pub(super) fn percept_line(percept: Percept) -> String {
     let Percept { degree, sighting } = percept;
     let marker = match sighting {
@@ -30,7 +30,6 @@ pub(super) fn percept_line(percept: Percept) -> String {
     format!("{{\"percept\":{{\"degree\":{degree},\"marker\":{marker}}}}}\n")
 }
 
-/// What an explorer answers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ExplorerAnswer {
     Act(Action),
@@ -59,20 +58,20 @@ impl ExplorerAnswer {
         };
         let keys: Vec<_> = fields.keys().map(String::as_str).collect();
         match keys[..] {
-            ["door"] => match fields["door"].as_u64().and_then(|door| u32::try_from(door).ok()) {
-                Some(door) => Ok(Self::Act(Action::Take(Door(door)))),
-                None => Err(format!("{} is not the number of a door", fields["door"])),
-            },
+            ["door"] => part(&fields["door"], "the number of a door")
+                .map(|door| Self::Act(Action::Take(Door(door)))),
             ["action"] => match fields["action"].as_str() {
                 Some("pick-up") => Ok(Self::Act(Action::PickUp)),
                 Some("drop") => Ok(Self::Act(Action::Drop)),
                 _ => Err(format!("{} is not \"pick-up\" or \"drop\"", fields["action"])),
             },
-            ["give_up"] => match fields["give_up"].as_str() {
-                Some(reason) => Ok(Self::GiveUp(shortened(reason))),
-                None => Err(format!("{} is not a text", fields["give_up"])),
-            },
-            ["map", "pose"] | ["pose", "map"] => ReportedMap::from_fields(fields).map(Self::Done),
+            ["give_up"] => part(&fields["give_up"], "a text")
+                .map(|reason: String| Self::GiveUp(shortened(&reason))),
+            ["map", "pose"] | ["pose", "map"] => {
+                let pose = part(&fields["pose"], "a dart, as in [1,0]: dart 0 of vertex 1")?;
+                let vertices = "a list of vertices, each a list of darts, as in [1,0], or null";
+                Ok(Self::Done(ReportedMap { ends: part(&fields["map"], vertices)?, pose }))
+            }
             ["map"] => Err("a map needs a \"pose\" beside it".to_owned()),
             ["pose"] => Err("a pose needs a \"map\" beside it".to_owned()),
             [] => Err("it is empty".to_owned()),
@@ -88,7 +87,12 @@ impl ExplorerAnswer {
     }
 }
 
-/// The beginning of a text in one line.
+/// A part of an answer. `what` says what it should be.
+fn part<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, String> {
+    let refused = |_| format!("{} is not {what}", shortened(&value.to_string()));
+    serde_json::from_value(value.clone()).map_err(refused)
+}
+
 fn shortened(text: &str) -> String {
     let plain = |letter: char| if letter.is_control() { '\u{fffd}' } else { letter };
     let mut letters = text.chars().map(plain);
@@ -109,21 +113,6 @@ pub(super) struct ReportedMap {
 type ReportedDart = (usize, usize);
 
 impl ReportedMap {
-    fn from_fields(fields: &Map<String, Value>) -> Result<Self, String> {
-        let end = |value: &Value| match value {
-            Value::Null => Ok(None),
-            value => dart(value).map(Some),
-        };
-        let vertex = |value: &Value| {
-            let darts = list(value, "the list of the darts of a vertex")?;
-            darts.iter().map(end).collect::<Result<Vec<_>, _>>()
-        };
-        let vertices = list(&fields["map"], "a list of vertices")?;
-        let ends = vertices.iter().map(vertex).collect::<Result<_, _>>()?;
-        Ok(Self { ends, pose: dart(&fields["pose"])? })
-    }
-
-    /// The map as an embedded graph.
     pub(super) fn explored(&self) -> Result<ExploredMap<'static>, ExplorerFault> {
         let invalid = |cause: String| ExplorerFault::InvalidMap { cause };
         let mut firsts = Vec::with_capacity(self.ends.len());
@@ -174,7 +163,6 @@ impl ReportedMap {
         })
     }
 
-    /// The pose, as a message shows it.
     pub(super) fn pose_text(&self) -> String {
         dart_text(self.pose)
     }
@@ -190,25 +178,6 @@ impl ReportedMap {
         }
         dart.0.to_string()
     }
-}
-
-fn list<'v>(value: &'v Value, what: &str) -> Result<&'v [Value], String> {
-    match value {
-        Value::Array(items) => Ok(items),
-        other => Err(format!("{} is not {what}", shortened(&other.to_string()))),
-    }
-}
-
-fn dart(value: &Value) -> Result<ReportedDart, String> {
-    let number = |value: &Value| value.as_u64().and_then(|number| usize::try_from(number).ok());
-    match value.as_array().map(Vec::as_slice) {
-        Some([vertex, index]) => number(vertex).zip(number(index)),
-        _ => None,
-    }
-    .ok_or_else(|| {
-        let value = shortened(&value.to_string());
-        format!("{value} is not a dart, as in [1,0]: dart 0 of vertex 1")
-    })
 }
 
 fn dart_text((vertex, index): ReportedDart) -> String {
@@ -262,9 +231,13 @@ mod tests {
             ("{\"door\":1,\"action\":\"drop\"}", "not-an-answer", "it is more than one answer"),
             ("{\"action\":\"jump\"}", "not-an-answer", "\"jump\" is not \"pick-up\" or \"drop\""),
             ("{\"map\":[]}", "not-an-answer", "a map needs a \"pose\" beside it"),
-            ("{\"map\":3,\"pose\":[0,0]}", "not-an-answer", "3 is not a list of vertices"),
             (
                 "{\"map\":[[3]],\"pose\":[0,0]}",
+                "not-an-answer",
+                "[[3]] is not a list of vertices, each a list of darts, as in [1,0], or null",
+            ),
+            (
+                "{\"map\":[[null]],\"pose\":3}",
                 "not-an-answer",
                 "3 is not a dart, as in [1,0]: dart 0 of vertex 1",
             ),

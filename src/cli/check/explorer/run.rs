@@ -32,10 +32,8 @@ pub(super) struct ExplorerStart<'g> {
     pub(super) certificate: Option<u64>,
 }
 
-/// A run that ended.
 pub(super) struct EndedRun {
     pub(super) moves: u64,
-    /// The last actions.
     pub(super) actions: Vec<Action>,
     /// Whether the map and the pose are right.
     pub(super) result: Result<(), ExplorerFault>,
@@ -112,7 +110,6 @@ impl ExplorerStart<'_> {
 
     /// A shortest walk with different percepts in a map and in the world, in words.
     fn difference(&self, (map, start): (&EmbeddedGraph, Dart)) -> String {
-        /// A larger map is not compared.
         const MOST_DARTS: usize = 2000;
         if map.dart_count().max(self.graph.dart_count()) > MOST_DARTS {
             return String::new();

@@ -53,15 +53,12 @@ struct Batch {
     is_last: bool,
 }
 
-/// A batch that was run.
 struct BatchRun {
     /// Each but the last ends with a run that ended its process.
     tallies: Vec<ExplorerTally>,
-    /// Whether there are starts after these.
     has_more: bool,
 }
 
-/// The number of a batch, and its results.
 type BatchResult = Result<(usize, BatchRun), CliError>;
 
 /// Sends the batches until the receiver is dropped.
@@ -120,7 +117,6 @@ impl ExplorerSweep<'_> {
         })
     }
 
-    /// Runs one batch after the other.
     fn work(
         &self,
         batches: &Mutex<Receiver<Batch>>,
@@ -140,7 +136,6 @@ impl ExplorerSweep<'_> {
         }
     }
 
-    /// Runs the explorer on the starts of a batch.
     fn run_batch(&self, batch: &Batch, enough: &AtomicBool) -> Result<BatchRun, CliError> {
         let mut left: usize = batch.worlds.iter().map(|(_, facing)| facing.len()).sum();
         let ended = |tallies, left| BatchRun { tallies, has_more: left > 0 || !batch.is_last };

@@ -24,7 +24,6 @@ impl KeptStart for FailureLine {
     }
 }
 
-/// The result for some starts.
 #[derive(Default)]
 pub(in crate::cli::check) struct ExplorerTally {
     /// The counts. Certificates are those of the starts that were mapped correctly. Of the others, those on which a
@@ -34,7 +33,6 @@ pub(in crate::cli::check) struct ExplorerTally {
     limit: Option<FailureLine>,
     /// The number of starts for each name of a fault.
     causes: BTreeMap<String, u64>,
-    /// Runs that ended their process.
     pub(super) processes_ended: u64,
     /// Whether the rest of the starts was left out because too many runs ended their process.
     pub(super) stopped: bool,
@@ -67,7 +65,6 @@ impl ExplorerTally {
         first.get_or_insert_with(|| unmapped(explorer, start, &fault, (moves, actions), stderr));
     }
 
-    /// Adds the result of later starts.
     pub(super) fn merge(&mut self, later: Self) {
         self.counts.merge(later.counts);
         self.processes_ended += later.processes_ended;
@@ -78,7 +75,6 @@ impl ExplorerTally {
         self.limit = self.limit.take().or(later.limit);
     }
 
-    /// A line with these counts.
     pub(in crate::cli::check) fn line(&self, line: SizeLine, explorer: &str) -> SizeLine {
         let line = SizeLine {
             explorer: Some(explorer.to_owned()),
@@ -93,7 +89,6 @@ impl ExplorerTally {
     }
 }
 
-/// A start that was not mapped.
 fn unmapped(
     explorer: &str,
     start: &ExplorerStart,
