@@ -1,9 +1,6 @@
-//! The page of conformance reports: what stands on it, what cannot get out of its place there, and how it looks in a
-//! browser.
+//! The page of conformance reports: what stands on it, and what cannot get out of its place there.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
-use std::{collections::BTreeSet, fs, io::Cursor, path::Path};
+use std::{collections::BTreeSet, fs};
 
 use toposlam_conform::{
     Allowed, ConformReports, ConformVerdict, CoveredCase, DivergenceCause, DivergenceReport,
@@ -18,10 +15,9 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
     percept::{Door, Percept, Sighting},
     trace::MisfitReason,
-    world::{GraphWorld, World},
 };
 
-use crate::browser;
+use crate::repository;
 
 fn page_of(reports: &[LogReport]) -> String {
     page_with(&ConformReports { logs: reports.to_vec(), ..ConformReports::default() })
@@ -55,8 +51,7 @@ fn event(number: usize) -> ReportedEvent {
 }
 
 fn world(name: &str) -> NamedWorld {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(name);
-    world_file::read(&fs::read(file).unwrap()).unwrap()
+    world_file::read(&fs::read(repository("worlds").join(name)).unwrap()).unwrap()
 }
 
 fn known(name: &str) -> WorldFact {
@@ -388,54 +383,4 @@ fn a_long_list_is_folded() {
         assert_eq!(page.contains(" more</summary>"), folds);
         assert_eq!(page.contains("<summary>28 more</summary>"), folds);
     }
-}
-
-/// The folded trail of half of a run.
-fn folded() -> FoldedReport {
-    let world = world("building-12.toml");
-    let (mut percepts, mut doors) = (Vec::new(), Vec::new());
-    let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
-    for door in [1, 1, 1, 2, 1, 1, 1, 0, 1] {
-        percepts.push(robot.sensed());
-        let door = Door(door % robot.sensed().degree);
-        robot.traverse(door).unwrap();
-        doors.push(door);
-    }
-    percepts.push(robot.sensed());
-    let trail = fold(&percepts, &doors).unwrap();
-    let entries = trail.first_entries(&doors);
-    FoldedReport { trail, entries }
-}
-
-#[test]
-fn the_page_of_a_report_opens_and_leads_to_its_events() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let mut picture = Cursor::new(Vec::new());
-    let image = image::RgbImage::from_pixel(640, 480, image::Rgb([60, 190, 90]));
-    image.write_to(&mut picture, image::ImageFormat::Jpeg).unwrap();
-    let (name, reason) = ("glare".to_owned(), "the sun stands low in the window".to_owned());
-    let tolerated = vec![ToleratedQuirk { name, reason, events: vec![3, 5] }];
-    let right = LogReport { tolerated, ..conforming(211) };
-    let wrong = LogReport {
-        log: "logs/tuesday.mcap".to_owned(),
-        image: Some(picture.into_inner()),
-        ..diverged(10_000, 7_003)
-    };
-    let cut = LogReport {
-        log: "logs/wednesday-<b>of-the-second-floor</b>-2026-11-22-08-15.mcap".to_owned(),
-        folded: Some(folded()),
-        ..incomplete()
-    };
-    let pages = [
-        ("conforms", vec![right.clone()]),
-        ("diverged", vec![wrong.clone()]),
-        ("open", vec![cut.clone()]),
-        ("several", vec![right, wrong, cut]),
-    ];
-    let pages = pages.map(|(name, reports)| {
-        let file = folder.join(format!("conform-{name}.html"));
-        fs::write(&file, page_of(&reports)).unwrap();
-        format!("{name}={}", file.display())
-    });
-    browser::open("conform_page.mjs", &pages);
 }

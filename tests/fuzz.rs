@@ -1,14 +1,7 @@
 //! The fuzz targets on stable Rust: every seed, and a fixed number of mutations of the seeds, always the
 //! same ones. A failing input is shrunk.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
-use std::{
-    collections::BTreeSet,
-    fs,
-    ops::Range,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeSet, fs, ops::Range};
 
 use proptest::{
     collection::vec,
@@ -29,32 +22,20 @@ use toposlam_model::format::{
 };
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
 
-/// A fuzz target.
-#[derive(Clone, Copy)]
-struct FuzzTarget {
-    name: &'static str,
-    body: fn(&[u8]),
-    /// The package of the body.
-    package: &'static str,
-}
+use crate::{read, repository};
+
+/// A fuzz target: its name, its body, and the package of the body.
+type FuzzTarget = (&'static str, fn(&[u8]), &'static str);
 
 /// Every target: worlds and choices, sensing, logs.
 fn targets() -> Vec<FuzzTarget> {
-    let proofs = toposlam_proofs::fuzz::TARGETS.iter().map(|target| FuzzTarget {
-        name: target.name,
-        body: target.body,
-        package: "toposlam_proofs",
-    });
+    let proofs = toposlam_proofs::fuzz::TARGETS.iter();
+    let proofs = proofs.map(|target| (target.name, target.body, "toposlam_proofs"));
     let vision = toposlam_vision::fuzz::TARGETS.iter();
-    let vision = vision.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_vision" });
+    let vision = vision.map(|&(name, body)| (name, body, "toposlam_vision"));
     let logs = toposlam_conform::fuzz::TARGETS.iter();
-    let logs = logs.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_conform" });
+    let logs = logs.map(|&(name, body)| (name, body, "toposlam_conform"));
     proofs.chain(vision).chain(logs).collect()
-}
-
-/// A file or folder of the repository.
-fn repository(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
 /// The names in a folder.
@@ -71,85 +52,46 @@ fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
     names.map(|name| (name.clone(), fs::read(repository(&folder).join(name)).unwrap())).collect()
 }
 
-fn target(name: &str) -> FuzzTarget {
-    targets().into_iter().find(|target| target.name == name).unwrap()
+/// One change of a file: bytes of it are replaced.
+#[derive(Clone, Debug)]
+struct Edit {
+    at: Index,
+    removed: usize,
+    inserted: Inserted,
 }
 
-/// One change of a file.
 #[derive(Clone, Debug)]
-enum Edit {
-    Truncate {
-        at: Index,
-    },
-    Delete {
-        at: Index,
-        bytes: usize,
-    },
-    Flip {
-        at: Index,
-        bit: u8,
-    },
-    Replace {
-        at: Index,
-        byte: u8,
-    },
-    Insert {
-        at: Index,
-        bytes: Vec<u8>,
-    },
-    Splice {
-        at: Index,
-        from: Index,
-        bytes: usize,
-        of: Index,
-    },
-    /// Replaces a number, if the file has one.
-    Number {
-        at: Index,
-        number: String,
-    },
+enum Inserted {
+    Bytes(Vec<u8>),
+    /// The byte there, with one bit flipped.
+    Flipped(u8),
+    /// A part of a seed.
+    Part(Index, Index, usize),
+    /// In place of a number, if the file has one.
+    Number(String),
 }
 
 impl Edit {
     fn apply(&self, file: &mut Vec<u8>, seeds: &[(String, Vec<u8>)]) {
-        let place = |at: &Index| at.index(file.len() + 1);
-        match self {
-            Self::Truncate { at } => file.truncate(place(at)),
-            Self::Delete { at, bytes } => {
-                let at = place(at);
-                file.drain(at..file.len().min(at + bytes));
+        let at = self.at.index(file.len() + 1);
+        let range = at..file.len().min(at + self.removed);
+        let (range, bytes) = match &self.inserted {
+            Inserted::Bytes(bytes) => (range, bytes.clone()),
+            Inserted::Flipped(bit) => {
+                let flipped = file[range.clone()].iter().map(|byte| byte ^ (1 << bit)).collect();
+                (range, flipped)
             }
-            Self::Flip { at, bit } => {
-                let at = place(at);
-                if let Some(byte) = file.get_mut(at) {
-                    *byte ^= 1 << bit;
-                }
-            }
-            Self::Replace { at, byte: new } => {
-                let at = place(at);
-                if let Some(byte) = file.get_mut(at) {
-                    *byte = *new;
-                }
-            }
-            Self::Insert { at, bytes } => {
-                let at = place(at);
-                file.splice(at..at, bytes.iter().copied());
-            }
-            Self::Splice { at, from, bytes, of } => {
+            Inserted::Part(of, from, length) => {
                 let (_, other) = of.get(seeds);
                 let from = from.index(other.len() + 1);
-                let part = &other[from..other.len().min(from + bytes)];
-                let at = place(at);
-                file.splice(at..at, part.iter().copied());
+                (range, other[from..other.len().min(from + length)].to_vec())
             }
-            Self::Number { at, number } => {
-                let numbers = numbers_in(file);
-                if !numbers.is_empty() {
-                    let place = numbers[at.index(numbers.len())].clone();
-                    file.splice(place, number.bytes());
-                }
-            }
-        }
+            Inserted::Number(number) => match numbers_in(file) {
+                numbers if numbers.is_empty() => return,
+                numbers => (self.at.get(&numbers).clone(), number.clone().into_bytes()),
+            },
+        };
+        file.splice(range, bytes);
     }
 }
 
@@ -168,23 +110,20 @@ fn numbers_in(text: &[u8]) -> Vec<Range<usize>> {
 }
 
 fn any_edit() -> impl Strategy<Value = Edit> {
-    let at = any::<Index>;
     // Small numbers, the bounds of a byte, and characters.
     let byte = || prop_oneof![0..6_u8, Just(255), Just(b'\n'), b' '..=b'~', any::<u8>()];
-    prop_oneof![
-        at().prop_map(|at| Edit::Truncate { at }),
-        (at(), 1..9_usize).prop_map(|(at, bytes)| Edit::Delete { at, bytes }),
-        (at(), 0..8_u8).prop_map(|(at, bit)| Edit::Flip { at, bit }),
-        (at(), byte()).prop_map(|(at, byte)| Edit::Replace { at, byte }),
-        (at(), vec(byte(), 1..5)).prop_map(|(at, bytes)| Edit::Insert { at, bytes }),
-        (at(), at(), 1..40_usize, at()).prop_map(|(at, from, bytes, of)| Edit::Splice {
-            at,
-            from,
-            bytes,
-            of
-        }),
-        (at(), any_number()).prop_map(|(at, number)| Edit::Number { at, number }),
-    ]
+    let index = any::<Index>;
+    let change = prop_oneof![
+        // Cut off, deleted, flipped, replaced, inserted.
+        Just((usize::MAX / 2, Inserted::Bytes(Vec::new()))),
+        (1..9_usize).prop_map(|removed| (removed, Inserted::Bytes(Vec::new()))),
+        (0..8_u8).prop_map(|bit| (1, Inserted::Flipped(bit))),
+        byte().prop_map(|byte| (1, Inserted::Bytes(vec![byte]))),
+        vec(byte(), 1..5).prop_map(|bytes| (0, Inserted::Bytes(bytes))),
+        (index(), index(), 1..40_usize).prop_map(|(of, from, n)| (0, Inserted::Part(of, from, n))),
+        any_number().prop_map(|number| (0, Inserted::Number(number))),
+    ];
+    (index(), change).prop_map(|(at, (removed, inserted))| Edit { at, removed, inserted })
 }
 
 /// Small and large numbers, with and without a fraction, and values that are not numbers.
@@ -201,7 +140,7 @@ fn any_number() -> impl Strategy<Value = String> {
 
 /// Runs a target on its seeds and on a number of mutations of them.
 fn holds(name: &str, mutations: u32) {
-    let FuzzTarget { body, .. } = target(name);
+    let (_, body, _) = targets().into_iter().find(|target| target.0 == name).unwrap();
     let seeds = seeds(name);
     for (_, seed) in &seeds {
         body(seed);
@@ -232,103 +171,54 @@ fn holds(name: &str, mutations: u32) {
     }
 }
 
-#[test]
-fn world_files_hold() {
-    holds("world_file", 30_000);
+/// A test for each target, with its number of mutations.
+macro_rules! hold {
+    ($($target:ident $mutations:literal)*) => {
+        const RUN: &[&str] = &[$(stringify!($target)),*];
+
+        $(#[test]
+        fn $target() {
+            holds(stringify!($target), $mutations);
+        })*
+    };
 }
 
-#[test]
-fn planar_code_holds() {
-    holds("planar_code", 100_000);
-}
-
-#[test]
-fn edge_code_holds() {
-    holds("edge_code", 100_000);
-}
-
-#[test]
-fn mapping_holds() {
-    holds("mapping", 30_000);
-}
-
-#[test]
-fn images_hold() {
-    holds("image", 20_000);
-}
-
-#[test]
-fn calibrations_hold() {
-    holds("calibration", 30_000);
-}
-
-#[test]
-fn colours_hold() {
-    holds("colours", 10_000);
-}
-
-#[test]
-fn bags_hold() {
-    holds("bag", 10_000);
-}
-
-#[test]
-fn mcap_files_hold() {
-    holds("mcap", 10_000);
-}
-
-#[test]
-fn messages_of_ros_1_hold() {
-    holds("ros1_message", 30_000);
-}
-
-#[test]
-fn messages_in_cdr_hold() {
-    holds("cdr_message", 30_000);
-}
-
-#[test]
-fn mappings_of_logs_hold() {
-    holds("log_mapping", 10_000);
-}
-
-#[test]
-fn carmen_logs_hold() {
-    holds("carmen", 10_000);
-}
-
-#[test]
-fn events_hold() {
-    holds("events", 10_000);
-}
-
-#[test]
-fn metadata_of_rosbag2_hold() {
-    holds("rosbag2_metadata", 20_000);
-}
-
-#[test]
-fn rows_of_databases_hold() {
-    holds("database_rows", 1_000);
+hold! {
+    world_file 30_000
+    planar_code 100_000
+    edge_code 100_000
+    mapping 30_000
+    image 20_000
+    calibration 30_000
+    colours 10_000
+    bag 10_000
+    mcap 10_000
+    ros1_message 30_000
+    cdr_message 30_000
+    log_mapping 10_000
+    carmen 10_000
+    events 10_000
+    rosbag2_metadata 20_000
+    database_rows 1_000
 }
 
 #[test]
 fn every_target_has_a_body_and_seeds_and_is_run() {
     let targets = targets();
-    let names: BTreeSet<String> = targets.iter().map(|target| target.name.to_owned()).collect();
+    let names: BTreeSet<String> = targets.iter().map(|target| target.0.to_owned()).collect();
     assert_eq!(names.len(), targets.len());
     assert_eq!(names_in("fuzz/corpus"), names);
-    let manifest = fs::read_to_string(repository("fuzz/Cargo.toml")).unwrap();
-    let manifest: toml::Table = manifest.parse().unwrap();
+    assert_eq!(RUN.iter().map(|&name| name.to_owned()).collect::<BTreeSet<_>>(), names);
+    let manifest: toml::Table = read("fuzz/Cargo.toml").parse().unwrap();
     let bins = manifest["bin"].as_array().unwrap().iter();
     let bins: BTreeSet<_> = bins.map(|bin| bin["name"].as_str().unwrap().to_owned()).collect();
     assert_eq!(bins, names);
-    let workflow = fs::read_to_string(repository(".github/workflows/fuzz.yml")).unwrap();
+    let workflow = read(".github/workflows/fuzz.yml");
     let (_, list) = workflow.split_once("target: [").expect("the workflow lists the targets");
     let list = list.split_once(']').unwrap().0.split(", ").map(str::to_owned);
     assert_eq!(list.collect::<BTreeSet<_>>(), names);
-    for FuzzTarget { name, package, .. } in targets {
-        let main = fs::read_to_string(repository(&format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
+    for (name, _, package) in targets {
+        let main = read(&format!("fuzz/fuzz_targets/{name}.rs"));
         assert!(main.contains(&format!("{package}::fuzz::{name}(bytes)")), "{name}: {main}");
         let seeds = seeds(name);
         assert!(seeds.len() >= 8, "{name} has {} seeds", seeds.len());
@@ -341,8 +231,7 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
 /// The name of a seed starts with `error-` exactly if the seed is invalid.
 #[test]
 fn the_names_of_seeds_show_whether_they_are_valid() {
-    let others = targets().into_iter().map(|target| target.name).filter(|name| *name != "mapping");
-    for target in others {
+    for target in targets().into_iter().map(|target| target.0).filter(|name| *name != "mapping") {
         for (name, bytes) in seeds(target) {
             let all = |code| plantri::read_headerless(&bytes, code).all(|result| result.is_ok());
             let is_read = match target {

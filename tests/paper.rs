@@ -1,92 +1,116 @@
 //! The trace of the paper, `docs/paper.md`: where each requirement of `tests/paper.toml` is implemented and where
 //! it is tested. Every citation names a requirement, and code and a test cite everything that is done.
 
-#![allow(clippy::unwrap_used, reason = "these are tests")]
-
-mod citation;
-mod requirement;
-
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
+    env,
     fmt::Write as _,
     fs,
-    path::{Path, PathBuf},
+    path::Path,
 };
 
-use citation::{Citation, CitationKind, citations};
-use requirement::{Requirement, Status, requirements};
+use serde::Deserialize;
 
-use crate::accepted::compare_or_accept;
+use crate::{output::names_in, read, repository};
+
+/// Something that the paper defines, claims, prescribes or reports, in our own words.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Requirement {
+    /// Lower-case words separated by dots.
+    id: String,
+    /// The section of the paper, such as `2.3`.
+    section: String,
+    /// The line of Algorithm 1 or 2, for a requirement that is one.
+    line: Option<u32>,
+    text: String,
+    /// An error of the print, and its correction.
+    erratum: Option<String>,
+    status: Status,
+    /// The prerequisites of an open requirement: ids of others, or a few words.
+    #[serde(default)]
+    after: Vec<String>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Status {
+    /// Implemented and tested: code and a test cite it.
+    Done,
+    Open,
+}
 
 fn table() -> Vec<Requirement> {
-    requirements(include_str!("paper.toml")).unwrap()
+    let mut table: BTreeMap<String, Vec<Requirement>> =
+        toml::from_str(include_str!("paper.toml")).unwrap();
+    table.remove("requirement").unwrap()
 }
 
 /// The Rust and Coq files of the workspace's members, by their paths, with their texts.
-fn sources() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let is_member = |folder: &PathBuf| {
-        let manifest = fs::read_to_string(folder.join("Cargo.toml"));
-        manifest.is_ok_and(|text| folder == root || text.lines().all(|line| line != "[workspace]"))
+fn sources() -> BTreeMap<String, String> {
+    let members =
+        names_in(&repository("")).into_iter().map(|name| name + "/").chain([String::new()]);
+    let is_member = |folder: &String| {
+        let manifest = fs::read_to_string(repository(folder).join("Cargo.toml"));
+        let is_workspace = |text: &str| text.lines().any(|line| line == "[workspace]");
+        manifest.is_ok_and(|text| folder.is_empty() || !is_workspace(&text))
     };
-    let folders = names_in(root).into_iter().map(|name| root.join(name));
-    let members = folders.chain([root.to_owned()]).filter(is_member);
-    let mut found = Vec::new();
-    for member in members {
-        for part in ["src", "tests", "coq"].map(|part| member.join(part)) {
-            if part.is_dir() {
-                add_sources(root, &part, &mut found);
-            }
+    let mut found = BTreeMap::new();
+    for member in members.filter(is_member) {
+        for part in ["src", "tests", "coq"] {
+            add_sources(&format!("{member}{part}"), &mut found);
         }
     }
-    found.sort();
     found
 }
 
-fn add_sources(root: &Path, folder: &Path, found: &mut Vec<(String, String)>) {
-    for path in names_in(folder).into_iter().map(|name| folder.join(name)) {
-        if path.is_dir() {
-            add_sources(root, &path, found);
-        } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "v") {
-            let name = path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/");
-            found.push((name, fs::read_to_string(&path).unwrap()));
+fn add_sources(path: &str, found: &mut BTreeMap<String, String>) {
+    if repository(path).is_dir() {
+        for name in names_in(&repository(path)) {
+            add_sources(&format!("{path}/{name}"), found);
         }
+    } else if Path::new(path).extension().is_some_and(|kind| kind == "rs" || kind == "v") {
+        found.insert(path.to_owned(), read(path));
     }
 }
 
-fn names_in(folder: &Path) -> Vec<std::ffi::OsString> {
-    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+/// Whether a requirement is implemented or tested at the place that cites it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum CitationKind {
+    Code,
+    /// In a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`, below the line
+    /// `#[cfg(test)]` of a file, or in a Coq file, at a theorem.
+    Test,
 }
 
-fn cited_in(sources: &[(String, String)]) -> Vec<Citation<'_>> {
-    sources.iter().flat_map(|(file, text)| citations(file, text)).collect()
-}
-
-/// The files that cite a requirement.
-fn files<'a>(id: &str, kind: CitationKind, cited: &[Citation<'a>]) -> BTreeSet<&'a str> {
-    let of_it = cited.iter().filter(|citation| citation.id == id && citation.kind == kind);
-    of_it.map(|citation| citation.file).collect()
-}
-
-/// Unknown ids, and requirements that are marked as done and not cited.
-fn faults(table: &[Requirement], cited: &[Citation<'_>]) -> Vec<String> {
-    let is_known = |citation: &Citation<'_>| table.iter().any(|row| row.id == citation.id);
-    let unknown = cited.iter().filter(|citation| !is_known(citation));
-    let mut faults: Vec<_> = unknown
-        .map(|Citation { id, file, line, .. }| format!("{file}:{line}: `{id}` is unknown"))
-        .collect();
-    for Requirement { id, .. } in table.iter().filter(|row| row.status == Status::Done) {
-        for kind in [CitationKind::Code, CitationKind::Test] {
-            if files(id, kind, cited).is_empty() {
-                faults.push(format!("{id}: done, but nothing of kind {kind:?} cites it"));
-            }
+/// The citations in a file: id, kind, and line. A citation is a comment of its own or at the end of a line:
+/// `// paper: id`, or several ids separated by commas; in a Coq file, `(* paper: id *)`.
+fn citations<'a>(file: &str, text: &'a str) -> Vec<(&'a str, CitationKind, usize)> {
+    let in_coq = file.ends_with(".v");
+    let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
+    let mut kind = if tested || in_coq { CitationKind::Test } else { CitationKind::Code };
+    let mut found = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        if line.starts_with("#[cfg(test)]") {
+            kind = CitationKind::Test;
         }
+        let begin = if in_coq { "(* paper:" } else { "// paper:" };
+        let Some((before, ids)) = line.split_once(begin) else { continue };
+        // Not in a string, nor in the documentation of an item.
+        if !in_coq && before.contains(['"', '/']) {
+            continue;
+        }
+        let ids = if in_coq { ids.strip_suffix("*)").unwrap_or("?") } else { ids };
+        found.extend(ids.split(',').map(|id| (id.trim(), kind, number)));
     }
-    faults
+    found
 }
+
+/// The files that cite a requirement, for each id and kind.
+type Cited<'a> = BTreeMap<(&'a str, CitationKind), BTreeSet<&'a str>>;
 
 /// The page: a table for each section.
-fn page(table: &[Requirement], cited: &[Citation<'_>]) -> String {
+fn page(table: &[Requirement], cited: &Cited) -> String {
     let open = table.iter().filter(|row| row.status == Status::Open).count();
     let mut page = format!(
         "# The paper and this program\n\n\
@@ -107,8 +131,9 @@ fn page(table: &[Requirement], cited: &[Citation<'_>]) -> String {
                 let _ = write!(page, " *Open, after {}.*", after.join(", "));
             }
             for kind in [CitationKind::Code, CitationKind::Test] {
-                let names = files(id, kind, cited).into_iter().map(|file| format!("`{file}`"));
-                let _ = write!(page, " | {}", names.collect::<Vec<_>>().join(" "));
+                let files = cited.get(&(id.as_str(), kind)).into_iter().flatten();
+                let names: Vec<_> = files.map(|file| format!("`{file}`")).collect();
+                let _ = write!(page, " | {}", names.join(" "));
             }
             page += " |\n";
         }
@@ -117,47 +142,68 @@ fn page(table: &[Requirement], cited: &[Citation<'_>]) -> String {
 }
 
 #[test]
-fn the_page_lists_every_requirement_with_its_citations() {
-    let sources = sources();
-    let cited = cited_in(&sources);
-    compare_or_accept("docs/paper.md", &page(&table(), &cited));
+fn citations_are_known_and_everything_that_is_done_is_cited_and_on_the_page() {
+    let (table, sources) = (table(), sources());
+    let mut cited = Cited::new();
+    for (file, text) in &sources {
+        for (id, kind, line) in citations(file, text) {
+            assert!(table.iter().any(|row| row.id == id), "{file}:{line}: `{id}` is unknown");
+            cited.entry((id, kind)).or_default().insert(file);
+        }
+    }
+    for Requirement { id, .. } in table.iter().filter(|row| row.status == Status::Done) {
+        for kind in [CitationKind::Code, CitationKind::Test] {
+            let is_cited = cited.contains_key(&(id.as_str(), kind));
+            assert!(is_cited, "{id}: done, but nothing of kind {kind:?} cites it");
+        }
+    }
+    let page = page(&table, &cited);
+    if env::var_os("TOPOSLAM_ACCEPT").is_some_and(|value| value == "1") {
+        return fs::write(repository("docs/paper.md"), &page).unwrap();
+    }
+    let found = read("docs/paper.md").replace("\r\n", "\n");
+    let differ = found.lines().zip(page.lines()).find(|(one, other)| one != other);
+    assert!(found == page, "docs/paper.md is out of date; set TOPOSLAM_ACCEPT=1: {differ:#?}");
 }
 
 #[test]
-fn citations_are_known_and_everything_that_is_done_is_cited() {
-    let sources = sources();
-    let faults = faults(&table(), &cited_in(&sources));
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
-}
-
-#[test]
-fn an_unknown_id_and_a_missing_citation_are_faults() {
-    let mut table = table();
-    table.retain(|row| row.id == "alg1.4");
-    let code = || citations("src/a.rs", "// paper: alg1.4");
-    let both = || code().chain(citations("tests/a.rs", "// paper: alg1.4"));
-    assert_eq!(faults(&table, &both().collect::<Vec<_>>()), [""; 0]);
-    assert_eq!(faults(&table, &code().collect::<Vec<_>>()).len(), 1);
-    let unknown: Vec<_> = both().chain(citations("src/b.rs", "\n// paper: alg9.9")).collect();
-    assert_eq!(faults(&table, &unknown), ["src/b.rs:2: `alg9.9` is unknown"]);
-    table[0].status = Status::Open;
-    assert_eq!(faults(&table, &[]), [""; 0]);
-}
-
-#[test]
-fn every_line_of_both_algorithms_is_a_requirement() {
-    let printed = |algorithm: &str, last: u32| {
-        (1..=last).map(|line| (format!("{algorithm}.{line}"), line)).collect::<Vec<_>>()
+fn the_requirements_are_in_order_and_do_not_contradict_themselves() {
+    let table = table();
+    let ids: BTreeSet<_> = table.iter().map(|row| &*row.id).collect();
+    assert_eq!(ids.len(), table.len(), "an id is repeated");
+    let is_id = |text: &str| {
+        let is_of_a_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        let is_word = |word: &str| !word.is_empty() && word.chars().all(is_of_a_word);
+        text.contains('.') && text.split('.').all(is_word)
     };
-    let with_a_line: Vec<_> =
-        table().into_iter().filter_map(|row| row.line.map(|line| (row.id, line))).collect();
-    assert_eq!(with_a_line, [printed("alg1", 23), printed("alg2", 32)].concat());
-}
-
-#[test]
-fn the_requirements_are_in_the_order_of_the_sections() {
+    for Requirement { id, status, after, .. } in &table {
+        assert!(is_id(id), "{id}");
+        assert_eq!(*status == Status::Done, after.is_empty(), "{id}");
+        assert!(after.iter().all(|after| !is_id(after) || ids.contains(&**after)), "{id}");
+    }
     let numbers = |section: &str| -> Vec<u8> {
         section.split('.').map(|part| part.parse().unwrap()).collect()
     };
-    assert!(table().is_sorted_by_key(|requirement| numbers(&requirement.section)));
+    assert!(table.is_sorted_by_key(|requirement| numbers(&requirement.section)));
+    // Every line of both algorithms is a requirement.
+    let printed = |algorithm: &'static str, last: u32| {
+        (1..=last).map(move |line| (format!("{algorithm}.{line}"), line))
+    };
+    let with_a_line = table.into_iter().filter_map(|row| row.line.map(|line| (row.id, line)));
+    assert!(with_a_line.eq(printed("alg1", 23).chain(printed("alg2", 32))));
+}
+
+#[test]
+fn a_citation_is_a_comment_of_code_or_of_a_test() {
+    use CitationKind::{Code, Test};
+    let text = "// paper: a.b, c.d\nf(); // paper: e.f\n/// // paper: no.1\nlet s = \"// paper: no.2\";\n\
+                //! paper: no.3\n// the paper: no.4\n#[cfg(test)]\n// paper: g.h\n";
+    let found = |file| citations(file, text).into_iter().map(|(id, kind, _)| (id, kind));
+    let kinds = [("a.b", Code), ("c.d", Code), ("e.f", Code), ("g.h", Test)];
+    assert!(found("model/src/latests.rs").eq(kinds));
+    for file in ["model/tests/a.rs", "model/src/a/tests.rs", "proofs/src/lemmas/a.rs"] {
+        assert!(found(file).all(|(_, kind)| kind == Test), "{file}");
+    }
+    let coq = "Theorem t : True. (* paper: a.b, c.d *)\n(** Paper: 2.1. *)\n(* the paper: no.1 *)";
+    assert_eq!(citations("proofs/coq/T.v", coq), [("a.b", Test, 1), ("c.d", Test, 1)]);
 }

@@ -7,70 +7,36 @@
 #![cfg(all(feature = "ros1", unix))]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[allow(dead_code, reason = "other programs use the rest")]
+mod output;
+mod process;
+
 use std::{
     env,
     ffi::OsStr,
     fs,
     net::{Ipv4Addr, TcpListener, TcpStream},
     path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Command, Stdio},
     sync::{Mutex, MutexGuard, PoisonError},
     thread::sleep,
     time::{Duration, Instant},
 };
 
 use mcap::MessageStream;
+use process::Process;
 
 /// ROS's client library is installed in the system's Python.
 const PYTHON: &str = "/usr/bin/python3";
 /// How many times faster the simulated time is than the real time.
 const SPEED: &str = "8";
 
-/// A program that ends with the test.
-struct Running(Child);
-
-impl Running {
-    fn new(command: &mut Command) -> Self {
-        Self(command.spawn().unwrap())
-    }
-
-    /// Sends the signal of Ctrl-C.
-    fn interrupt(&self) {
-        let id = self.0.id().to_string();
-        assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    }
-
-    fn ends_within(&mut self, seconds: u64) -> Option<ExitStatus> {
-        let until = Instant::now() + Duration::from_secs(seconds);
-        while Instant::now() < until {
-            if let Some(status) = self.0.try_wait().unwrap() {
-                return Some(status);
-            }
-            sleep(Duration::from_millis(20));
-        }
-        None
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        if let Ok(None) = self.0.try_wait() {
-            // After an interrupt it also stops its own children.
-            self.interrupt();
-            if self.ends_within(20).is_none() {
-                let _ = self.0.kill();
-            }
-        }
-        let _ = self.0.wait();
-    }
-}
-
 /// A master, a listener, a simulated robot, and the folder for their files.
 struct Stage {
     // Dropped in this order.
-    robot: Running,
-    _listener: Running,
-    _master: Running,
+    robot: Process,
+    _listener: Process,
+    _master: Process,
     address: String,
     folder: PathBuf,
     sensor: &'static str,
@@ -94,12 +60,8 @@ fn stdout_of(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-fn until(what: &str, holds: impl Fn() -> bool) {
-    let until = Instant::now() + Duration::from_secs(60);
-    while !holds() {
-        assert!(Instant::now() < until, "{what}: not within a minute");
-        sleep(Duration::from_millis(50));
-    }
+fn until(what: &str, holds: impl FnMut() -> bool) {
+    process::until(what, 60, holds);
 }
 
 /// Whether ROS 1 is here.
@@ -124,9 +86,7 @@ impl Stage {
             return None;
         }
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ros1").join(name);
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
+        let folder = output::folder(&format!("ros1-{name}"));
         let path = |name: &str| folder.join(name).display().to_string();
         let port =
             TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port();
@@ -136,7 +96,7 @@ impl Stage {
             command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null());
             command.stderr(Stdio::null()).env("ROS_MASTER_URI", &address);
             command.env("ROS_IP", "127.0.0.1").env("ROS_HOME", &folder);
-            Running::new(&mut command)
+            Process::start(&mut command)
         };
         let master = ros("roscore", &["-p".as_ref(), port.to_string().as_ref()]);
         until("the master", || TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_ok());
@@ -154,7 +114,7 @@ impl Stage {
             _ => ["--speed", SPEED, "--sensor", sensor, "--scanner", &plain],
         };
         let output = fs::File::create(folder.join("robot")).unwrap();
-        let robot = Running::new(toposlam(&[&simulate[..], &seen].concat()).stdout(output));
+        let robot = Process::start(toposlam(&[&simulate[..], &seen].concat()).stdout(output));
         let stage = Self {
             robot,
             _listener: listener,
@@ -200,7 +160,7 @@ impl Stage {
     }
 
     /// Starts `toposlam drive`.
-    fn drive(&self) -> Running {
+    fn drive(&self) -> Process {
         let [camera, colours] = [self.path("camera.toml"), self.path("colours.toml")];
         let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
         let drive = ["drive", "--ros", &self.address, "--sensor", self.sensor];
@@ -210,7 +170,7 @@ impl Stage {
         };
         let written = ["--log", &log, "--map", &map, "--json"];
         let output = fs::File::create(self.folder.join("output")).unwrap();
-        Running::new(toposlam(&[&drive[..], seen, &written].concat()).stdout(output))
+        Process::start(toposlam(&[&drive[..], seen, &written].concat()).stdout(output))
     }
 
     /// The last message of the log.
@@ -235,25 +195,26 @@ impl Stage {
 
 /// The camera, and the colours of the building as they are learned from a few labelled images.
 fn see(folder: &Path) {
-    let path = |name: &str| folder.join(name).display().to_string();
+    let run = |line: &str| {
+        let words: Vec<_> = line.split(' ').collect();
+        let status = toposlam(&words).current_dir(folder).status().unwrap();
+        assert!(status.success(), "{line}");
+    };
     for inside in ["images", "labels"] {
         fs::create_dir(folder.join(inside)).unwrap();
     }
     let camera = toposlam_vision::camera::Camera::superscout().sized([640, 480]);
     let camera = toposlam_vision::camera::calibration::to_toml(&camera);
     fs::write(folder.join("camera.toml"), camera).unwrap();
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-8.toml");
     for n in 1..=7 {
-        let pose = format!("0,{n},{}", 50 * n);
-        let [image, labels] = [path(&format!("images/{n}.png")), path(&format!("labels/{n}.png"))];
-        let render = ["draw", "worlds/shape-8.toml", "--with-marker", "--size", "640x480"];
-        let seed = n.to_string();
-        let view = ["--pose", &pose, "--seed", &seed, "--out", &image, "--labels", &labels];
-        stdout_of(&[&render[..], &view].concat());
+        let pose = format!("--pose 0,{n},{} --seed {n} --size 640x480", 50 * n);
+        let files = format!("--out images/{n}.png --labels labels/{n}.png");
+        run(&format!("draw {plan} --with-marker {pose} {files}"));
     }
-    let [images, labels] = [path("images"), path("labels")];
-    let [camera, colours] = [path("camera.toml"), path("colours.toml")];
-    let train = ["camera", "train", "--images", &images, "--labels", &labels];
-    stdout_of(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
+    run(
+        "camera train --images images --labels labels --calibration camera.toml --out colours.toml",
+    );
 }
 
 #[test]
@@ -271,9 +232,9 @@ fn the_whole_of_shape_6_is_mapped_through_ros() {
     }
 }
 
-fn maps_shape_6(mut stage: Stage) {
+fn maps_shape_6(stage: Stage) {
     let begun = Instant::now();
-    let status = stage.drive().ends_within(600).unwrap();
+    let status = stage.drive().ends_within(600).status;
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
     let output = fs::read_to_string(stage.folder.join("output")).unwrap();
     assert_eq!(status.code(), Some(0), "{output}");
@@ -285,20 +246,20 @@ fn maps_shape_6(mut stage: Stage) {
     let judged = stdout_of(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
     assert!(judged.contains("conforms"), "{judged}");
     stage.was_safe();
-    stage.robot.interrupt();
-    assert!(stage.robot.ends_within(20).unwrap().success());
+    stage.robot.signal("-INT");
+    assert!(stage.robot.ends_within(20).status.success());
     eprintln!("{output}{}", fs::read_to_string(stage.folder.join("robot")).unwrap());
 }
 
 #[test]
 fn after_ctrl_c_the_robot_stands() {
     let Some(stage) = Stage::new("stopped") else { return };
-    let mut drive = stage.drive();
+    let drive = stage.drive();
     until("the robot moves", || stage.moves());
-    drive.interrupt();
+    drive.signal("-INT");
     // A second interrupt changes nothing.
-    drive.interrupt();
-    assert_eq!(drive.ends_within(10).unwrap().code(), Some(3));
+    drive.signal("-INT");
+    assert_eq!(drive.ends_within(10).status.code(), Some(3));
     stage.was_safe();
     assert!(stage.end().contains("stopped\0"), "{}", stage.end());
 }
@@ -306,15 +267,13 @@ fn after_ctrl_c_the_robot_stands() {
 #[test]
 fn a_silent_robot_is_commanded_to_stop() {
     let Some(stage) = Stage::new("silent") else { return };
-    let mut drive = stage.drive();
+    let drive = stage.drive();
     until("the robot moves", || stage.moves());
     // Its process is suspended; no connection is closed.
-    let robot = stage.robot.0.id().to_string();
-    let signal = |name: &str| Command::new("kill").args([name, &robot]).status().unwrap();
-    assert!(signal("-STOP").success());
-    let status = drive.ends_within(30);
-    assert!(signal("-CONT").success());
-    assert_eq!(status.unwrap().code(), Some(1));
+    stage.robot.signal("-STOP");
+    let status = drive.ends_within(30).status;
+    stage.robot.signal("-CONT");
+    assert_eq!(status.code(), Some(1));
     stage.was_safe();
     let end = stage.end();
     assert!(end.contains("gave-up\0") && end.contains("no message on /odom"), "{end}");

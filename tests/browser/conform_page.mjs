@@ -69,6 +69,8 @@ async function visit(page, kind, file) {
   }
   const row = await follow(page, page.getByRole("link", { name: "Event 7,003 of 10,000" }));
   assert.match(row, /^7,?003.*does not fit/s);
+  // The command for the shorter log of one log.
+  if (kind === "several") return {};
   const copy = page.locator("section .copy").first();
   await copy.click();
   await page.getByRole("button", { name: /Copied|Marked/ }).waitFor();

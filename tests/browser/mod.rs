@@ -10,68 +10,38 @@ use std::{
     process::Command,
 };
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+use crate::{printed, repository};
 
-/// The first of these programs that is installed.
-fn program(names: &[&str]) -> Option<PathBuf> {
+/// The first of these programs that is installed. Without one, tells that a script was skipped.
+fn program(names: &[&str], script: &str, install: &str) -> Option<PathBuf> {
     let folders: Vec<_> = env::split_paths(&env::var_os("PATH")?).collect();
     let places = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
-    places.into_iter().find(|place| place.is_file())
-}
-
-const NO_NODE: &str = "there is no node; on Debian: apt-get install nodejs npm";
-
-fn node() -> Option<PathBuf> {
-    program(&["node", "nodejs"])
-}
-
-/// Node and a Chromium, or what is missing and how to install it.
-fn browser() -> Result<(PathBuf, PathBuf), String> {
-    let node = node().ok_or(NO_NODE)?;
-    let chromium = program(&["chromium", "chromium-browser", "google-chrome"])
-        .ok_or("there is no Chromium; on Debian: apt-get install chromium")?;
-    let client = Path::new(ROOT).join("tests/browser/node_modules/playwright-core");
-    if !client.is_dir() {
-        return Err("there is no playwright-core; run: npm install --prefix tests/browser".into());
+    let found = places.into_iter().find(|place| place.exists());
+    let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|value| value == "required");
+    assert!(found.is_some() || !required, "there is no {}; {install}", names[0]);
+    if found.is_none() {
+        eprintln!("skipped, {script} was not run: there is no {}; {install}", names[0]);
     }
-    Ok((node, chromium))
+    found
 }
 
 /// Runs a script of this folder on pages, each with its kind, as in `alike=FILE`. Panics with the output of
 /// the script if it fails.
 pub(crate) fn open(script: &str, pages: &[String]) {
-    let (node, chromium) = match browser() {
-        Ok(found) => found,
-        Err(missing) => {
-            fail_if_required(&missing);
-            return eprintln!("skipped, {script} opened no page in a browser: {missing}");
-        }
-    };
-    let mut arguments = vec![chromium.as_os_str()];
-    arguments.extend(pages.iter().map(OsStr::new));
-    run(&node, script, &arguments);
+    let chromium = ["chromium", "chromium-browser", "google-chrome"];
+    let client = repository("tests/browser/node_modules/playwright-core");
+    let install = "run: npm install --prefix tests/browser";
+    let found = program(&[client.to_str().unwrap()], script, install)
+        .and_then(|_| program(&chromium, script, "on Debian: apt-get install chromium"));
+    if let Some(chromium) = found {
+        let pages = pages.iter().map(OsStr::new);
+        run_in_node(script, &[chromium.as_os_str()].into_iter().chain(pages).collect::<Vec<_>>());
+    }
 }
 
-/// Runs a script of this folder without a browser, and returns what it prints; `None` if there is no Node.
+/// Runs a script of this folder, and returns what it prints; `None` if there is no Node.
 pub(crate) fn run_in_node(script: &str, arguments: &[&OsStr]) -> Option<String> {
-    let Some(node) = node() else {
-        fail_if_required(NO_NODE);
-        eprintln!("skipped, {script} was not run: {NO_NODE}");
-        return None;
-    };
-    Some(run(&node, script, arguments))
-}
-
-/// Panics if no test may be skipped.
-fn fail_if_required(missing: &str) {
-    let required = env::var("TOPOSLAM_BROWSER").is_ok_and(|value| value == "required");
-    assert!(!required, "{missing}");
-}
-
-fn run(node: &Path, script: &str, arguments: &[&OsStr]) -> String {
-    let script = Path::new(ROOT).join("tests/browser").join(script);
-    let output = Command::new(node).arg(script).args(arguments).output().unwrap();
-    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success(), "{printed}{}", String::from_utf8_lossy(&output.stderr));
-    printed
+    let node = program(&["node", "nodejs"], script, "on Debian: apt-get install nodejs npm")?;
+    let script = Path::new("tests/browser").join(script);
+    Some(printed(Command::new(node).current_dir(repository("")).arg(script).args(arguments)))
 }

@@ -2,6 +2,18 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+/// Checks a command a row, with [`Scratch::fact`].
+macro_rules! facts {
+    ($scratch:expr; $(
+        $line:expr => $code:literal $({$($object:tt)*})? $([$($list:tt)*])? $(($value:expr))? $($text:literal)?;
+    )+) => {$(
+        let expected = serde_json::json!(
+            [$({$($object)*})? $([$($list)*])? $($value)? $($text)?]
+        );
+        $scratch.fact(AsRef::<str>::as_ref(&$line), $code, &expected[0]);
+    )+};
+}
+
 mod bad_input;
 mod calibrate;
 mod check;
@@ -12,17 +24,15 @@ mod counterexample;
 mod draw;
 mod explore;
 mod explorer;
+mod facts;
 mod files;
-mod folding;
 mod help;
 mod info;
 mod laser;
 mod laser_logs;
-mod lines;
 mod log;
 mod names;
 mod options;
-mod play;
 mod proofs;
 mod rerun;
 mod safeguards;
@@ -33,31 +43,27 @@ mod train;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    ffi::{OsStr, OsString},
+    ffi::OsStr,
     fs,
-    path::{Path, PathBuf},
+    io::{BufRead, BufReader, Read, Write},
+    path::PathBuf,
     process::{Child, Command, Output, Stdio},
     sync::{Mutex, PoisonError},
 };
 
 use serde_json::Value;
-use toposlam_model::format::{named_world::NamedWorld, world_file};
 
-use crate::schema::fits_a_schema;
-
-/// The program.
-fn toposlam() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).stdin(Stdio::null());
-    command
-}
+use crate::{
+    output::{folder, json_lines, names_in, read_world, stderr, stdout},
+    process::signal,
+    program, repository,
+    schema::fits_a_schema,
+};
 
 /// Runs the program until it reads its standard input, and sends the signal of Ctrl-C.
 #[cfg(unix)]
 fn interrupted(line: &str) -> Output {
-    use std::io::Write as _;
-
-    let mut program = toposlam();
+    let mut program = program();
     program.args(line.split(' ')).stdin(Stdio::piped());
     let mut program = program.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // More than a pipe holds: the program reads.
@@ -69,12 +75,11 @@ fn interrupted(line: &str) -> Output {
     output
 }
 
-/// Runs the program until it prints a line, and sends the signal of Ctrl-C.
+/// Runs the program until it prints a line, and sends the signal of Ctrl-C. Its exit code is 3. Returns what it
+/// printed.
 #[cfg(unix)]
-fn interrupted_after_a_line(line: &str) -> Output {
-    use std::io::{BufRead, BufReader, Read};
-
-    let mut program = toposlam();
+fn interrupted_after_a_line(line: &str) -> String {
+    let mut program = program();
     program.args(line.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut program = program.spawn().unwrap();
     let mut out = BufReader::new(program.stdout.take().unwrap());
@@ -83,65 +88,50 @@ fn interrupted_after_a_line(line: &str) -> Output {
     interrupt(&program);
     out.read_to_string(&mut text).unwrap();
     let output = program.wait_with_output().unwrap();
-    Output { stdout: text.into_bytes(), ..output }
+    assert_eq!(output.status.code(), Some(3), "{line}: {text}{}", stderr(&output));
+    text
 }
 
 /// Sends the signal of Ctrl-C.
 #[cfg(unix)]
 fn interrupt(program: &Child) {
-    let killed = Command::new("kill").args(["-INT", &program.id().to_string()]).status().unwrap();
-    assert!(killed.success());
+    signal(program, "-INT");
 }
 
-fn check_exit_code(arguments: &[OsString], output: &Output) {
-    static KNOWN: Mutex<BTreeMap<Vec<OsString>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
-    let words = if arguments.first().is_some_and(|verb| verb == "camera") { 2 } else { 1 };
-    let verb = arguments.get(..words).unwrap_or_default().to_vec();
-    let code = output.status.code().expect("the program was killed");
-    // Bad usage can be an unknown verb.
-    if code == 2 || verb.iter().any(|word| word.to_string_lossy().starts_with('-')) {
+/// The exit code is one that the help of the verb has. Bad usage can be an unknown verb.
+fn check_exit_code(words: &[String], code: i32) {
+    static KNOWN: Mutex<BTreeMap<Vec<String>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
+    let length = if words.first().is_some_and(|verb| verb == "camera") { 2 } else { 1 };
+    let verb = words.get(..length).unwrap_or_default();
+    if code == 2 || verb.iter().any(|word| word.starts_with('-')) {
         return;
     }
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    let codes = known.entry(verb.clone()).or_insert_with(|| {
-        let help = toposlam().args(&verb).arg("--help").output().unwrap();
+    let codes = known.entry(verb.to_vec()).or_insert_with(|| {
+        let help = program().args(verb).arg("--help").output().unwrap();
         exit_codes(&stdout(&help)).into_keys().collect()
     });
-    assert!(codes.contains(&code), "exit code {code} is not in the help: {arguments:?}");
+    assert!(codes.contains(&code), "exit code {code} is not in the help: {words:?}");
 }
 
-/// The exit codes at the end of a help, with their meanings.
-fn exit_codes(help: &str) -> BTreeMap<i32, String> {
+/// The exit codes at the end of a help, with the first lines of their meanings.
+fn exit_codes(help: &str) -> BTreeMap<i32, &str> {
     let (_, listed) = help.rsplit_once("\nExit codes:\n").expect(help);
-    let mut codes = BTreeMap::new();
-    for line in listed.lines() {
-        match line.strip_prefix("  ").and_then(|line| line.split_once("  ")) {
-            Some((code, meaning)) if !code.is_empty() => {
-                let twice = codes.insert(code.parse().expect(help), meaning.to_owned());
-                assert_eq!(twice, None, "{help}");
-            }
-            _ => {
-                let mut last = codes.last_entry().expect(help);
-                last.get_mut().push_str(line.strip_prefix("    ").expect(help));
-            }
-        }
-    }
-    codes
+    let lines = listed.lines().map(|line| line.strip_prefix("  ").expect(help));
+    let first_lines = lines.filter(|line| !line.starts_with(' '));
+    let codes = first_lines.map(|line| line.split_once("  ").expect(help));
+    codes.map(|(code, meaning)| (code.parse().expect(help), meaning)).collect()
 }
 
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
+/// A text without line breaks.
+fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The JSON objects of an output, one a line. Each fits a schema.
 fn objects(text: &str) -> Vec<Value> {
-    let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
-    let objects: Vec<Value> = lines.collect();
-    assert!(text.ends_with('\n') && objects.iter().all(fits_a_schema), "{text}");
+    let objects = json_lines(text);
+    assert!(objects.iter().all(fits_a_schema), "{text}");
     objects
 }
 
@@ -152,7 +142,7 @@ impl Scratch {
     fn new(name: &str) -> Self {
         let folder = folder(name);
         for inputs in ["docs", "fuzz", "tests", "vision", "worlds"] {
-            let inputs_path = Path::new(env!("CARGO_MANIFEST_DIR")).join(inputs);
+            let inputs_path = repository(inputs);
             #[cfg(unix)]
             std::os::unix::fs::symlink(inputs_path, folder.join(inputs)).unwrap();
             #[cfg(windows)]
@@ -185,7 +175,7 @@ impl Scratch {
     }
 
     fn command(&self, line: &str) -> Command {
-        let mut command = toposlam();
+        let mut command = program();
         command.current_dir(&self.0).args(shlex::split(line).unwrap());
         command
     }
@@ -193,22 +183,18 @@ impl Scratch {
     /// Runs a command line to its end. Its exit code is one that the help of the verb has.
     fn run(&self, line: &str) -> Output {
         let output = self.command(line).output().unwrap();
-        let words: Vec<_> = shlex::split(line).unwrap().into_iter().map(OsString::from).collect();
-        check_exit_code(&words, &output);
+        let code = output.status.code().expect("the program was killed");
+        check_exit_code(&shlex::split(line).unwrap(), code);
+        assert!(!stderr(&output).contains("panicked"), "{line}: {}", stderr(&output));
         output
     }
 
     /// The standard output of a run that ends with this exit code.
     fn out(&self, line: &str, code: i32) -> String {
         let output = self.run(line);
-        assert_eq!(
-            output.status.code(),
-            Some(code),
-            "{line}: {}{}",
-            stdout(&output),
-            stderr(&output)
-        );
-        stdout(&output)
+        let [out, error] = [stdout(&output), stderr(&output)];
+        assert_eq!(output.status.code(), Some(code), "{line}: {out}{error}");
+        out
     }
 
     /// The error message of a run that ends with 2.
@@ -228,25 +214,39 @@ impl Scratch {
         self.lines(line, code).pop().unwrap()
     }
 
-    /// Checks fields of what `--json` prints: of the last object, or, for a list, of all objects.
-    fn facts(&self, facts: &[(&str, i32, Value)]) {
-        for (line, code, fields) in facts {
-            let found = self.lines(line, *code);
-            match fields {
-                Value::Array(_) => has(&Value::Array(found), fields, line),
-                // Only the exit code.
-                Value::Object(fields) if fields.is_empty() => {}
-                _ => has(found.last().unwrap(), fields, line),
+    /// Checks the exit code of a command, and fields of what `--json` prints: of the last object, or, for a list, of
+    /// all objects. A text is what its error message begins with, behind `error: `.
+    fn fact(&self, line: &str, code: i32, expected: &Value) {
+        match expected {
+            Value::Null => drop(self.out(line, code)),
+            Value::String(message) => {
+                let output = self.run(line);
+                let error = stderr(&output);
+                assert_eq!(output.status.code(), Some(code), "{line}: {}{error}", stdout(&output));
+                assert!(error.starts_with(&format!("error: {message}")), "{line}: {error}");
+                assert!(
+                    output.stdout.is_empty() && error.matches("error:").count() == 1,
+                    "{error}"
+                );
             }
+            Value::Array(_) => has(&self.lines(line, code).into(), expected, line),
+            _ => has(&self.last(line, code), expected, line),
+        }
+    }
+
+    /// As `fact`, for each of these.
+    fn facts(&self, facts: &[(&str, i32, Value)]) {
+        for (line, code, expected) in facts {
+            self.fact(line, *code, expected);
         }
     }
 }
 
 /// Checks that a value has these fields. `a.b` is a field of a field, `a.0` an element, `a.#` the number of
-/// elements, and a missing field is `null`.
+/// elements, and a missing field is `null`. No fields are all fields.
 fn has(found: &Value, fields: &Value, place: &str) {
     match fields {
-        Value::Object(fields) if !fields.is_empty() => {
+        Value::Object(fields) => {
             for (path, expected) in fields {
                 let of = |found: Value, name: &str| match (name.parse::<usize>(), &found) {
                     (_, Value::Array(list)) if name == "#" => list.len().into(),
@@ -273,34 +273,11 @@ fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
     lines.iter().map(|line| line[key].as_u64().unwrap()).collect()
 }
 
-/// An empty folder for a test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-/// The names in a folder.
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
-
 /// The world files of the repository.
 fn world_files() -> Vec<PathBuf> {
-    let worlds = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds");
-    let mut files: Vec<_> =
-        fs::read_dir(worlds).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let worlds = repository("worlds");
+    let mut files: Vec<_> = names_in(&worlds).into_iter().map(|name| worlds.join(name)).collect();
     files.retain(|path| path.extension() == Some(OsStr::new("toml")));
-    files.sort();
     assert!(files.len() >= 18);
     files
-}
-
-fn read_world(path: &Path) -> NamedWorld {
-    world_file::read(&fs::read(path).unwrap()).unwrap()
 }

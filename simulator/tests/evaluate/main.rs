@@ -4,22 +4,21 @@
 
 mod laser;
 mod mistakes;
+#[allow(dead_code, reason = "other programs use the rest")]
+#[path = "../../../tests/output.rs"]
+mod output;
 mod robots;
-#[path = "../../../tests/schema/validator.rs"]
-mod validator;
 mod vision;
 
 use std::{
     collections::BTreeSet,
     ffi::OsStr,
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output, Stdio},
 };
 
-use serde_json::Value;
-use toposlam_model::format::{named_world::NamedWorld, world_file};
-use validator::problem;
+use output::{Schema, folder, json_lines as objects, names_in, read_world, stderr, stdout};
 
 /// Commands for each schema, by its name.
 const COMMANDS: [(&str, &[&str]); 6] = [
@@ -71,14 +70,15 @@ const COMMANDS: [(&str, &[&str]); 6] = [
 /// The commands, and the exit codes that their help lists: all but `control` and `runs` have targets.
 const PARTS: [&str; 6] = ["vision", "control", "runs", "laser", "mistakes", "lengths"];
 
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
 /// Runs the program to its end in the repository.
 fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_evaluate"));
-    program.current_dir(repository()).stdin(Stdio::null()).args(arguments).output().unwrap()
+    program
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .stdin(Stdio::null())
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 /// The standard output of a successful run.
@@ -88,47 +88,11 @@ fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String 
     stdout(&output)
 }
 
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// The JSON objects of an output, one a line.
-fn objects(text: &str) -> Vec<Value> {
-    assert!(text.ends_with('\n'), "{text}");
-    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
-}
-
-/// An empty folder for a test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("evaluate").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-/// The names in a folder.
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
-
-fn read_world(path: &Path) -> NamedWorld {
-    world_file::read(&fs::read(path).unwrap()).unwrap()
-}
-
 #[test]
 fn the_lines_of_each_command_fit_its_schema() {
     let written = folder("schema");
     for (name, commands) in COMMANDS {
-        let schema = repository().join("docs/schema").join(name).with_extension("json");
-        let schema: Value = serde_json::from_slice(&fs::read(schema).unwrap()).unwrap();
+        let schema = Schema::read(name);
         let mut shown = BTreeSet::new();
         for command in commands {
             let command = command.replace("DIR", written.to_str().unwrap());
@@ -143,13 +107,11 @@ fn the_lines_of_each_command_fit_its_schema() {
             };
             assert!(code.is_none() || code == output.status.code(), "{command}: {verdict}");
             for line in lines {
-                assert_eq!(problem(&schema, &line), None, "{command}: {line}");
+                assert_eq!(schema.misfit(&line), None, "{command}: {line}");
                 shown.insert(line["kind"].as_str().unwrap().to_owned());
             }
         }
-        let kinds = schema["oneOf"].as_array().unwrap().iter();
-        let kinds = kinds.map(|line| line["properties"]["kind"]["const"].as_str().unwrap());
-        assert_eq!(kinds.collect::<BTreeSet<_>>(), shown.iter().map(String::as_str).collect());
+        assert!(schema.kinds().iter().eq(&shown), "{name}: {shown:?}");
     }
 }
 

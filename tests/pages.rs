@@ -1,0 +1,230 @@
+//! The pages in a browser: walks in two worlds, runs, games, reports of conformance; and the judge of the game against
+//! that of the specification. Sections 2.1 to 2.3 and 6.
+
+use std::{borrow::Cow, fmt::Write as _, fs, ops::ControlFlow};
+
+use serde_json::{Value, json};
+use toposlam_model::{
+    check::judge_map,
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
+    folding::fold,
+    isomorphism::Candidate,
+    mapping::{ExploredMap, Flaw},
+    percept::{Door, Percept, Sighting},
+    world::{GraphWorld, World},
+};
+
+use crate::{browser, output, program, repository};
+
+/// Writes a page by each of these commands, which end with the option for its file, and opens them in a browser.
+/// Before each command stands its kind; OUT is the folder.
+fn open(script: &str, name: &str, commands: &[(&str, &str)]) {
+    let folder = output::folder(name);
+    let pages = commands.iter().enumerate().map(|(number, (kind, command))| {
+        let file = folder.join(format!("{kind}-{number}.html"));
+        let command = command.replace("OUT", folder.to_str().unwrap());
+        let output = program().args(command.split(' ')).arg(&file).output().unwrap();
+        assert!(file.exists(), "{command}: {output:?}");
+        format!("{kind}={}", file.display())
+    });
+    browser::open(script, &pages.collect::<Vec<_>>());
+}
+
+/// Figure 1: a random walk in its two worlds shows the same percepts in both as long as the marker does not point.
+/// With a directional marker a walk distinguishes them.
+#[test]
+fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
+    let kinds = [
+        "undirected",
+        "undirected-edge",
+        "directed-edge",
+        "directional",
+        "two-distinct",
+        "movable",
+    ];
+    let commands = kinds.map(|marker| {
+        let kind = if marker == "undirected" { "alike" } else { "apart" };
+        let worlds = "worlds/figure-1a.toml worlds/figure-1b.toml";
+        (kind, format!("compare {worlds} --marker {marker} --html"))
+    });
+    open("walk_page.mjs", "walk-pages", &commands.each_ref().map(|(kind, line)| (*kind, &**line)));
+}
+
+#[test]
+fn the_page_of_a_run_follows_it_to_its_end() {
+    let by_scene = "worlds/shape-6.toml --seed 3 --by-scene --html";
+    open(
+        "run_page.mjs",
+        "run-pages",
+        &[
+            (
+                "right",
+                "simulate worlds/shape-6.toml --seed 3 --size 640x480 --fault dropped@30 --html",
+            ),
+            ("blind", &format!("simulate {by_scene}")),
+            ("wrong", &format!("simulate --algorithm algorithm1 --fault carried@30 {by_scene}")),
+            ("large", "simulate worlds/building-25.toml --by-scene --html"),
+        ],
+    );
+}
+
+#[test]
+fn the_page_of_a_report_opens_and_leads_to_its_events() {
+    let folder = output::folder("conform-logs");
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let [right, wrong, cut] = ["monday.mcap", "tuesday.jsonl", "wednesday-<b>of-it.mcap"].map(path);
+    let run = format!("simulate worlds/shape-6.toml --by-scene --log {right}");
+    crate::printed(program().args(run.split(' ')));
+    let log = fs::read(&right).unwrap();
+    fs::write(&cut, &log[..log.len() / 2]).unwrap();
+    // From the dead end around the loop again and again. Once a corner has four doors.
+    let visits = (0..5000).map(|visit| {
+        let (degree, marker, door) = match visit {
+            0 => (1, -1, 0),
+            1 => (2, 1, 1),
+            2 => (3, -1, 1),
+            3501 => (4, -1, 1),
+            _ if visit % 4 == 2 => (3, -1, 2),
+            _ => (2, -1, 1),
+        };
+        format!("{{\"degree\":{degree},\"marker\":{marker},\"door\":{door}}}\n")
+    });
+    fs::write(&wrong, visits.collect::<String>()).unwrap();
+    let options = "--world worlds/shape-6.toml --start any --driver anyone";
+    open(
+        "conform_page.mjs",
+        "conform-pages",
+        &[
+            ("conforms", &format!("conform {right} {options} --html")),
+            ("diverged", &format!("conform {wrong} {options} --minimise OUT/short.mcap --html")),
+            ("open", &format!("conform {cut} {options} --html")),
+            ("several", &format!("conform {right} {wrong} {cut} {options} --html")),
+        ],
+    );
+}
+
+/// A place with two loops, at the end of an edge from the marker.
+const LOOPS: &str = "[doors]\ns = [\"e\"]\na = [\"e\", \"l\", \"l\", \"m\", \"m\"]\n\n\
+                     [start]\nat = \"s\"\nfacing = \"e\"\n";
+
+#[test]
+fn a_game_with_true_claims_is_won_and_other_maps_are_judged() {
+    let loops = output::folder("game-worlds").join("loops.toml");
+    fs::write(&loops, LOOPS).unwrap();
+    open(
+        "play_page.mjs",
+        "game-pages",
+        &[
+            ("right", "play worlds/shape-8.toml --out"),
+            ("right", "play worlds/figure-1b.toml --out"),
+            ("right", "play worlds/building-12.toml --start west:north-west --out"),
+            ("right", "play worlds/two-loops-torus.toml --out"),
+            ("right", "play --random --edges 8 --seed 3 --out"),
+            ("right", "play --random --class multigraph --edges 6 --out"),
+            ("loops", &format!("play {} --out", loops.display())),
+        ],
+    );
+}
+
+/// Every start with up to 3 edges.
+fn starts() -> Vec<EmbeddedGraph> {
+    let mut starts = Vec::new();
+    for edges in 1..=3 {
+        let each = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        let _ = each.for_each(&mut |found| {
+            starts.push(found.graph.clone());
+            ControlFlow::Continue(())
+        });
+    }
+    assert_eq!(starts.len(), 2 + 10 + 74);
+    starts
+}
+
+fn end(graph: &EmbeddedGraph, dart: Dart) -> Value {
+    json!([graph.vertex(dart).at(), graph.index(dart)])
+}
+
+fn lists(graph: &EmbeddedGraph) -> Value {
+    let ends = |vertex| graph.darts_of(vertex).map(|dart| end(graph, graph.opposite(dart)));
+    graph.vertices().map(|vertex| ends(vertex).collect::<Value>()).collect()
+}
+
+/// Every start as a map of every other one, with the robot anywhere on the map; and how the specification judges it.
+fn judged_maps(starts: &[EmbeddedGraph]) -> (String, Vec<&'static str>) {
+    let (mut cases, mut expected) = (String::new(), Vec::new());
+    let mut candidate = Candidate::default();
+    for (number, world) in starts.iter().enumerate() {
+        let truth = Dart((number % world.dart_count()) as u32);
+        for map in starts {
+            for pose in map.darts() {
+                let case = json!({
+                    "map": lists(map), "pose": end(map, pose),
+                    "world": lists(world), "start": end(world, Dart(0)), "truth": end(world, truth),
+                });
+                writeln!(cases, "{case}").unwrap();
+                let map = ExploredMap { graph: Cow::Borrowed(map), facing: Dart(0), pose };
+                expected.push(match judge_map(&map, (world, Dart(0)), truth, &mut candidate) {
+                    Ok(_) => "right",
+                    Err(Flaw::WrongPose { .. }) => "pose",
+                    Err(_) => "map",
+                });
+            }
+        }
+    }
+    (cases, expected)
+}
+
+/// Walks in every start, and the number of open darts of their folded trails.
+fn folded_walks(starts: &[EmbeddedGraph]) -> (String, Vec<String>) {
+    let (mut cases, mut expected) = (String::new(), Vec::new());
+    let percept_json = |percept: &Percept| {
+        let marker = match percept.sighting {
+            Sighting::Pointing(door) => json!(door.0),
+            _ => Value::Null,
+        };
+        json!({ "degree": percept.degree, "marker": marker })
+    };
+    let mut number: u32 = 1;
+    for graph in starts {
+        for length in 1..=9 {
+            let mut world = GraphWorld::new(graph, Dart(0));
+            let (mut percepts, mut doors) = (vec![world.sensed()], Vec::new());
+            for _ in 0..length {
+                number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let door = Door((number >> 16) % world.sensed().degree);
+                world.traverse(door).unwrap();
+                doors.push(door);
+                percepts.push(world.sensed());
+            }
+            expected.push(fold(&percepts, &doors).unwrap().open_darts().count().to_string());
+            let percepts: Vec<_> = percepts.iter().map(percept_json).collect();
+            let doors: Vec<_> = doors.into_iter().map(|door| door.0).collect();
+            writeln!(cases, "{}", json!({ "percepts": percepts, "doors": doors })).unwrap();
+        }
+    }
+    (cases, expected)
+}
+
+#[test]
+fn the_judge_of_the_game_agrees_with_the_specification() {
+    let starts = starts();
+    let (maps, judged) = judged_maps(&starts);
+    let (walks, open) = folded_walks(&starts);
+    let file = output::folder("game-judge").join("cases.jsonl");
+    fs::write(&file, maps + &walks).unwrap();
+    let scripts = repository("draw/src/page/browser");
+    let arguments = [scripts.as_os_str(), file.as_os_str()];
+    let Some(printed) = browser::run_in_node("play_judge.mjs", &arguments) else { return };
+    let lines: Vec<_> = printed.lines().collect();
+    let (of_maps, of_walks) = lines.split_at(judged.len());
+    for (case, (line, expected)) in of_maps.iter().zip(&judged).enumerate() {
+        let found = if ["right", "pose"].contains(line) { line } else { &"map" };
+        assert_eq!(found, expected, "case {case}: {line}");
+    }
+    for kind in ["right", "pose", "degree", "several", "twice"] {
+        assert!(of_maps.contains(&kind), "no map is {kind}");
+    }
+    assert_eq!(of_walks, open);
+    assert!(open.iter().any(|open| open == "0") && open.iter().any(|open| open != "0"));
+}
