@@ -15,6 +15,7 @@ use std::{
     time::Instant,
 };
 
+use toposlam_draw::picture::{self, WorldPicture};
 use toposlam_model::{
     check::{Check, FinishedUnits, Shard, SharedPrefixCheck, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
@@ -130,6 +131,10 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     worst: Option<PathBuf>,
 
+    /// Write the first start that was not mapped: a world file, or a picture (.svg, .png)
+    #[arg(long, value_name = "FILE")]
+    failed: Option<PathBuf>,
+
     /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -170,7 +175,7 @@ pub(super) struct CheckArguments {
 }
 
 /// Options of a check, which --add does not do.
-const NOT_ADDED: [&str; 15] = [
+const NOT_ADDED: [&str; 16] = [
     "edges",
     "class",
     "marker",
@@ -180,6 +185,7 @@ const NOT_ADDED: [&str; 15] = [
     "shard",
     "from",
     "worst",
+    "failed",
     "threads",
     "journal",
     "estimate",
@@ -240,6 +246,9 @@ impl CheckArguments {
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
+        if let Some(failed) = &self.failed {
+            output::check_place(failed, &["toml", "json", "dot", "svg", "png"])?;
+        }
         match mapper {
             Mapper::Algorithm(algorithm, _) if self.estimate.estimate => {
                 self.print_estimates(&work, algorithm, out)
@@ -265,6 +274,8 @@ impl CheckArguments {
         };
         let mut report = CheckReport::new(out, self.json, order);
         let mut worst: Option<WorstStart> = None;
+        // The first start that was mapped wrongly, and the first on which a limit was reached.
+        let mut unmapped = [None, None];
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
         let (mut is_done, mut all_mapped) = (true, true);
@@ -274,6 +285,9 @@ impl CheckArguments {
             is_done = !line.interrupted;
             all_mapped &= line.failed == 0 && line.unknown.unwrap_or_default() == 0;
             cases.push(line.ci_case());
+            for (first, found) in unmapped.iter_mut().zip([&line.failure, &line.limit]) {
+                *first = first.take().or_else(|| found.as_ref()?.named_world());
+            }
             report.size(line)?;
             if let Some(cluster) = &mut cluster {
                 report.threads(cluster, &counted(edges, "edge"))?;
@@ -303,6 +317,12 @@ impl CheckArguments {
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
             write_worst(path, worst)?;
+        }
+        if let Some(path) = &self.failed {
+            match unmapped.iter().flatten().next() {
+                Some(world) => write_failed(path, world)?,
+                None => remark!("{} is not written: each start was mapped", path.display()),
+            }
         }
         Ok(outcome)
     }
@@ -494,6 +514,18 @@ impl Work {
             // They are for algorithms.
             Self::Shared(_) | Self::All(_) => ControlFlow::Continue(()),
         }
+    }
+}
+
+fn write_failed(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
+    let drawn = || picture::svg(&WorldPicture::from(world));
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => output::write_whole(path, drawn().as_bytes()),
+        Some("png") => {
+            let image = picture::png(&drawn()).map_err(|error| CliError::in_file(path, error))?;
+            output::write_whole(path, &image)
+        }
+        _ => output::write_world(path, world),
     }
 }
 

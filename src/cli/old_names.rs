@@ -74,11 +74,8 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
 }
 
 /// The options that have another name, or none: the command, the old name, and what to write.
-const OPTIONS: [(&[&str], &str, &str); 19] = [
+const OPTIONS: [(&[&str], &str, &str); 16] = [
     (&["check"], "max-edges", "--edges 1..=N"),
-    (&["check"], "failed", "the report has the world"),
-    (&["proofs"], "junit", "--json"),
-    (&["proofs"], "sarif", "--json"),
     (&["counterexample"], "edges", "--max-edges"),
     (&["counterexample"], "out", "--out-dir"),
     (&["conform"], "edges", "--max-edges"),

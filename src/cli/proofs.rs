@@ -25,6 +25,7 @@ use toposlam_proofs::{
 
 use super::{
     CliError, Outcome,
+    ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     json::print_line,
     progress::Progress,
@@ -56,6 +57,8 @@ A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and pri
         (3, "not everything was checked, or the lemma excludes the case of --choices"),
     ],
 ))]
+#[command(mut_arg("junit", |junit| junit.requires("run").conflicts_with("choices")))]
+#[command(mut_arg("sarif", |sarif| sarif.requires("run").conflicts_with("choices")))]
 pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all lemmas (repeatable)
     #[arg(long, value_name = "NAME")]
@@ -69,6 +72,8 @@ pub(super) struct ProofsArguments {
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// An engine, with its bound.
@@ -86,6 +91,7 @@ const ALL: &str = "all";
 
 impl ProofsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
+        self.ci.check_places()?;
         let theorems: Vec<_> = theorems::all().collect();
         self.run_with(&lemmas::all().collect::<Vec<_>>(), &theorems, out)
     }
@@ -145,7 +151,10 @@ impl ProofsArguments {
                 break;
             }
         }
-        self.print_end(lemmas.len(), &checked, out)
+        let outcome = self.print_end(lemmas.len(), &checked, out)?;
+        let cases: Vec<_> = checked.iter().map(|(lemma, result)| result.ci_case(lemma)).collect();
+        self.ci.write("proofs", &cases)?;
+        Ok(outcome)
     }
 
     /// Prints the cases in which lemmas fail, and the totals.
@@ -336,6 +345,17 @@ struct CheckedLemma {
 }
 
 impl CheckedLemma {
+    /// The result for CI systems.
+    fn ci_case(&self, lemma: &Lemma) -> CiCase {
+        let ended = match self.outcome {
+            Outcome::Holds => "holds",
+            Outcome::Violated => "fails",
+            Outcome::Incomplete => "interrupted",
+        };
+        let message = format!("{ended} after {}", in_cases(self.cases));
+        CiCase { name: lemma.name.to_owned(), outcome: self.outcome, message, file: None }
+    }
+
     /// Checks a lemma on a thread of its own, so that an interrupt need not wait for the next case.
     fn new(lemma: &Lemma, watch: &dyn Watch) -> Result<Self, CliError> {
         const INTERVAL: Duration = Duration::from_millis(50);
