@@ -21,8 +21,10 @@ const NO_NUMBER: u32 = u32::MAX;
 pub(super) struct DartClasses {
     vertices: Vec<TrailVertex>,
     darts: Vec<TrailDart>,
-    count: usize,
-    open: usize,
+    /// The number of classes.
+    pub(super) count: usize,
+    /// The number of open darts of roots.
+    pub(super) open: usize,
     changes: Vec<Change>,
     /// The number of changes before the latest union.
     before_union: usize,
@@ -122,15 +124,6 @@ impl DartClasses {
     pub(super) fn number(&self, dart: u32) -> Option<u32> {
         let number = self.darts[self.find(dart) as usize].number;
         (number != NO_NUMBER).then_some(number)
-    }
-
-    pub(super) fn count(&self) -> usize {
-        self.count
-    }
-
-    #[inline]
-    pub(super) fn open_count(&self) -> usize {
-        self.open
     }
 
     pub(super) fn trail_vertex_count(&self) -> usize {
@@ -260,19 +253,12 @@ impl DartClasses {
     /// Returns an error if no world of any size has them as one dart. Only [`undo`](Self::undo) is then
     /// possible.
     pub(super) fn unite(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
-        self.begin_union();
         self.close(one, other, Numbered::Ignored)
     }
 
     /// [`unite`](Self::unite) for vertices with numbers that are distinct.
     pub(super) fn suppose(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
-        self.begin_union();
         self.close(one, other, Numbered::Distinct)
-    }
-
-    fn begin_union(&mut self) {
-        self.before_union = self.changes.len();
-        self.changes.push(Change::Open { before: self.open });
     }
 
     pub(super) fn change_count(&self) -> usize {
@@ -354,6 +340,8 @@ impl DartClasses {
         other: u32,
         numbered: Numbered,
     ) -> Result<(), ContradictionReason> {
+        self.before_union = self.changes.len();
+        self.changes.push(Change::Open { before: self.open });
         self.pairs.clear();
         let mut next = Some((one, other));
         while let Some((one, other)) = next {

@@ -224,7 +224,7 @@ impl FoldedTrail {
     /// The number of vertices: places that are not proved to be one.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
-        self.classes.count()
+        self.classes.count
     }
 
     /// The number of darts of all trail vertices, folded or not.
@@ -237,7 +237,7 @@ impl FoldedTrail {
     #[inline]
     #[must_use]
     pub fn open_count(&self) -> usize {
-        self.classes.open_count()
+        self.classes.open
     }
 
     /// For each vertex, in the order of the first visits, the dart by which the robot first came in. The doors
