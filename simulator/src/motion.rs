@@ -37,6 +37,7 @@ impl MotionNoise {
     pub const MOST: f64 = 5.0;
 
     /// This multiple of all noise.
+    #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
             slip: self.slip * factor,

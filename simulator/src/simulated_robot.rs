@@ -91,6 +91,7 @@ impl SimulatedRobot {
         Self { plan, base, camera, scanner, image_time, faults, seed, frames: 0, last, obstacle }
     }
 
+    #[must_use]
     pub fn with_scanner(self, scanner: LaserScanner) -> Self {
         Self { scanner: Some(scanner), ..self }
     }
