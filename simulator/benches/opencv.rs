@@ -43,7 +43,7 @@ fn main() {
     let look = BuildingLook::named("laboratory").unwrap();
     let camera = Camera::superscout();
     let rig = Rig::new(&camera);
-    let views = ViewSampler::of([look], camera.image, 7).unwrap();
+    let views = ViewSampler::from_looks([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);

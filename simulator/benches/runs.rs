@@ -59,10 +59,10 @@ fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: MappingAlgorith
 #[divan::bench(sample_count = 2)]
 fn shape_6_with_images(bencher: Bencher) {
     let (plan, facing) = shape_6();
-    let (eyes, look) = eyes();
+    let (sensors, look) = sensors();
     bencher.bench(|| {
         let robot = SimulationConfig::at_start(plan.clone(), facing, 1).with_images(
-            eyes.rig(),
+            sensors.rig(),
             look,
             &Effects::plain(),
         );
@@ -70,7 +70,7 @@ fn shape_6_with_images(bencher: Bencher) {
             &plan,
             facing,
             robot,
-            eyes.sensor(look),
+            sensors.sensor(look),
             (),
             &RunSettings::new(Algorithm1, DARTS),
         ));
@@ -81,25 +81,28 @@ fn shape_6_with_images(bencher: Bencher) {
 #[divan::bench(sample_count = 10)]
 fn shape_6_off_line(bencher: Bencher) {
     let (plan, facing) = shape_6();
-    let (eyes, look) = eyes();
+    let (sensors, look) = sensors();
     let effects = Effects { jpeg_loss: 10.0, ..Effects::plain() };
-    let robot =
-        SimulationConfig::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
+    let robot = SimulationConfig::at_start(plan.clone(), facing, 1).with_images(
+        sensors.rig(),
+        look,
+        &effects,
+    );
     let mut recording = Recording::default();
     right(&run(
         &plan,
         facing,
         robot,
-        eyes.sensor(look),
+        sensors.sensor(look),
         &mut recording,
         &RunSettings::new(Algorithm1, DARTS),
     ));
-    bencher.with_inputs(|| eyes.sensor(look)).bench_local_values(|sensor| {
+    bencher.with_inputs(|| sensors.sensor(look)).bench_local_values(|sensor| {
         offline(&recording, sensor, (), &RunSettings::new(Algorithm1, DARTS)).unwrap()
     });
 }
 
-fn eyes() -> (LearnedSensors, &'static BuildingLook) {
+fn sensors() -> (LearnedSensors, &'static BuildingLook) {
     let look = &LOOKS[0];
     (LearnedSensors::new(&Camera::superscout().sized(LARGE), &[look], &()).unwrap(), look)
 }

@@ -49,7 +49,7 @@ fn case(width: u32) -> Case {
     let camera = Camera::superscout().sized([width, width * 3 / 4]);
     let rig = Rig::new(&camera);
     let look = BuildingLook::named("laboratory").unwrap();
-    let views = ViewSampler::of([look], camera.image, 7).unwrap();
+    let views = ViewSampler::from_looks([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);

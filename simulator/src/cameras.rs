@@ -3,11 +3,11 @@
 
 use std::{
     f64::consts::{FRAC_PI_2, PI, TAU},
-    fmt::Debug,
     sync::Arc,
 };
 
 use image::RgbImage;
+use nalgebra::Vector2;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -23,6 +23,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
 };
+use toposlam_vision::geometry::unit;
 
 use crate::{
     render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream},
@@ -30,16 +31,39 @@ use crate::{
 };
 
 /// The camera of a simulated robot.
-pub trait SimulatedCamera: Debug + Send {
-    /// The frame with this number from a pose, overexposed by this many stops. The robot fills in
-    /// time and odometry.
-    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
-
-    /// Turns the lights on or out.
-    fn set_lights(&mut self, on: bool);
+#[derive(Debug)]
+pub(super) enum SimulatedCamera {
+    Images(Box<RenderingCamera>),
+    Scenes(SceneCamera),
+    /// A detector of the marker alone, for a robot whose other sensors do not see it.
+    Marker(SceneCamera),
 }
 
-/// Damages the frame with this number.
+/// The light in which a frame is taken.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FrameLight {
+    /// Overexposure, in stops.
+    pub(super) stops: f64,
+    pub(super) is_dark: bool,
+}
+
+impl SimulatedCamera {
+    /// The frame with this number from a pose. The robot fills in time and odometry.
+    pub(super) fn frame(&mut self, pose: Pose, number: u64, light: FrameLight) -> Frame {
+        match self {
+            Self::Images(camera) => camera.frame(pose, number, light),
+            Self::Scenes(camera) => {
+                let scene = Some(camera.scene(pose, number, light));
+                Frame { id: number, scene, ..Frame::default() }
+            }
+            Self::Marker(camera) => {
+                let marker = camera.scene(pose, number, light).marker;
+                Frame { id: number, marker, ..Frame::default() }
+            }
+        }
+    }
+}
+
 pub(super) fn corrupt(frame: Frame, number: u64) -> Frame {
     let unknown = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
     let scene = frame.scene.and(Some(unknown));
@@ -63,14 +87,13 @@ pub(super) fn corrupt(frame: Frame, number: u64) -> Frame {
 /// It adapts its exposure like a real camera: after an overexposed image it exposes the next one
 /// less, and then gradually returns to the exposure of its effects.
 #[derive(Clone, Debug)]
-pub struct RenderingCamera {
+pub(super) struct RenderingCamera {
     rig: Arc<Rig>,
     building: Building,
     effects: Effects,
     seed: u64,
     /// Exposure below that of its effects, in stops.
     less: f64,
-    dark: bool,
 }
 
 /// Change of the exposure when the lights are out, in stops.
@@ -92,9 +115,8 @@ const MORE: f64 = 0.1;
 
 impl RenderingCamera {
     /// A camera in a building. The noise of its images follows from the seed.
-    #[must_use]
-    pub fn new(rig: Arc<Rig>, building: Building, effects: Effects, seed: u64) -> Self {
-        Self { rig, building, effects, seed, less: 0.0, dark: false }
+    pub(super) fn new(rig: Arc<Rig>, building: Building, effects: Effects, seed: u64) -> Self {
+        Self { rig, building, effects, seed, less: 0.0 }
     }
 
     /// Sets the exposure of the next image from this one.
@@ -115,12 +137,10 @@ impl RenderingCamera {
             self.less = (self.less - MORE).max(0.0);
         }
     }
-}
 
-impl SimulatedCamera for RenderingCamera {
-    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
-        let lights = if self.dark { OUT } else { 0.0 };
-        let exposure = self.effects.exposure - self.less + stops + lights;
+    fn frame(&mut self, pose: Pose, number: u64, light: FrameLight) -> Frame {
+        let lights = if light.is_dark { OUT } else { 0.0 };
+        let exposure = self.effects.exposure - self.less + light.stops + lights;
         let effects = Effects { exposure, ..self.effects.clone() };
         let seed = self.seed.wrapping_add(number);
         let image = exposed(&self.rig, &self.building, pose, &effects, seed);
@@ -128,25 +148,17 @@ impl SimulatedCamera for RenderingCamera {
         let image = CameraImage::encoded(file(&image, &effects));
         Frame { id: number, image: Some(image), ..Frame::default() }
     }
-
-    fn set_lights(&mut self, on: bool) {
-        self.dark = !on;
-    }
 }
 
 /// A camera and sensing in one, without images. It reports scenes with the error rates and errors
 /// that were measured for sensing.
 #[derive(Clone, Debug)]
-pub struct SceneCamera {
-    /// The plan of the building.
-    pub plan: Arc<FloorPlan>,
-    /// The dart along which the marker lies.
-    pub marker: Option<Dart>,
+pub(super) struct SceneCamera {
+    pub(super) plan: Arc<FloorPlan>,
+    pub(super) marker: Dart,
     /// Multiple of the measured error rates and errors.
-    pub noise: f64,
-    /// Random seed.
-    pub seed: u64,
-    dark: bool,
+    pub(super) noise: f64,
+    pub(super) seed: u64,
 }
 
 /// Share of unknown scenes: in `evaluate vision --views 20000 --seed 100`, 4 of 3,786
@@ -171,16 +183,19 @@ const HERE_OFF: f64 = 0.03;
 const MARKER_SEEN: std::ops::Range<f64> = 0.2..1.5;
 
 impl SceneCamera {
-    /// A camera in a building of this plan.
-    #[must_use]
-    pub fn new(plan: Arc<FloorPlan>, marker: Option<Dart>, noise: f64, seed: u64) -> Self {
-        Self { plan, marker, noise, seed, dark: false }
+    fn scene(&self, pose: Pose, number: u64, light: FrameLight) -> Scene {
+        let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
+        let mut chance = Chance { numbers, noise: self.noise };
+        // Sensing fails on dark and on overexposed images.
+        let truth = Truth::at(&self.plan, pose).filter(|_| light.stops < 1.0 && !light.is_dark);
+        let Some(truth) = truth else {
+            return Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
+        };
+        let place = Self::place(&truth, &mut chance);
+        Scene { place, marker: self.marker(pose, &truth, &mut chance) }
     }
 
-    fn place(&self, truth: &Truth, chance: &mut Chance) -> Place {
-        if self.dark {
-            return Place::Unknown(Reason::NoFloor);
-        }
+    fn place(truth: &Truth, chance: &mut Chance) -> Place {
         if chance.happens(UNKNOWN) {
             return Place::Unknown(Reason::NothingFits);
         }
@@ -202,14 +217,9 @@ impl SceneCamera {
     }
 
     fn marker(&self, pose: Pose, truth: &Truth, chance: &mut Chance) -> Option<MarkerView> {
-        let dart = self.marker.filter(|_| !self.dark)?;
-        let vertex = self.plan.graph().vertex(dart);
-        let near = match truth {
-            Truth::Hallway(_) => false,
-            Truth::Junction(junction) => junction.vertex == vertex,
-            Truth::Between(_, junctions) => junctions.iter().any(|near| near.vertex == vertex),
-        };
-        let marker = MarkerTruth::of(&self.plan, dart, pose);
+        let vertex = self.plan.graph().vertex(self.marker);
+        let near = truth.junctions().iter().any(|near| near.vertex == vertex);
+        let marker = MarkerTruth::from_plan(&self.plan, self.marker, pose);
         let [x, y] = marker.position;
         (near && MARKER_SEEN.contains(&x.hypot(y)) && !chance.happens(MISSED)).then(|| MarkerView {
             position: [x + chance.off(PLACE), y + chance.off(PLACE)],
@@ -219,22 +229,6 @@ impl SceneCamera {
     }
 }
 
-/// A detector of the marker alone, for a robot whose other sensors do not see it.
-#[derive(Clone, Debug)]
-pub struct MarkerDetector(pub SceneCamera);
-
-impl SimulatedCamera for MarkerDetector {
-    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
-        let frame = self.0.frame(pose, number, stops);
-        Frame { marker: frame.scene.and_then(|scene| scene.marker), scene: None, ..frame }
-    }
-
-    fn set_lights(&mut self, on: bool) {
-        self.0.set_lights(on);
-    }
-}
-
-/// Random errors of one image.
 struct Chance {
     numbers: Xoshiro256PlusPlus,
     noise: f64,
@@ -254,9 +248,9 @@ impl Chance {
 /// The turning point along the hallway axis that is nearest to ahead, and across it.
 fn in_axes(junction: &JunctionTruth) -> [f64; 2] {
     let door = junction.doors.first().copied().unwrap_or(0.0);
-    let axis = door - (door / FRAC_PI_2).round() * FRAC_PI_2;
-    let ([x, y], (sine, cosine)) = (junction.turning_point, axis.sin_cos());
-    [x * cosine + y * sine, y * cosine - x * sine]
+    let axis = unit(door - (door / FRAC_PI_2).round() * FRAC_PI_2);
+    let point = Vector2::from(junction.turning_point);
+    [axis.dot(&point), axis.perp(&point)]
 }
 
 fn reported_hallway(truth: &HallwayTruth, near: &[JunctionTruth], chance: &mut Chance) -> Place {
@@ -307,34 +301,13 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
     doors.sort_by_key(|&door| clockwise(door));
 }
 
-impl SimulatedCamera for SceneCamera {
-    fn frame(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
-        let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
-        let mut chance = Chance { numbers, noise: self.noise };
-        // Sensing fails on overexposed images.
-        let truth = Truth::at(&self.plan, pose).filter(|_| stops < 1.0);
-        let scene = match truth {
-            Some(truth) => Scene {
-                place: self.place(&truth, &mut chance),
-                marker: self.marker(pose, &truth, &mut chance),
-            },
-            None => Scene { place: Place::Unknown(Reason::NoFloor), marker: None },
-        };
-        Frame { id: number, scene: Some(scene), ..Frame::default() }
-    }
-
-    fn set_lights(&mut self, on: bool) {
-        self.dark = !on;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use toposlam_model::driving::visit::JunctionShape;
     use toposlam_vision::camera;
 
     use super::*;
-    use crate::{LOOKS, evaluation::scene_class::SceneClass, plans, start_pose, starts_of};
+    use crate::{LOOKS, evaluation::judged_view::SceneClass, plans, start_pose, starts_of};
 
     fn shape_6() -> Arc<FloorPlan> {
         plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap().1
@@ -346,13 +319,13 @@ mod tests {
         let facing = starts_of(&plan)[0];
         // The start is an L whose other door is to the left.
         let pose = start_pose(&plan, facing);
-        let junction = JunctionTruth::of(&plan, plan.graph().vertex(facing), pose);
+        let junction = JunctionTruth::from_plan(&plan, plan.graph().vertex(facing), pose);
         let right = SceneClass::Junction(junction.form.unwrap());
         let count = |noise: f64| {
-            let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
-            let classes: Vec<_> = (0..20_000)
-                .map(|n| SceneClass::of(&camera.frame(pose, n, 0.0).scene.unwrap()))
-                .collect();
+            let camera = SceneCamera { plan: plan.clone(), marker: facing, noise, seed: 4 };
+            let scene = |number| camera.scene(pose, number, FrameLight::default());
+            let classes: Vec<_> =
+                (0..20_000).map(|number| SceneClass::from_scene(&scene(number))).collect();
             let unknown = classes.iter().filter(|&&class| class == SceneClass::Unknown).count();
             let wrong =
                 classes.iter().filter(|&&class| class != SceneClass::Unknown && class != right);
@@ -398,7 +371,8 @@ mod tests {
             let effects = Effects { exposure, ..Effects::plain() };
             let building = Building::new(&plan, &LOOKS[0], None, &effects, 1);
             let mut camera = RenderingCamera::new(rig.clone(), building, effects, 1);
-            let frame = (0..frames).map(|n| camera.frame(pose, n, 0.0)).last().unwrap();
+            let frame =
+                (0..frames).map(|n| camera.frame(pose, n, FrameLight::default())).last().unwrap();
             let image = frame.image.unwrap();
             let image = image.pixels().unwrap();
             image.pixels().filter(|pixel| pixel.0.contains(&255)).count()

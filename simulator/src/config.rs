@@ -14,32 +14,25 @@ use crate::truth::angle;
 /// The default time to take an image, in seconds.
 pub const IMAGE_TIME: f64 = 0.3;
 
-/// The configuration of a simulated robot.
+/// The start, the noise and the faults of a simulated robot.
 #[derive(Clone, Debug)]
 pub struct SimulationConfig {
-    /// The floor plan of its building.
     pub plan: Arc<FloorPlan>,
-    /// The dart along which the marker lies.
     pub marker: Dart,
-    /// The robot's pose at the start.
     pub pose: Pose,
     /// Noise of the wheels as a multiple of [`MotionNoise::DEFAULT`]. Without images, it also
     /// multiplies the measured errors of sensing.
     pub noise: f64,
-    /// The time to take an image, in seconds.
     pub image_time: f64,
-    /// The injected faults.
     pub faults: Vec<RobotFault>,
     /// Whether wheel speeds are recorded for [`Robot::track`](toposlam_robot::robot::Robot::track).
     pub keeps_track: bool,
-    /// Random seed.
     pub seed: u64,
 }
 
 impl SimulationConfig {
     /// A robot at the start of its exploration: at the turning point of the facing dart's junction,
     /// its back to the dart's hallway, the marker along the dart.
-    #[must_use]
     pub fn at_start(plan: Arc<FloorPlan>, facing: Dart, seed: u64) -> Self {
         let pose = start_pose(&plan, facing);
         Self {
@@ -61,14 +54,12 @@ impl SimulationConfig {
 
 /// The pose at a start: at the turning point of the dart's junction, the back to the dart's
 /// hallway.
-#[must_use]
 pub fn start_pose(plan: &FloorPlan, facing: Dart) -> Pose {
     let position = plan.junction(plan.graph().vertex(facing)).position;
     Pose { position, heading: angle(plan.direction(facing).reversed()) }
 }
 
 /// The possible starts in a plan: the darts of its Ls.
-#[must_use]
 pub fn starts_of(plan: &FloorPlan) -> Vec<Dart> {
     let graph = plan.graph();
     let is_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;

@@ -10,7 +10,6 @@ use crate::{Effects, ScannerParams, SimulatedRobot, SimulationConfig};
 /// The sensors of a simulated robot.
 #[derive(Debug)]
 pub enum RobotEquipment {
-    /// None: scenes are drawn with the measured error rates of sensing.
     Scenes,
     /// A camera whose images are rendered, in buildings of several looks.
     Images(LearnedSensors),
@@ -19,7 +18,6 @@ pub enum RobotEquipment {
 }
 
 impl RobotEquipment {
-    /// The robot of the case with this number, and what senses its frames.
     pub(super) fn robot(
         &self,
         config: &SimulationConfig,
@@ -27,11 +25,11 @@ impl RobotEquipment {
     ) -> (SimulatedRobot, Option<RobotSensor>) {
         match self {
             Self::Scenes => (config.by_scene(), None),
-            Self::Images(eyes) => {
-                let look = eyes.look(number);
+            Self::Images(sensors) => {
+                let look = sensors.look(number);
                 let mut chance = Xoshiro256PlusPlus::seed_from_u64(config.seed);
-                let robot = config.with_images(eyes.rig(), look, &Effects::drawn(&mut chance));
-                (robot, Some(RobotSensor::Camera(Box::new(eyes.sensor(look)))))
+                let robot = config.with_images(sensors.rig(), look, &Effects::drawn(&mut chance));
+                (robot, Some(RobotSensor::Camera(Box::new(sensors.sensor(look)))))
             }
             Self::Laser(params) => {
                 let sensor = RobotSensor::Laser(Box::default());

@@ -10,7 +10,6 @@ pub const FOR_EVER: u32 = u32::MAX;
 /// A fault that starts when the robot takes its nth image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotFault {
-    /// The kind.
     pub kind: FaultKind,
     /// The number of the first image or scan that it affects, from 1.
     pub frame: u64,
@@ -20,7 +19,6 @@ pub struct RobotFault {
 
 macro_rules! kinds {
     ($($kind:ident $name:literal $lasting:literal $about:literal;)*) => {
-        /// The kind of a fault.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum FaultKind {
             $(#[doc = $about] $kind,)*
@@ -45,7 +43,6 @@ kinds! {
     Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
 
-/// The fault cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("write NAME@IMAGE or NAME@IMAGE:COUNT, as in dropped@12:3; the faults are {}", names())]
 pub struct FaultError;
@@ -55,8 +52,6 @@ fn names() -> String {
 }
 
 impl FaultKind {
-    /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         FAULTS.iter().find(|(kind, ..)| *kind == self).map_or("", |(_, name, ..)| name)
     }
@@ -64,7 +59,6 @@ impl FaultKind {
 
 impl RobotFault {
     /// A fault of this kind at an image, with its default duration.
-    #[must_use]
     pub fn at(kind: FaultKind, frame: u64) -> Self {
         let lasting = FAULTS.iter().find(|(known, ..)| *known == kind).map_or(1, |fault| fault.2);
         Self { kind, frame, lasting }

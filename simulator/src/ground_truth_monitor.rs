@@ -37,11 +37,8 @@ pub struct CheckedArrival {
     pub expected: Dart,
     /// The true entry dart; `None` if the robot is not at a junction.
     pub reached: Option<Dart>,
-    /// The expected percept.
     pub expected_percept: Percept,
-    /// The robot's percept.
     pub perceived: Percept,
-    /// The robot's true pose.
     pub pose: Pose,
     /// The true entry dart, also if the specification says that the robot could not come there.
     truly: Option<Dart>,
@@ -49,7 +46,6 @@ pub struct CheckedArrival {
 
 impl CheckedArrival {
     /// Whether the robot is where it should be, and perceives what it should.
-    #[must_use]
     pub fn conforms(&self) -> bool {
         self.reached == Some(self.expected) && self.perceived == self.expected_percept
     }
@@ -60,7 +56,6 @@ impl CheckedArrival {
 pub struct TruthDivergence {
     /// The number of moves before it.
     pub moves: usize,
-    /// The arrival.
     pub arrival: CheckedArrival,
     /// The expected place and the reached one, in words.
     names: [String; 2],
@@ -84,14 +79,12 @@ impl fmt::Display for TruthDivergence {
 
 impl<'p> GroundTruthMonitor<'p> {
     /// A robot that stands at the facing dart's junction, its back to the dart's hallway.
-    #[must_use]
     pub fn new(plan: &'p FloorPlan, facing: Dart) -> Self {
         Self::at(plan, facing, facing)
     }
 
     /// A robot that came to the entry dart's junction by that dart; the marker lies along the facing
     /// dart.
-    #[must_use]
     pub fn at(plan: &'p FloorPlan, facing: Dart, entry: Dart) -> Self {
         let world = GraphWorld::new(plan.graph(), facing);
         let state = State { pose: entry, ..world.state() };
@@ -135,23 +128,19 @@ impl<'p> GroundTruthMonitor<'p> {
 
     /// What a robot at a pose knows if it is at the expected junction; `None` at a junction of a kind that
     /// robots do not know.
-    #[must_use]
     pub fn standing(&self, pose: Pose) -> Option<Standing> {
         let dart = self.world.pose();
         let entry = wrapped(angle(self.plan.direction(dart)) - pose.heading);
         let from = Pose { heading: angle(self.plan.direction(dart).reversed()), ..pose };
-        let form = JunctionTruth::of(self.plan, self.plan.graph().vertex(dart), from).form?;
+        let form = JunctionTruth::from_plan(self.plan, self.plan.graph().vertex(dart), from).form?;
         Some(Standing { form, percept: self.world.sensed(), entry })
     }
 
     /// Every arrival so far, the start first.
-    #[must_use]
     pub fn arrivals(&self) -> &[CheckedArrival] {
         &self.arrivals
     }
 
-    /// The first arrival that is not as expected.
-    #[must_use]
     pub fn divergence(&self) -> Option<TruthDivergence> {
         let moves = self.arrivals.iter().position(|arrival| !arrival.conforms())?;
         let arrival = self.arrivals[moves].clone();
@@ -165,13 +154,10 @@ impl<'p> GroundTruthMonitor<'p> {
     }
 
     /// The robot's true entry dart, whatever happened before.
-    #[must_use]
     pub fn truly_reached(&self) -> Option<Dart> {
         self.arrivals.last()?.truly
     }
 
-    /// The robot's true entry dart.
-    #[must_use]
     pub fn reached(&self) -> Option<Dart> {
         self.arrivals.last()?.reached
     }

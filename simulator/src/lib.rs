@@ -6,10 +6,14 @@
 
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
+#![allow(
+    clippy::must_use_candidate,
+    clippy::missing_errors_doc,
+    reason = "only the programs of this workspace use this crate, and its error types say what is wrong"
+)]
 #![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
 
 mod cameras;
-mod colour_learning;
 mod config;
 mod equipment;
 pub mod evaluation;
@@ -25,10 +29,10 @@ mod plans;
 mod question_limit;
 pub mod random_plan;
 pub mod render;
-pub mod rendered_view;
 #[cfg(feature = "ros1")]
 pub mod ros1;
 pub mod run;
+pub mod sample_verdict;
 mod scanner;
 mod simulated_robot;
 mod surroundings;
@@ -39,14 +43,12 @@ pub use crate::render::{
     Building, BuildingLook, CameraRay, Colour, EffectScope, EffectSettings, Effects, FloorCovering,
     KNOBS, Knob, KnobError, LOOKS, RayPath, Rig, RigErrors, label_mask, labels, render,
 };
-pub use cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera};
-pub use colour_learning::{LearningError, learned};
 pub use config::{IMAGE_TIME, SimulationConfig, start_pose, starts_of};
 pub use equipment::RobotEquipment;
 pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
-pub use learned_sensors::LearnedSensors;
+pub use learned_sensors::{LearnedSensors, LearningError, learned};
 pub use motion::{MotionNoise, SimulatedBase};
-pub use plans::plans;
+pub use plans::{NamedPlan, plans};
 pub use scanner::{
     ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
     ScannerParams, WallSurface,

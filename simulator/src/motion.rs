@@ -29,7 +29,6 @@ pub struct MotionNoise {
 }
 
 impl MotionNoise {
-    /// An ideal base.
     pub const NONE: Self = Self { slip: 0.0, bias: 0.0, uneven: 0.0, odometry: 0.0 };
     /// A base like a SuperScout on tiles.
     pub const DEFAULT: Self = Self { slip: 0.02, bias: 0.006, uneven: 0.03, odometry: 0.006 };
@@ -53,7 +52,6 @@ impl MotionNoise {
 #[derive(Clone, Debug)]
 pub struct SimulatedBase {
     pose: Pose,
-    /// The last command, and its age.
     wheels: WheelSpeeds,
     silent: f64,
     time: f64,
@@ -76,7 +74,6 @@ pub struct SimulatedBase {
 
 impl SimulatedBase {
     /// A base at a pose in a building. The same seed gives the same base.
-    #[must_use]
     pub fn new(plan: &FloorPlan, pose: Pose, noise: &MotionNoise, seed: u64) -> Self {
         let mut chance = stream(seed, StreamPurpose::Wheels, 0);
         let mut share = |deviation: f64| deviation * standard(&mut chance);
@@ -103,19 +100,15 @@ impl SimulatedBase {
         }
     }
 
-    /// The true pose.
-    #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
     /// Time since it was switched on, in seconds.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Starts to record wheel speeds.
     pub(super) fn keep_track(&mut self) {
         self.track = Some(Vec::new());
         self.sample();
@@ -156,7 +149,6 @@ impl SimulatedBase {
         self.silent = 0.0;
     }
 
-    /// The present wheel speeds.
     #[cfg(feature = "ros1")]
     pub(crate) fn wheels(&self) -> WheelSpeeds {
         self.wheels
@@ -175,24 +167,20 @@ impl SimulatedBase {
         false
     }
 
-    /// Ignores this many motions.
     pub(super) fn ignore(&mut self, commands: u32) {
         self.deaf = commands;
     }
 
-    /// Puts the robot at another pose. Its wheels do not turn.
     pub(super) fn carry(&mut self, pose: Pose) {
         self.pose = pose;
         self.read();
     }
 
-    /// Puts an obstacle on the floor.
     pub(super) fn put(&mut self, obstacle: Rectangle) {
         self.surroundings.put(obstacle);
         self.read();
     }
 
-    /// Takes all obstacles away.
     pub(super) fn clear_obstacles(&mut self) {
         self.surroundings.clear_obstacles();
         self.read();
@@ -290,25 +278,10 @@ mod tests {
     }
 
     #[test]
-    fn no_command_moves_it_more_than_half_a_metre() {
-        let mut base = base(&MotionNoise::NONE, 1);
-        Drive(&mut base).forward(9.0).unwrap();
-        assert!((base.pose().position[0] - COMMAND).abs() < 0.005);
-    }
-
-    // paper: hardware.sonar
-    #[test]
-    fn sonars_stop_it_before_a_wall() {
-        let mut base = base(&MotionNoise::NONE, 1);
-        for _ in 0..20 {
-            Drive(&mut base).forward(0.5).unwrap();
-        }
-        let free = 7.0 - base.pose().position[0] - RADIUS;
-        assert!((CLEARANCE..CLEARANCE + 0.02).contains(&free), "{free} m");
-    }
-
-    #[test]
-    fn the_watchdog_stops_it_when_commands_cease() {
+    fn no_command_moves_it_more_than_half_a_metre_and_the_watchdog_stops_it() {
+        let mut driven = base(&MotionNoise::NONE, 1);
+        Drive(&mut driven).forward(9.0).unwrap();
+        assert!((driven.pose().position[0] - COMMAND).abs() < 0.005);
         let mut base = base(&MotionNoise::NONE, 1);
         base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
         base.wait(10.0);
@@ -316,8 +289,15 @@ mod tests {
         assert!((base.pose().position[0] - 0.2 * WATCHDOG).abs() < 1e-9, "{:?}", base.pose());
     }
 
+    // paper: hardware.sonar
     #[test]
-    fn walls_stop_it_while_its_wheels_turn() {
+    fn sonars_stop_it_before_a_wall_and_walls_stop_it_while_its_wheels_turn() {
+        let mut careful = base(&MotionNoise::NONE, 1);
+        for _ in 0..20 {
+            Drive(&mut careful).forward(0.5).unwrap();
+        }
+        let free = 7.0 - careful.pose().position[0] - RADIUS;
+        assert!((CLEARANCE..CLEARANCE + 0.02).contains(&free), "{free} m");
         let mut base = base(&MotionNoise::NONE, 1);
         for _ in 0..400 {
             base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();

@@ -4,6 +4,7 @@
 //! isomorphic to the floor plan with that hallway cut, as far as the robot can come. An obstacle at a junction
 //! cuts all its hallways.
 
+use nalgebra::{Point2, Vector2};
 use toposlam_model::{
     driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
@@ -12,8 +13,6 @@ use toposlam_model::{
     mapping::{FACING, Flaw},
 };
 use toposlam_robot::superscout::{CLEARANCE, RADIUS};
-
-use crate::truth::angle;
 
 /// The least and the greatest coordinates of an obstacle, in metres.
 type Obstacle = [[f64; 2]; 2];
@@ -31,9 +30,6 @@ pub(crate) enum TruePlace {
 }
 
 /// Whether a map and the robot's pose in it are right, if hallways at the obstacle may be cut.
-///
-/// # Errors
-/// Returns what is wrong.
 pub(crate) fn judge_with_obstacle(
     plan: &FloorPlan,
     facing: Dart,
@@ -104,7 +100,7 @@ pub enum WayToMarker {
 impl WayToMarker {
     /// The way of a robot from where it truly stands. `may_reach`: whether there may be a way for its body to a
     /// place.
-    pub(crate) fn of(
+    pub(crate) fn from_place(
         plan: &FloorPlan,
         facing: Dart,
         place: TruePlace,
@@ -114,7 +110,7 @@ impl WayToMarker {
         let Some(obstacle) = obstacle else { return Self::Free };
         if !may_reach(plan.junction(plan.graph().vertex(facing)).position) {
             Self::None
-        } else if is_cut_off(plan, facing, place, obstacle, KEPT) {
+        } else if is_cut_off(plan, facing, place, obstacle) {
             Self::Narrow
         } else {
             Self::Free
@@ -123,15 +119,9 @@ impl WayToMarker {
 }
 
 /// Whether no way leads from the robot to the marker but through hallways whose middle line comes nearer to an obstacle
-/// than a margin, in metres.
-fn is_cut_off(
-    plan: &FloorPlan,
-    facing: Dart,
-    place: TruePlace,
-    obstacle: Obstacle,
-    margin: f64,
-) -> bool {
-    let edges = blocked(plan, obstacle, margin);
+/// than the robot does.
+fn is_cut_off(plan: &FloorPlan, facing: Dart, place: TruePlace, obstacle: Obstacle) -> bool {
+    let edges = blocked(plan, obstacle, KEPT);
     let robot = match place {
         TruePlace::Junction(reached) => reached,
         TruePlace::BeforeObstacle(pose) => hallway_behind(plan, &edges, pose, obstacle),
@@ -152,13 +142,12 @@ fn hallway_behind(
     let centre = [0, 1].map(|axis| f64::midpoint(least[axis], greatest[axis]));
     let both_ways = edges.iter().flat_map(|&dart| [dart, graph.opposite(dart)]);
     let aside_and_before = |dart: Dart| {
-        let angle = angle(plan.direction(dart));
-        let [x, y] = plan.junction(graph.vertex(dart)).position;
-        let along = |[to_x, to_y]: [f64; 2]| {
-            let (dx, dy) = (to_x - x, to_y - y);
-            [dx * angle.cos() + dy * angle.sin(), dy * angle.cos() - dx * angle.sin()]
-        };
-        let ([robot, aside], [obstacle, _]) = (along(pose.position), along(centre));
+        let onwards = Vector2::from(plan.direction(dart).vector());
+        let junction = Point2::from(plan.junction(graph.vertex(dart)).position);
+        let [to_robot, to_obstacle] =
+            [pose.position, centre].map(|place| Point2::from(place) - junction);
+        let (robot, aside) = (onwards.dot(&to_robot), onwards.perp(&to_robot));
+        let obstacle = onwards.dot(&to_obstacle);
         (robot <= obstacle).then_some((aside.abs(), robot))
     };
     let in_hallway = both_ways.filter_map(|dart| Some((dart, aside_and_before(dart)?)));
@@ -216,29 +205,22 @@ mod tests {
 
     #[test]
     fn a_robot_is_cut_off_beyond_a_bridge_and_nowhere_else() {
-        let [mut cut_off, mut bridges] = [0; 2];
-        for (_, plan) in plans().unwrap() {
+        let mut bridges = 0;
+        for (name, plan) in plans().unwrap() {
             let graph = plan.graph();
-            for (dart, _) in graph.edges() {
+            for (dart, opposite) in graph.edges() {
                 let obstacle = obstacle_in(&plan, dart);
-                let ends = [dart, graph.opposite(dart)];
                 let is_bridge = is_bridge(graph, dart);
                 bridges += usize::from(is_bridge);
-                for [marker, robot] in [[ends[0], ends[1]], [ends[1], ends[0]]] {
-                    let place = TruePlace::Junction(Some(robot));
-                    assert_eq!(is_cut_off(&plan, marker, place, obstacle, KEPT), is_bridge);
-                    assert!(!is_cut_off(
-                        &plan,
-                        marker,
-                        TruePlace::Junction(Some(marker)),
-                        obstacle,
-                        KEPT
-                    ));
-                    cut_off += usize::from(is_cut_off(&plan, marker, place, obstacle, KEPT));
+                for [marker, robot] in [[dart, opposite], [opposite, dart]] {
+                    for (robot, expected) in [(robot, is_bridge), (marker, false)] {
+                        let place = TruePlace::Junction(Some(robot));
+                        let found = is_cut_off(&plan, marker, place, obstacle);
+                        assert_eq!(found, expected, "{name} {dart:?}");
+                    }
                 }
             }
         }
-        assert_eq!(cut_off, 2 * bridges);
         assert!(bridges > 10, "{bridges}");
     }
 }

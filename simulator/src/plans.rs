@@ -7,6 +7,8 @@ use toposlam_model::{
     format::world_file::{self, WorldFileError},
 };
 
+pub type NamedPlan = (String, Arc<FloorPlan>);
+
 /// The world files of `worlds/` that are floor plans.
 const PLANS: [(&str, &[u8]); 4] = [
     ("building-12", include_bytes!("../../worlds/building-12.toml")),
@@ -16,10 +18,7 @@ const PLANS: [(&str, &[u8]); 4] = [
 ];
 
 /// The floor plans of `worlds/`, with their names.
-///
-/// # Errors
-/// Returns an error if a file is no floor plan. A test shows that all are.
-pub fn plans() -> Result<Vec<(String, Arc<FloorPlan>)>, WorldFileError> {
+pub fn plans() -> Result<Vec<NamedPlan>, WorldFileError> {
     let mut plans = Vec::new();
     for (name, text) in PLANS {
         if let Some(plan) = world_file::read(text)?.plan {

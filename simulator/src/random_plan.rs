@@ -19,22 +19,15 @@ const ASIDE: f64 = 0.6;
 /// Least and greatest number of hallway pieces. A piece joins two neighbouring grid nodes.
 const PIECES: [usize; 2] = [2, 16];
 
-/// A node of the grid: the indices of its lines.
 type Node = [usize; 2];
 
 /// The random floor plan of a seed. Hallways are 1.4 to 2 m wide. There are dead ends, Ls, Ts and
 /// often loops.
-///
-/// # Errors
-/// Returns an error if the plan is not valid, which would be a defect of this module.
 pub fn random_plan(seed: u64) -> Result<FloorPlan, FloorPlanError> {
     drawn(seed, Pieces::grown)
 }
 
 /// The random floor plan of a seed with this number of junctions, at least 2.
-///
-/// # Errors
-/// Returns an error as [`random_plan`] does.
 pub fn random_plan_with(seed: u64, junctions: usize) -> Result<FloorPlan, FloorPlanError> {
     drawn(seed, |chance| Pieces::with_junctions(chance, junctions.max(2)))
 }
@@ -252,12 +245,6 @@ mod tests {
             let width = plan.unwrap().hallway_width();
             prop_assert!((WIDTHS[0]..WIDTHS[1]).contains(&width));
         }
-    }
-
-    #[test]
-    fn the_same_seed_gives_the_same_plan() {
-        assert_eq!(random_plan(7), random_plan(7));
-        assert_ne!(random_plan(7), random_plan(8));
     }
 
     #[test]

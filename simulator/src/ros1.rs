@@ -37,14 +37,11 @@ const IMAGE_EVERY: f64 = 1.0;
 /// over before odometry reports it.
 pub const MOST_SPEED: f64 = 20.0;
 
-/// Summary of a served run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServeSummary {
     /// Simulated time, in seconds.
     pub seconds: f64,
-    /// Real time, in seconds.
     pub real_seconds: f64,
-    /// The number of images.
     pub frames: u64,
 }
 
@@ -53,9 +50,6 @@ pub struct ServeSummary {
 /// Simulated time passes `speed` times as fast as real time or slower, without jumps: it stands
 /// still while an image is rendered. The watchdog stops the wheels half a second of simulated time
 /// after the last command. Time stamps begin at the present time.
-///
-/// # Errors
-/// Returns an error if there is no master or the connection is closed.
 pub fn serve(
     robot: SimulatedRobot,
     topics: &RobotTopics,
@@ -96,7 +90,6 @@ fn now() -> Nanoseconds {
     since.as_secs() * SECOND
 }
 
-/// A simulated robot and its topics.
 struct Scout {
     commands: Subscription<WheelSpeeds>,
     odometry: Publisher,
@@ -143,7 +136,6 @@ impl Scout {
         self.epoch + (seconds * SECOND as f64).round() as Nanoseconds
     }
 
-    /// Publishes odometry, also as a transform.
     fn publish_odometry(&mut self, number: u32) -> Result<(), RobotError> {
         let base = self.robot.base();
         let (reading, wheels) = (base.reading(), base.wheels());

@@ -1,6 +1,8 @@
 //! A whole run: a simulated robot maps its building, and the result is checked against the specification.
 //! Section 6.
 
+use std::fmt::Display;
+
 use thiserror::Error;
 use toposlam_logs::record::{FrameSensor, RunObserver};
 use toposlam_model::{
@@ -21,6 +23,7 @@ use crate::{
     SimulatedRobot,
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     obstacle_judge::{TruePlace, judge_with_obstacle},
+    sample_verdict::SampleVerdict,
 };
 
 pub use crate::obstacle_judge::WayToMarker;
@@ -28,19 +31,16 @@ pub use crate::obstacle_judge::WayToMarker;
 /// A whole run, and its checks.
 #[derive(Debug)]
 pub struct Run<'p> {
-    /// How the robot mapped.
     pub method: MappingMethod,
     /// The state of the algorithm: its map, and the robot's pose in it.
     pub mapping: MapWalk,
     /// What the complete map took; `None` if the run ended early.
     pub mapped: Option<MappedWorld>,
-    /// Why it ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// What is wrong with the map or the pose of a complete run.
     pub flaw: Option<Flaw>,
     /// The moves, with those of recoveries and audits.
     pub moves: u64,
-    /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
     /// Whether at the end the robot can come to its marker.
     pub way_to_marker: WayToMarker,
@@ -52,49 +52,63 @@ pub struct Run<'p> {
     pub frames: u64,
 }
 
-/// How a run ended.
+/// How a run, or a part of one, ended.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum RunOutcome {
+pub enum RobotOutcome<E> {
     /// The map and the pose are right, and each move is as specified. The map of a robot that recovers may lack
     /// hallways that are blocked.
     #[error("the map is right")]
     Right,
-    /// The robot gave up, for this reason.
     #[error("the robot gave up: {0}")]
-    GaveUp(MappingError<ExplorerError>),
+    GaveUp(E),
     /// The map or the pose is wrong, and the robot did not detect it.
     #[error("{0}")]
     Wrong(String),
 }
 
+pub type RunOutcome = RobotOutcome<MappingError<ExplorerError>>;
+
+impl<E: Display> RobotOutcome<E> {
+    pub fn verdict(&self) -> SampleVerdict {
+        match self {
+            Self::Right => SampleVerdict::Right,
+            Self::GaveUp(_) => SampleVerdict::Undecided,
+            Self::Wrong(_) => SampleVerdict::Wrong,
+        }
+    }
+
+    pub fn gave_up(&self) -> bool {
+        matches!(self, Self::GaveUp(_))
+    }
+
+    pub fn reason(&self) -> Option<String> {
+        match self {
+            Self::Right => None,
+            Self::GaveUp(error) => Some(error.to_string()),
+            Self::Wrong(reason) => Some(reason.clone()),
+        }
+    }
+}
+
 impl Run<'_> {
-    /// The darts of the map whose hallways are blocked.
-    #[must_use]
     pub fn blocked(&self) -> &[Dart] {
         self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
     }
 
-    /// The first arrival that is not as expected.
-    #[must_use]
     pub fn divergence(&self) -> Option<TruthDivergence> {
         self.monitor.divergence()
     }
 
     /// Whether the map is isomorphic to the plan, with the starts matched.
-    #[must_use]
     pub fn isomorphic(&self) -> bool {
         self.error.is_none()
             && matches!(self.flaw, None | Some(Flaw::WrongPose { .. } | Flaw::TooManyMoves { .. }))
     }
 
-    /// Whether the robot is where it believes it is.
-    #[must_use]
     pub fn pose_true(&self) -> bool {
         self.isomorphic() && !matches!(self.flaw, Some(Flaw::WrongPose { .. }))
     }
 
-    /// How it ended.
-    #[must_use]
     pub fn outcome(&self) -> RunOutcome {
         // A robot that recovers may have made mistakes on its way.
         let divergence = self.divergence().filter(|_| !self.method.recovers());
@@ -139,8 +153,9 @@ pub fn run<'p>(
         Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
         _ => TruePlace::Junction(monitor.truly_reached()),
     };
-    let way_to_marker =
-        WayToMarker::of(plan, facing, place, robot.obstacle(), |place| robot.may_reach(place));
+    let way_to_marker = WayToMarker::from_place(plan, facing, place, robot.obstacle(), |place| {
+        robot.may_reach(place)
+    });
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
@@ -173,7 +188,6 @@ pub fn run<'p>(
 }
 
 /// The number of moves that an algorithm makes in the plan's embedded graph.
-#[must_use]
 pub fn explored(
     plan: &FloorPlan,
     facing: Dart,
@@ -186,9 +200,6 @@ pub fn explored(
 }
 
 /// The off-line version: the mapping algorithm on a recording, without a robot that moves.
-///
-/// # Errors
-/// Returns an error if the recorded run ended early, or if the observer stops.
 // paper: exp.off-line
 pub fn offline(
     recording: &Recording,
@@ -209,7 +220,10 @@ mod tests {
     use super::*;
     use crate::{
         FaultKind, RobotEquipment, RobotFault, SimulationConfig,
-        evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
+        evaluation::{
+            run_sampler::{JudgedRun, RunSampler},
+            sampling::sample,
+        },
         plans, starts_of,
     };
 
@@ -224,16 +238,9 @@ mod tests {
         for (name, plan) in plans().unwrap() {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
                 for algorithm in MappingAlgorithm::with_fixed_marker() {
-                    let robot =
-                        SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
-                    let run = run(
-                        &plan,
-                        facing,
-                        robot,
-                        NoSensor,
-                        (),
-                        &RunSettings::new(algorithm, DARTS),
-                    );
+                    let config = SimulationConfig::at_start(plan.clone(), facing, seed as u64);
+                    let settings = RunSettings::new(algorithm, DARTS);
+                    let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
                     let what = format!("{name} from {facing:?} by {algorithm}");
                     assert_eq!(run.outcome(), RunOutcome::Right, "{what}");
                     assert!(run.isomorphic() && run.pose_true());
@@ -244,26 +251,23 @@ mod tests {
         }
     }
 
+    fn in_shape_6(seed: u64) -> SimulationConfig {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        SimulationConfig::at_start(plan, facing, seed)
+    }
+
     // paper: exp.off-line
     #[test]
     fn a_recording_gives_the_same_map_off_line() {
-        let (_, plan) = plans().unwrap().swap_remove(2);
-        let facing = starts_of(&plan)[0];
-        let config = SimulationConfig::at_start(plan.clone(), facing, 5);
+        let config = in_shape_6(5);
         for algorithm in MappingAlgorithm::with_fixed_marker() {
             let mut recording = Recording::default();
-            let robot = config.by_scene();
-            let run = run(
-                &plan,
-                facing,
-                robot,
-                NoSensor,
-                &mut recording,
-                &RunSettings::new(algorithm, DARTS),
-            );
+            let settings = RunSettings::new(algorithm, DARTS);
+            let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
+            let run = run(plan, marker, robot, NoSensor, &mut recording, &settings);
             assert_eq!(recording.frames.len() as u64, run.frames);
             let mut repeated = Recording::default();
-            let settings = RunSettings::new(algorithm, DARTS);
             let again = offline(&recording, NoSensor, &mut repeated, &settings).unwrap();
             assert_eq!(again.map(), run.mapping.map());
             assert_eq!(again.moves(), run.mapping.moves());
@@ -273,33 +277,24 @@ mod tests {
 
     #[test]
     fn a_lost_robot_reports_the_reason() {
-        let (_, plan) = plans().unwrap().swap_remove(2);
-        let facing = starts_of(&plan)[0];
-        let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
-        let outcome = |setting: &SimulationConfig| {
-            let robot = setting.by_scene();
-            let algorithm = MappingAlgorithm::Algorithm1;
-            run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS))
-                .outcome()
-                .to_string()
-        };
-        for (kind, why) in [
-            (FaultKind::LightsOut, "7 images in a row do not show where the robot is"),
-            (FaultKind::Blocked, "3 commands in a row were not carried out"),
+        let right = RunOutcome::Right.to_string();
+        let settings = RunSettings::new(MappingAlgorithm::Algorithm1, DARTS);
+        for (fault, why) in [
+            ("lights-out@20", "7 images in a row do not show where the robot is"),
+            ("blocked@20", "3 commands in a row were not carried out"),
+            ("dropped@20:100", "the camera gives no image"),
+            ("dropped@20", &*right),
+            ("late@20", &*right),
+            ("ignored@20", &*right),
+            ("corrupt@20", &*right),
         ] {
-            setting.faults = vec![RobotFault::at(kind, 20)];
-            let text = outcome(&setting);
-            assert!(
-                text.contains(why) && text.starts_with("the robot gave up: on move "),
-                "{text}"
-            );
-        }
-        setting.faults =
-            vec![RobotFault { lasting: 100, ..RobotFault::at(FaultKind::Dropped, 20) }];
-        assert!(outcome(&setting).contains("the camera gives no image"));
-        for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
-            setting.faults = vec![RobotFault::at(kind, 20)];
-            assert_eq!(outcome(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
+            let config = SimulationConfig { faults: vec![fault.parse().unwrap()], ..in_shape_6(5) };
+            let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
+            let outcome = run(plan, marker, robot, NoSensor, (), &settings).outcome();
+            let text = outcome.to_string();
+            assert!(text.contains(why), "{fault}: {text}");
+            let gave_up = text.starts_with("the robot gave up: on move ");
+            assert!(gave_up || outcome == RunOutcome::Right, "{fault}: {text}");
         }
     }
 
@@ -307,15 +302,14 @@ mod tests {
         MappingMethod::Recovering(RecoveryConfig::default())
     }
 
-    fn runs(faults: Faults, count: u64) -> Vec<JudgedRun> {
-        let plans = plans().unwrap();
-        let runs = RunSampler::new(plans, 4, faults, 1, 1.0, recovering());
-        runs.judged(0..count, &RobotEquipment::Scenes, &())
+    fn runs(faults: u32, count: u64) -> Vec<JudgedRun> {
+        let runs = RunSampler::new(plans().unwrap(), 4, faults, 1, 1.0, recovering());
+        sample(0..count, &(), |number| runs.run(number, &RobotEquipment::Scenes, &()))
     }
 
     #[test]
     fn without_faults_a_robot_makes_the_same_moves_and_audits_its_map() {
-        for run in runs(Faults::None, 16) {
+        for run in runs(0, 16) {
             assert_eq!(run.ending, RunOutcome::Right);
             let mapped = run.mapped.unwrap();
             assert_eq!((mapped.recoveries, mapped.blocked.len()), (0, 0));
@@ -326,17 +320,16 @@ mod tests {
     #[test]
     fn after_one_or_two_faults_no_map_is_wrong_and_most_are_right() {
         for (count, most_given_up) in [(1, 5), (2, 8)] {
-            let runs = runs(Faults::Each(count), 54);
-            let is_wrong = |run: &&JudgedRun| matches!(run.ending, RunOutcome::Wrong(_));
-            let wrong = runs.iter().find(is_wrong);
-            assert!(wrong.is_none(), "{wrong:?}");
-            let gave_up = runs.iter().filter(|run| run.ending != RunOutcome::Right).count();
+            let runs = runs(count, 54);
+            let mut gave_up = 0;
+            for run in &runs {
+                assert_ne!(run.ending.verdict(), SampleVerdict::Wrong, "{run:?}");
+                if run.ending != RunOutcome::Right {
+                    gave_up += 1;
+                    assert_ne!(run.way_to_marker, WayToMarker::Free, "{run:?}");
+                }
+            }
             assert!(gave_up <= most_given_up, "{gave_up} of {}", runs.len());
-            let is_free = |run: &&JudgedRun| {
-                run.ending != RunOutcome::Right && run.way_to_marker == WayToMarker::Free
-            };
-            let without_reason = runs.iter().find(is_free);
-            assert!(without_reason.is_none(), "{without_reason:?}");
             assert!(runs.iter().any(|run| !run.blocked().is_empty()));
         }
     }
@@ -344,17 +337,16 @@ mod tests {
     /// Wherever the obstacle stands, in a hallway or before a junction, and also if the lights go out there.
     #[test]
     fn a_robot_that_gives_up_before_an_obstacle_has_no_other_way() {
-        let (_, plan) = plans().unwrap().swap_remove(2);
-        let facing = starts_of(&plan)[0];
         let settings = RunSettings::new(recovering(), DARTS);
         let (mut right, mut gave_up) = (0, 0);
         for frame in 2..=100 {
-            let mut config = SimulationConfig::at_start(plan.clone(), facing, frame);
+            let mut config = in_shape_6(frame);
             config.faults = vec![RobotFault::at(FaultKind::Blocked, frame)];
             if frame.is_multiple_of(2) {
                 config.faults.push(RobotFault::at(FaultKind::LightsOut, frame + 3));
             }
-            let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
+            let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
+            let run = run(plan, marker, robot, NoSensor, (), &settings);
             match run.outcome() {
                 RunOutcome::Right => right += 1,
                 RunOutcome::GaveUp(error) => {

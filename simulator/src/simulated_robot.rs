@@ -14,7 +14,7 @@ use toposlam_robot::{
 };
 
 use super::{
-    cameras::{MarkerDetector, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
+    cameras::{FrameLight, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
     config::SimulationConfig,
     faults::{FaultKind, RobotFault},
     motion::SimulatedBase,
@@ -27,9 +27,8 @@ use crate::render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream}
 pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
     base: SimulatedBase,
-    camera: Box<dyn SimulatedCamera>,
+    camera: SimulatedCamera,
     scanner: Option<LaserScanner>,
-    /// The time to take an image, in seconds.
     image_time: f64,
     faults: Vec<RobotFault>,
     seed: u64,
@@ -47,7 +46,6 @@ const DEEP: f64 = 0.3;
 
 impl SimulationConfig {
     /// A robot with a camera that renders images of a building.
-    #[must_use]
     pub fn with_images(
         &self,
         rig: &Arc<Rig>,
@@ -56,78 +54,68 @@ impl SimulationConfig {
     ) -> SimulatedRobot {
         let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
         let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
-        SimulatedRobot::new(self, camera)
+        SimulatedRobot::new(self, SimulatedCamera::Images(Box::new(camera)))
     }
 
     /// A robot with a camera that reports scenes without images.
-    #[must_use]
     pub fn by_scene(&self) -> SimulatedRobot {
-        SimulatedRobot::new(self, self.scene_camera())
+        SimulatedRobot::new(self, SimulatedCamera::Scenes(self.scene_camera()))
     }
 
     /// A robot with a laser scanner and a detector of the marker, without a camera.
-    #[must_use]
     pub fn by_laser(&self, params: &ScannerParams) -> SimulatedRobot {
-        let robot = SimulatedRobot::new(self, MarkerDetector(self.scene_camera()));
+        let robot = SimulatedRobot::new(self, SimulatedCamera::Marker(self.scene_camera()));
         robot.with_scanner(self.scanner(params))
     }
 
     /// A laser scanner in the robot's building. Its rooms, furniture and people follow from the seed.
-    #[must_use]
     pub fn scanner(&self, params: &ScannerParams) -> LaserScanner {
         let building = ScannedBuilding::new(&CorridorPlan::from(&*self.plan), params, self.seed);
         LaserScanner::new(Arc::new(building), params, self.seed)
     }
 
     fn scene_camera(&self) -> SceneCamera {
-        SceneCamera::new(self.plan.clone(), Some(self.marker), self.noise, self.seed)
+        let &Self { ref plan, marker, noise, seed, .. } = self;
+        SceneCamera { plan: plan.clone(), marker, noise, seed }
     }
 }
 
 impl SimulatedRobot {
-    fn new(config: &SimulationConfig, camera: impl SimulatedCamera + 'static) -> Self {
+    fn new(config: &SimulationConfig, camera: SimulatedCamera) -> Self {
         let SimulationConfig { plan, pose, image_time, faults, seed, .. } = config.clone();
         let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
         if config.keeps_track {
             base.keep_track();
         }
-        let camera = Box::new(camera);
         let (scanner, last, obstacle) = (None, None, None);
         Self { plan, base, camera, scanner, image_time, faults, seed, frames: 0, last, obstacle }
     }
 
-    /// The same robot with a laser scanner.
     #[must_use]
     pub fn with_scanner(self, scanner: LaserScanner) -> Self {
         Self { scanner: Some(scanner), ..self }
     }
 
     /// The least and the greatest corner of the obstacle that a fault has put on the floor, in metres.
-    #[must_use]
     pub fn obstacle(&self) -> Option<[[f64; 2]; 2]> {
         self.obstacle.map(|obstacle| [obstacle.least, obstacle.greatest])
     }
 
     /// Whether there may be a way for the robot's body to a place. If not, no robot of its size can go there.
-    #[must_use]
     pub fn may_reach(&self, place: [f64; 2]) -> bool {
         self.base.may_reach(place)
     }
 
-    /// The true pose.
-    #[must_use]
     pub fn pose(&self) -> Pose {
         self.base.pose()
     }
 
     /// Time since it was switched on, in seconds.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.base.time()
     }
 
     /// The number of images or scans that were requested.
-    #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
     }
@@ -153,16 +141,16 @@ impl SimulatedRobot {
             self.begin(fault);
         }
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
-        self.camera.set_lights(!spoilt(FaultKind::LightsOut));
         let taken = self.base.time();
         let stops = if spoilt(FaultKind::OverExposed) { OVEREXPOSURE } else { 0.0 };
+        let light = FrameLight { stops, is_dark: spoilt(FaultKind::LightsOut) };
         let odometry = self.base.reading().odometry;
         let frame = match &self.last {
             Some(last) if spoilt(FaultKind::Late) => last.clone(),
             Some(last) if spoilt(FaultKind::Frozen) => Frame { taken, odometry, ..last.clone() },
             _ => {
                 let pose = self.base.pose();
-                let frame = self.camera.frame(pose, number, stops);
+                let frame = self.camera.frame(pose, number, light);
                 let scan = self.scanner.as_ref().map(|scanner| scanner.scan(pose, number, taken));
                 let scan = scan.and_then(Result::ok).map(Arc::new);
                 let frame = Frame { taken, odometry, scan, ..frame };
@@ -177,7 +165,6 @@ impl SimulatedRobot {
         Some(frame)
     }
 
-    /// The time to take an image, in seconds.
     #[cfg(feature = "ros1")]
     pub(crate) fn image_time(&self) -> f64 {
         self.image_time
@@ -246,10 +233,8 @@ fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
     let [x, y] = direction.vector();
     let middle = [pose.position[0] + AHEAD * x, pose.position[1] + AHEAD * y];
     let half = [x, y].map(|along| if along == 0.0 { plan.hallway_width() } else { DEEP / 2.0 });
-    Rectangle {
-        least: [0, 1].map(|axis| middle[axis] - half[axis]),
-        greatest: [0, 1].map(|axis| middle[axis] + half[axis]),
-    }
+    let corner = |side: f64| [0, 1].map(|axis| middle[axis] + side * half[axis]);
+    Rectangle { least: corner(-1.0), greatest: corner(1.0) }
 }
 
 /// A random pose in a hallway, along it.

@@ -14,11 +14,9 @@ use crate::render::Squares;
 const RANGE: f64 = 1.5;
 /// The distance between the points of the grid on which ways are looked for, in metres.
 const GRID: f64 = 0.05;
-/// The next points of the grid.
 const NEIGHBOURS: [[i32; 2]; 8] =
     [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
-/// The walls of a building and the obstacles on its floor.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
     /// The walls as rectangles without depth.
@@ -36,12 +34,10 @@ impl Surroundings {
         Self { near: Squares::new(&floors, 0.5, &around), walls, obstacles: Vec::new() }
     }
 
-    /// Puts an obstacle on the floor.
     pub(super) fn put(&mut self, obstacle: Rectangle) {
         self.obstacles.push(obstacle);
     }
 
-    /// Takes all obstacles away.
     pub(super) fn clear_obstacles(&mut self) {
         self.obstacles.clear();
     }
@@ -52,7 +48,6 @@ impl Surroundings {
         walls.map(|&number| self.walls[number as usize]).chain(self.obstacles.iter().copied())
     }
 
-    /// Whether there is room for the robot's body at a place.
     pub(super) fn has_room(&self, place: [f64; 2]) -> bool {
         self.is_free(place, RADIUS)
     }

@@ -31,7 +31,6 @@ pub enum Truth {
     Hallway(HallwayTruth),
     /// In a hallway, near these junctions.
     Between(HallwayTruth, Vec<JunctionTruth>),
-    /// At a junction.
     Junction(JunctionTruth),
 }
 
@@ -42,29 +41,22 @@ pub struct HallwayTruth {
     pub heading: f64,
     /// The distance from the robot's centre to the wall on its left, in metres.
     pub left: f64,
-    /// The distance to the wall on its right.
     pub right: f64,
 }
 
-/// A junction relative to the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionTruth {
-    /// The vertex.
     pub vertex: Vertex,
-    /// Dead end, L or T.
     pub kind: JunctionKind,
     /// What it looks like from the door behind the robot; `None` where there is none.
     pub form: Option<JunctionShape>,
     /// The directions of the doors, clockwise from the one behind the robot if there is one.
     pub doors: Vec<f64>,
-    /// The turning point, where all centre lines meet.
     pub turning_point: [f64; 2],
 }
 
-/// The marker relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerTruth {
-    /// Its centre.
     pub position: [f64; 2],
     /// The direction of its longer side, in (-pi/2, pi/2].
     pub axis: f64,
@@ -80,7 +72,6 @@ pub struct MarkerTruth {
 
 impl Truth {
     /// The ground truth at a pose; `None` off the floor.
-    #[must_use]
     pub fn at(plan: &FloorPlan, pose: Pose) -> Option<Self> {
         let on_floor = plan.hallways().iter().zip(plan.floor());
         let stretches = on_floor.filter(|(_, floor)| floor.holds(pose.position));
@@ -88,7 +79,7 @@ impl Truth {
         let stretch = stretches.min_by(|one, other| one.off().total_cmp(&other.off()))?;
         let near = |within: f64| {
             let ends = stretch.ends().into_iter().filter(move |&(_, distance)| distance <= within);
-            ends.map(|(vertex, _)| JunctionTruth::of(plan, vertex, pose))
+            ends.map(|(vertex, _)| JunctionTruth::from_plan(plan, vertex, pose))
         };
         if let Some(junction) = near(JUNCTION_WITHIN).next() {
             return Some(Self::Junction(junction));
@@ -101,9 +92,31 @@ impl Truth {
             Self::Between(hallway, junctions)
         })
     }
+
+    /// The junctions at or near which the robot is.
+    pub fn junctions(&self) -> &[JunctionTruth] {
+        match self {
+            Self::Hallway(_) => &[],
+            Self::Between(_, junctions) => junctions,
+            Self::Junction(junction) => std::slice::from_ref(junction),
+        }
+    }
+
+    /// The robot's angle to its hallway in radians, and its distance from the middle in metres, both without sign.
+    pub fn off_middle(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Hallway(hallway) | Self::Between(hallway, _) => {
+                Some([hallway.heading.abs(), (hallway.left - hallway.right).abs() / 2.0])
+            }
+            Self::Junction(junction) => {
+                let entry = junction.doors.first().filter(|_| junction.form.is_some())?;
+                let aside = unit(*entry).perp(&Vector2::from(junction.turning_point)).abs();
+                Some([PI - entry.abs(), aside])
+            }
+        }
+    }
 }
 
-/// A hallway and a position in it.
 struct Stretch {
     hallway: Hallway,
     direction: Direction,
@@ -155,9 +168,7 @@ impl Stretch {
 }
 
 impl JunctionTruth {
-    /// A junction relative to a robot's pose.
-    #[must_use]
-    pub fn of(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
+    pub fn from_plan(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
         let junction = plan.junction(vertex);
         let mut directions: Vec<_> =
             plan.graph().darts_of(vertex).map(|dart| plan.direction(dart)).collect();
@@ -176,7 +187,6 @@ impl JunctionTruth {
 
     /// The distance to the turning point along the entry centre line, positive ahead; `None` if there is
     /// no door behind the robot.
-    #[must_use]
     pub fn distance(&self) -> Option<f64> {
         let inwards = unit(self.doors.first()? + PI);
         self.form.map(|_| inwards.dot(&Vector2::from(self.turning_point)))
@@ -186,9 +196,8 @@ impl JunctionTruth {
 impl MarkerTruth {
     /// A marker relative to a robot's pose. It lies on the turning point of the dart's vertex, along the
     /// dart.
-    #[must_use]
-    pub fn of(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
-        let junction = JunctionTruth::of(plan, plan.graph().vertex(dart), pose);
+    pub fn from_plan(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
+        let junction = JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose);
         let points = wrapped(angle(plan.direction(dart)) - pose.heading);
         let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
         let door = junction.doors.iter().position(is_it);
@@ -212,7 +221,6 @@ fn form(doors: &[Direction]) -> JunctionShape {
 }
 
 /// A direction, in radians counter-clockwise from east.
-#[must_use]
 pub fn angle(direction: Direction) -> f64 {
     match direction {
         Direction::North => FRAC_PI_2,
@@ -233,7 +241,7 @@ mod tests {
     use toposlam_model::format::world_file;
 
     use super::*;
-    use crate::evaluation::scene_class::SceneClass;
+    use crate::evaluation::judged_view::SceneClass;
 
     /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
     fn shape_6() -> FloorPlan {
@@ -268,22 +276,31 @@ mod tests {
 
     #[test]
     fn in_a_hallway_the_truth_has_the_distances_of_the_walls() {
-        // To the west in the hallway from the tee to the ne corner, 0.1 m north of its middle.
-        let Truth::Hallway(truth) = at(2.0, 4.1, 190.0) else { panic!("in the middle") };
-        close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), 0.9, 0.7]);
-        let Truth::Hallway(truth) = at(2.0, 4.1, 10.0) else { panic!("in the middle") };
-        close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), 0.7, 0.9]);
+        // In the hallway from the tee to the ne corner, 0.1 m north of its middle; to the west, and to the east.
+        for (degrees, left, right) in [(190.0, 0.9, 0.7), (10.0, 0.7, 0.9)] {
+            let Truth::Hallway(truth) = at(2.0, 4.1, degrees) else { panic!("in the middle") };
+            close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), left, right]);
+        }
     }
 
     #[test]
     fn half_a_metre_and_a_metre_and_a_half_decide() {
-        assert!(matches!(at(0.5, 4.0, 0.0), Truth::Junction(_)));
-        let Truth::Between(_, junctions) = at(0.501, 4.0, 0.0) else { panic!() };
-        assert_eq!(junctions.len(), 1);
-        assert!(matches!(at(1.499, 4.0, 0.0), Truth::Between(..)));
-        assert!(matches!(at(1.5, 4.0, 0.0), Truth::Hallway(_)));
-        assert!(matches!(at(2.5, 4.3, 0.0), Truth::Hallway(_)));
-        assert!(matches!(at(2.501, 4.3, 0.0), Truth::Between(..)));
+        for (x, y, near) in [
+            (0.5, 4.0, "junction"),
+            (0.501, 4.0, "between"),
+            (1.499, 4.0, "between"),
+            (1.5, 4.0, "hallway"),
+            (2.5, 4.3, "hallway"),
+            (2.501, 4.3, "between"),
+        ] {
+            let found = match at(x, y, 0.0) {
+                Truth::Hallway(_) => "hallway",
+                Truth::Between(_, junctions) if junctions.len() == 1 => "between",
+                Truth::Between(..) => "between several",
+                Truth::Junction(_) => "junction",
+            };
+            assert_eq!(found, near, "{x} {y}");
+        }
     }
 
     #[test]
@@ -345,7 +362,7 @@ mod tests {
         let pose = Pose { position: [0.5, 8.0], heading: PI };
         for (dart, door, axis) in [(0, 0, 0.0), (1, 1, FRAC_PI_2)] {
             let dart = plan.graph().dart(corner, dart).unwrap();
-            let marker = MarkerTruth::of(&plan, dart, pose);
+            let marker = MarkerTruth::from_plan(&plan, dart, pose);
             assert_eq!(marker.door, Some(Door(door)));
             close(&[marker.axis.abs(), marker.distance.unwrap()], &[axis, 0.5]);
             close(&marker.position, &[0.5, 0.0]);

@@ -2,6 +2,8 @@
 
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
+use image::RgbImage;
+use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
@@ -14,15 +16,15 @@ use toposlam_model::{
     format::world_file::WorldFileError,
 };
 use toposlam_robot::superscout::{CLEARANCE, RADIUS};
+use toposlam_vision::geometry::unit;
 
 use super::{
-    plans::plans,
+    plans::{NamedPlan, plans},
     random_plan::random_plan,
-    rendered_view::{RenderedView, WhichEffects},
 };
 use crate::{
-    BuildingLook, EffectSettings, Effects,
-    truth::{JunctionTruth, angle},
+    Building, BuildingLook, EffectSettings, Effects, Rig, render,
+    truth::{JunctionTruth, MarkerTruth, Truth, angle},
 };
 
 /// Views of a junction lie from this distance before its turning point to this distance behind it,
@@ -49,7 +51,53 @@ const SWAY: f64 = 12.0;
 /// The greatest sideways movement between two images of a visit, in metres.
 const DRIFT: f64 = 0.04;
 
-/// The purpose of views. Each purpose has its own random numbers.
+/// A pose in a building, and all that its image depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderedView {
+    /// Its number among the views of the seed.
+    pub number: u64,
+    pub plan_name: String,
+    pub plan: Arc<FloorPlan>,
+    pub look: &'static BuildingLook,
+    pub effects: Effects,
+    pub marker: Option<Dart>,
+    pub pose: Pose,
+    /// Width and height of the image, in pixels.
+    pub image: [u32; 2],
+    /// Random seeds of the building and of the image.
+    pub seeds: [u64; 2],
+}
+
+impl RenderedView {
+    /// The ground truth; `None` if the pose is not on the floor.
+    pub fn truth(&self) -> Option<Truth> {
+        Truth::at(&self.plan, self.pose)
+    }
+
+    /// The marker's true place, relative to the robot.
+    pub fn marker(&self) -> Option<MarkerTruth> {
+        self.marker.map(|dart| MarkerTruth::from_plan(&self.plan, dart, self.pose))
+    }
+
+    pub fn building(&self) -> Building {
+        Building::new(&self.plan, self.look, self.marker, &self.effects, self.seeds[0])
+    }
+
+    pub fn render(&self, rig: &Rig, building: &Building) -> RgbImage {
+        render(rig, building, self.pose, &self.effects, self.seeds[1])
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "evaluate", derive(clap::ValueEnum))]
+pub enum WhichEffects {
+    /// Draw each effect from its default range
+    Default,
+    /// No effects
+    None,
+}
+
+/// Each purpose of views has its own random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewPurpose {
     /// To be judged one by one.
@@ -63,48 +111,32 @@ pub enum ViewPurpose {
 /// All views of a seed.
 #[derive(Clone, Debug)]
 pub struct ViewSampler {
-    /// Random seed.
     pub seed: u64,
-    /// The floor plans and their names.
-    pub plans: Vec<(String, Arc<FloorPlan>)>,
-    /// Whether random plans are added.
+    pub plans: Vec<NamedPlan>,
     pub random_plans: bool,
-    /// The looks of the buildings.
     pub looks: Vec<&'static BuildingLook>,
     /// The image sizes, which views have in turn.
     pub sizes: Vec<[u32; 2]>,
-    /// The effects.
     pub effects: WhichEffects,
     /// Effects that are set in all views but those to learn from.
     pub settings: EffectSettings,
 }
 
-/// Why a view cannot be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ViewError {
-    /// There is no floor plan.
     #[error("there are no floor plans")]
     NoPlan,
-    /// There is no image size.
     #[error("there is no image size")]
     NoSize,
-    /// There is no look.
     #[error("there is no look")]
     NoLook,
-    /// A random plan is not valid.
     #[error("random plan {seed} is not valid")]
-    RandomPlan {
-        /// The plan's seed.
-        seed: u64,
-    },
+    RandomPlan { seed: u64 },
 }
 
 impl ViewSampler {
     /// Views of these looks in the floor plans of `worlds/`, with all effects and one image size.
-    ///
-    /// # Errors
-    /// Returns an error as [`plans`] does.
-    pub fn of(
+    pub fn from_looks(
         looks: impl IntoIterator<Item = &'static BuildingLook>,
         size: [u32; 2],
         seed: u64,
@@ -121,15 +153,11 @@ impl ViewSampler {
     }
 
     /// The floor plan with this name. Random plans are not found.
-    #[must_use]
     pub fn plan(&self, name: &str) -> Option<&FloorPlan> {
         self.plans.iter().find(|(other, _)| other == name).map(|(_, plan)| &**plan)
     }
 
     /// The view with this number.
-    ///
-    /// # Errors
-    /// Returns an error if there are no plans, looks or sizes.
     pub fn view(&self, number: u64) -> Result<RenderedView, ViewError> {
         let (mut view, mut chance) = self.setting(ViewPurpose::Single, number)?;
         place(&mut view, &mut chance, AT_JUNCTIONS);
@@ -137,9 +165,6 @@ impl ViewSampler {
     }
 
     /// The images of one approach to a junction, in order.
-    ///
-    /// # Errors
-    /// Returns an error as [`Self::view`] does.
     pub fn visit(&self, number: u64) -> Result<Vec<RenderedView>, ViewError> {
         let (mut view, mut chance) = self.setting(ViewPurpose::Visit, number)?;
         let Some(entry) = an_entry(&view.plan, &mut chance) else { return Ok(Vec::new()) };
@@ -160,9 +185,6 @@ impl ViewSampler {
     }
 
     /// A view of a junction from which to learn the colours of a look, often with a marker nearby.
-    ///
-    /// # Errors
-    /// Returns an error as [`Self::view`] does.
     pub fn to_learn_from(
         &self,
         look: &'static BuildingLook,
@@ -281,7 +303,7 @@ fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
 /// The shape of a dart's junction as seen by a robot that enters by the dart.
 fn form_from(plan: &FloorPlan, dart: Dart) -> Option<JunctionShape> {
     let pose = before_junction(plan, dart, 0.0, 0.0, 0.0);
-    JunctionTruth::of(plan, plan.graph().vertex(dart), pose).form
+    JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose).form
 }
 
 /// The greatest distance from the middle of the hallway, in metres.
@@ -314,21 +336,12 @@ fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64
     if back {
         std::mem::swap(&mut from, &mut to);
     }
-    let direction = match (to[0] - from[0], to[1] - from[1]) {
-        (x, y) if x.abs() > y.abs() => {
-            if x > 0.0 {
-                Direction::East
-            } else {
-                Direction::West
-            }
-        }
-        (_, y) => {
-            if y > 0.0 {
-                Direction::North
-            } else {
-                Direction::South
-            }
-        }
+    let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
+    let direction = match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
+        (true, true, _) => Direction::East,
+        (true, false, _) => Direction::West,
+        (false, _, true) => Direction::North,
+        (false, _, false) => Direction::South,
     };
     along(from, direction, left.min(length(at)), aside, turned)
 }
@@ -337,12 +350,9 @@ fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64
 /// many degrees to the left.
 fn along(from: [f64; 2], direction: Direction, by: f64, aside: f64, turned: f64) -> Pose {
     let ahead = angle(direction);
-    let (left, ahead_vector) = ((ahead + FRAC_PI_2).sin_cos(), direction.vector());
-    let position = [
-        from[0] + by * ahead_vector[0] + aside * left.1,
-        from[1] + by * ahead_vector[1] + aside * left.0,
-    ];
-    Pose { position, heading: ahead + turned.to_radians() }
+    let left = aside * unit(ahead + FRAC_PI_2);
+    let position = Vector2::from(from) + by * Vector2::from(direction.vector()) + left;
+    Pose { position: position.into(), heading: ahead + turned.to_radians() }
 }
 
 #[cfg(test)]
@@ -352,10 +362,10 @@ mod tests {
     use toposlam_model::floor_plan::{BuildingWall, walls};
 
     use super::*;
-    use crate::{LOOKS, truth::Truth};
+    use crate::LOOKS;
 
     fn views() -> ViewSampler {
-        let mut views = ViewSampler::of(&LOOKS, [1280, 960], 1).unwrap();
+        let mut views = ViewSampler::from_looks(&LOOKS, [1280, 960], 1).unwrap();
         views.plans.retain(|(name, _)| name == "shape-8");
         ViewSampler { random_plans: true, sizes: vec![[1280, 960], [640, 480]], ..views }
     }
@@ -381,10 +391,8 @@ mod tests {
     }
 
     #[test]
-    fn a_view_follows_from_its_number() {
+    fn a_view_follows_from_its_seed_and_number_and_from_its_purpose() {
         let views = views();
-        assert_eq!(views.view(17), views.view(17));
-        assert_eq!(views.visit(17), views.visit(17));
         assert_ne!(views.view(17), views.view(18));
         assert_ne!(views.view(17), ViewSampler { seed: 2, ..views.clone() }.view(17));
         assert_ne!(views.view(17).unwrap().seeds, views.visit(17).unwrap()[0].seeds);

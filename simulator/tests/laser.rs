@@ -8,7 +8,7 @@ use std::{
     sync::Arc,
 };
 
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::{Isometry2, Rotation2, Vector2};
 use toposlam_conform::{CheckedKind, EventSource, RunEvents, UndecidedCause, visit_events};
 use toposlam_logs::{
     entries::Content,
@@ -16,9 +16,12 @@ use toposlam_logs::{
     record::{EventKind, Frame},
     topic_map::TopicMap,
 };
-use toposlam_model::{driving::odometry::Odometry, percept::Door};
+use toposlam_model::{
+    driving::{odometry::Odometry, scene::wrapped},
+    percept::Door,
+};
 use toposlam_vision::{
-    geometry::moved,
+    geometry::{self, moved},
     laser::{
         drift::{DriftMeter, ROUNDS},
         params::LaserParams,
@@ -26,6 +29,11 @@ use toposlam_vision::{
     },
     visits::Visits,
 };
+
+/// A degree, and the door that was taken.
+type MarkedVisit = (u64, Option<u64>);
+/// A scan, and the odometry at its time.
+type PlacedScan = (Arc<Scan>, Odometry);
 
 /// A straight corridor: the ends of its middle line, and its width.
 pub(crate) type Corridor = ([f64; 2], [f64; 2], f64);
@@ -35,13 +43,12 @@ pub(crate) fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64
     let mut pieces: Vec<(f64, f64)> = corridors
         .iter()
         .filter_map(|&(one, other, width)| {
-            let along = [other[0] - one[0], other[1] - one[1]];
-            let length = along[0].hypot(along[1]);
-            let unit = along.map(|part| part / length);
             // In the corridor's frame; it reaches half of its width beyond its ends.
-            let framed = |[x, y]: [f64; 2]| [x * unit[0] + y * unit[1], y * unit[0] - x * unit[1]];
-            let place = framed([from[0] - one[0], from[1] - one[1]]);
-            let ray = framed([bearing.cos(), bearing.sin()]);
+            let along = Vector2::from(other) - Vector2::from(one);
+            let (length, unit) = (along.norm(), along.normalize());
+            let framed = |vector: Vector2<f64>| [unit.dot(&vector), unit.perp(&vector)];
+            let place = framed(Vector2::from(from) - Vector2::from(one));
+            let ray = framed(geometry::unit(bearing));
             let half = width / 2.0;
             let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
             for (place, ray, [low, high]) in
@@ -96,19 +103,12 @@ fn events_with(
     way: &[[f64; 2]],
     drift: f64,
 ) -> RunEvents {
-    events_of_scanner(180, params, corridors, way, drift)
+    events_of(&drive(180, corridors, way, drift), params)
 }
 
-/// The events for a scanner that covers so many degrees.
-fn events_of_scanner(
-    degrees: u32,
-    params: &LaserParams,
-    corridors: &[Corridor],
-    way: &[[f64; 2]],
-    drift: f64,
-) -> RunEvents {
+fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
     let mut inferred = Visits::by_laser(*params);
-    for (number, (scan, odometry)) in drive(degrees, corridors, way, drift).iter().enumerate() {
+    for (number, (scan, odometry)) in scans.iter().enumerate() {
         let source = EventSource { time: number as u64 * 1_000_000_000, ..EventSource::default() };
         inferred.see(source, scan, odometry);
     }
@@ -116,51 +116,36 @@ fn events_of_scanner(
 }
 
 /// The scans of that robot, and its odometry.
-fn drive(
-    degrees: u32,
-    corridors: &[Corridor],
-    way: &[[f64; 2]],
-    drift: f64,
-) -> Vec<(Scan, Odometry)> {
+fn drive(degrees: u32, corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> Vec<PlacedScan> {
     let mut scans = Vec::new();
-    let (mut believed, mut driven) = (way[0], 0.0);
-    let mut heading = f64::NAN;
-    let mut see = |truth: Odometry, believed: Odometry| {
-        scans.push((scan(corridors, &truth, degrees), believed));
-    };
+    let (mut believed, mut driven) = (Vector2::from(way[0]), 0.0);
+    let mut last = None;
     for leg in way.windows(2) {
-        let off = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
-        let (length, ahead) = (off[0].hypot(off[1]), off[1].atan2(off[0]));
-        let turn =
-            if heading.is_nan() { 0.0 } else { (ahead - heading + PI).rem_euclid(2.0 * PI) - PI };
+        let [from, to] = [leg[0], leg[1]].map(Vector2::from);
+        let (length, ahead) = ((to - from).norm(), geometry::direction(leg[0], leg[1]));
+        let turn = last.map_or(0.0, |heading| wrapped(ahead - heading));
         let turns = (turn.abs() / 0.4).ceil();
-        for part in 1..=turns as u32 {
-            let heading = ahead - turn * (1.0 - f64::from(part) / turns);
-            let position = leg[0];
-            see(
-                Odometry { position, heading },
-                Odometry { position: believed, heading: heading + drift * driven },
-            );
-        }
-        heading = ahead;
+        let turned = (1..=turns as u32).map(|part| (0.0, turn * (1.0 - f64::from(part) / turns)));
         let steps = (length / 0.5).ceil();
-        for step in 1..=steps as u32 {
-            let part = f64::from(step) / steps;
-            let position = [0, 1].map(|axis| leg[0][axis] + part * off[axis]);
-            driven += length / steps;
-            let drifted = ahead + drift * driven;
-            believed = [
-                believed[0] + length / steps * drifted.cos(),
-                believed[1] + length / steps * drifted.sin(),
-            ];
-            see(Odometry { position, heading }, Odometry { position: believed, heading: drifted });
+        let driving = (1..=steps as u32).map(|step| (f64::from(step) / steps, 0.0));
+        for (share, to_turn) in turned.chain(driving) {
+            let position = (from + share * (to - from)).into();
+            let heading = ahead - to_turn;
+            if share > 0.0 {
+                driven += length / steps;
+                believed += length / steps * geometry::unit(ahead + drift * driven);
+            }
+            let scan = scan(corridors, &Odometry { position, heading }, degrees);
+            let heading = heading + drift * driven;
+            scans.push((Arc::new(scan), Odometry { position: believed.into(), heading }));
         }
+        last = Some(ahead);
     }
     scans
 }
 
 /// The degree of each junction and the door taken, with `None` for turning back and for what is undecided.
-fn visits(events: &RunEvents) -> Vec<(Option<u32>, Option<u32>)> {
+pub(crate) fn visits(events: &RunEvents) -> Vec<(Option<u32>, Option<u32>)> {
     let mut visits: Vec<(Option<u32>, Option<u32>)> = Vec::new();
     for event in &events.events {
         match &event.kind {
@@ -219,21 +204,17 @@ fn a_robot_whose_log_begins_at_a_junction_has_its_back_to_door_0() {
 #[test]
 fn the_arms_of_a_junction_can_have_any_angle() {
     // A corridor that forks: the arms are 120 degrees apart.
-    let arm = |degrees: f64| {
-        let (sine, cosine) = degrees.to_radians().sin_cos();
-        ([0.0, 0.0], [15.0 * cosine, 15.0 * sine], 2.0)
+    let at =
+        |metres: f64, degrees: f64| <[f64; 2]>::from(metres * geometry::unit(degrees.to_radians()));
+    let arm = |degrees| ([0.0, 0.0], at(15.0, degrees), 2.0);
+    let visits = |arms: &[Corridor], degrees| {
+        visits(&events(arms, &[[-12.0, 0.0], [0.0, 0.0], at(12.0, degrees)], 0.0))
     };
     let fork = [arm(180.0), arm(60.0), arm(-60.0)];
-    let (sine, cosine) = 60_f64.to_radians().sin_cos();
-    let left = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, 12.0 * sine]], 0.0);
-    assert_eq!(visits(&left), [(Some(3), Some(1))]);
-    let right = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, -12.0 * sine]], 0.0);
-    assert_eq!(visits(&right), [(Some(3), Some(2))]);
-    // Five arms.
-    let star: Vec<_> = [180.0, 108.0, 36.0, -36.0, -108.0].map(arm).to_vec();
-    let ahead = [12.0 * 36_f64.to_radians().cos(), 12.0 * 36_f64.to_radians().sin()];
-    let events = events(&star, &[[-12.0, 0.0], [0.0, 0.0], ahead], 0.0);
-    assert_eq!(visits(&events), [(Some(5), Some(2))]);
+    assert_eq!(visits(&fork, 60.0), [(Some(3), Some(1))]);
+    assert_eq!(visits(&fork, -60.0), [(Some(3), Some(2))]);
+    let star = [180.0, 108.0, 36.0, -36.0, -108.0].map(arm);
+    assert_eq!(visits(&star, 36.0), [(Some(5), Some(2))]);
 }
 
 /// A corridor along x, and others that leave it at the same place, at these angles to its direction.
@@ -258,7 +239,7 @@ fn an_arm_that_the_scanner_did_not_look_into_makes_the_visit_undecided() {
         let undecided = CheckedKind::Undecided(UndecidedCause::UnseenArm);
         assert_eq!(causes, [&undecided], "{angles:?}");
         // A robot that looks all around sees it, ...
-        let around = events_of_scanner(360, &params, &plan, &way, 0.0);
+        let around = events_of(&drive(360, &plan, &way, 0.0), &params);
         let degree = Some(angles.len() as u32 + 2);
         assert_eq!(visits(&around), [(degree, Some(door))], "{angles:?}");
         // ... and one that comes the other way.
@@ -278,12 +259,8 @@ fn junctions_are_not_known_where_a_robot_drives_backwards_with_a_scanner_that_do
     for degrees in [90, 180, 270, 340, 350, 360] {
         // In reverse order, the scans of a robot that drives towards the first end are those of one that drives
         // away from it, backwards.
-        let mut inferred = Visits::by_laser(LaserParams::default());
-        for (scan, odometry) in drive(degrees, &comb(), &back, 0.0).iter().rev() {
-            inferred.see(EventSource::default(), scan, odometry);
-        }
-        let events =
-            RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() };
+        let scans: Vec<_> = drive(degrees, &comb(), &back, 0.0).into_iter().rev().collect();
+        let events = events_of(&scans, &LaserParams::default());
         let first = &events.events[0].kind;
         if degrees < 345 {
             assert_eq!(*first, CheckedKind::Undecided(UndecidedCause::UnseenWay), "{degrees}");
@@ -351,11 +328,6 @@ fn sharp_bends_are_vertices_if_corners_are() {
     assert_eq!(visits(&events(&plan, &way, 0.0)), []);
 }
 
-/// A degree, and the door that was taken.
-type MarkedVisit = (u64, Option<u64>);
-/// A scan, and the odometry at its time.
-type PlacedScan = (Arc<Scan>, Odometry);
-
 /// The folder of CARMEN logs, if it exists; `TOPOSLAM_CARMEN_LOGS` names it.
 fn carmen_folder() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/carmen");
@@ -385,15 +357,6 @@ fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
         _ => None,
     });
     Some((marked.collect(), scans.collect()))
-}
-
-fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
-    let mut inferred = Visits::by_laser(*params);
-    for (number, (scan, odometry)) in scans.iter().enumerate() {
-        let source = EventSource { time: number as u64, ..EventSource::default() };
-        inferred.see(source, scan, odometry);
-    }
-    RunEvents { events: visit_events(inferred.finish()).0, ..RunEvents::default() }
 }
 
 /// The visits in a recorded log are those that were marked by hand.
@@ -426,29 +389,25 @@ fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand()
 /// Odometry whose heading drifts by so many degrees in 10 m.
 fn drifted(scans: &[PlacedScan], drift: f64) -> Vec<PlacedScan> {
     let drift = drift.to_radians() / 10.0;
-    let mut last: Option<([f64; 2], [f64; 2])> = None;
+    let mut last: Option<[Vector2<f64>; 2]> = None;
     let mut turned = 0.0;
     let moved = |(scan, odometry): &PlacedScan| {
-        let Odometry { position, heading } = *odometry;
-        let (before, moved) = last.unwrap_or((position, position));
-        let off = [0, 1].map(|axis| position[axis] - before[axis]);
-        let length = off[0].hypot(off[1]);
-        let (sine, cosine) = (turned + drift * length / 2.0).sin_cos();
+        let position = Vector2::from(odometry.position);
+        let [before, moved] = last.unwrap_or([position; 2]);
+        let length = (position - before).norm();
+        let turn = Rotation2::new(turned + drift * length / 2.0);
         turned += drift * length;
-        let moved = [
-            moved[0] + off[0] * cosine - off[1] * sine,
-            moved[1] + off[0] * sine + off[1] * cosine,
-        ];
-        last = Some((position, moved));
-        (scan.clone(), Odometry { position: moved, heading: heading + turned })
+        let moved = moved + turn * (position - before);
+        last = Some([position, moved]);
+        (scan.clone(), Odometry { position: moved.into(), heading: odometry.heading + turned })
     };
     scans.iter().map(moved).collect()
 }
 
-fn measured_drift<'a>(scans: impl Iterator<Item = (&'a Scan, Odometry)>) -> f64 {
+fn measured_drift(scans: &[PlacedScan]) -> f64 {
     let mut meter = DriftMeter::new(LaserParams::default());
     for (scan, odometry) in scans {
-        meter.see(scan, &odometry);
+        meter.see(scan, odometry);
     }
     meter.finish().unwrap().to_degrees()
 }
@@ -457,8 +416,7 @@ fn measured_drift<'a>(scans: impl Iterator<Item = (&'a Scan, Odometry)>) -> f64 
 fn the_drift_of_the_heading_is_measured_by_the_walls() {
     let way = [[3.0, 0.0], [14.0, 0.0], [14.0, 8.0], [14.0, 0.0], [26.0, 0.0]];
     for degrees in [0.0, 2.0, -2.0, 5.0, -5.0_f64] {
-        let scans = drive(180, &comb(), &way, degrees.to_radians() / 10.0);
-        let measured = measured_drift(scans.iter().map(|(scan, odometry)| (scan, *odometry)));
+        let measured = measured_drift(&drive(180, &comb(), &way, degrees.to_radians() / 10.0));
         assert!((measured - degrees.abs()).abs() < 0.5, "{measured} for {degrees}");
     }
 }
@@ -473,8 +431,7 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
         marked.retain(|visit| visit.0 >= 3);
         for drift in [0.0, 2.0, -2.0, 5.0, -5.0] {
             let scans = drifted(&scans, drift);
-            let measured =
-                measured_drift(scans.iter().map(|(scan, odometry)| (&**scan, *odometry)));
+            let measured = measured_drift(&scans);
             assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
             if drift != 0.0 {
                 are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));

@@ -7,6 +7,7 @@
 use std::thread;
 
 use image::RgbImage;
+use nalgebra::{Isometry2, Point2};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
@@ -16,7 +17,8 @@ use toposlam_model::{
     format::world_file,
 };
 use toposlam_simulator::{
-    Building, BuildingLook, Effects, KNOBS, LOOKS, Rig, RigErrors, label_mask, labels, render,
+    Building, BuildingLook, EffectSettings, Effects, KNOBS, LOOKS, Rig, RigErrors, label_mask,
+    labels, render,
 };
 use toposlam_vision::{
     camera::Camera,
@@ -56,18 +58,19 @@ fn poses(plan: &FloorPlan, clear: f64, count: usize, seed: u64) -> Vec<Pose> {
         .collect()
 }
 
-/// Transforms from the building's coordinates to the robot's.
-fn seen_from(pose: Pose, place: [f64; 2]) -> [f64; 2] {
-    let (sine, cosine) = pose.heading.sin_cos();
-    let [x, y] = [0, 1].map(|axis| place[axis] - pose.position[axis]);
-    [x * cosine + y * sine, y * cosine - x * sine]
+/// From the robot's coordinates to the building's.
+fn building_from(pose: Pose) -> Isometry2<f64> {
+    Isometry2::new(pose.position.into(), pose.heading)
 }
 
-/// Transforms from the robot's coordinates to the building's.
-fn in_building(pose: Pose, [x, y]: [f64; 2]) -> [f64; 2] {
-    let (sine, cosine) = pose.heading.sin_cos();
-    let [along, across] = pose.position;
-    [along + x * cosine - y * sine, across + x * sine + y * cosine]
+/// Effects with these settings, and the others plain.
+fn with(settings: &[(&str, f64)]) -> Effects {
+    EffectSettings::new(settings.iter().copied()).unwrap().applied(Effects::plain())
+}
+
+/// The pixel with an index in an image of this width.
+fn pixel(at: usize, width: usize) -> [f64; 2] {
+    [at % width, at / width].map(|at| at as f64)
 }
 
 fn is_floor(floors: &[Rectangle], place: [f64; 2]) -> bool {
@@ -114,12 +117,13 @@ fn hold_against_plan(
     for pose in poses(plan, 0.3, 12, 5).into_iter().chain([near_corner]) {
         let classes = labels(rig, &building, pose, &effects);
         for (at, &class) in classes.iter().enumerate().step_by(3) {
-            let pixel = [at % 640, at / 640].map(|at| at as f64);
+            let pixel = pixel(at, 640);
             let Some([origin, ground]) = grounds(pixel) else { continue };
             if ground[0].hypot(ground[1]) > 5.0 {
                 continue;
             }
-            let [origin, place] = [origin, ground].map(|place| in_building(pose, place));
+            let [origin, place] =
+                [origin, ground].map(|place| (building_from(pose) * Point2::from(place)).into());
             let expected = |slack: f64| {
                 if !sees(&floors, origin, place) {
                     PixelClass::Other
@@ -154,25 +158,23 @@ fn hold_against_plan(
 #[test]
 fn each_pixel_shows_the_surface_at_its_place() {
     let camera = small_camera();
+    let upright = |pixel| camera.pixel_to_ground(pixel).map(|ground| [[0.0; 2], ground.into()]);
+    let errors = RigErrors { tilt: 0.03, towards: 2.0, centre: [3.0, -2.0], height: 0.01 };
+    let tilted_rig = Rig::with_errors(&camera, &errors);
+    let tilted = |pixel| {
+        let ray = tilted_rig.ray(pixel);
+        ray.floor().map(|ground| [ray.origin.xy().into(), ground])
+    };
     let rig = Rig::new(&camera);
-    let grounds = |pixel| camera.pixel_to_ground(pixel).map(|ground| [[0.0; 2], ground.into()]);
-    for (name, look) in [("shape-8", look("tiles")), ("building-25", look("school"))] {
-        let counts = hold_against_plan(&plan(name), look, &rig, &grounds);
+    let cases: [(_, _, _, Grounds); 3] = [
+        ("shape-8", "tiles", &rig, &upright),
+        ("building-25", "school", &rig, &upright),
+        ("shape-8", "tiles", &tilted_rig, &tilted),
+    ];
+    for (name, look_name, rig, grounds) in cases {
+        let counts = hold_against_plan(&plan(name), look(look_name), rig, grounds);
         assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
     }
-}
-
-#[test]
-fn a_tilted_rig_shows_the_surfaces_along_its_rays() {
-    let errors = RigErrors { tilt: 0.03, towards: 2.0, centre: [3.0, -2.0], height: 0.01 };
-    let rig = Rig::with_errors(&small_camera(), &errors);
-    let grounds = |pixel| {
-        let ray = rig.ray(pixel);
-        let origin = [ray.origin[0], ray.origin[1]];
-        ray.floor().map(|ground| [origin, ground])
-    };
-    let counts = hold_against_plan(&plan("shape-8"), look("tiles"), &rig, &grounds);
-    assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
 }
 
 /// Whether a line on the floor comes near a wall before its end.
@@ -197,9 +199,9 @@ fn the_pixel_of_a_place_shows_its_surface() {
         let classes = labels(&rig, &building, pose, &effects);
         for _ in 0..500 {
             let place = [rng.random_range(-0.8..4.8), rng.random_range(-0.8..8.8)];
-            let ground = seen_from(pose, place);
+            let ground = building_from(pose).inverse() * Point2::from(place);
             // At least a pixel's width away from the wall's foot.
-            let range = ground[0].hypot(ground[1]);
+            let range = ground.coords.norm();
             if range > 4.0
                 || near_walls(&floors, place, 0.1)
                 || !sees(&floors, pose.position, place)
@@ -229,8 +231,8 @@ fn a_baseboard_has_the_height_of_its_look() {
         let classes = labels(&rig, &building, pose, &effects);
         let mut counts = [0; 3];
         for (at, &class) in classes.iter().enumerate() {
-            let ray = rig.ray([at % 1280, at / 1280].map(|at| at as f64));
-            let [_, left, up] = ray.direction;
+            let ray = rig.ray(pixel(at, 1280));
+            let [_, left, up] = ray.direction.into();
             // To the left, and neither far ahead nor far behind.
             if left < ray.direction[0].abs() || class == PixelClass::Unseen {
                 continue;
@@ -290,11 +292,7 @@ fn without_effects_colours_are_those_of_the_look() {
 
 /// Effects without JPEG loss and noise, in a building with some of everything.
 fn some_effects() -> Effects {
-    let mut effects = Effects::plain();
-    for (name, value) in [("doors", 3.0), ("gaps", 4.0), ("struts", 3.0), ("gap-length", 0.25)] {
-        effects.set(name, value).unwrap();
-    }
-    effects
+    with(&[("doors", 3.0), ("gaps", 4.0), ("struts", 3.0), ("gap-length", 0.25)])
 }
 
 #[test]
@@ -337,22 +335,12 @@ fn changed(settings: &[(&str, f64)]) -> (Vec<PixelClass>, Vec<(PixelClass, Pixel
         let building = Building::new(&plan, look("tiles"), Some(at_an_l(&plan)), effects, 6);
         labels(&rig, &building, pose, effects)
     };
-    let mut effects = Effects::plain();
-    effects.set("body", 1.0).unwrap();
-    let without = classes(&effects);
-    for (name, value) in settings {
-        effects.set(name, *value).unwrap();
-    }
-    let with = classes(&effects);
+    let without = classes(&with(&[("body", 1.0)]));
+    let with = classes(&with(&[&[("body", 1.0)], settings].concat()));
     let pairs = without.into_iter().zip(&with).enumerate();
     let changed = pairs.filter(|(_, (before, after))| before != *after);
     let changed = changed.map(|(at, (before, after))| (before, *after, at)).collect();
     (with, changed)
-}
-
-/// The pixel of an image 1280 wide.
-fn pixel(at: usize) -> [f64; 2] {
-    [at % 1280, at / 1280].map(|at| at as f64)
 }
 
 #[test]
@@ -387,7 +375,9 @@ fn an_open_laptop_makes_the_outline_of_the_body_irregular() {
     let farthest = |settings: &[(&str, f64)]| {
         let mut ranges = [0.0_f64; 36];
         for (at, class) in changed(settings).0.iter().enumerate() {
-            if let (PixelClass::Unseen, Some(ground)) = (class, camera.pixel_to_ground(pixel(at))) {
+            if let (PixelClass::Unseen, Some(ground)) =
+                (class, camera.pixel_to_ground(pixel(at, 1280)))
+            {
                 let [x, y] = ground.into();
                 let sector = (y.atan2(x).to_degrees().rem_euclid(360.0) / 10.0) as usize;
                 ranges[sector % 36] = ranges[sector % 36].max(x.hypot(y));
@@ -409,12 +399,8 @@ fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_out
     let plan = plan("shape-8");
     let pose = Pose { position: [0.1, 5.3], heading: 1.3 };
     let brighter = |dark: f64, seed: u64| {
-        let mut effects = Effects::plain();
-        for (name, value) in
-            [("dark-rim", dark), ("holder", 0.0), ("zoom", 1.45), ("off-centre", -0.03)]
-        {
-            effects.set(name, value).unwrap();
-        }
+        let effects =
+            with(&[("dark-rim", dark), ("holder", 0.0), ("zoom", 1.45), ("off-centre", -0.03)]);
         let camera = effects.camera(&Camera::superscout()).unwrap();
         let building = Building::new(&plan, look("tiles"), None, &effects, seed);
         let picture = render(&Rig::new(&camera), &building, pose, &effects, seed);
@@ -441,7 +427,7 @@ fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_out
 }
 
 #[test]
-fn the_same_seed_gives_the_same_image_on_any_thread() {
+fn an_image_follows_from_its_seeds_on_any_thread() {
     let plan = plan("building-12");
     let rig = Rig::new(&small_camera());
     let picture = |seed: u64| -> RgbImage {
@@ -452,24 +438,14 @@ fn the_same_seed_gives_the_same_image_on_any_thread() {
     };
     let one_by_one: Vec<_> = (0..6).map(&picture).collect();
     let at_once: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..6)
-            .map(|seed| {
-                let picture = &picture;
-                scope.spawn(move || picture(seed))
-            })
-            .collect();
+        let picture = &picture;
+        let threads: Vec<_> = (0..6).map(|seed| scope.spawn(move || picture(seed))).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
     assert!(one_by_one == at_once);
-}
-
-#[test]
-fn another_seed_gives_another_building_and_another_image() {
-    let plan = plan("shape-8");
-    let rig = Rig::new(&small_camera());
-    let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
     let building = |seed| Building::new(&plan, look("tiles"), None, &effects, seed);
+    let pose = poses(&plan, 0.3, 1, 1)[0];
     let picture = |building: &Building, seed| render(&rig, building, pose, &effects, seed);
     let (one, other) = (building(1), building(2));
     assert!(picture(&one, 1) != picture(&one, 2));
@@ -477,41 +453,28 @@ fn another_seed_gives_another_building_and_another_image() {
 }
 
 #[test]
-fn the_robot_hides_only_the_floor_around_it() {
+fn the_robot_hides_the_floor_around_it_and_its_struts_two_opposite_directions() {
     let plan = plan("shape-8");
-    let camera = Camera::superscout();
-    let rig = Rig::new(&camera);
-    let mut effects = Effects::plain();
-    effects.set("body", 1.0).unwrap();
-    effects.set("lens", 0.016).unwrap();
-    let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
-    let pose = Pose { position: [2.0, 4.0], heading: 0.0 };
-    for (at, class) in labels(&rig, &building, pose, &effects).into_iter().enumerate() {
-        let pixel = [at % 1280, at / 1280].map(|at| at as f64);
-        if let Some([x, y]) = camera.pixel_to_ground(pixel).map(<[f64; 2]>::from) {
-            let range = x.hypot(y);
-            assert!(class == PixelClass::Unseen || range > 0.30, "{pixel:?} {range}");
-            assert!(class != PixelClass::Unseen || range < 0.32, "{pixel:?} {range}");
-        }
+    let (large, small) = (Camera::superscout(), small_camera());
+    let classes = |camera: &Camera, settings: &[(&str, f64)], heading| {
+        let effects = with(settings);
+        let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
+        let pose = Pose { position: [2.0, 4.0], heading };
+        let classes = labels(&Rig::new(camera), &building, pose, &effects);
+        let width = camera.image[0] as usize;
+        let grounds = (0..classes.len()).map(|at| camera.pixel_to_ground(pixel(at, width)));
+        let seen = grounds.zip(classes).filter_map(|(ground, class)| Some((ground?, class)));
+        seen.collect::<Vec<_>>()
+    };
+    for (ground, class) in classes(&large, &[("body", 1.0), ("lens", 0.016)], 0.0) {
+        let range = ground.coords.norm();
+        assert!(class == PixelClass::Unseen || range > 0.30, "{ground} {range}");
+        assert!(class != PixelClass::Unseen || range < 0.32, "{ground} {range}");
     }
-}
-
-#[test]
-fn struts_hide_two_opposite_directions() {
-    let plan = plan("shape-8");
-    let camera = small_camera();
-    let rig = Rig::new(&camera);
-    let mut effects = Effects::plain();
-    effects.set("struts", 4.0).unwrap();
-    effects.set("strut-bearing", 30.0).unwrap();
-    let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
-    let pose = Pose { position: [2.0, 4.0], heading: 2.0 };
     let mut hidden = 0;
-    for (at, class) in labels(&rig, &building, pose, &effects).into_iter().enumerate() {
-        let pixel = [at % 640, at / 640].map(|at| at as f64);
-        let Some([x, y]) = camera.pixel_to_ground(pixel).map(<[f64; 2]>::from) else { continue };
-        if x.hypot(y) > 0.6 {
-            let bearing = y.atan2(x).to_degrees().rem_euclid(180.0);
+    for (ground, class) in classes(&small, &[("struts", 4.0), ("strut-bearing", 30.0)], 2.0) {
+        if ground.coords.norm() > 0.6 {
+            let bearing = ground.y.atan2(ground.x).to_degrees().rem_euclid(180.0);
             let away = (bearing - 30.0).abs();
             assert!(class == PixelClass::Unseen || away > 1.99, "{bearing}");
             assert!(class != PixelClass::Unseen || away < 2.01, "{bearing}");
@@ -534,20 +497,6 @@ fn the_marker_lies_at_the_turning_point_along_its_hallway() {
         let edges = [x - half_x, y - half_y, x + half_x, y + half_y];
         let found = [marker.least, marker.greatest].concat();
         assert!(found.iter().zip(edges).all(|(one, other)| (one - other).abs() < 1e-12));
-    }
-}
-
-#[test]
-fn a_small_image_shows_the_same_as_a_large_one() {
-    let (large, small) = (Camera::superscout(), small_camera());
-    for pixel in [[100.0, 200.0], [319.5, 239.5], [500.0, 77.0]] {
-        // A pixel of the small image is a square of four pixels.
-        let middle = pixel.map(|at: f64| 2.0 * at + 0.5);
-        let (one, other) = (small.pixel_to_ground(pixel), large.pixel_to_ground(middle));
-        assert_eq!(one.is_some(), other.is_some());
-        if let Some((one, other)) = one.zip(other) {
-            assert!(nalgebra::distance(&one, &other) < 1e-9);
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use toposlam_conform::{CheckedKind, Evidence, ExtractConfig, RunEvents, extract};
+use toposlam_conform::{Evidence, ExtractConfig, extract};
 use toposlam_logs::{
     messages,
     reader::Log,
@@ -21,19 +21,16 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::world_file,
     mapping::MappingAlgorithm,
-    percept::Door,
 };
 use toposlam_robot::{recording::Recording, run_settings::RunSettings};
 use toposlam_simulator::{
-    Corridor, CorridorPlan, LaserScanner, RobotEquipment, ScannedBuilding, ScannerParams,
-    SimulatedRobot, SimulationConfig,
-    evaluation::{
-        run_sampler::{Faults, RunSampler},
-        traversals::{TraversalOutcome, TraversalSampler},
-    },
+    Corridor, CorridorPlan, LaserScanner, NamedPlan, RobotEquipment, ScannedBuilding,
+    ScannerParams, SimulatedRobot, SimulationConfig,
+    evaluation::{run_sampler::RunSampler, sampling::sample, traversals::TraversalSampler},
     plans,
     random_plan::random_plan,
     run::{RunOutcome, offline, run},
+    sample_verdict::SampleVerdict,
 };
 use toposlam_vision::laser::{scan::Reading, scene::ScanPlaceSensor};
 
@@ -69,58 +66,53 @@ fn the_simulated_scanner_measures_what_another_ray_caster_computes() {
     }
 }
 
-fn laser_robots(params: ScannerParams) -> RobotEquipment {
-    RobotEquipment::Laser(params)
+/// The verdicts on traversals by laser in these plans.
+fn traversals(plans: Vec<NamedPlan>, seed: u64, params: ScannerParams) -> Vec<SampleVerdict> {
+    let traversals = TraversalSampler::new(plans, seed, 1.0);
+    let equipment = RobotEquipment::Laser(params);
+    let judged = sample(0..150, &(), |number| traversals.traversal(number, &equipment, &()));
+    judged.iter().map(|made| made.outcome.verdict()).collect()
+}
+
+/// The plans of `worlds/` and random ones.
+fn with_random(count: u64) -> Vec<NamedPlan> {
+    let random = (0..count).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap())));
+    plans().unwrap().into_iter().chain(random).collect()
 }
 
 #[test]
 fn doors_are_taken_by_laser_as_the_specification_says() {
-    let mut all = plans().unwrap();
-    all.extend((0..6).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
-    let traversals = TraversalSampler::new(all, 5, 1.0);
-    let judged = traversals.judged(0..150, &laser_robots(ScannerParams::PLAIN), &());
-    for traversal in judged {
-        let number = traversal.traversal.number;
-        assert_eq!(traversal.outcome, TraversalOutcome::Right, "{number}");
-    }
+    let verdicts = traversals(with_random(6), 5, ScannerParams::PLAIN);
+    assert_eq!(verdicts, [SampleVerdict::Right; 150]);
 }
 
 #[test]
 fn among_furniture_doors_and_people_a_robot_gives_up_when_it_fails() {
-    let traversals = TraversalSampler::new(plans().unwrap(), 6, 1.0);
-    let judged = traversals.judged(0..150, &laser_robots(ScannerParams::default()), &());
-    let count = |is: fn(&TraversalOutcome) -> bool| {
-        judged.iter().filter(|traversal| is(&traversal.outcome)).count()
-    };
-    assert_eq!(count(|outcome| matches!(outcome, TraversalOutcome::Wrong(_))), 0);
-    let gave_up = count(|outcome| matches!(outcome, TraversalOutcome::GaveUp(_)));
-    assert!(gave_up <= 15, "{gave_up} of 150");
+    let verdicts = traversals(plans().unwrap(), 6, ScannerParams::default());
+    let count = |is| verdicts.iter().filter(|&&verdict| verdict == is).count();
+    assert_eq!(count(SampleVerdict::Wrong), 0);
+    assert!(count(SampleVerdict::Undecided) <= 15, "{} of 150", count(SampleVerdict::Undecided));
 }
 
 #[test]
 #[ignore = "a long sweep, for `.ci/run --all`"]
-fn buildings_are_mapped_by_laser() {
-    for algorithm in MappingAlgorithm::with_fixed_marker() {
-        let runs = RunSampler::new(plans().unwrap(), 1, Faults::None, 3, 1.0, algorithm);
-        for run in runs.judged(0..4, &laser_robots(ScannerParams::PLAIN), &()) {
-            assert_eq!(run.ending, RunOutcome::Right, "{}", run.case.plan_name);
-            assert_eq!(run.moves[0], run.moves[1]);
-        }
-    }
-}
-
-#[test]
-#[ignore = "a long sweep, for `.ci/run --all`"]
-fn buildings_are_mapped_by_a_scanner_that_does_not_see_all_round() {
-    let mut all = plans().unwrap();
-    all.extend((0..3).map(|seed| (format!("{seed}"), Arc::new(random_plan(seed).unwrap()))));
-    let algorithm = MappingAlgorithm::Folding;
-    for field_of_view in [180.0, 240.0, 270.0] {
-        let params = ScannerParams { field_of_view, ..ScannerParams::PLAIN };
-        let runs = RunSampler::new(all.clone(), 1, Faults::None, 1, 1.0, algorithm);
-        for run in runs.judged(0..all.len() as u64, &laser_robots(params), &()) {
+fn buildings_are_mapped_by_laser_also_if_the_scanner_does_not_see_all_round() {
+    let [algorithm1, folding] = [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding];
+    for (plans, seed, algorithm, field_of_view) in [
+        (plans().unwrap(), 3, algorithm1, 360.0),
+        (plans().unwrap(), 3, folding, 360.0),
+        (with_random(3), 1, folding, 180.0),
+        (with_random(3), 1, folding, 240.0),
+        (with_random(3), 1, folding, 270.0),
+    ] {
+        let equipment =
+            RobotEquipment::Laser(ScannerParams { field_of_view, ..ScannerParams::PLAIN });
+        let count = plans.len() as u64;
+        let runs = RunSampler::new(plans, 1, 0, seed, 1.0, algorithm);
+        for run in sample(0..count, &(), |number| runs.run(number, &equipment, &())) {
             let what = format!("{} with {field_of_view} degrees", run.case.plan_name);
             assert_eq!(run.ending, RunOutcome::Right, "{what}");
+            assert_eq!(run.moves[0], run.moves[1], "{what}");
         }
     }
 }
@@ -140,17 +132,6 @@ fn a_run_with_a_look_around_is_repeated_from_its_recording() {
     let again = offline(&recording, sensor, &mut repeated, &settings).unwrap();
     assert_eq!(again.map(), run.mapping.map());
     assert!(repeated.commands == recording.commands, "other commands");
-}
-
-#[test]
-#[ignore = "a long sweep, for `.ci/run --all`"]
-fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
-    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
-    let robot = |config: &SimulationConfig| config.by_laser(&params);
-    let log = logged("laser-180.mcap", robot, RobotSensor::Laser(Box::default()));
-    let recorded = visits_in(&log, Evidence::Recorded);
-    assert!(recorded.len() >= 4, "{recorded:?}");
-    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
 }
 
 /// A floor plan whose hallways are long enough for arms: shape 8, 16 m a hallway.
@@ -175,42 +156,33 @@ fn logged(
     let head = messages::Run { world: "long-8".to_owned(), ..messages::Run::default() };
     let mut recorder = Recorder::new(file, &head, None).unwrap();
     let algorithm = MappingAlgorithm::Algorithm1;
-    let run = run(
-        &plan,
-        facing,
-        robot(&config),
-        sensor,
-        &mut recorder,
-        &RunSettings::new(algorithm, 200),
-    );
+    let settings = RunSettings::new(algorithm, 200);
+    let run = run(&plan, facing, robot(&config), sensor, &mut recorder, &settings);
     assert_eq!(run.outcome(), RunOutcome::Right);
     recorder.finish().unwrap();
     path
 }
 
 /// The degree of each junction with at least three doors, and the door taken.
-fn visits(events: &RunEvents) -> Vec<(u32, Option<u32>)> {
-    let mut visits: Vec<(u32, Option<u32>)> = Vec::new();
-    for event in &events.events {
-        match &event.kind {
-            CheckedKind::Arrival { arrival, .. } => visits.push((arrival.degree, None)),
-            CheckedKind::Door { door: Door(door), .. } => {
-                visits.last_mut().unwrap().1 = Some(*door);
-            }
-            _ => {}
-        }
-    }
-    visits.retain(|(degree, _)| *degree >= 3);
-    visits
-}
-
 fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
     let log = Log::open(log).unwrap();
     let mapping = TopicMap::from_log(&log).unwrap();
     let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
     let run = extract(&log, &mapping, &config, &()).unwrap();
     assert!(run.scans > 0 || evidence != Evidence::Laser);
-    visits(&run.events)
+    let visits = laser::visits(&run.events).into_iter();
+    visits
+        .filter_map(|(degree, door)| Some((degree.filter(|&degree| degree >= 3)?, door)))
+        .collect()
+}
+
+/// Checks that the evidence in a log shows the visits that the log records.
+fn shows(log: &Path, evidence: &[Evidence]) {
+    let recorded = visits_in(log, Evidence::Recorded);
+    assert!(recorded.len() >= 4, "{recorded:?}");
+    for &evidence in evidence {
+        assert_eq!(visits_in(log, evidence), recorded, "{evidence:?}");
+    }
 }
 
 #[test]
@@ -218,21 +190,20 @@ fn the_scans_of_a_run_show_the_visits_that_it_records() {
     // Among furniture and people some visits are missed: `evaluate laser` measures how many.
     let sensor = RobotSensor::Laser(Box::default());
     let robot = |config: &SimulationConfig| config.by_laser(&ScannerParams::PLAIN);
-    let log = logged("laser-plain.mcap", robot, sensor);
-    let recorded = visits_in(&log, Evidence::Recorded);
-    assert!(recorded.len() >= 4, "{recorded:?}");
-    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
+    shows(&logged("laser-plain.mcap", robot, sensor), &[Evidence::Laser]);
+    let params = ScannerParams::default();
+    let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
+    let both = [Evidence::Scenes, Evidence::Laser];
+    shows(&logged("camera-and-laser.mcap", robot, NoSensor), &both);
 }
 
 #[test]
-fn a_log_with_camera_and_laser_can_be_judged_by_either() {
-    let params = ScannerParams::default();
-    let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
-    let log = logged("camera-and-laser.mcap", robot, NoSensor);
-    let recorded = visits_in(&log, Evidence::Recorded);
-    assert!(recorded.len() >= 4, "{recorded:?}");
-    assert_eq!(visits_in(&log, Evidence::Scenes), recorded);
-    assert_eq!(visits_in(&log, Evidence::Laser), recorded);
+#[ignore = "a long sweep, for `.ci/run --all`"]
+fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
+    let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
+    let robot = |config: &SimulationConfig| config.by_laser(&params);
+    let log = logged("laser-180.mcap", robot, RobotSensor::Laser(Box::default()));
+    shows(&log, &[Evidence::Laser]);
 }
 
 /// A scanner that does not see behind remembers what it saw on its way.

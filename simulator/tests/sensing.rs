@@ -6,11 +6,12 @@
 use toposlam_simulator::{
     LOOKS,
     evaluation::{
-        calibration::Calibration,
-        judge::Judge,
+        judge::{Calibration, Judge},
         judged_view::{JudgedView, Zone},
-        report::{TargetStatus, VisionReport},
+        report::TargetStatus,
+        sampling::sample,
         verdict::{MarkerVerdict, PlaceVerdict},
+        vision_report,
     },
     view_sampler::ViewSampler,
 };
@@ -21,7 +22,7 @@ const VIEWS: u64 = 240;
 const VISITS: u64 = 16;
 
 fn views() -> ViewSampler {
-    ViewSampler { random_plans: true, ..ViewSampler::of(&LOOKS, [640, 480], 2024).unwrap() }
+    ViewSampler { random_plans: true, ..ViewSampler::from_looks(&LOOKS, [640, 480], 2024).unwrap() }
 }
 
 /// The number of views in a zone, and the number of right ones.
@@ -38,7 +39,9 @@ fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
 fn sensing_is_never_wrong_and_seldom_unknown() {
     let views = views();
     let judge = Judge::new(&Camera::superscout(), &views, &[Calibration::Right], &()).unwrap();
-    let judged = judge.views(&views, 0..VIEWS, Calibration::Right, &()).unwrap();
+    let judged = sample(0..VIEWS, &(), |number| {
+        Some(judge.view(views.view(number).unwrap(), Calibration::Right).unwrap())
+    });
     for judged in &judged {
         assert!(!judged.verdict.is_wrong(), "{judged:#?}");
         assert_ne!(judged.marker, MarkerVerdict::Phantom, "{judged:#?}");
@@ -49,15 +52,16 @@ fn sensing_is_never_wrong_and_seldom_unknown() {
     let least = [59, 99, 51, 23, 6];
     let enough = counted.iter().zip(least).all(|((_, right), least)| *right >= least);
     assert!(enough, "of each, and right: {counted:?}");
-    let visits = judge.visits(&views, 0..VISITS, Calibration::Right, &()).unwrap();
+    let visits = sample(0..VISITS, &(), |number| {
+        judge.visit(views.visit(number).unwrap(), Calibration::Right, &()).unwrap()
+    });
     let decided = visits.iter().filter(|visit| visit.decided.is_some());
     assert!(decided.clone().count() >= 15, "{}", decided.count());
     for visit in decided {
         assert_eq!(visit.decided, Some((visit.form, visit.percept)), "{visit:#?}");
     }
-    let errors = VisionReport::of(&judged, &visits, Calibration::Right).errors;
-    for errors in errors {
+    for errors in vision_report::figures(&judged, &visits, Calibration::Right).errors {
         // These views are too few to show some targets.
-        assert_ne!(errors.standing(), TargetStatus::Missed, "{errors:?}");
+        assert_ne!(errors.status(), TargetStatus::Missed, "{errors:?}");
     }
 }

@@ -16,7 +16,7 @@ const FILES: &str = "--calibration camera.toml --colours colours.toml";
 static SENSING: LazyLock<[String; 2]> = LazyLock::new(|| {
     let camera = Camera::superscout().sized(SIZE);
     let look = BuildingLook::named("laboratory").unwrap();
-    let mut views = ViewSampler::of([look], SIZE, 3).unwrap();
+    let mut views = ViewSampler::from_looks([look], SIZE, 3).unwrap();
     views.plans.retain(|(name, _)| name == "shape-6");
     let colours = learned(&views, look, &camera, &Rig::new(&camera), &()).unwrap();
     [calibration::to_toml(&camera), colours.to_toml()]

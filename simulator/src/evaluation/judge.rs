@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    f64::consts::TAU,
     sync::{Mutex, PoisonError},
 };
 
@@ -20,39 +21,35 @@ use toposlam_vision::{
 };
 
 use super::{
-    calibration::{Calibration, wrong_rigs},
     judged_view::{JudgedView, JudgedVisit},
-    parallel::in_turn,
     verdict::{judge, judge_marker},
 };
 use crate::{
-    BuildingLook, Rig,
-    colour_learning::{LearningError, learned},
-    rendered_view::RenderedView,
+    LearnedSensors, Rig, RigErrors,
+    learned_sensors::LearningError,
     truth::{JunctionTruth, Truth},
+    view_sampler::RenderedView,
     view_sampler::{ViewError, ViewSampler},
 };
 
-/// Why views cannot be judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Calibration {
+    Right,
+    /// The mirror's centre is 5 pixels off (in an image 1280 wide), the camera is 2 cm too high or
+    /// too low, and its axis leans by one degree.
+    Wrong,
+}
+
 #[derive(Debug, Error)]
 pub enum JudgingError {
-    /// The colours were not learned.
     #[error(transparent)]
     Learning(#[from] LearningError),
-    /// The view cannot be sampled.
     #[error(transparent)]
     View(#[from] ViewError),
-    /// The image has another size than the camera.
     #[error(transparent)]
     Size(#[from] WrongSize),
-    /// The view is not on the floor.
     #[error("view {number} of {plan} is not on the floor")]
-    OffTheFloor {
-        /// The number of the view.
-        number: u64,
-        /// Its plan.
-        plan: String,
-    },
+    OffTheFloor { number: u64, plan: String },
 }
 
 /// Rigs and sensors for each image size.
@@ -60,87 +57,32 @@ pub struct Judge {
     stations: BTreeMap<[u32; 2], Station>,
 }
 
-/// What belongs to one image size.
 struct Station {
-    right: Rig,
+    sensors: LearnedSensors,
     wrong: Vec<Rig>,
-    /// One for each look.
-    sensors: Vec<Sensors>,
-}
-
-/// The sensors for one look, one for each thread at work.
-struct Sensors {
-    look: &'static str,
-    model: Sensor,
-    idle: Mutex<Vec<Sensor>>,
+    /// The sensors that no thread uses at the moment, and their looks.
+    idle: Mutex<Vec<(&'static str, Sensor)>>,
 }
 
 impl Judge {
     /// Learns the colours of all looks of the views, for all image sizes, with a calibrated camera.
-    ///
-    /// # Errors
-    /// Returns an error if the colours cannot be learned, or if the watch stops.
     pub fn new(
         camera: &Camera,
         views: &ViewSampler,
         calibrations: &[Calibration],
         watch: &dyn Watch,
     ) -> Result<Self, JudgingError> {
-        watch.parts(views.sizes.len() * views.looks.len());
         let station = |&size: &[u32; 2]| {
             let camera = camera.sized(size);
-            let right = Rig::new(&camera);
-            let sensors = views.looks.par_iter().map(|look| {
-                let sensors = Sensors::new(views, look, &camera, &right, watch);
-                watch.part_done(1);
-                sensors
-            });
-            let sensors = sensors.collect::<Result<_, LearningError>>()?;
-            let wrong = if calibrations.contains(&Calibration::Wrong) {
-                wrong_rigs(&camera)
-            } else {
-                Vec::new()
-            };
-            Ok((size, Station { right, wrong, sensors }))
+            let sensors = LearnedSensors::from_views(&camera, views, watch)?;
+            let is_wrong = calibrations.contains(&Calibration::Wrong);
+            let wrong = if is_wrong { wrong_rigs(&camera) } else { Vec::new() };
+            Ok((size, Station { sensors, wrong, idle: Mutex::default() }))
         };
         Ok(Self { stations: views.sizes.iter().map(station).collect::<Result<_, JudgingError>>()? })
     }
 
-    /// Judges views by their numbers on all threads. The result does not depend on the number of
-    /// threads. If the watch stops, some are missing.
-    ///
-    /// # Errors
-    /// Returns an error if a view cannot be sampled or judged.
-    pub fn views(
-        &self,
-        views: &ViewSampler,
-        numbers: std::ops::Range<u64>,
-        calibration: Calibration,
-        watch: &dyn Watch,
-    ) -> Result<Vec<JudgedView>, JudgingError> {
-        in_turn(numbers, watch, |number| self.view(views.view(number)?, calibration))
-    }
-
-    /// Judges visits by their numbers, as [`Self::views`] does.
-    ///
-    /// # Errors
-    /// Returns an error if a visit cannot be sampled or judged.
-    pub fn visits(
-        &self,
-        views: &ViewSampler,
-        numbers: std::ops::Range<u64>,
-        calibration: Calibration,
-        watch: &dyn Watch,
-    ) -> Result<Vec<JudgedVisit>, JudgingError> {
-        let visits =
-            in_turn(numbers, watch, |number| self.visit(views.visit(number)?, calibration, watch))?;
-        Ok(visits.into_iter().flatten().collect())
-    }
-
     /// Judges one view.
-    ///
-    /// # Errors
-    /// Returns an error if the view is not on the floor.
     pub fn view(
         &self,
         view: RenderedView,
@@ -151,9 +93,6 @@ impl Judge {
     }
 
     /// Judges one visit. Returns `None` if it has no images, or if the watch stops.
-    ///
-    /// # Errors
-    /// Returns an error if a view is not on the floor.
     pub fn visit(
         &self,
         views: Vec<RenderedView>,
@@ -172,26 +111,21 @@ impl Judge {
         let building = last.building();
         let rig = self.rig(last, calibration);
         let mut judged = Vec::with_capacity(views.len());
+        let mut visit = JunctionEstimate::default();
         for view in views {
             if watch.stop() {
                 return Ok(None);
             }
             let image = view.render(rig, &building);
-            judged.push(self.judged(view, &image)?);
-        }
-        let views = judged;
-        let mut visit = JunctionEstimate::default();
-        for view in &views {
+            let view = self.judged(view, &image)?;
             visit.see(&view.scene);
+            judged.push(view);
         }
         let decided = visit.form().zip(visit.percept());
-        Ok(Some(JudgedVisit { views, form, percept, decided }))
+        Ok(Some(JudgedVisit { views: judged, form, percept, decided }))
     }
 
     /// The image of a view, its scene, and a picture of each processing stage.
-    ///
-    /// # Errors
-    /// Returns an error if the image does not have one of the sizes.
     pub fn stages(
         &self,
         view: &RenderedView,
@@ -210,51 +144,57 @@ impl Judge {
         Ok(JudgedView { view, truth, scene, verdict, marker })
     }
 
-    fn station(&self, view: &RenderedView) -> &Station {
-        &self.stations[&view.image]
-    }
-
     fn rig(&self, view: &RenderedView, calibration: Calibration) -> &Rig {
-        let station = self.station(view);
-        match calibration {
-            Calibration::Wrong if !station.wrong.is_empty() => {
-                &station.wrong[(view.seeds[0] % station.wrong.len() as u64) as usize]
-            }
-            Calibration::Right | Calibration::Wrong => &station.right,
+        let Station { sensors, wrong, .. } = &self.stations[&view.image];
+        let number = view.seeds[0].checked_rem(wrong.len() as u64);
+        match (calibration, number) {
+            (Calibration::Wrong, Some(number)) => &wrong[number as usize],
+            _ => sensors.rig(),
         }
     }
 
-    fn with_sensor<R>(&self, view: &RenderedView, work: impl FnOnce(&mut Sensor) -> R) -> R {
-        let sensors = &self.station(view).sensors;
-        let mine = sensors.iter().find(|sensors| sensors.look == view.look.name);
-        mine.unwrap_or(&sensors[0]).with(work)
-    }
-}
-
-impl Sensors {
-    fn new(
-        views: &ViewSampler,
-        look: &'static BuildingLook,
-        camera: &Camera,
-        rig: &Rig,
-        watch: &dyn Watch,
-    ) -> Result<Self, LearningError> {
-        let colours = learned(views, look, camera, rig, watch)?;
-        let model = Sensor::new(camera, &colours);
-        Ok(Self { look: look.name, model, idle: Mutex::default() })
-    }
-
     /// Calls a function with a sensor that no other thread uses meanwhile.
-    fn with<R>(&self, work: impl FnOnce(&mut Sensor) -> R) -> R {
-        let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        let taken = idle().pop();
-        let mut sensor = taken.unwrap_or_else(|| self.model.clone());
+    fn with_sensor<R>(&self, view: &RenderedView, work: impl FnOnce(&mut Sensor) -> R) -> R {
+        let Station { sensors, idle, .. } = &self.stations[&view.image];
+        let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let look = view.look.name;
+        let taken = {
+            let mut idle = idle();
+            let known = idle.iter().position(|(other, _)| *other == look);
+            known.map(|known| idle.swap_remove(known).1)
+        };
+        let mut sensor = taken.unwrap_or_else(|| sensors.sensor(view.look));
         let result = work(&mut sensor);
-        idle().push(sensor);
+        idle().push((look, sensor));
         result
     }
 }
 
 fn off_the_floor(view: &RenderedView) -> JudgingError {
     JudgingError::OffTheFloor { number: view.number, plan: view.plan_name.clone() }
+}
+
+const WRONG_RIGS: usize = 6;
+/// Offset of the mirror's centre, as a share of the image's width.
+const CENTRE_OFF: f64 = 5.0 / 1280.0;
+/// Error of the camera's height, in metres.
+const HEIGHT_OFF: f64 = 0.02;
+/// Tilt of the axis, in degrees.
+const TILT: f64 = 1.0;
+
+/// Rigs whose cameras differ from the calibration, each in another direction and by as much.
+fn wrong_rigs(camera: &Camera) -> Vec<Rig> {
+    let rig = |number: usize| {
+        let (v, u) = (TAU * (number as f64 * (1.0 / WRONG_RIGS as f64) + 0.11)).sin_cos();
+        let centre = CENTRE_OFF * f64::from(camera.image[0]);
+        let errors = RigErrors {
+            tilt: TILT.to_radians(),
+            // The golden section keeps directions of tilt and centre from repeating together.
+            towards: TAU * number as f64 * 0.618_034,
+            centre: [centre * u, centre * v],
+            height: if number.is_multiple_of(2) { HEIGHT_OFF } else { -HEIGHT_OFF },
+        };
+        Rig::with_errors(camera, &errors)
+    };
+    (0..WRONG_RIGS).into_par_iter().map(rig).collect()
 }

@@ -1,21 +1,23 @@
 //! Judged views and visits.
 
+use std::fmt;
+
 use toposlam_model::{
-    driving::{scene::Scene, visit::JunctionShape},
+    driving::{
+        scene::{Place, Scene},
+        visit::JunctionShape,
+    },
     percept::Percept,
 };
 
-use super::{
-    scene_class::SceneClass,
-    verdict::{MarkerVerdict, PlaceVerdict},
-};
+use super::verdict::{MarkerVerdict, PlaceVerdict};
 use crate::{
-    rendered_view::RenderedView,
     truth::{MarkerTruth, Truth},
+    view_sampler::RenderedView,
 };
 
 /// The zone of a view. Different targets apply in different zones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zone {
     /// 1.5 m or more from every junction.
     Hallway,
@@ -35,56 +37,42 @@ const PAST: f64 = 0.1;
 /// A view with its ground truth, its scene and the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedView {
-    /// The view.
     pub view: RenderedView,
-    /// The ground truth.
     pub truth: Truth,
-    /// The scene.
     pub scene: Scene,
-    /// The verdict on the place.
     pub verdict: PlaceVerdict,
-    /// The verdict on the marker.
     pub marker: MarkerVerdict,
 }
 
-/// A judged visit to a junction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedVisit {
-    /// Its views.
     pub views: Vec<JudgedView>,
     /// The true shape of the junction, seen from its entry.
     pub form: JunctionShape,
-    /// The true percept.
     pub percept: Percept,
     /// The shape and percept that were decided, once two images agreed.
     pub decided: Option<(JunctionShape, Percept)>,
 }
 
-impl Zone {
-    /// The zone of a view with this ground truth.
-    #[must_use]
-    pub fn of(truth: &Truth) -> Self {
-        match truth {
-            Truth::Hallway(_) => Self::Hallway,
-            Truth::Between(..) => Self::Between,
+impl JudgedView {
+    pub fn zone(&self) -> Zone {
+        match &self.truth {
+            Truth::Hallway(_) => Zone::Hallway,
+            Truth::Between(..) => Zone::Between,
             Truth::Junction(junction) => match junction.distance() {
-                None => Self::Turned,
-                Some(distance) if distance >= -PAST => Self::Before,
-                Some(_) => Self::Past,
+                None => Zone::Turned,
+                Some(distance) if distance >= -PAST => Zone::Before,
+                Some(_) => Zone::Past,
             },
         }
     }
-}
 
-impl JudgedView {
-    /// The view's zone.
-    #[must_use]
-    pub fn zone(&self) -> Zone {
-        Zone::of(&self.truth)
+    /// Whether sensing should be right: the view is in a hallway, or of a junction up to its turning point.
+    pub fn counts(&self) -> bool {
+        matches!(self.zone(), Zone::Hallway | Zone::Before)
     }
 
     /// The true class; `None` if several answers are right.
-    #[must_use]
     pub fn class(&self) -> Option<SceneClass> {
         match &self.truth {
             Truth::Hallway(_) => Some(SceneClass::Hallway),
@@ -94,25 +82,56 @@ impl JudgedView {
     }
 
     /// The marker, if it should be seen: the robot is approaching its L and near enough.
-    #[must_use]
     pub fn marker_ahead(&self) -> Option<MarkerTruth> {
         let marker = self.view.marker()?;
-        let junction = match &self.truth {
-            Truth::Junction(junction) => std::slice::from_ref(junction),
-            Truth::Between(_, junctions) => junctions.as_slice(),
-            Truth::Hallway(_) => &[],
-        };
         let vertex = self.view.plan.graph().vertex(self.view.marker?);
-        let here = junction.iter().any(|junction| junction.vertex == vertex);
-        let distance = marker.distance.filter(|distance| (0.2..=0.8).contains(distance));
-        (here && distance.is_some()).then_some(marker)
+        let is_here = self.truth.junctions().iter().any(|junction| junction.vertex == vertex);
+        let is_near = marker.distance.is_some_and(|distance| (0.2..=0.8).contains(&distance));
+        (is_here && is_near).then_some(marker)
+    }
+
+    /// Whether a marker is reported where there is none, or with a wrong door.
+    pub fn has_wrong_marker(&self) -> bool {
+        matches!(self.marker, MarkerVerdict::Phantom | MarkerVerdict::Seen(Some(false)))
     }
 }
 
 impl JudgedVisit {
-    /// Whether another shape was decided.
-    #[must_use]
     pub fn is_wrong(&self) -> bool {
         self.decided.is_some_and(|(form, _)| form != self.form)
+    }
+}
+
+/// The class of a view or of a scene: a row or a column of a confusion matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SceneClass {
+    Hallway,
+    /// A junction, seen from its entry.
+    Junction(JunctionShape),
+    /// A junction with none of the [`JUNCTION_SHAPES`](toposlam_model::driving::visit::JUNCTION_SHAPES).
+    Other,
+    Unknown,
+}
+
+impl SceneClass {
+    pub fn from_scene(scene: &Scene) -> Self {
+        match &scene.place {
+            Place::Hallway(_) => Self::Hallway,
+            Place::Unknown(_) => Self::Unknown,
+            Place::Junction(junction) => JunctionShape::from_view(junction)
+                .filter(|shape| shape.name().is_some())
+                .map_or(Self::Other, Self::Junction),
+        }
+    }
+}
+
+impl fmt::Display for SceneClass {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.pad(match *self {
+            Self::Hallway => "hallway",
+            Self::Junction(junction) => junction.name().unwrap_or("other"),
+            Self::Other => "other",
+            Self::Unknown => "unknown",
+        })
     }
 }

@@ -14,10 +14,7 @@ use toposlam_robot::{
     measured_hallway::log_noise, run_settings::RunSettings, superscout::MEASUREMENT_NOISE,
 };
 
-use super::{
-    parallel::made_in_turn,
-    run_sampler::{RunCase, RunSampler, dart_bound},
-};
+use super::run_sampler::{RobotCase, RunSampler, dart_bound};
 use crate::{
     RobotEquipment,
     run::{RunOutcome, explored, run},
@@ -29,8 +26,7 @@ pub const LENGTH_CHANGES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// The measurements of a run in which nothing happened.
 #[derive(Clone, Debug)]
 pub struct MeasuredRun {
-    /// The run.
-    pub case: RunCase,
+    pub case: RobotCase,
     /// The number of measured traversals.
     pub measured: usize,
     /// The number of those whose hallway was measured before.
@@ -42,19 +38,16 @@ pub struct MeasuredRun {
 /// The result of the tests with some uncertainty.
 #[derive(Clone, Debug)]
 pub struct MeasuredTest {
-    /// The false alarms.
     pub alarms: Vec<MeasurementContradiction>,
     /// For each of [`LENGTH_CHANGES`], whether a traversal is found if its length is changed by as much; `None`
     /// without a traversal. It is any of the run.
     pub found: [Option<bool>; 4],
 }
 
-/// The algorithm of the runs.
 const ALGORITHM: MappingAlgorithm = MappingAlgorithm::Algorithm1;
 
 impl RunSampler {
     /// The least number of runs with as many traversals as this.
-    #[must_use]
     pub fn runs_with(&self, traversals: u64) -> u64 {
         let mut moves = 0;
         let mut runs = 0;
@@ -68,17 +61,31 @@ impl RunSampler {
         runs
     }
 
-    /// Measures the hallways in runs by their numbers on all threads, with these sensors. Runs that do not end right
-    /// are missing, and some if the watch stops.
-    #[must_use]
+    /// Makes the run with this number, and measures its hallways. Returns `None` if it does not end right, or if the
+    /// watch stops.
     pub fn measured(
         &self,
-        numbers: std::ops::Range<u64>,
+        number: u64,
         equipment: &RobotEquipment,
         watch: &dyn Watch,
-    ) -> Vec<MeasuredRun> {
-        let case = |number| self.case(number);
-        made_in_turn(numbers, watch, case, |case| measured(case, equipment, watch))
+    ) -> Option<MeasuredRun> {
+        let case = self.case(number)?;
+        let (plan, marker) = (case.config.plan.clone(), case.config.marker);
+        let (robot, sensor) = equipment.robot(&case.config, number);
+        let mut recorder = Recorder::default();
+        let observer = (&mut recorder, StoppedBy(watch));
+        let settings = RunSettings::new(ALGORITHM, dart_bound(&plan));
+        let run = run(&plan, marker, robot, sensor, observer, &settings);
+        if run.outcome() != RunOutcome::Right {
+            return None;
+        }
+        let events = RunEvents { events: recorder.0.finish(), ..RunEvents::default() };
+        let visits = events.measured_visits()?;
+        let factor = case.config.noise;
+        let tests = [MEASUREMENT_NOISE.times(factor, factor), log_noise()]
+            .map(|noise| MeasuredTest::new(&visits, &noise, case.config.seed));
+        let check = MeasurementCheck::new(&visits, &MEASUREMENT_NOISE);
+        Some(MeasuredRun { case, measured: check.measured, compared: check.compared, tests })
     }
 }
 
@@ -96,27 +103,6 @@ impl RunObserver for Recorder {
             kind => self.0.observe(source, kind),
         }
     }
-}
-
-/// Makes a run. Returns `None` if it does not end right.
-fn measured(case: RunCase, equipment: &RobotEquipment, watch: &dyn Watch) -> Option<MeasuredRun> {
-    let (plan, marker) = (case.config.plan.clone(), case.config.marker);
-    let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let mut recorder = Recorder::default();
-    let observer = (&mut recorder, StoppedBy(watch));
-    let settings = RunSettings::new(ALGORITHM, dart_bound(&plan));
-    let run = run(&plan, marker, robot, sensor, observer, &settings);
-    if run.outcome() != RunOutcome::Right {
-        return None;
-    }
-    let events = RunEvents { events: recorder.0.finish(), ..RunEvents::default() };
-    let visits = events.measured_visits()?;
-    let factor = case.config.noise;
-    let tests = [MEASUREMENT_NOISE.times(factor, factor), log_noise()]
-        .map(|noise| MeasuredTest::new(&visits, &noise, case.config.seed));
-    let MeasurementCheck { measured, compared, .. } =
-        MeasurementCheck::new(&visits, &MEASUREMENT_NOISE);
-    Some(MeasuredRun { case, measured, compared, tests })
 }
 
 impl MeasuredTest {
@@ -149,20 +135,24 @@ fn is_found(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{evaluation::run_sampler::Faults, plans, question_limit::QuestionLimit};
+    use crate::{evaluation::sampling::sample, plans, question_limit::QuestionLimit};
 
     fn sampler() -> RunSampler {
-        RunSampler::new(plans().unwrap(), 2, Faults::None, 1, 1.0, ALGORITHM)
+        RunSampler::new(plans().unwrap(), 2, 0, 1, 1.0, ALGORITHM)
+    }
+
+    fn measured(runs: u64) -> Vec<MeasuredRun> {
+        let sampler = sampler();
+        sample(0..runs, &(), |number| sampler.measured(number, &RobotEquipment::Scenes, &()))
     }
 
     #[test]
     fn a_change_by_4_m_is_found_and_one_by_nothing_is_not() {
-        let runs = sampler().measured(0..20, &RobotEquipment::Scenes, &());
+        let runs = measured(20);
         assert_eq!(runs.len(), 20);
         for test in [0, 1] {
             let tests = || runs.iter().map(move |run| &run.tests[test]);
-            let alarms: usize = tests().map(|test| test.alarms.len()).sum();
-            assert_eq!(alarms, 0);
+            assert_eq!(tests().map(|test| test.alarms.len()).sum::<usize>(), 0);
             let found =
                 |change: usize| tests().filter(|test| test.found[change] == Some(true)).count();
             let cases = tests().filter(|test| test.found[3].is_some()).count();
@@ -177,16 +167,13 @@ mod tests {
         let sampler = sampler();
         assert_eq!((sampler.runs_with(0), sampler.runs_with(1)), (0, 1));
         let runs = sampler.runs_with(300);
-        let measured = |runs: u64| {
-            let runs = sampler.measured(0..runs, &RobotEquipment::Scenes, &());
-            runs.iter().map(|run| run.measured as u64).sum::<u64>()
-        };
-        assert!(measured(runs) >= 300 && measured(runs - 1) < 300, "{runs}");
+        let traversals = |runs: u64| measured(runs).iter().map(|run| run.measured).sum::<usize>();
+        assert!(traversals(runs) >= 300 && traversals(runs - 1) < 300, "{runs}");
     }
 
     #[test]
     fn a_run_that_is_stopped_is_not_measured() {
         let limited = QuestionLimit::at(3);
-        assert!(sampler().measured(0..1, &RobotEquipment::Scenes, &limited).is_empty());
+        assert!(sampler().measured(0, &RobotEquipment::Scenes, &limited).is_none());
     }
 }

@@ -1,7 +1,5 @@
 //! Whole runs on many plans, from several starts, with and without faults. Section 6.
 
-use std::sync::Arc;
-
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_logs::record::StoppedBy;
@@ -14,9 +12,8 @@ use toposlam_model::{
 };
 use toposlam_robot::{explorer::ExplorerError, run_settings::RunSettings};
 
-use super::parallel::made_in_turn;
 use crate::{
-    FAULTS, FaultKind, RobotEquipment, RobotFault, SimulationConfig,
+    FAULTS, FaultKind, NamedPlan, RobotEquipment, RobotFault, SimulationConfig,
     run::{RunOutcome, WayToMarker, explored, run},
     starts_of,
 };
@@ -24,41 +21,29 @@ use crate::{
 /// All runs of a seed: the same number of starts in each plan.
 #[derive(Clone, Debug)]
 pub struct RunSampler {
-    plans: Vec<(String, Arc<FloorPlan>)>,
+    plans: Vec<NamedPlan>,
     /// The index of the plan, and the facing dart.
-    starts: Vec<(usize, Dart)>,
+    pub starts: Vec<(usize, Dart)>,
     seed: u64,
     noise: f64,
-    faults: Faults,
+    /// The number of faults in each run. The kinds take turns.
+    faults: u32,
     method: MappingMethod,
 }
 
-/// Whether faults are injected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Faults {
-    /// No faults.
-    None,
-    /// This number of faults in each run. The kinds take turns.
-    Each(u32),
-}
-
-/// A run to make.
+/// A robot in a plan.
 #[derive(Clone, Debug)]
-pub struct RunCase {
-    /// Its number among the runs of the seed.
+pub struct RobotCase {
+    /// Its number among the samples of the seed.
     pub number: u64,
-    /// The plan's name.
     pub plan_name: String,
     /// The robot and its surroundings.
     pub config: SimulationConfig,
 }
 
-/// A finished run.
 #[derive(Clone, Debug)]
 pub struct JudgedRun {
-    /// The run.
-    pub case: RunCase,
-    /// Its outcome.
+    pub case: RobotCase,
     pub ending: RunOutcome,
     /// Whether at the end the robot can come to its marker.
     pub way_to_marker: WayToMarker,
@@ -75,25 +60,23 @@ pub struct JudgedRun {
 }
 
 impl JudgedRun {
-    /// Whether a fault of this kind was injected.
-    #[must_use]
     pub fn has_fault(&self, kind: FaultKind) -> bool {
         self.case.config.faults.iter().any(|fault| fault.kind == kind)
     }
 
-    /// The darts of the map whose hallways are blocked.
-    #[must_use]
     pub fn blocked(&self) -> &[Dart] {
         self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
     }
 
+    pub fn audit_moves(&self) -> u64 {
+        self.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves)
+    }
+
     /// Whether the map or the pose is wrong, and the robot could have detected it and did not. Without an audit, a
     /// robot cannot detect that it was carried to a place that looks the same.
-    #[must_use]
     pub fn is_violation(&self) -> bool {
-        let audits = self.mapped.as_ref().is_some_and(|mapped| mapped.audit_moves > 0);
         matches!(self.ending, RunOutcome::Wrong(_))
-            && (audits || !self.has_fault(FaultKind::Carried))
+            && (self.audit_moves() > 0 || !self.has_fault(FaultKind::Carried))
     }
 }
 
@@ -105,16 +88,15 @@ const FRAMES_A_MOVE: u64 = 16;
 impl RunSampler {
     /// The runs of a seed in these plans. Plans without an L are left out, because the marker needs
     /// one. A plan with fewer starts than `starts` is mapped from all of them.
-    #[must_use]
     pub fn new(
-        plans: Vec<(String, Arc<FloorPlan>)>,
+        plans: Vec<NamedPlan>,
         starts: usize,
-        faults: Faults,
+        faults: u32,
         seed: u64,
         noise: f64,
         method: impl Into<MappingMethod>,
     ) -> Self {
-        let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
+        let some = |(number, (_, plan)): (usize, &NamedPlan)| {
             let all = starts_of(plan);
             let wanted = starts.min(all.len());
             // Evenly spread starts, with another first one in each plan.
@@ -125,75 +107,52 @@ impl RunSampler {
         Self { plans, starts, seed, noise, faults, method: method.into() }
     }
 
-    /// The number of starts.
-    #[must_use]
-    pub fn starts(&self) -> usize {
-        self.starts.len()
-    }
-
-    /// The run with this number; `None` without starts.
-    #[must_use]
-    pub fn case(&self, number: u64) -> Option<RunCase> {
+    /// The run with this number, before it is made; `None` without starts.
+    pub fn case(&self, number: u64) -> Option<RobotCase> {
         let start = number.checked_rem(self.starts.len() as u64)?;
         let (plan, facing) = self.starts[start as usize];
         let (plan_name, plan) = self.plans[plan].clone();
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
         let mut config = SimulationConfig::at_start(plan, facing, chance.next_u64());
         config.noise = self.noise;
-        if let Faults::Each(count) = self.faults {
+        if self.faults > 0 {
             let moves = explored(&config.plan, facing, self.method.algorithm(), DEFAULT_DART_BOUND);
-            for nth in 0..u64::from(count) {
+            for nth in 0..u64::from(self.faults) {
                 let (kind, ..) = FAULTS[((number + nth * nth) % FAULTS.len() as u64) as usize];
                 let frame = chance.random_range(2..=FRAMES_A_MOVE * moves.max(1));
                 config.faults.push(RobotFault::at(kind, frame));
             }
         }
-        Some(RunCase { number, plan_name, config })
+        Some(RobotCase { number, plan_name, config })
     }
 
-    /// Makes runs by their numbers on all threads, with these sensors. If the watch stops, some are
-    /// missing.
-    #[must_use]
-    pub fn judged(
+    /// Makes the run with this number. Returns `None` without starts, or if the watch stops.
+    pub fn run(
         &self,
-        numbers: std::ops::Range<u64>,
+        number: u64,
         equipment: &RobotEquipment,
         watch: &dyn Watch,
-    ) -> Vec<JudgedRun> {
-        made_in_turn(
-            numbers,
-            watch,
-            |number| self.case(number),
-            |case| judged(case, equipment, self.method, watch),
-        )
+    ) -> Option<JudgedRun> {
+        let case = self.case(number)?;
+        let SimulationConfig { plan, marker, .. } = case.config.clone();
+        let (robot, sensor) = equipment.robot(&case.config, number);
+        let settings = RunSettings::new(self.method, dart_bound(&plan));
+        let run = run(&plan, marker, robot, sensor, StoppedBy(watch), &settings);
+        let ending = run.outcome();
+        if let RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })) = ending {
+            return None;
+        }
+        Some(JudgedRun {
+            case,
+            ending,
+            way_to_marker: run.way_to_marker,
+            moves: [run.moves, run.explore_moves],
+            certificate_moves: certificate_length(plan.graph(), marker) as u64,
+            mapped: run.mapped,
+            seconds: run.seconds,
+            frames: run.frames,
+        })
     }
-}
-
-/// Makes a run. Returns `None` if the watch stops.
-fn judged(
-    case: RunCase,
-    equipment: &RobotEquipment,
-    method: MappingMethod,
-    watch: &dyn Watch,
-) -> Option<JudgedRun> {
-    let SimulationConfig { plan, marker, .. } = case.config.clone();
-    let (robot, sensor) = equipment.robot(&case.config, case.number);
-    let settings = RunSettings::new(method, dart_bound(&plan));
-    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), &settings);
-    let ending = run.outcome();
-    let stopped =
-        matches!(ending, RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })));
-    let certificate_moves = certificate_length(plan.graph(), marker) as u64;
-    (!stopped).then_some(JudgedRun {
-        case,
-        ending,
-        way_to_marker: run.way_to_marker,
-        moves: [run.moves, run.explore_moves],
-        certificate_moves,
-        mapped: run.mapped,
-        seconds: run.seconds,
-        frames: run.frames,
-    })
 }
 
 /// The bound on the darts of a map, which stops a robot that maps places that do not exist.

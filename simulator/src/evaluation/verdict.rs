@@ -2,22 +2,27 @@
 
 use std::{f64::consts::FRAC_PI_4, fmt};
 
+use nalgebra::Point2;
 use toposlam_model::{
     driving::scene::{
         CentreLine, HallwayView, JunctionView, MarkerView, Place, Scene, undirected, wrapped,
     },
     floor_plan::JunctionKind,
 };
-use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
+use toposlam_vision::{
+    geometry::{distance, unit},
+    params::{MARKER_LENGTH, MARKER_WIDTH},
+};
 
-use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
+use crate::{
+    sample_verdict::SampleVerdict,
+    truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
+};
 
 /// The verdict on a scene's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PlaceVerdict {
-    /// It is right.
     Right,
-    /// The scene is unknown.
     Unknown,
     /// A junction was reported as a hallway.
     HallwayForJunction,
@@ -30,14 +35,19 @@ pub enum PlaceVerdict {
 }
 
 impl PlaceVerdict {
-    /// Whether the scene is wrong: neither right nor unknown.
-    #[must_use]
     pub fn is_wrong(self) -> bool {
-        !matches!(self, Self::Right | Self::Unknown)
+        self.verdict() == SampleVerdict::Wrong
+    }
+
+    pub fn verdict(self) -> SampleVerdict {
+        match self {
+            Self::Right => SampleVerdict::Right,
+            Self::Unknown => SampleVerdict::Undecided,
+            _ => SampleVerdict::Wrong,
+        }
     }
 }
 
-/// The errors of a hallway in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallwayErrors {
     /// Error of the direction, in radians.
@@ -46,7 +56,6 @@ pub struct HallwayErrors {
     pub sides: [f64; 2],
 }
 
-/// The errors of a junction in a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionErrors {
     /// For each centre line, clockwise from the entry door: its distance from the true turning
@@ -70,8 +79,6 @@ pub enum MarkerVerdict {
 /// The greatest distance of a reported marker from the border of the true one, in metres.
 const MARKER_OFF: f64 = 0.15;
 
-/// The verdict on a scene's place.
-#[must_use]
 pub fn judge(truth: &Truth, scene: &Scene) -> PlaceVerdict {
     match (truth, &scene.place) {
         (_, Place::Unknown(_)) => PlaceVerdict::Unknown,
@@ -125,8 +132,6 @@ fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
     None
 }
 
-/// The errors of a hallway in a scene.
-#[must_use]
 pub fn hallway_errors(truth: &HallwayTruth, view: &HallwayView) -> HallwayErrors {
     // The view may have the opposite direction.
     let turned = (truth.heading - view.heading).cos() < 0.0;
@@ -138,21 +143,18 @@ pub fn hallway_errors(truth: &HallwayTruth, view: &HallwayView) -> HallwayErrors
 }
 
 /// The errors of a junction in a scene; `None` if the doors are not its doors.
-#[must_use]
 pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<JunctionErrors> {
     let doors = same_doors(truth, view)?;
-    let [x, y] = truth.turning_point;
+    let point = Point2::from(truth.turning_point);
     let lines = doors.iter().zip(&view.doors).map(|(door, line)| {
-        let [east, north] = [x - line.through[0], y - line.through[1]];
-        let off = (north * line.direction.cos() - east * line.direction.sin()).abs();
+        let off = unit(line.direction).perp(&(point - Point2::from(line.through))).abs();
         (off, wrapped(line.direction - door).abs())
     });
-    let [u, v] = view.turning_point;
-    Some(JunctionErrors { lines: lines.collect(), turning_point: (x - u).hypot(y - v) })
+    let turning_point = distance(point, view.turning_point);
+    Some(JunctionErrors { lines: lines.collect(), turning_point })
 }
 
 /// The verdict on a scene's marker, given the true marker, if there is one.
-#[must_use]
 pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> MarkerVerdict {
     match (truth, seen) {
         (_, None) => MarkerVerdict::NotSeen,
@@ -163,12 +165,10 @@ pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> M
     }
 }
 
-/// Whether a position is on the marker or near it.
-fn is_on(marker: &MarkerTruth, [x, y]: [f64; 2]) -> bool {
-    let [u, v] = [x - marker.position[0], y - marker.position[1]];
-    let (sine, cosine) = marker.axis.sin_cos();
-    let [along, across] = [u * cosine + v * sine, v * cosine - u * sine].map(f64::abs);
-    along <= MARKER_LENGTH / 2.0 + MARKER_OFF && across <= MARKER_WIDTH / 2.0 + MARKER_OFF
+fn is_on(marker: &MarkerTruth, position: [f64; 2]) -> bool {
+    let (axis, off) = (unit(marker.axis), Point2::from(position) - Point2::from(marker.position));
+    axis.dot(&off).abs() <= MARKER_LENGTH / 2.0 + MARKER_OFF
+        && axis.perp(&off).abs() <= MARKER_WIDTH / 2.0 + MARKER_OFF
 }
 
 impl fmt::Display for PlaceVerdict {
@@ -233,47 +233,43 @@ mod tests {
     }
 
     #[test]
-    fn at_a_junction_kind_and_entry_decide() {
-        let truth = Truth::Junction(junction(&[PI, FRAC_PI_2], ENTERED));
-        assert_eq!(says(&truth, &[PI - 0.3, FRAC_PI_2 + 0.2]), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[-PI + 0.3, FRAC_PI_2]), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[FRAC_PI_2, PI]), PlaceVerdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI]), PlaceVerdict::WrongKind);
-        assert_eq!(says(&truth, &[PI, FRAC_PI_2, 0.0]), PlaceVerdict::WrongKind);
-        let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
-        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::HallwayForJunction);
-        let place = Place::Unknown(Reason::FewWalls);
-        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::Unknown);
-    }
-
-    #[test]
-    fn after_a_turn_any_door_may_be_the_entry() {
-        let truth = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
-        assert_eq!(says(&truth, &[FRAC_PI_2, 0.0]), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[0.0, FRAC_PI_2]), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[0.0, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
-        assert_eq!(says(&truth, &[0.0]), PlaceVerdict::WrongKind);
-    }
-
-    #[test]
-    fn between_places_the_hallway_and_the_right_junction_are_right() {
+    fn the_verdict_depends_on_kind_and_entry_and_on_where_the_robot_is() {
+        let entered = Truth::Junction(junction(&[PI, FRAC_PI_2], ENTERED));
+        // After a turn any door may be the entry.
+        let turned = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
         let near = junction(&[PI, FRAC_PI_2], ENTERED);
-        let truth = Truth::Between(HALLWAY, vec![near.clone()]);
-        let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
-        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[PI, FRAC_PI_2]), PlaceVerdict::Right);
-        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI]), PlaceVerdict::WrongKind);
-        let other = junction(&[PI], ENTERED);
-        assert_eq!(says(&Truth::Between(HALLWAY, vec![near, other]), &[PI]), PlaceVerdict::Right);
-    }
-
-    #[test]
-    fn far_from_junctions_only_the_hallway_is_right() {
-        assert_eq!(says(&Truth::Hallway(HALLWAY), &[PI]), PlaceVerdict::JunctionForHallway);
-        let place = Place::Hallway(hallway(0.5, 0.1, 0.1));
-        assert_eq!(judge(&Truth::Hallway(HALLWAY), &scene(place)), PlaceVerdict::Right);
+        let between = Truth::Between(HALLWAY, vec![near.clone()]);
+        let two = Truth::Between(HALLWAY, vec![near, junction(&[PI], ENTERED)]);
+        let hallway_truth = Truth::Hallway(HALLWAY);
+        for (truth, doors, verdict) in [
+            (&entered, &[PI - 0.3, FRAC_PI_2 + 0.2][..], PlaceVerdict::Right),
+            (&entered, &[-PI + 0.3, FRAC_PI_2], PlaceVerdict::Right),
+            (&entered, &[FRAC_PI_2, PI], PlaceVerdict::WrongEntry),
+            (&entered, &[PI, -FRAC_PI_2], PlaceVerdict::WrongEntry),
+            (&entered, &[PI], PlaceVerdict::WrongKind),
+            (&entered, &[PI, FRAC_PI_2, 0.0], PlaceVerdict::WrongKind),
+            (&turned, &[FRAC_PI_2, 0.0], PlaceVerdict::Right),
+            (&turned, &[0.0, FRAC_PI_2], PlaceVerdict::Right),
+            (&turned, &[0.0, -FRAC_PI_2], PlaceVerdict::WrongEntry),
+            (&turned, &[0.0], PlaceVerdict::WrongKind),
+            (&between, &[PI, FRAC_PI_2], PlaceVerdict::Right),
+            (&between, &[PI, -FRAC_PI_2], PlaceVerdict::WrongEntry),
+            (&between, &[PI], PlaceVerdict::WrongKind),
+            (&two, &[PI], PlaceVerdict::Right),
+            (&hallway_truth, &[PI], PlaceVerdict::JunctionForHallway),
+        ] {
+            assert_eq!(says(truth, doors), verdict, "{truth:?} {doors:?}");
+        }
+        for (truth, verdict) in [
+            (&entered, PlaceVerdict::HallwayForJunction),
+            (&between, PlaceVerdict::Right),
+            (&hallway_truth, PlaceVerdict::Right),
+        ] {
+            let place = Place::Hallway(hallway(0.5, 0.1, 0.1));
+            assert_eq!(judge(truth, &scene(place)), verdict, "{truth:?}");
+        }
+        let unknown = Place::Unknown(Reason::FewWalls);
+        assert_eq!(judge(&entered, &scene(unknown)), PlaceVerdict::Unknown);
     }
 
     #[test]
@@ -312,19 +308,25 @@ mod tests {
             door: Some(Door(0)),
             distance: Some(0.5),
         };
-        let at = |x, y, door| MarkerView { position: [x, y], axis: 0.0, door };
-        let judged = |x, y, door| judge_marker(Some(&truth), Some(&at(x, y, door)));
-        assert_eq!(judged(0.5, 0.0, Some(Door(0))), MarkerVerdict::Seen(Some(true)));
-        assert_eq!(judged(0.9, 0.2, Some(Door(1))), MarkerVerdict::Seen(Some(false)));
-        assert_eq!(judged(0.9, 0.2, None), MarkerVerdict::Seen(None));
-        assert_eq!(judged(1.0, 0.0, None), MarkerVerdict::Phantom);
-        assert_eq!(judged(0.5, 0.3, None), MarkerVerdict::Phantom);
-        assert_eq!(judge_marker(None, Some(&at(0.5, 0.0, None))), MarkerVerdict::Phantom);
+        let at = |x, y, door: Option<u32>| MarkerView {
+            position: [x, y],
+            axis: 0.0,
+            door: door.map(Door),
+        };
+        let phantom = MarkerVerdict::Phantom;
+        for (x, y, door, verdict) in [
+            (0.5, 0.0, Some(0), MarkerVerdict::Seen(Some(true))),
+            (0.9, 0.2, Some(1), MarkerVerdict::Seen(Some(false))),
+            (0.9, 0.2, None, MarkerVerdict::Seen(None)),
+            (1.0, 0.0, None, phantom),
+            (0.5, 0.3, None, phantom),
+        ] {
+            assert_eq!(judge_marker(Some(&truth), Some(&at(x, y, door))), verdict, "{x} {y}");
+        }
+        assert_eq!(judge_marker(None, Some(&at(0.5, 0.0, None))), phantom);
         assert_eq!(judge_marker(Some(&truth), None), MarkerVerdict::NotSeen);
         let truth = MarkerTruth { door: None, ..truth };
-        assert_eq!(
-            judge_marker(Some(&truth), Some(&at(0.5, 0.0, Some(Door(1))))),
-            MarkerVerdict::Seen(None)
-        );
+        let seen = judge_marker(Some(&truth), Some(&at(0.5, 0.0, Some(1))));
+        assert_eq!(seen, MarkerVerdict::Seen(None));
     }
 }

@@ -1,6 +1,6 @@
 //! Options for rendered images: their size, the look of the building, and effects.
 
-use crate::{BuildingLook, EffectSettings, Effects, LOOKS};
+use crate::{BuildingLook, EffectSettings, Effects, LOOKS, view_sampler::WhichEffects};
 use clap::{
     ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
@@ -12,7 +12,6 @@ use toposlam_vision::camera::Camera;
 use toposlam_terminal::CliError;
 
 /// Width and height of images.
-#[allow(missing_docs, reason = "the names say it; a comment would be help")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ImageSize {
     #[value(name = "640x480")]
@@ -23,7 +22,6 @@ pub enum ImageSize {
 
 impl ImageSize {
     /// The name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Small => "640x480",
@@ -32,22 +30,12 @@ impl ImageSize {
     }
 
     /// Width and height.
-    #[must_use]
     pub fn pixels(self) -> [u32; 2] {
         match self {
             Self::Small => [640, 480],
             Self::Large => [1280, 960],
         }
     }
-}
-
-/// The effects of a rendered image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum EffectsChoice {
-    /// Draw each effect from its default range
-    Default,
-    /// No effects
-    None,
 }
 
 /// The look of a building, and the effects that make its images harder to read.
@@ -58,43 +46,35 @@ pub struct Appearance {
     pub look: &'static BuildingLook,
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: EffectsChoice,
+    effects: WhichEffects,
     /// Set one effect (repeatable); they are listed by `toposlam draw --help`
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<EffectSetting>,
 }
 
-/// An effect's name and value.
 pub type EffectSetting = (String, f64);
 
 impl Appearance {
     /// The options that differ from the defaults.
-    #[must_use]
     pub fn arguments(&self) -> Vec<(&'static str, String)> {
         let look = (self.look.name != LOOKS[0].name).then(|| ("--look", self.look.name.to_owned()));
         let none =
-            matches!(self.effects, EffectsChoice::None).then(|| ("--effects", "none".to_owned()));
+            matches!(self.effects, WhichEffects::None).then(|| ("--effects", "none".to_owned()));
         let set = self.effect.iter().map(|(name, value)| ("--effect", format!("{name}={value}")));
         look.into_iter().chain(none).chain(set).collect()
     }
 
     /// The effects drawn from a seed.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn effects(&self, seed: u64) -> Result<Effects, CliError> {
         let effects = match self.effects {
-            EffectsChoice::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
-            EffectsChoice::None => Effects::plain(),
+            WhichEffects::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
+            WhichEffects::None => Effects::plain(),
         };
         Ok(settings(&self.effect)?.applied(effects))
     }
 }
 
 /// Settings of effects by name.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn settings(given: &[EffectSetting]) -> Result<EffectSettings, CliError> {
     for (index, (name, _)) in given.iter().enumerate() {
         if given[..index].iter().any(|(earlier, _)| earlier == name) {
@@ -106,17 +86,12 @@ pub fn settings(given: &[EffectSetting]) -> Result<EffectSettings, CliError> {
 }
 
 /// The camera as effects make it.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn camera_with(effects: &Effects, camera: &Camera) -> Result<Camera, CliError> {
     effects.camera(camera).ok_or_else(|| {
         CliError::at("--effect", "zoom and off-centre need a camera with a spherical mirror")
     })
 }
 
-/// Parses the name of a look.
-#[must_use]
 pub fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
     let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
     PossibleValuesParser::new(looks).try_map(|name| {
@@ -125,9 +100,6 @@ pub fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
 }
 
 /// Parses the setting of an effect.
-///
-/// # Errors
-/// Returns an error with its place and cause.
 pub fn read_setting(text: &str) -> Result<EffectSetting, String> {
     let setting = text
         .split_once('=')

@@ -6,9 +6,6 @@ pub mod robot_sensor;
 use crate::MotionNoise;
 
 /// Parses the noise of a simulated robot, as a multiple of the default.
-///
-/// # Errors
-/// Returns an error if it is not a number, or too much.
 pub fn noise(text: &str) -> Result<f64, String> {
     let most = MotionNoise::MOST;
     match text.parse() {

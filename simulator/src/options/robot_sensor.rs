@@ -10,7 +10,6 @@ use clap::{
 
 use toposlam_terminal::{CliError, input};
 
-/// The sensors of a simulated robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SensorChoice {
     /// A camera
@@ -23,7 +22,6 @@ pub enum SensorChoice {
 
 impl SensorChoice {
     /// The name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Camera => "camera",
@@ -33,9 +31,6 @@ impl SensorChoice {
     }
 
     /// The parameters of the laser scanner, if there is one.
-    ///
-    /// # Errors
-    /// Returns an error with its place and cause.
     pub fn scanner(self, path: Option<&Path>) -> Result<Option<ScannerParams>, CliError> {
         match (self, path) {
             (Self::Camera, Some(_)) => {
@@ -48,7 +43,6 @@ impl SensorChoice {
     }
 }
 
-/// Parses the sensor of a robot that has one.
 pub fn one_sensor() -> impl TypedValueParser<Value = SensorChoice> {
     let choices = [SensorChoice::Camera, SensorChoice::Laser];
     PossibleValuesParser::new(choices.map(SensorChoice::name)).map(|name| match name.as_str() {
@@ -57,16 +51,11 @@ pub fn one_sensor() -> impl TypedValueParser<Value = SensorChoice> {
     })
 }
 
-/// The failure of an option that needs a camera.
-#[must_use]
 pub fn needs_camera(option: &str) -> CliError {
     CliError::at(option, "has no effect with --sensor laser: the robot has no camera")
 }
 
 /// Reads the parameters of a simulated laser scanner.
-///
-/// # Errors
-/// Returns an error if the file cannot be read, or a parameter is wrong.
 pub fn read_scanner(path: &Path) -> Result<ScannerParams, CliError> {
     let bytes = input::read(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| CliError::in_file(path, error))?;

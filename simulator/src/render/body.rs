@@ -29,7 +29,6 @@ const OPEN_AT: f32 = 2.6;
 const STRUT_AT: f32 = 0.055;
 const STRUT_FOOT: f32 = 0.03;
 
-/// A part of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RobotPart {
     Lens,
@@ -42,7 +41,6 @@ pub(crate) enum RobotPart {
     Screen,
 }
 
-/// The parts of the robot that are visible in one image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
     seen: bool,
@@ -119,7 +117,6 @@ impl Body {
         })
     }
 
-    /// The part of the open laptop that a ray meets.
     fn on_open_laptop(&self, ray: &PixelRay) -> Option<RobotPart> {
         // It is visible only in rays that go down at least this steeply.
         if self.laptop == 0.0 || ray.by == RayPath::Direct || ray.direction[2] > -0.5 {
@@ -168,7 +165,6 @@ fn at_height(ray: &PixelRay, height: f32) -> [f32; 2] {
 }
 
 impl RobotPart {
-    /// The reflectance of the part.
     pub(crate) fn colour(self) -> [f32; 3] {
         match self {
             Self::Lens => [0.01, 0.01, 0.015],

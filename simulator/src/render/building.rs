@@ -82,7 +82,6 @@ pub(crate) struct Face {
     things: [usize; 2],
 }
 
-/// A thing on a stretch of a wall.
 #[derive(Clone, Copy, Debug)]
 struct Thing {
     kind: Kind,
@@ -104,7 +103,6 @@ enum Kind {
     },
 }
 
-/// A visible part of a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WallPart {
     Bare,
@@ -119,7 +117,6 @@ impl Building {
     /// along the dart's hallway.
     ///
     /// Only effects with the scope `Building` matter. The same seed gives the same building.
-    #[must_use]
     pub fn new(
         plan: &FloorPlan,
         look: &BuildingLook,
@@ -184,26 +181,20 @@ impl Building {
         }
     }
 
-    /// Its look.
-    #[must_use]
     pub fn look(&self) -> &BuildingLook {
         &self.look
     }
 
-    /// Its walls.
-    #[must_use]
     pub fn walls(&self) -> &[BuildingWall] {
         &self.walls
     }
 
     /// Where the marker lies.
-    #[must_use]
     pub fn marker(&self) -> Option<Rectangle> {
         self.marker
     }
 
     /// Whether there is floor at a position.
-    #[must_use]
     pub fn has_floor(&self, position: [f64; 2]) -> bool {
         self.floors.iter().any(|floor| floor.holds(position))
     }
@@ -241,7 +232,6 @@ impl Building {
         part
     }
 
-    /// The reflectance of a part of a wall.
     pub(crate) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
         match part {
             WallPart::Bare => self.colours.wall,
@@ -280,7 +270,6 @@ impl Building {
         self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
-    /// The reflectance of the stripe.
     pub(crate) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
         if self.scuffs == 0.0 {
             return self.colours.stripe;
@@ -294,14 +283,12 @@ impl Building {
         })
     }
 
-    /// The reflectance of tape at a place.
     pub(crate) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
         self.scuffed(place[0], place[1])
     }
 }
 
 impl Face {
-    /// The area in which tape of this width may lie along the wall.
     fn tape(&self, width: f64) -> Rectangle {
         let plane = f64::from(self.plane);
         let inner = plane + f64::from(self.floor_side) * width;
@@ -372,7 +359,6 @@ fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
     }
 }
 
-/// The marker's rectangle at a dart's junction.
 fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
     let position = plan.junction(plan.graph().vertex(dart)).position;
     let along = plan.direction(dart).vector();

@@ -17,7 +17,6 @@ const STEP: f64 = 0.15;
 const COLOURS: [[f32; 3]; 4] =
     [[0.012, 0.012, 0.012], [0.030, 0.030, 0.032], [0.160, 0.160, 0.165], [0.620, 0.610, 0.580]];
 
-/// A straight piece of a cable.
 #[derive(Clone, Copy, Debug)]
 struct CablePiece {
     from: [f32; 2],
@@ -26,7 +25,6 @@ struct CablePiece {
     colour: [f32; 3],
 }
 
-/// The cables on the floor.
 #[derive(Clone, Debug)]
 pub(crate) struct Cables {
     pieces: Vec<CablePiece>,
@@ -48,7 +46,6 @@ impl Cables {
         Self { near: Squares::new(floors, 0.25, &around), pieces }
     }
 
-    /// The colour of the cable at a place.
     #[inline]
     pub(crate) fn at(&self, place: [f32; 2]) -> Option<[f32; 3]> {
         if self.pieces.is_empty() {

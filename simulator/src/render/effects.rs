@@ -20,13 +20,11 @@ pub enum EffectScope {
 pub struct Knob {
     /// The name on the command line.
     pub name: &'static str,
-    /// Its scope.
     pub scope: EffectScope,
     /// Its meaning and unit.
     pub about: &'static str,
     /// The value without effect.
     pub plain: f64,
-    /// The allowed values.
     pub allowed: RangeInclusive<f64>,
     /// The range from which [`Effects::drawn`] draws.
     pub default: RangeInclusive<f64>,
@@ -34,33 +32,17 @@ pub struct Knob {
 
 impl Knob {
     /// Whether [`Effects::drawn`] leaves it at its plain value.
-    #[must_use]
     pub fn is_fixed(&self) -> bool {
         self.default == (self.plain..=self.plain)
     }
 }
 
-/// Why an effect cannot be set.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KnobError {
-    /// There is no effect with this name.
     #[error("there is no effect `{name}`; the effects are {}", names())]
-    Unknown {
-        /// The name.
-        name: String,
-    },
-    /// The value is out of range.
+    Unknown { name: String },
     #[error("`{name}` is {value}; it must be from {least} to {greatest}")]
-    OutOfRange {
-        /// The effect.
-        name: &'static str,
-        /// The value.
-        value: f64,
-        /// The least value.
-        least: f64,
-        /// The greatest value.
-        greatest: f64,
-    },
+    OutOfRange { name: &'static str, value: f64, least: f64, greatest: f64 },
 }
 
 fn names() -> String {
@@ -69,13 +51,11 @@ fn names() -> String {
 
 macro_rules! knobs {
     ($($field:ident $name:literal $of:ident $plain:literal $allowed:expr, $default:expr, $about:literal;)*) => {
-        /// The values of all effects.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects {
             $(#[doc = $about] pub $field: f64,)*
         }
 
-        /// All effects.
         pub const KNOBS: &[Knob] = &[$(Knob {
             name: $name,
             scope: EffectScope::$of,
@@ -86,8 +66,6 @@ macro_rules! knobs {
         },)*];
 
         impl Effects {
-            /// No effects.
-            #[must_use]
             pub const fn plain() -> Self {
                 Self { $($field: $plain,)* }
             }
@@ -171,37 +149,17 @@ knobs! {
 
 impl Effects {
     /// Draws every effect from its default range.
-    #[must_use]
     pub fn drawn(rng: &mut impl Rng) -> Self {
         let mut effects = Self::plain();
-        effects.draw(rng, |_| true);
-        effects
-    }
-
-    /// Effects for another image of the same building: only the image's effects are drawn again.
-    #[must_use]
-    pub fn of_another_image(&self, rng: &mut impl Rng) -> Self {
-        let mut effects = self.clone();
-        effects.draw(rng, |knob| knob.scope == EffectScope::Image);
-        effects
-    }
-
-    fn draw(&mut self, rng: &mut impl Rng, which: impl Fn(&Knob) -> bool) {
-        for (knob, value) in KNOBS.iter().zip(self.values()) {
-            if knob.is_fixed() {
-                continue;
-            }
-            // Always draw, so that the value of one effect does not depend on which others are
-            // used.
-            let drawn = rng.random_range(knob.default.clone());
-            if which(knob) {
-                *value = drawn;
+        for (knob, value) in KNOBS.iter().zip(effects.values()) {
+            if !knob.is_fixed() {
+                *value = rng.random_range(knob.default.clone());
             }
         }
+        effects
     }
 
     /// The camera as `zoom` and `off-centre` make it; `None` if it has no mirror that they could crop.
-    #[must_use]
     pub fn camera(&self, camera: &Camera) -> Option<Camera> {
         if [self.zoom - 1.0, self.off_centre].into_iter().all(|off| off.abs() < f64::EPSILON) {
             return Some(camera.clone());
@@ -222,15 +180,11 @@ impl Effects {
     }
 
     /// All effects and their values.
-    #[must_use]
     pub fn settings(&self) -> Vec<(&'static Knob, f64)> {
         KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob, *value)).collect()
     }
 
     /// Sets an effect.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such effect or the value is out of range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), KnobError> {
         let Some((knob, place)) = KNOBS.iter().zip(self.values()).find(|(k, _)| k.name == name)
         else {
@@ -251,9 +205,6 @@ pub struct EffectSettings(Vec<(&'static Knob, f64)>);
 
 impl EffectSettings {
     /// Settings by the names of effects.
-    ///
-    /// # Errors
-    /// Returns an error as [`Effects::set`] does.
     pub fn new<'n>(settings: impl IntoIterator<Item = (&'n str, f64)>) -> Result<Self, KnobError> {
         let mut effects = Effects::plain();
         let settings = settings.into_iter().map(|(name, value)| {
@@ -266,7 +217,6 @@ impl EffectSettings {
     }
 
     /// These effects with the settings.
-    #[must_use]
     pub fn applied(&self, mut effects: Effects) -> Effects {
         for (place, knob) in effects.values().into_iter().zip(KNOBS) {
             let set = self.0.iter().rev().find(|(other, _)| other.name == knob.name);
@@ -291,17 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn effects_have_unique_names_and_allowed_ranges() {
-        for (number, knob) in KNOBS.iter().enumerate() {
-            assert!(KNOBS[..number].iter().all(|other| other.name != knob.name));
-            for value in [knob.default.start(), knob.default.end(), &knob.plain] {
-                assert!(knob.allowed.contains(value), "{}", knob.name);
-            }
-        }
-    }
-
-    #[test]
-    fn effects_are_drawn_from_their_default_ranges() {
+    fn effects_have_unique_names_and_are_drawn_from_their_ranges() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
         let mut earlier = Effects::plain();
         for _ in 0..100 {
@@ -312,32 +252,25 @@ mod tests {
             assert_ne!(effects, earlier);
             earlier = effects;
         }
-    }
-
-    #[test]
-    fn another_image_has_the_same_building() {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
-        let mut effects = Effects::drawn(&mut rng);
-        let mut other = effects.of_another_image(&mut rng);
-        let values = effects.values().into_iter().zip(other.values());
-        for (knob, (value, other)) in KNOBS.iter().zip(values) {
-            let same = value.total_cmp(other).is_eq();
-            let random = knob.default.start() < knob.default.end();
-            assert_eq!(same, knob.scope == EffectScope::Building || !random, "{}", knob.name);
+        for (number, knob) in KNOBS.iter().enumerate() {
+            assert!(KNOBS[..number].iter().all(|other| other.name != knob.name));
+            for value in [knob.default.start(), knob.default.end(), &knob.plain] {
+                assert!(knob.allowed.contains(value), "{}", knob.name);
+            }
         }
-    }
-
-    #[test]
-    fn effects_that_are_off_by_default_take_no_random_numbers() {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
-        let mut counted = rng.clone();
-        let _ = Effects::drawn(&mut rng);
-        let fixed = ["furniture", "cables", "dark-rim", "laptop", "strut-width", "holder", "zoom"];
-        let fixed = fixed.into_iter().chain(["off-centre"]);
-        for knob in KNOBS.iter().filter(|knob| fixed.clone().all(|name| name != knob.name)) {
-            let _: f64 = counted.random_range(knob.default.clone());
-        }
-        assert_eq!(rng, counted);
+        // Those that are off by default take no random numbers.
+        let fixed = KNOBS.iter().filter(|knob| knob.is_fixed()).map(|knob| knob.name);
+        let expected = [
+            "furniture",
+            "cables",
+            "dark-rim",
+            "laptop",
+            "strut-width",
+            "holder",
+            "zoom",
+            "off-centre",
+        ];
+        assert_eq!(fixed.collect::<Vec<_>>(), expected);
     }
 
     #[test]

@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use rand::{Rng, RngExt, seq::IndexedRandom};
-use toposlam_model::floor_plan::BuildingWall;
+use toposlam_model::{driving::scene::wrapped, floor_plan::BuildingWall};
 
 use crate::render::{
     random_stream::{StreamPurpose, about, stream},
+    rig::WorldRay,
     sight_lines::TURN_ERROR,
-    world_ray::WorldRay,
 };
 
 /// The room between two pieces of furniture, and beside the ends of a wall, in metres.
@@ -38,7 +38,6 @@ const COLOURS: [[f32; 3]; 7] = [
 /// y, its bottom and its top.
 const SHADES: [f32; 6] = [0.55, 0.55, 0.70, 0.70, 0.15, 1.0];
 
-/// A block with sides along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Block {
     least: [f32; 3],
@@ -46,7 +45,6 @@ pub(crate) struct Block {
     colour: [f32; 3],
 }
 
-/// A ray's first block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MetBlock {
     /// The length of the ray.
@@ -85,7 +83,6 @@ pub(crate) fn furniture(
     blocks
 }
 
-/// The kind of a piece of furniture.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Cabinet,
@@ -211,8 +208,7 @@ impl<'a> BlocksAround<'a> {
             }
             sectors.resize(SECTORS.into(), Vec::new());
             let angles = block.corners().map(|[x, y]| (y - place[1]).atan2(x - place[0]));
-            let off =
-                angles.map(|angle| (angle - angles[0] + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0);
+            let off = angles.map(|angle| wrapped(angle - angles[0]));
             let rounded = TURN_ERROR as f64 / 65_536.0 * TAU;
             let slack = (off_axis / near).min(1.0).asin() + rounded;
             let sector = |angle: f64| (angle / TAU * f64::from(SECTORS)).floor() as i64;
@@ -225,7 +221,6 @@ impl<'a> BlocksAround<'a> {
         Self { blocks, sectors }
     }
 
-    /// The first block that a ray meets.
     #[inline]
     pub(crate) fn first(&self, ray: &WorldRay) -> Option<MetBlock> {
         let mut nearest: Option<(f32, u32, u32)> = None;

@@ -7,40 +7,36 @@ use toposlam_vision::colour::PixelClass;
 use crate::render::{
     building::{Building, WallPart},
     effects::Effects,
+    optics::RayPath,
     renderer::Shot,
-    rig::Rig,
+    rig::{PixelRay, Rig},
     sight_lines::SightLines,
     surfaces::Surface,
 };
 
 /// The class of the middle of each pixel, row by row: [`PixelClass::Unseen`] on the robot, its
 /// struts and outside the mirror, and never [`PixelClass::Unknown`].
-#[must_use]
 pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<PixelClass> {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
     let [width, height] = rig.image();
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
-    pixels
-        .map(|(u, v)| match shot.surface(u, v) {
-            Surface::Floor => PixelClass::Floor,
-            Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => PixelClass::Stripe,
-            Surface::Marker => PixelClass::Marker,
-            Surface::Wall(..)
-            | Surface::Cable
-            | Surface::Furniture(_)
-            | Surface::Overhead(_)
-            | Surface::Ceiling
-            | Surface::Lamp
-            | Surface::Nothing => PixelClass::Other,
-            Surface::Robot(_) | Surface::Holder => PixelClass::Unseen,
-        })
-        .collect()
+    let class = |((u, v), ray): ((u32, u32), &PixelRay)| match shot
+        .seen(ray, [u as f32, v as f32], 1.0)
+        .0
+    {
+        _ if ray.by == RayPath::Direct => PixelClass::Unseen,
+        Surface::Robot(_) | Surface::Holder => PixelClass::Unseen,
+        Surface::Floor => PixelClass::Floor,
+        Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => PixelClass::Stripe,
+        Surface::Marker => PixelClass::Marker,
+        _ => PixelClass::Other,
+    };
+    pixels.zip(&rig.rays).map(class).collect()
 }
 
 /// The label image of these classes: floor green, stripe red, marker blue, ignored pixels white,
 /// anything else black.
-#[must_use]
 pub fn label_mask(rig: &Rig, classes: &[PixelClass]) -> RgbImage {
     let [width, height] = rig.image();
     let mut mask = RgbImage::new(width, height);

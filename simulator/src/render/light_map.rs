@@ -16,9 +16,9 @@ const ROWS: usize = 7;
 /// The light in a building; 1 is the mean light on the floor.
 #[derive(Clone, Debug)]
 pub(crate) struct LightMap {
-    floor: Mesh,
+    /// Nothing if the light is the same everywhere.
+    floor: Option<Mesh>,
     walls: Vec<Mesh>,
-    even: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -50,15 +50,8 @@ impl Mesh {
 
 impl LightMap {
     pub(crate) fn new(floors: &[Rectangle], walls: &[BuildingWall], lights: &Lights) -> Self {
-        let none = || Mesh {
-            least: [0.0; 2],
-            per_metre: [0.0; 2],
-            columns: 2,
-            rows: 2,
-            light: vec![1.0; 4],
-        };
         if lights.even() {
-            return Self { floor: none(), walls: Vec::new(), even: true };
+            return Self { floor: None, walls: Vec::new() };
         }
         let (least, size) = extent(floors);
         let side = side(MESH, size);
@@ -105,17 +98,17 @@ impl LightMap {
             light,
         };
         let walls = walls.iter().map(|wall| wall_mesh(wall, lights, average)).collect();
-        Self { floor, walls, even: false }
+        Self { floor: Some(floor), walls }
     }
 
     #[inline]
     pub(crate) fn on_floor(&self, place: [f32; 2]) -> f32 {
-        if self.even { 1.0 } else { self.floor.at(place) }
+        self.floor.as_ref().map_or(1.0, |floor| floor.at(place))
     }
 
     #[inline]
     pub(crate) fn on_wall(&self, wall: usize, along: f32, height: f32) -> f32 {
-        if self.even { 1.0 } else { self.walls[wall].at([along, height]) }
+        self.walls.get(wall).map_or(1.0, |wall| wall.at([along, height]))
     }
 }
 

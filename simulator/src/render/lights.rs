@@ -18,7 +18,6 @@ const LAMP_BRIGHTNESS: f64 = 6.0;
 /// Range of a lamp's light, in metres.
 const REACH: f64 = 6.0;
 
-/// A lamp in the ceiling.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lamp {
     pub(crate) middle: [f32; 2],
@@ -27,7 +26,6 @@ pub(crate) struct Lamp {
     pub(crate) brightness: f32,
 }
 
-/// A hot spot or a shadow on the floor.
 struct Spot {
     middle: [f64; 2],
     /// Half its extent along x and along y.
@@ -47,16 +45,13 @@ impl Spot {
     }
 }
 
-/// Lamps, spots and the walls near them.
 pub(crate) struct Lights {
     pub(crate) lamps: Vec<Lamp>,
     spots: Vec<Spot>,
-    /// The reach of each spot.
     spotted: Squares,
     falloff: f64,
     /// For each lamp, the walls that its light may meet.
     walls_near: Vec<Vec<BuildingWall>>,
-    /// The reach of each lamp.
     reaches: Squares,
 }
 
@@ -129,7 +124,6 @@ impl Lights {
         Self { lamps, spots, spotted, falloff: effects.lamp_falloff, walls_near, reaches }
     }
 
-    /// Whether the light is the same everywhere.
     pub(crate) fn even(&self) -> bool {
         self.falloff == 0.0 && self.spots.is_empty()
     }

@@ -23,7 +23,6 @@ mod rig;
 mod sight_lines;
 mod squares;
 mod surfaces;
-mod world_ray;
 
 pub use building::Building;
 pub use effects::{EffectScope, EffectSettings, Effects, KNOBS, Knob, KnobError};

@@ -6,9 +6,8 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Vector2, Vector3};
 use toposlam_vision::camera::{self, Camera, SeenFrom, SphericalMirror};
-
-type Vector = [f64; 3];
 
 /// The differences of a camera from its calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,23 +26,19 @@ pub struct RigErrors {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraRay {
     /// Its origin: on the mirror, or the pinhole.
-    pub origin: Vector,
+    pub origin: Vector3<f64>,
     /// Its direction, of length one.
-    pub direction: Vector,
+    pub direction: Vector3<f64>,
     /// Whether it was reflected by the mirror.
     pub by: RayPath,
 }
 
-/// The path of a ray to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayPath {
-    /// Reflected by the mirror.
     Mirror,
-    /// Past the mirror.
     Direct,
 }
 
-/// The optics of a camera with its errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RigOptics {
     pub(crate) image: [u32; 2],
@@ -55,7 +50,6 @@ pub(crate) struct RigOptics {
     errors: RigErrors,
 }
 
-/// The kind of camera.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
     UnderSphere(UnderSphere),
@@ -71,8 +65,8 @@ struct UnderSphere {
     radius: f64,
     distance: f64,
     /// The image's right and up, as directions in the plane of the floor.
-    right: [f64; 2],
-    up: [f64; 2],
+    right: Vector2<f64>,
+    up: Vector2<f64>,
 }
 
 impl RigOptics {
@@ -92,7 +86,6 @@ impl RigOptics {
         }
     }
 
-    /// The ray that a pixel sees.
     pub(crate) fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         let mut ray = match &self.kind {
             Kind::UnderSphere(rig) => {
@@ -100,28 +93,24 @@ impl RigOptics {
             }
             Kind::Single(camera) => {
                 let intended = [0, 1].map(|axis| pixel[axis] - self.errors.centre[axis]);
-                match camera.ray(intended) {
-                    Some(ray) => CameraRay {
-                        origin: [0.0; 3],
-                        direction: ray.direction.into(),
-                        by: RayPath::Mirror,
+                let origin = Vector3::zeros();
+                camera.ray(intended).map_or(
+                    CameraRay { origin, direction: Vector3::z(), by: RayPath::Direct },
+                    |ray| {
+                        let direction = ray.direction;
+                        CameraRay { origin, direction, by: RayPath::Mirror }
                     },
-                    None => CameraRay {
-                        origin: [0.0; 3],
-                        direction: [0.0, 0.0, 1.0],
-                        by: RayPath::Direct,
-                    },
-                }
+                )
             }
         };
         ray.origin = self.leaning(ray.origin);
-        ray.origin[2] += self.height;
+        ray.origin.z += self.height;
         ray.direction = self.leaning(ray.direction);
         ray
     }
 
     /// Turns a vector of the upright rig with the tilt of the axis.
-    fn leaning(&self, vector: Vector) -> Vector {
+    fn leaning(&self, vector: Vector3<f64>) -> Vector3<f64> {
         let RigErrors { tilt, towards, .. } = self.errors;
         if tilt == 0.0 {
             return vector;
@@ -130,7 +119,7 @@ impl RigOptics {
         let along = vector[0] * ahead + vector[1] * left;
         let across = vector[1] * ahead - vector[0] * left;
         let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
-        [along * ahead - across * left, along * left + across * ahead, up]
+        Vector3::new(along * ahead - across * left, along * left + across * ahead, up)
     }
 
     /// Radius of the view in the image, in pixels: the mirror's rim, or the image's corner.
@@ -156,6 +145,7 @@ impl UnderSphere {
             SeenFrom::Below => ([cosine, sine], [sine, -cosine]),
             SeenFrom::Above => ([cosine, -sine], [sine, cosine]),
         };
+        let [right, up] = [right, up].map(Vector2::from);
         Self {
             focal: mirror.focal,
             radius: mirror.mirror_radius,
@@ -168,60 +158,45 @@ impl UnderSphere {
     /// The ray of a pixel in the upright rig. The pixel is given from the centre, to the right and
     /// up.
     fn ray(&self, [right, top]: [f64; 2]) -> CameraRay {
-        let (across, upwards) = (right / self.focal, top / self.focal);
-        let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
-        let out = unit([x, y, 1.0]);
+        let out = right / self.focal * self.right + top / self.focal * self.up;
+        let out = unit(out.push(1.0));
         // The sphere's centre is straight above the pinhole, which is the origin here.
-        let middle = [0.0, 0.0, self.distance];
-        let along = dot(out, middle);
+        let middle = Vector3::new(0.0, 0.0, self.distance);
+        let along = out.dot(&middle);
         let beyond = along * along - (self.distance * self.distance - self.radius * self.radius);
         if beyond > 0.0 {
-            let met = scaled(out, along - beyond.sqrt());
-            let normal = scaled(minus(met, middle), 1.0 / self.radius);
-            let back = minus(out, scaled(normal, 2.0 * dot(out, normal)));
-            CameraRay { origin: met, direction: unit(back), by: RayPath::Mirror }
+            let origin = out * (along - beyond.sqrt());
+            let normal = (origin - middle) * (1.0 / self.radius);
+            let back = out - normal * (2.0 * out.dot(&normal));
+            CameraRay { origin, direction: unit(back), by: RayPath::Mirror }
         } else {
-            CameraRay { origin: [0.0; 3], direction: out, by: RayPath::Direct }
+            CameraRay { origin: Vector3::zeros(), direction: out, by: RayPath::Direct }
         }
     }
 }
 
 impl CameraRay {
     /// The place where it meets the floor, if nothing is in its way.
-    #[must_use]
     pub fn floor(&self) -> Option<[f64; 2]> {
-        let length = -self.origin[2] / self.direction[2];
-        (self.direction[2] < 0.0)
-            .then(|| [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis]))
+        let length = -self.origin.z / self.direction.z;
+        (self.direction.z < 0.0).then(|| (self.origin.xy() + length * self.direction.xy()).into())
     }
 
     /// Its direction as a share of a full turn from ahead to the left, in [0, 1).
     pub(crate) fn turn(&self) -> f64 {
-        (self.direction[1].atan2(self.direction[0]) / TAU).rem_euclid(1.0)
+        (self.direction.y.atan2(self.direction.x) / TAU).rem_euclid(1.0)
     }
 
     /// Its distance from the robot's axis, seen from above.
     pub(crate) fn off_axis(&self) -> f64 {
-        let [x, y, _] = self.direction;
-        let level = x.hypot(y);
-        if level == 0.0 { 0.0 } else { (self.origin[0] * y - self.origin[1] * x).abs() / level }
+        let level = self.direction.x.hypot(self.direction.y);
+        if level == 0.0 { 0.0 } else { self.origin.xy().perp(&self.direction.xy()).abs() / level }
     }
 }
 
-fn dot(one: Vector, other: Vector) -> f64 {
-    one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
-}
-
-fn scaled(vector: Vector, by: f64) -> Vector {
-    vector.map(|coordinate| coordinate * by)
-}
-
-fn minus(one: Vector, other: Vector) -> Vector {
-    [0, 1, 2].map(|axis| one[axis] - other[axis])
-}
-
-fn unit(vector: Vector) -> Vector {
-    scaled(vector, 1.0 / dot(vector, vector).sqrt())
+/// Not [`Vector3::normalize`], which rounds otherwise: images stay as they are to the byte.
+fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+    vector * (1.0 / vector.norm())
 }
 
 #[cfg(test)]
@@ -273,30 +248,26 @@ mod tests {
     fn rays_come_from_the_sphere_and_have_length_one() {
         let camera = Camera::superscout();
         let optics = RigOptics::new(&camera, &RigErrors { tilt: 0.02, ..RigErrors::default() });
-        let middle = optics.leaning([0.0, 0.0, 0.15]);
+        let middle = optics.leaning(Vector3::new(0.0, 0.0, 0.15)) + Vector3::new(0.0, 0.0, 0.90);
         for at in 0..200 {
             let ray = optics.ray([640.0 + f64::from(at) * 2.2, 480.0 - f64::from(at)]);
-            assert!((dot(ray.direction, ray.direction) - 1.0).abs() < 1e-12);
-            if ray.by == RayPath::Mirror {
-                let [x, y, z] = ray.origin;
-                let out = minus([x, y, z - 0.90], middle);
-                assert!((dot(out, out).sqrt() - 0.05).abs() < 1e-12);
-            }
+            assert!((ray.direction.norm() - 1.0).abs() < 1e-12);
+            let from_middle = (ray.origin - middle).norm();
+            assert!(ray.by == RayPath::Direct || (from_middle - 0.05).abs() < 1e-12);
         }
     }
 
     #[test]
     fn a_tilted_rig_sees_along_its_tilted_axis() {
-        let camera = Camera::superscout();
         let tilt = 0.05_f64;
         for towards in [0.0, FRAC_PI_2, 2.5] {
             let errors = RigErrors { tilt, towards, ..RigErrors::default() };
-            let ray = RigOptics::new(&camera, &errors).ray([640.0, 480.0]);
+            let ray = RigOptics::new(&Camera::superscout(), &errors).ray([640.0, 480.0]);
             // The axis passes through the pinhole, 0.9 m up. It meets the floor this far back.
             let back = 0.90 * tilt.tan();
             let [x, y] = ray.floor().unwrap();
-            assert!((x + back * towards.cos()).abs() < 1e-12, "{x}");
-            assert!((y + back * towards.sin()).abs() < 1e-12, "{y}");
+            let off = (x + back * towards.cos()).hypot(y + back * towards.sin());
+            assert!(off < 1e-12, "{towards}: {off}");
         }
     }
 
@@ -304,17 +275,15 @@ mod tests {
     fn errors_of_centre_and_height_move_the_view() {
         let camera = Camera::superscout();
         let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
-        let optics = RigOptics::new(&camera, &errors);
-        let mirror = SphericalMirror {
+        let [x, y] = RigOptics::new(&camera, &errors).ray([700.0, 300.0]).floor().unwrap();
+        let moved = SphericalMirror {
             centre: [644.0, 477.0].into(),
             camera_height: 0.92,
             ..mirror(&camera)
         };
-        let as_it_is =
-            Camera { optics: camera::OpticsModel::SphericalMirror(mirror), ..camera.clone() };
-        let (found, expected) =
-            (optics.ray([700.0, 300.0]).floor(), as_it_is.pixel_to_ground([700.0, 300.0]));
-        let ([x, y], expected) = (found.unwrap(), expected.unwrap());
+        let optics = camera::OpticsModel::SphericalMirror(moved);
+        let as_it_is = Camera { optics, ..camera };
+        let expected = as_it_is.pixel_to_ground([700.0, 300.0]).unwrap();
         assert!((x - expected.x).hypot(y - expected.y) < 1e-9);
     }
 }

@@ -6,7 +6,7 @@ use rand::{RngExt, seq::SliceRandom};
 
 use crate::render::{
     random_stream::{StreamPurpose, stream},
-    world_ray::WorldRay,
+    rig::WorldRay,
 };
 
 /// The number of directions in which there is furniture or none.
@@ -18,7 +18,6 @@ const WIDEST: usize = 4;
 /// Height of the lower edge of the furniture over its distance, seen from the mirror.
 const SLOPES: std::ops::RangeInclusive<f32> = -0.3..=0.8;
 
-/// Its reflectance.
 const SHADES: std::ops::RangeInclusive<f32> = 0.003..=0.010;
 
 /// Tall dark furniture around the robot, by direction: all that is seen above its lower edge is dark.
@@ -28,7 +27,6 @@ pub(crate) struct Overhead {
     cells: Vec<Option<OverheadPiece>>,
 }
 
-/// A piece of furniture with a flat front.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OverheadPiece {
     /// A number that is different for different pieces.
@@ -77,7 +75,6 @@ impl Overhead {
         Self { cells }
     }
 
-    /// The piece of furniture that a ray meets.
     #[inline]
     pub(crate) fn met(&self, ray: &WorldRay) -> Option<&OverheadPiece> {
         let [x, y, up] = ray.direction;

@@ -7,17 +7,11 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// The purpose of a stream. Each purpose has its own stream.
 #[derive(Clone, Copy, Debug)]
 pub enum StreamPurpose {
-    /// Where lamps are, and how bright they are.
     Lamps,
-    /// Spots of light on the floor.
     Spots,
-    /// Shadows on the floor.
     Shadows,
-    /// Gaps of the stripe.
     Gaps,
-    /// Doors in walls.
     Doors,
-    /// Posters on walls.
     Posters,
     /// The noise of the image sensor.
     Sensor,
@@ -25,28 +19,22 @@ pub enum StreamPurpose {
     Wheels,
     /// Errors of a camera without images.
     Scenes,
-    /// Faults of a robot.
     Faults,
-    /// Rooms beside corridors.
     Rooms,
     /// Furniture that a laser scanner sees.
     Furniture,
     /// Surfaces that give a laser scanner no return.
     Surfaces,
-    /// People who walk by.
     People,
-    /// The noise of ranges.
     Ranges,
     /// Furniture along walls.
     Blocks,
-    /// Cables on the floor.
     Cables,
     /// Pipes and struts above the floor.
     Overhead,
 }
 
 /// The stream of a seed for a purpose and an index, such as that of a wall.
-#[must_use]
 pub fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
     let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
     Xoshiro256PlusPlus::seed_from_u64(mixed)
@@ -86,7 +74,6 @@ pub(crate) fn floor(value: f32) -> i32 {
 
 /// Smooth noise from -1 to 1; its cells have side one.
 #[inline]
-#[must_use]
 pub fn clouds(x: f32, y: f32, salt: u32) -> f32 {
     let (left, low) = (floor(x), floor(y));
     let ease = |share: f32| share * share * (3.0 - 2.0 * share);

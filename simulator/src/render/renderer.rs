@@ -7,13 +7,12 @@ use crate::render::{
     body::Body,
     building::Building,
     effects::Effects,
-    exposure::{RowRenderer, compressed, expose},
+    exposure::{Light, compressed, expose},
     furniture::BlocksAround,
     optics::RayPath,
-    rig::{PixelRay, Rig},
+    rig::{PixelRay, Rig, WorldRay},
     sight_lines::SightLines,
     surfaces::{BuildingView, Surface},
-    world_ray::WorldRay,
 };
 
 /// The number of rays along and across a pixel in which several surfaces meet.
@@ -26,7 +25,6 @@ const BESIDE_MIRROR: f32 = 0.35;
 ///
 /// The same arguments give the same image, byte for byte. From a pose that is not on the floor, the
 /// image is meaningless.
-#[must_use]
 pub fn render(
     rig: &Rig,
     building: &Building,
@@ -38,7 +36,6 @@ pub fn render(
 }
 
 /// The image before it is compressed.
-#[must_use]
 pub fn exposed(
     rig: &Rig,
     building: &Building,
@@ -48,10 +45,9 @@ pub fn exposed(
 ) -> RgbImage {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
-    expose(&mut Rows::new(&shot), rig, effects, seed)
+    expose(shot.light(), rig, effects, seed)
 }
 
-/// A rig in a building, at a pose.
 pub(crate) struct Shot<'a> {
     rig: &'a Rig,
     view: BuildingView<'a>,
@@ -60,7 +56,6 @@ pub(crate) struct Shot<'a> {
     position: [f32; 2],
     heading: [f32; 2],
     turn: u16,
-    /// The light on the robot's body.
     light: f32,
     holder: f32,
 }
@@ -92,26 +87,34 @@ impl<'a> Shot<'a> {
         }
     }
 
-    /// The surface in the middle of a pixel.
-    pub(crate) fn surface(&self, u: u32, v: u32) -> Surface {
-        let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
-        let from_middle = || self.off_middle([u as f32, v as f32]);
-        if let Some(part) = self.body.met(ray, from_middle) {
-            Surface::Robot(part)
-        } else if ray.by == RayPath::Direct {
-            Surface::Holder
-        } else {
-            let ray = self.world(ray);
-            let overhead = self.view.building.overhead.met(&ray);
-            overhead
-                .map_or_else(|| self.view.surface(&ray), |piece| Surface::Overhead(piece.number))
-        }
+    /// The light of the image: one ray per pixel, and more rays where its neighbours show other surfaces.
+    fn light(&self) -> Light {
+        let [width, height] = self.rig.image().map(|length| length as usize);
+        let places = || (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
+        let seen = places().zip(&self.rig.rays).map(|((u, v), ray)| {
+            let (surface, light) = self.seen(ray, [u as f32, v as f32], 1.0);
+            (surface.number(), light)
+        });
+        let seen: Vec<_> = seen.collect();
+        let some =
+            (0..height).step_by(16).flat_map(|v| (0..width).step_by(16).map(move |u| (u, v)));
+        let mean = mean(some.map(|(u, v)| seen[v * width + u].1));
+        let pixels = places().flat_map(|(u, v)| {
+            let surface = |u: usize, v: usize| seen[v * width + u].0;
+            let (here, light) = seen[v * width + u];
+            let other = (here ^ surface(u, v.saturating_sub(1)))
+                | (here ^ surface(u, (v + 1).min(height - 1)))
+                | (here ^ surface(u.saturating_sub(1), v))
+                | (here ^ surface((u + 1).min(width - 1), v));
+            if other == 0 { light } else { self.finely(u, v) }
+        });
+        Light { pixels: pixels.collect(), mean }
     }
 
     /// The surface that a ray through a place in the image meets, and its light; for a pixel of
     /// this size.
     #[inline]
-    fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
+    pub(crate) fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
         if let Some(part) = self.body.met(ray, || self.off_middle(place)) {
             let light = self.light;
             return (Surface::Robot(part), part.colour().map(|channel| channel * light));
@@ -135,24 +138,15 @@ impl<'a> Shot<'a> {
         })
     }
 
-    /// The light at a pixel, as the mean of many rays.
     #[cold]
     fn finely(&self, u: usize, v: usize) -> [f32; 3] {
-        let mut sum = [0.0; 3];
         let bundle = Bundle::new(self.rig, u, v);
         let step = |number: usize| (number as f32 + 0.5) / FINE as f32 - 0.5;
-        for row in 0..FINE {
-            for column in 0..FINE {
-                let [right, down] = [step(column), step(row)];
-                let ray = bundle.ray(right, down);
-                let place = [u as f32 + right, v as f32 + down];
-                let (_, colour) = self.seen(&ray, place, 1.0 / FINE as f32);
-                for (sum, channel) in sum.iter_mut().zip(colour) {
-                    *sum += channel;
-                }
-            }
-        }
-        sum.map(|channel| channel / (FINE * FINE) as f32)
+        mean((0..FINE * FINE).map(|ray| {
+            let [right, down] = [step(ray % FINE), step(ray / FINE)];
+            let place = [u as f32 + right, v as f32 + down];
+            self.seen(&bundle.ray(right, down), place, 1.0 / FINE as f32).1
+        }))
     }
 
     fn off_middle(&self, place: [f32; 2]) -> f32 {
@@ -161,7 +155,6 @@ impl<'a> Shot<'a> {
         (u * u + v * v).sqrt()
     }
 
-    /// The ray in the building's coordinates.
     #[inline]
     fn world(&self, ray: &PixelRay) -> WorldRay {
         let [cosine, sine] = self.heading;
@@ -175,7 +168,6 @@ impl<'a> Shot<'a> {
     }
 }
 
-/// The rays within a pixel.
 enum Bundle<'a> {
     /// Linear interpolation between the pixel's neighbours, which is exact enough within a pixel.
     Straight { middle: PixelRay, rightwards: [f32; 7], downwards: [f32; 7] },
@@ -232,80 +224,15 @@ fn change(one: &PixelRay, other: &PixelRay) -> [f32; 7] {
     [x, y, z, along, left, up, turn]
 }
 
-/// The rows of an image, from the first to the last.
-struct Rows<'a> {
-    shot: &'a Shot<'a>,
-    width: usize,
-    height: usize,
-    /// The latest rows: the surface and the light of each pixel.
-    looked: [Row; 3],
-}
-
-#[derive(Default)]
-struct Row {
-    surfaces: Vec<u32>,
-    light: Vec<[f32; 3]>,
-}
-
-impl<'a> Rows<'a> {
-    fn new(shot: &'a Shot<'a>) -> Self {
-        let [width, height] = shot.rig.image().map(|length| length as usize);
-        let mut rows = Self { shot, width, height, looked: Default::default() };
-        rows.look(0);
-        rows
-    }
-
-    /// Renders a row with one ray per pixel.
-    fn look(&mut self, v: usize) {
-        if v >= self.height {
-            return;
+fn mean(light: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
+    let (mut sum, mut count) = ([0.0; 3], 0);
+    for light in light {
+        for (sum, channel) in sum.iter_mut().zip(light) {
+            *sum += channel;
         }
-        let row = &mut self.looked[v % 3];
-        row.surfaces.clear();
-        row.light.clear();
-        let rays = &self.shot.rig.rays[v * self.width..][..self.width];
-        for (u, ray) in rays.iter().enumerate() {
-            let (surface, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
-            row.surfaces.push(surface.number());
-            row.light.push(light);
-        }
+        count += 1;
     }
-}
-
-impl RowRenderer for Rows<'_> {
-    /// Rows must be requested in order. Pixels whose neighbours show other surfaces get more rays.
-    fn row(&mut self, v: usize, out: &mut [f32]) {
-        self.look(v + 1);
-        let here = &self.looked[v % 3];
-        let above = &self.looked[v.saturating_sub(1) % 3].surfaces;
-        let below = &self.looked[(v + 1).min(self.height - 1) % 3].surfaces;
-        let last = self.width - 1;
-        for (u, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            let surface = here.surfaces[u];
-            let other = (surface ^ above[u])
-                | (surface ^ below[u])
-                | (surface ^ here.surfaces[u.saturating_sub(1)])
-                | (surface ^ here.surfaces[(u + 1).min(last)]);
-            *out = if other == 0 { here.light[u] } else { self.shot.finely(u, v) };
-        }
-    }
-
-    /// The mean light of some pixels.
-    fn mean(&self) -> [f32; 3] {
-        let mut sum = [0.0; 3];
-        let mut count = 0;
-        for v in (0..self.height).step_by(16) {
-            for u in (0..self.width).step_by(16) {
-                let ray = &self.shot.rig.rays[v * self.width + u];
-                let (_, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
-                for (sum, channel) in sum.iter_mut().zip(light) {
-                    *sum += channel;
-                }
-                count += 1;
-            }
-        }
-        sum.map(|sum| sum / count.max(1) as f32)
-    }
+    sum.map(|sum: f32| sum / count.max(1) as f32)
 }
 
 #[cfg(test)]

@@ -26,11 +26,20 @@ pub(crate) struct PixelRay {
     pub(crate) by: RayPath,
 }
 
+/// A ray in the building's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WorldRay {
+    pub(crate) origin: [f32; 3],
+    pub(crate) direction: [f32; 3],
+    /// Direction counter-clockwise from east, in 1/65,536 of a turn.
+    pub(crate) turn: u16,
+}
+
 impl From<CameraRay> for PixelRay {
     fn from(ray: CameraRay) -> Self {
         Self {
-            origin: ray.origin.map(|coordinate| coordinate as f32),
-            direction: ray.direction.map(|coordinate| coordinate as f32),
+            origin: ray.origin.cast::<f32>().into(),
+            direction: ray.direction.cast::<f32>().into(),
             turn: (ray.turn() * 65_536.0) as u32 as u16,
             by: ray.by,
         }
@@ -38,14 +47,10 @@ impl From<CameraRay> for PixelRay {
 }
 
 impl Rig {
-    /// A camera that agrees with its calibration.
-    #[must_use]
     pub fn new(camera: &Camera) -> Self {
         Self::with_errors(camera, &RigErrors::default())
     }
 
-    /// A camera that differs from its calibration.
-    #[must_use]
     pub fn with_errors(camera: &Camera, errors: &RigErrors) -> Self {
         let optics = RigOptics::new(camera, errors);
         let [width, height] = optics.image;
@@ -74,19 +79,15 @@ impl Rig {
     }
 
     /// Width and height of its images, in pixels.
-    #[must_use]
     pub fn image(&self) -> [u32; 2] {
         self.optics.image
     }
 
     /// The centre and the radius of the view in the image, in pixels: the mirror's rim, or a circle through the corners.
-    #[must_use]
     pub fn rim(&self) -> ([f64; 2], f64) {
         (self.optics.centre, self.optics.rim())
     }
 
-    /// The ray that a pixel sees.
-    #[must_use]
     pub fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         self.optics.ray(pixel)
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use toposlam_model::floor_plan::BuildingWall;
+use toposlam_model::{driving::scene::wrapped, floor_plan::BuildingWall};
 
 /// The number of sectors of a full turn.
 const SECTORS: u16 = 512;
@@ -14,12 +14,8 @@ pub(crate) const TURN_ERROR: i64 = 64;
 /// For each sector, counter-clockwise from east, the walls that a ray may meet first, nearest
 /// first.
 #[derive(Clone, Debug)]
-pub(crate) struct SightLines {
-    begin: Vec<u32>,
-    walls: Vec<u32>,
-}
+pub(crate) struct SightLines(Vec<Vec<u32>>);
 
-/// A wall in a sector, with its least and greatest distance.
 struct Seen {
     wall: u32,
     near: f64,
@@ -38,24 +34,21 @@ impl SightLines {
                 enter(number, wall, place, off_axis, &mut sectors);
             }
         }
-        let mut lines = Self { begin: vec![0], walls: Vec::new() };
-        for seen in &mut sectors {
+        let visible = sectors.into_iter().map(|mut seen| {
             let hidden = seen.iter().filter(|wall| wall.covers).map(|wall| wall.far);
             let hidden = hidden.fold(f64::INFINITY, f64::min);
             seen.retain(|wall| wall.near <= hidden);
             seen.sort_by(|one, other| one.near.total_cmp(&other.near));
-            lines.walls.extend(seen.iter().map(|wall| wall.wall));
-            lines.begin.push(lines.walls.len() as u32);
-        }
-        lines
+            seen.iter().map(|wall| wall.wall).collect()
+        });
+        Self(visible.collect())
     }
 
     /// The walls that a ray in this direction may meet first. The direction is in 1/65,536 of a
     /// turn from east.
     #[inline]
     pub(crate) fn walls(&self, turn: u16) -> &[u32] {
-        let sector = usize::from(turn / PER_SECTOR);
-        &self.walls[self.begin[sector] as usize..self.begin[sector + 1] as usize]
+        &self.0[usize::from(turn / PER_SECTOR)]
     }
 }
 
@@ -119,11 +112,6 @@ fn near_in(low: f64, high: f64, wall: &BuildingWall, place: [f64; 2], near: f64)
     // Within such a narrow sector, the share is at most this much greater than at an edge.
     let most = (share(low).max(share(high)) + (high - low)).min(1.0);
     near.max(across / most)
-}
-
-/// The angle in [-pi, pi).
-fn wrapped(angle: f64) -> f64 {
-    (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
 }
 
 #[cfg(test)]

@@ -8,10 +8,8 @@ pub struct Squares {
     least: [f32; 2],
     per_metre: f32,
     columns: usize,
-    rows: usize,
-    /// The beginning of each square's numbers in `numbers`.
-    begin: Vec<u32>,
-    numbers: Vec<u32>,
+    /// Row by row.
+    squares: Vec<Vec<u32>>,
 }
 
 /// The least corner of all floors, and the size of their bounding box.
@@ -29,7 +27,6 @@ pub(crate) fn side(wished: f64, size: [f64; 2]) -> f64 {
 
 impl Squares {
     /// Indexes rectangles on these floors.
-    #[must_use]
     pub fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
         let (least, size) = extent(floors);
         let side = side(wished, size);
@@ -48,33 +45,18 @@ impl Squares {
                 }
             }
         }
-        let mut begin = vec![0];
-        begin.extend(squares.iter().scan(0, |sum, numbers| {
-            *sum += numbers.len() as u32;
-            Some(*sum)
-        }));
-        Self {
-            least: least.map(|at| at as f32),
-            per_metre: (1.0 / side) as f32,
-            columns,
-            rows,
-            begin,
-            numbers: squares.concat(),
-        }
+        let least = least.map(|at| at as f32);
+        Self { least, per_metre: (1.0 / side) as f32, columns, squares }
     }
 
     /// The numbers of all rectangles that contain a place, and perhaps of others.
     #[inline]
-    #[must_use]
     pub fn at(&self, place: [f32; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|axis| {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
         });
-        if column >= self.columns || row >= self.rows {
-            return &[];
-        }
-        let square = row * self.columns + column;
-        &self.numbers[self.begin[square] as usize..self.begin[square + 1] as usize]
+        let square = (column < self.columns).then(|| row * self.columns + column);
+        square.and_then(|square| self.squares.get(square)).map_or(&[], Vec::as_slice)
     }
 }
 

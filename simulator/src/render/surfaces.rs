@@ -5,8 +5,8 @@ use crate::render::{
     furniture::{BlocksAround, MetBlock},
     looks::FloorCovering,
     random_stream::{clouds, floor, speckle},
+    rig::WorldRay,
     sight_lines::SightLines,
-    world_ray::WorldRay,
 };
 
 /// Light on the ceiling, as a share of that on the floor.
@@ -15,7 +15,6 @@ const CEILING_LIGHT: f32 = 0.6;
 /// Width of a lamp's blurred edge, in metres.
 const LAMP_EDGE: f32 = 0.02;
 
-/// A visible surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surface {
     Floor,
@@ -30,7 +29,6 @@ pub(crate) enum Surface {
     Ceiling,
     Lamp,
     Robot(crate::render::body::RobotPart),
-    /// The holder around the mirror.
     Holder,
     /// Nothing: the ray leaves the building.
     Nothing,
@@ -67,7 +65,6 @@ impl Surface {
     }
 }
 
-/// The end of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RayEnd {
     Floor { place: [f32; 2] },
@@ -135,24 +132,6 @@ impl BuildingView<'_> {
     fn block_light(&self, block: &MetBlock) -> [f32; 3] {
         let light = self.building.light.on_floor(block.place);
         block.colour.map(|channel| channel * light)
-    }
-
-    /// The surface at the end of a ray.
-    #[inline]
-    pub(crate) fn surface(&self, ray: &WorldRay) -> Surface {
-        let wall = self.wall(ray);
-        if let Some(block) = self.furniture(ray, wall) {
-            return Surface::Furniture(block.face);
-        }
-        match Self::end(ray, wall) {
-            RayEnd::Floor { place } => self.on_floor(place),
-            RayEnd::Wall { wall, along, height } => {
-                let face = &self.building.faces[wall as usize];
-                Surface::Wall(wall, self.building.wall_part(face, along, height))
-            }
-            RayEnd::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE).0,
-            RayEnd::Nothing => Surface::Nothing,
-        }
     }
 
     /// The surface at the end of a ray, and the light that comes back along the ray.
@@ -311,7 +290,6 @@ impl BuildingView<'_> {
     }
 }
 
-/// The share of joint in a stretch of this size around a place.
 fn joint_share(at: f32, size: f32, side: f32, joint: f32) -> f32 {
     // The length of joint between 0 and a place.
     let before = |at: f32| {

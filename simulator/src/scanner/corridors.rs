@@ -1,19 +1,17 @@
 //! Plans of corridors at any angle and of any width, with round lobbies.
 
 use toposlam_model::floor_plan::FloorPlan;
+use toposlam_vision::geometry::direction;
 
-use super::polygon::ConvexPolygon;
+use super::polygon::{ConvexPolygon, length};
 
 /// The corridors of a building. A floor plan is one in which they run along the axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CorridorPlan {
-    /// Its corridors.
     pub corridors: Vec<Corridor>,
-    /// Its round lobbies.
     pub lobbies: Vec<Lobby>,
 }
 
-/// A straight corridor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corridor {
     /// The ends of its middle line, in metres; its floor goes on for half of its width behind them.
@@ -25,9 +23,7 @@ pub struct Corridor {
 /// A round lobby, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobby {
-    /// Its middle.
     pub middle: [f64; 2],
-    /// Its radius.
     pub radius: f64,
 }
 
@@ -35,14 +31,11 @@ pub struct Lobby {
 const ROUND: u32 = 64;
 
 impl Corridor {
-    /// The length of its middle line, in metres.
-    #[must_use]
     pub fn length(&self) -> f64 {
-        super::polygon::length(self.ends)
+        length(self.ends)
     }
 
     /// The point at a distance from its first end, and to the left of its middle line, in metres.
-    #[must_use]
     pub fn point(&self, along: f64, left: f64) -> [f64; 2] {
         let (sine, cosine) = self.direction().sin_cos();
         let [x, y] = self.ends[0];
@@ -50,14 +43,11 @@ impl Corridor {
     }
 
     /// The direction from its first end to the other, in radians.
-    #[must_use]
     pub fn direction(&self) -> f64 {
         let [from, to] = self.ends;
-        (to[1] - from[1]).atan2(to[0] - from[0])
+        direction(from, to)
     }
 
-    /// Its floor.
-    #[must_use]
     pub fn floor(&self) -> ConvexPolygon {
         ConvexPolygon::along(self.ends, self.width, self.width / 2.0)
     }
@@ -65,7 +55,6 @@ impl Corridor {
 
 impl CorridorPlan {
     /// The floor: its corridors, then its lobbies.
-    #[must_use]
     pub fn floor(&self) -> Vec<ConvexPolygon> {
         let lobby = |lobby: &Lobby| ConvexPolygon::round(lobby.middle, lobby.radius, ROUND);
         let corridors = self.corridors.iter().map(Corridor::floor);

@@ -54,40 +54,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_sets_some_of_the_parameters() {
+    fn a_file_sets_some_of_the_parameters_and_what_cannot_be_used_is_named() {
         let params: ScannerParams = read("field_of_view = 180.0\nglass = 2.0\n").unwrap();
         let expected =
             ScannerParams { field_of_view: 180.0, glass: 2.0, ..ScannerParams::default() };
         assert_eq!(params, expected);
-        assert_eq!(read::<ScannerParams>("").unwrap(), ScannerParams::default());
-    }
-
-    #[test]
-    fn the_defaults_and_the_plain_scanner_are_within_their_ranges() {
         for params in [ScannerParams::default(), ScannerParams::PLAIN] {
             assert_eq!(read(&toml::to_string(&params).unwrap()), Ok(params));
         }
-    }
-
-    #[test]
-    fn what_cannot_be_used_is_named() {
-        let message = |text: &str| read::<ScannerParams>(text).unwrap_err().to_string();
-        assert_eq!(
-            message("people = 2\nnoise = 3.0"),
-            "line 2, column 9: noise: 3 is out of range; this parameter lies between 0 and 0.2"
-        );
-        assert_eq!(
-            message("dropouts = nan"),
-            "line 1, column 12: dropouts: NaN is out of range; this parameter lies between 0 and 0.5"
-        );
-        assert_eq!(
-            message("glas = 1.0"),
-            "line 1, column 1: glas: unknown key; expected one of: field_of_view, angular_step, \
-             least_range, range, noise, dropouts, glass, black, doors, furniture, people"
-        );
-        assert_eq!(
-            message("noise = \"much\""),
-            "line 1, column 9: noise: expected a number, found a text"
-        );
+        for (text, message) in [
+            (
+                "people = 2\nnoise = 3.0",
+                "line 2, column 9: noise: 3 is out of range; this parameter lies between 0 and 0.2",
+            ),
+            (
+                "dropouts = nan",
+                "line 1, column 12: dropouts: NaN is out of range; this parameter lies between 0 and 0.5",
+            ),
+            (
+                "glas = 1.0",
+                "line 1, column 1: glas: unknown key; expected one of: field_of_view, angular_step, \
+                 least_range, range, noise, dropouts, glass, black, doors, furniture, people",
+            ),
+            ("noise = \"much\"", "line 1, column 9: noise: expected a number, found a text"),
+        ] {
+            assert_eq!(read::<ScannerParams>(text).unwrap_err().to_string(), message);
+        }
     }
 }

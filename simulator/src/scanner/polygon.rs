@@ -2,6 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Point2, Vector2};
+use toposlam_vision::geometry::{angle, unit};
+
 /// A convex polygon, in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvexPolygon {
@@ -19,50 +22,41 @@ const SHORTEST: f64 = 1e-3;
 
 impl ConvexPolygon {
     /// The rectangle around a straight line, with this width across it, and longer by `beyond` at both ends.
-    #[must_use]
     pub fn along([from, to]: [[f64; 2]; 2], width: f64, beyond: f64) -> Self {
-        let off = [to[0] - from[0], to[1] - from[1]];
-        let length = off[0].hypot(off[1]);
+        let off = Point2::from(to) - Point2::from(from);
         let middle = [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]));
-        Self::rectangle(middle, [length / 2.0 + beyond, width / 2.0], off[1].atan2(off[0]))
+        Self::rectangle(middle, [length([from, to]) / 2.0 + beyond, width / 2.0], angle(off))
     }
 
     /// A rectangle with this middle and these half sides, its first side in this direction.
-    #[must_use]
     pub fn rectangle(middle: [f64; 2], half: [f64; 2], direction: f64) -> Self {
-        let (sine, cosine) = direction.sin_cos();
+        let ahead = unit(direction);
+        let left = Vector2::new(-ahead.y, ahead.x);
         let corner = |[x, y]: [f64; 2]| {
-            let [x, y] = [x * half[0], y * half[1]];
-            [middle[0] + x * cosine - y * sine, middle[1] + x * sine + y * cosine]
+            (Vector2::from(middle) + x * half[0] * ahead + y * half[1] * left).into()
         };
         let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         Self { corners: signs.map(corner).to_vec() }
     }
 
     /// A regular polygon with so many corners on a circle.
-    #[must_use]
     pub fn round(middle: [f64; 2], radius: f64, corners: u32) -> Self {
-        let corner = |number: u32| {
-            let (sine, cosine) = (TAU * f64::from(number) / f64::from(corners)).sin_cos();
-            [middle[0] + radius * cosine, middle[1] + radius * sine]
-        };
+        let direction = |number: u32| TAU * f64::from(number) / f64::from(corners);
+        let corner = |number| (Vector2::from(middle) + radius * unit(direction(number))).into();
         Self { corners: (0..corners).map(corner).collect() }
     }
 
-    /// Its sides, counter-clockwise.
     pub fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(&from, &to)| [from, to])
     }
 
     /// Whether a point is inside, and not on the border.
-    #[must_use]
     pub fn holds(&self, point: [f64; 2]) -> bool {
         self.sides().all(|side| depth(side, point) > TOLERANCE)
     }
 
     /// Where a straight line is inside, as shares of its length.
-    #[must_use]
     pub fn inside(&self, [from, to]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
         let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
         for side in self.sides() {
@@ -81,7 +75,6 @@ impl ConvexPolygon {
     }
 
     /// Whether two polygons have inner points in common.
-    #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
         let is_apart = |one: &Self, other: &Self| {
             one.sides()
@@ -93,9 +86,8 @@ impl ConvexPolygon {
 
 /// How far a point is to the left of a side, in metres.
 fn depth([from, to]: Segment, point: [f64; 2]) -> f64 {
-    let side = [to[0] - from[0], to[1] - from[1]];
-    let off = [point[0] - from[0], point[1] - from[1]];
-    (side[0] * off[1] - side[1] * off[0]) / side[0].hypot(side[1])
+    let [off, side] = [point, to].map(|end| Point2::from(end) - Point2::from(from));
+    side.perp(&off) / length([from, to])
 }
 
 /// The border of the union of polygons: the pieces of their sides that are inside no other one, each with the

@@ -22,36 +22,6 @@ fn control_and_runs_can_be_measured_by_laser() {
 }
 
 #[test]
-fn walks_are_measured_alike_on_any_number_of_threads() {
-    let measured = |threads| {
-        let arguments = ["laser", "--walks", "3", "--places", "6", "--runs", "1"];
-        let output =
-            run([&arguments[..], &["--traversals", "2", "--json", "--threads", threads]].concat());
-        (output.status.code(), stdout(&output))
-    };
-    let (code, text) = measured("1");
-    assert_eq!((code, text.clone()), measured("2"));
-    let lines = objects(&text);
-    let rate = |of: &str, what: &str| {
-        let line = lines.iter().find(|line| {
-            (&line["kind"], &line["of"], &line["what"])
-                == (&"rate".into(), &of.into(), &what.into())
-        });
-        line.unwrap_or_else(|| panic!("{text}")).clone()
-    };
-    let visits = rate("visit", "wrong");
-    assert!(visits["cases"].as_u64().unwrap() > 3, "{visits}");
-    assert_eq!(rate("walk", "wrong")["cases"], 3);
-    assert_eq!(rate("run", "wrong")["cases"], 1);
-    assert!(rate("percept", "wrong")["cases"].as_u64().unwrap() > 1);
-    assert_eq!(rate("control", "wrong")["cases"], 2);
-    assert!(rate("hallway", "called junction")["cases"].as_u64().unwrap() > 30);
-    // Three walks are too few to show anything but a miss.
-    let expected = if lines.last().unwrap()["target"] == "missed" { 1 } else { 3 };
-    assert_eq!(code, Some(expected));
-}
-
-#[test]
 fn one_walk_is_printed_visit_by_visit() {
     let output = run(["laser", "--walk", "4", "--places", "6"]);
     let text = stdout(&output);

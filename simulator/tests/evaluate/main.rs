@@ -18,6 +18,8 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
+use serde_json::Value;
+
 use output::{Schema, folder, json_lines as objects, names_in, read_world, stderr, stdout};
 
 /// Commands for each schema, by its name.
@@ -86,6 +88,12 @@ fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String 
     let output = run(arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     stdout(&output)
+}
+
+/// Of the lines, the one with this kind, subject and failure.
+fn rate<'l>(lines: &'l [Value], of: &str, what: &str) -> &'l Value {
+    let is_it = |line: &&Value| line["kind"] == "rate" && line["of"] == of && line["what"] == what;
+    lines.iter().find(is_it).unwrap_or_else(|| panic!("{of} {what}: {lines:?}"))
 }
 
 #[test]

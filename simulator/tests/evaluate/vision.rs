@@ -9,38 +9,6 @@ const FEW: [&str; 9] =
     ["vision", "--size", "640x480", "--look", "tiles", "--views", "24", "--visits", "2"];
 
 #[test]
-fn results_are_the_same_on_any_number_of_threads() {
-    let measured = |threads| {
-        let output = run([&FEW[..], &["--json", "--threads", threads]].concat());
-        (output.status.code(), stdout(&output))
-    };
-    let (code, text) = measured("1");
-    assert_eq!((code, text.clone()), measured("3"));
-    let lines = objects(&text);
-    let verdict = lines.last().unwrap();
-    assert_eq!(verdict["kind"], "verdict");
-    assert_eq!(
-        code,
-        Some(if verdict["holds"] == true {
-            0
-        } else if verdict["missed"] == 0 {
-            3
-        } else {
-            1
-        })
-    );
-    for kind in ["source", "rate", "errors", "confusion", "failures"] {
-        assert!(lines.iter().any(|line| line["kind"] == kind), "{kind}");
-    }
-    let cases = |of: &str| {
-        let line = lines.iter().find(|line| line["kind"] == "rate" && line["of"] == of).unwrap();
-        line["cases"].as_u64().unwrap()
-    };
-    let views = ["hallway", "junction", "between", "past", "turned"].map(cases);
-    assert_eq!((views.iter().sum::<u64>(), cases("visit")), (24, 2));
-}
-
-#[test]
 fn the_text_is_a_table_with_the_targets() {
     let output = run([&FEW[..], &["--calibration-errors"]].concat());
     let text = stdout(&output);
@@ -64,18 +32,8 @@ fn the_text_is_a_table_with_the_targets() {
 #[test]
 fn one_view_is_shown_stage_by_stage() {
     let folder = folder("evaluate_view");
-    let output = run([
-        "vision",
-        "--size",
-        "640x480",
-        "--look",
-        "tiles",
-        "--view",
-        "5",
-        "--json",
-        "--out-dir",
-        folder.to_str().unwrap(),
-    ]);
+    let words = "vision --size 640x480 --look tiles --view 5 --json --out-dir".split(' ');
+    let output = run(words.chain([folder.to_str().unwrap()]));
     let line = &objects(&stdout(&output))[0];
     assert_eq!(line["view"], 5);
     assert!(line["truth"].is_string() && line["verdict"].is_string());
@@ -91,10 +49,9 @@ fn one_view_is_shown_stage_by_stage() {
 /// In this view of an L a hallway fits well in which the robot is not.
 #[test]
 fn a_view_with_a_strong_yellow_cast_is_not_called_a_hallway_elsewhere() {
-    let options =
-        ["--size", "640x480", "--look", "vinyl", "--seed", "100", "--view", "118", "--json"];
-    let effect = ["--effect", "cast=0.77"];
-    let output = run([&["vision"][..], &options, &effect].concat());
+    let words =
+        "vision --size 640x480 --look vinyl --seed 100 --view 118 --json --effect cast=0.77";
+    let output = run(words.split(' '));
     let line = &objects(&stdout(&output))[0];
     assert_eq!((&line["view"], &line["truth"]), (&118.into(), &"l-left".into()));
     let verdict = line["verdict"].as_str().unwrap();
@@ -113,8 +70,8 @@ fn a_world_without_a_floor_plan_is_refused() {
 
 #[test]
 fn too_few_traversals_do_not_show_the_rate_of_false_alarms() {
-    let words = ["lengths", "--plan", "worlds/shape-8.toml", "--traversals", "300"];
-    let output = run([&words[..], &["--json"]].concat());
+    let words = "lengths --plan worlds/shape-8.toml --traversals 300 --json";
+    let output = run(words.split(' '));
     assert_eq!(output.status.code(), Some(3));
     let lines = objects(&stdout(&output));
     let rate = |what: &str| lines.iter().find(|line| line["what"] == what).unwrap();

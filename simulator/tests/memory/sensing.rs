@@ -37,7 +37,7 @@ pub(crate) fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let camera = Camera::superscout().sized([640, 480]);
     let rig = Rig::new(&camera);
     let look = BuildingLook::named("laboratory").unwrap();
-    let views = ViewSampler::of([look], camera.image, 1).unwrap();
+    let views = ViewSampler::from_looks([look], camera.image, 1).unwrap();
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 1);

@@ -4,20 +4,15 @@
 use std::io::Write;
 
 use serde_json::json;
-use toposlam_terminal::{
-    CliError, Outcome,
-    exit_codes::help_end,
-    progress::Progress,
-    text::{counted, grouped},
-};
+use toposlam_terminal::{CliError, Outcome, exit_codes::help_end, text::counted};
 
 use super::{
-    evaluation_report::{MeasurementEnd, outcome},
+    report::{MeasurementEnd, measure, number},
     robots::{PLANS, RandomPlans, RobotArguments},
 };
-use toposlam_simulator::evaluation::report::TargetStatus;
-use toposlam_simulator::evaluation::traversals::{
-    JudgedTraversal, Traversal, TraversalOutcome as Made, TraversalSampler,
+use toposlam_simulator::{
+    evaluation::traversals::{JudgedTraversal, TraversalSampler},
+    sample_verdict::SampleTally,
 };
 
 /// Measure driving: does every door of every junction lead where it should?
@@ -57,76 +52,61 @@ impl EvaluateControlArguments {
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
         let equipment = self.robots.equipment()?;
-        let progress = Progress::new("traversals", "traversals")?;
-        let judged = traversals.judged(0..self.traversals, &equipment, &progress);
-        progress.finish();
-        let ending = MeasurementEnd::of(judged.len(), self.traversals);
-        let (wrong, gave_up) = tally(&judged);
-        let status = if wrong + gave_up > 0 { TargetStatus::Missed } else { TargetStatus::Met };
-        let outcome = outcome(status, ending);
+        let judged = measure("traversals", "traversals", 0..self.traversals, |number, watch| {
+            traversals.traversal(number, &equipment, watch)
+        })?;
+        let tally: SampleTally = judged.iter().map(|made| made.outcome.verdict()).collect();
+        let ending = MeasurementEnd::from_counts(judged.len(), self.traversals);
+        let outcome = ending.outcome_with(tally.failed() as u64);
 
-        let doors = grouped(traversals.cases() as u128);
-        let plans = counted(traversals.plans(), "floor plan");
-        let text = sheet.text();
-        writeln!(text, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
-        writeln!(text, "  {doors} pairs of entry door and exit door in {plans}")?;
-        for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
-            sheet.failure(named(traversal), &traversal.outcome)?;
-            let [junction, from] = junctions(traversal);
+        let (doors, plans) = (traversals.cases.len(), traversals.plans.len());
+        writeln!(sheet.text, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
+        let [doors_text, plans_text] = [number(doors), counted(plans, "floor plan")];
+        writeln!(sheet.text, "  {doors_text} pairs of entry door and exit door in {plans_text}")?;
+        for made in &judged {
+            let Some(what) = made.outcome.reason() else { continue };
+            sheet.failure(named(made), &what)?;
+            let [junction, from] = junctions(made);
             let line = json!({
-                "traversal": traversal.traversal.number,
-                "plan": traversal.traversal.plan_name, "junction": junction, "from": from,
-                "door": traversal.traversal.door.0,
-                "gave_up": matches!(traversal.outcome, Made::GaveUp(_)),
-                "what": traversal.outcome.to_string(),
+                "traversal": made.case.number, "plan": made.case.plan_name,
+                "junction": junction, "from": from, "door": made.door.0,
+                "gave_up": made.outcome.gave_up(), "what": what,
             });
             sheet.line("failure", &line)?;
         }
-        sheet.share("wrong", wrong, judged.len())?;
-        sheet.share("gave up", gave_up, judged.len())?;
+        sheet.share("wrong", tally.wrong, judged.len())?;
+        sheet.share("gave up", tally.undecided, judged.len())?;
         if !judged.is_empty() {
             let mean = |sum: f64| sum / judged.len() as f64;
-            let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
-            let count = mean(judged.iter().map(|traversal| traversal.frames as f64).sum());
+            let seconds = mean(judged.iter().map(|made| made.seconds).sum());
+            let count = mean(judged.iter().map(|made| made.frames as f64).sum());
             let frames = self.robots.frames();
             writeln!(
-                sheet.text(),
+                sheet.text,
                 "  {count:.1} {frames} and {seconds:.1} s of simulated time per traversal"
             )?;
         }
-        let verdict = match (outcome, ending) {
-            (Outcome::Holds, _) => "holds in these traversals: every door leads where it should",
-            (Outcome::Violated, _) => "violated",
-            (_, MeasurementEnd::Empty) => "incomplete: nothing was measured",
-            _ => "incomplete, interrupted",
-        };
+        let holds = "holds in these traversals: every door leads where it should";
         let line = json!({
-            "traversals": judged.len(), "doors": traversals.cases(),
-            "plans": traversals.plans(), "seed": self.robots.seed,
+            "traversals": judged.len(), "doors": doors, "plans": plans, "seed": self.robots.seed,
         });
-        sheet.finish(out, ("control", &line), outcome, verdict)
+        let verdict = ending.verdict(outcome, [holds, "violated", ""]);
+        sheet.finish(out, ("control", line), outcome, verdict)
     }
-}
-
-/// The number of traversals that were wrong, and that were given up.
-fn tally(judged: &[JudgedTraversal]) -> (usize, usize) {
-    let count = |is: fn(&Made) -> bool| judged.iter().filter(|made| is(&made.outcome)).count();
-    (count(|made| matches!(made, Made::Wrong(_))), count(|made| matches!(made, Made::GaveUp(_))))
 }
 
 /// The names of the junction of a traversal, and of the one from which the robot came.
 fn junctions(judged: &JudgedTraversal) -> [&str; 2] {
-    let Traversal { entry, config, .. } = &judged.traversal;
-    let graph = config.plan.graph();
-    [*entry, graph.opposite(*entry)]
-        .map(|dart| config.plan.junction(graph.vertex(dart)).name.as_str())
+    let plan = &judged.case.config.plan;
+    let graph = plan.graph();
+    [judged.entry, graph.opposite(judged.entry)]
+        .map(|dart| plan.junction(graph.vertex(dart)).name.as_str())
 }
 
 pub(super) fn named(judged: &JudgedTraversal) -> String {
-    let traversal = &judged.traversal;
     let [junction, from] = junctions(judged);
     format!(
         "traversal {} in {}, door {} of {junction}, entered from {from}",
-        traversal.number, traversal.plan_name, traversal.door.0,
+        judged.case.number, judged.case.plan_name, judged.door.0,
     )
 }

@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, io::Write, path::Path};
 
 use serde::Serialize;
 use toposlam_model::{
+    driving::scene::MarkerView,
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, world_file},
 };
@@ -12,23 +13,21 @@ use toposlam_terminal::{
     json::print_line,
     output, picture_file,
     progress::must_stop,
-    scene::SceneLine,
+    scene::{self, SceneLine},
     text::{counted, print_hanging},
 };
 
-use super::evaluation_report::EvaluationReport;
+use super::report::EvaluationReport;
 use toposlam_vision::annotate;
 
 use toposlam_simulator::{
     evaluation::{
-        calibration::Calibration,
-        judge::Judge,
-        judged_view::{JudgedView, JudgedVisit, Zone},
-        scene_class::SceneClass,
+        judge::{Calibration, Judge},
+        judged_view::{JudgedView, JudgedVisit, SceneClass},
         verdict::{MarkerVerdict, PlaceVerdict},
     },
-    rendered_view::RenderedView,
-    truth::{JunctionTruth, Truth},
+    truth::{JunctionTruth, MarkerTruth, Truth},
+    view_sampler::RenderedView,
 };
 
 /// The most views, and the most visits, of which pictures are written: first the wrong ones, then the
@@ -53,10 +52,7 @@ pub(super) fn write(
     for judged in failed_visits.iter().flat_map(|visit| &visit.views) {
         print_view(&mut lines, judged, calibration, Some(judged.view.number))?;
     }
-    let name = match calibration {
-        Calibration::Right => "failing.jsonl",
-        Calibration::Wrong => "failing-badly-calibrated.jsonl",
-    };
+    let name = format!("failing{}.jsonl", mark(calibration));
     output::write_whole(&folder.join(name), &lines)?;
     failed.sort_by_key(|judged| !judged.verdict.is_wrong());
     for judged in failed.iter().take(MOST).take_while(|_| !must_stop()) {
@@ -74,13 +70,11 @@ pub(super) fn write(
 
 /// Whether a view failed: it is not right in a hallway or before a junction, or wrong anywhere.
 fn fails(judged: &JudgedView) -> bool {
-    let asked = matches!(judged.zone(), Zone::Hallway | Zone::Before);
     judged.verdict.is_wrong()
-        || asked && judged.verdict == PlaceVerdict::Unknown
+        || judged.counts() && judged.verdict == PlaceVerdict::Unknown
         || judged.marker == MarkerVerdict::Phantom
 }
 
-/// Writes the image of a view, a picture of each stage, the floor plan and the scene.
 pub(super) fn write_view(
     folder: &Path,
     judge: &Judge,
@@ -121,6 +115,13 @@ fn plan_of(view: &RenderedView) -> NamedWorld {
     NamedWorld { vertex_names: names, plan: Some(plan), ..world }
 }
 
+pub(super) fn calibration_name(calibration: Calibration) -> &'static str {
+    match calibration {
+        Calibration::Right => "right",
+        Calibration::Wrong => "wrong",
+    }
+}
+
 fn mark(calibration: Calibration) -> &'static str {
     match calibration {
         Calibration::Right => "",
@@ -134,9 +135,9 @@ pub(super) fn add(
     judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), CliError> {
-    let line = Line::new(judged, calibration, None);
+    let line = ViewLine::new(judged, calibration, None);
     sheet.line("view", &line)?;
-    let out = sheet.text();
+    let out = &mut sheet.text;
     writeln!(out, "view {}, calibration {}: {}", line.view, line.calibration, line.verdict)?;
     let ([width, height], [x, y]) = (line.size, line.position);
     let heading = line.heading.to_degrees();
@@ -164,12 +165,11 @@ fn print_view(
     calibration: Calibration,
     visit: Option<u64>,
 ) -> Result<(), CliError> {
-    print_line(out, "view", &Line::new(judged, calibration, visit))
+    print_line(out, "view", &ViewLine::new(judged, calibration, visit))
 }
 
-/// The JSON line of a view.
 #[derive(Serialize)]
-struct Line<'a> {
+struct ViewLine<'a> {
     view: u64,
     /// The number of the visit, if the view is part of one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -181,7 +181,7 @@ struct Line<'a> {
     size: [u32; 2],
     position: [f64; 2],
     heading: f64,
-    marker: Option<MarkerLine>,
+    marker: Option<scene::MarkerLine>,
     effects: BTreeMap<&'static str, f64>,
     truth: String,
     /// Distance to the turning point of the junction, in metres.
@@ -191,22 +191,10 @@ struct Line<'a> {
     answer: SceneLine,
 }
 
-#[derive(Serialize)]
-struct MarkerLine {
-    position: [f64; 2],
-    axis: f64,
-    door: Option<u32>,
-}
-
-impl<'a> Line<'a> {
+impl<'a> ViewLine<'a> {
     fn new(judged: &'a JudgedView, calibration: Calibration, visit: Option<u64>) -> Self {
         let view = &judged.view;
         let settings = view.effects.settings().into_iter();
-        let junction = match &judged.truth {
-            Truth::Hallway(_) => None,
-            Truth::Between(_, junctions) => junctions.first(),
-            Truth::Junction(junction) => Some(junction),
-        };
         let truth = match (&judged.truth, judged.class()) {
             (Truth::Between(..), _) => "between".to_owned(),
             (_, Some(class)) => class.to_string(),
@@ -215,25 +203,21 @@ impl<'a> Line<'a> {
         Self {
             view: view.number,
             visit,
-            calibration: match calibration {
-                Calibration::Right => "right",
-                Calibration::Wrong => "wrong",
-            },
+            calibration: calibration_name(calibration),
             plan: &view.plan_name,
             hallway_width: view.plan.hallway_width(),
             look: view.look.name,
             size: view.image,
             position: view.pose.position,
             heading: view.pose.heading,
-            marker: view.marker().map(|marker| MarkerLine {
-                position: marker.position,
-                axis: marker.axis,
-                door: marker.door.map(|door| door.0),
+            marker: view.marker().map(|marker| {
+                let MarkerTruth { position, axis, door, .. } = marker;
+                scene::MarkerLine::from(&MarkerView { position, axis, door })
             }),
             effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
             truth,
-            distance: junction.and_then(JunctionTruth::distance),
-            said: SceneClass::of(&judged.scene).to_string(),
+            distance: judged.truth.junctions().first().and_then(JunctionTruth::distance),
+            said: SceneClass::from_scene(&judged.scene).to_string(),
             verdict: judged.verdict.to_string(),
             answer: SceneLine::from(&judged.scene),
         }

@@ -8,16 +8,13 @@ use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
     method_options::{SafeguardOptions, safeguards_in_words},
-    progress::Progress,
-    text::{counted, grouped, print_indented, print_rows},
+    text::{counted, print_indented},
 };
 use toposlam_vision::laser::params::LaserParams;
 
 use super::{
     control,
-    evaluation_report::{
-        EvaluationReport, MeasurementEnd, ReportArguments, outcome, percent, verdict_on_targets,
-    },
+    report::{EvaluationReport, MeasurementEnd, ReportArguments, measure},
     robots::{PLANS, RandomPlans, usual_plans},
 };
 use toposlam_simulator::{
@@ -26,13 +23,13 @@ use toposlam_simulator::{
         laser::{
             corridor_world::BuildingKind,
             judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict, WalkSampler},
-            laser_report::{LaserGroup, LaserReport},
-            scanned_run::{ScannedOutcome, ScannedRun},
+            laser_report,
+            scanned_run::ScannedRun,
         },
-        report::Rate,
-        traversals::{JudgedTraversal, TraversalOutcome, TraversalSampler},
+        traversals::{JudgedTraversal, TraversalSampler},
     },
     options::robot_sensor::read_scanner,
+    sample_verdict::SampleVerdict,
 };
 
 /// Measure sensing with a laser scanner on random walks in random buildings
@@ -92,8 +89,8 @@ pub(super) struct EvaluateLaserArguments {
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     places: u16,
     /// The buildings
-    #[arg(long, value_enum, default_value_t = Buildings::Mixed, value_name = "KIND")]
-    buildings: Buildings,
+    #[arg(long, value_enum, default_value = "mixed", value_name = "KIND")]
+    buildings: BuildingKind,
     /// Random seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
@@ -111,106 +108,64 @@ pub(super) struct EvaluateLaserArguments {
     report: ReportArguments,
 }
 
-/// A kind of random buildings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Buildings {
-    /// Corridors of 11 to 24 m that meet at right angles, or at 60 and 120 degrees, and near these
-    Mixed,
-    /// Corridors of 20 to 55 m with loops
-    Long,
-    /// Corridors of 11 to 35 m that bend by 45 degrees, and fork
-    Diagonal,
-}
-
-impl Buildings {
-    /// The name on the command line.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Mixed => "mixed",
-            Self::Long => "long",
-            Self::Diagonal => "diagonal",
-        }
-    }
-}
-
-impl From<Buildings> for BuildingKind {
-    fn from(kind: Buildings) -> Self {
-        match kind {
-            Buildings::Mixed => Self::Mixed,
-            Buildings::Long => Self::Long,
-            Buildings::Diagonal => Self::Diagonal,
-        }
-    }
-}
-
 impl EvaluateLaserArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut sheet = self.report.begin()?;
         let scanner = self.scanner.as_deref().map(read_scanner).transpose()?;
         let sampler = WalkSampler {
             seed: self.seed,
-            buildings: self.buildings.into(),
+            buildings: self.buildings,
             places: self.places.into(),
             drift: self.drift.to_radians() / 10.0,
             scanner,
             sensing: LaserParams::default(),
         };
-        let numbers = match self.walk {
-            Some(walk) => walk..walk.saturating_add(1),
-            None => 0..self.walks,
-        };
-        let [runs, traversals] = match self.walk {
-            Some(_) => [0, 0],
-            None => [self.runs, self.traversals],
+        let (numbers, [runs, traversals]) = match self.walk {
+            Some(walk) => (walk..walk.saturating_add(1), [0, 0]),
+            None => (0..self.walks, [self.runs, self.traversals]),
         };
         let wanted = numbers.end - numbers.start + runs + traversals;
         let method = self.safeguards.folding();
-        let progress = Progress::new("walks", "walks")?;
-        let walks = sampler.judged(numbers, &progress);
-        progress.finish();
-        let progress = Progress::new("runs", "runs")?;
-        let runs = sampler.runs(0..runs, method, &progress);
-        progress.finish();
+        let walks =
+            measure("walks", "walks", numbers, |number, watch| sampler.walk(number, watch))?;
+        let runs =
+            measure("runs", "runs", 0..runs, |number, watch| sampler.run(number, method, watch))?;
         let traversals = self.driven(traversals, scanner.unwrap_or_default())?;
         let measured = walks.len() + runs.len() + traversals.len();
-        let interrupted = (measured as u64) < wanted;
-        let ending = if interrupted { MeasurementEnd::Interrupted } else { MeasurementEnd::Whole };
-        let report = LaserReport::of(&walks, &runs, &traversals);
-        let outcome = outcome(report.standing(), ending);
+        let is_interrupted = (measured as u64) < wanted;
+        let ending = MeasurementEnd::interrupted_if(is_interrupted);
+        let figures = laser_report::figures(&walks, &runs, &traversals);
+        let outcome = ending.outcome(figures.status());
 
+        let buildings = self.buildings.to_possible_value();
+        let buildings = buildings.as_ref().map_or("", |value| value.get_name());
         let line = json!({
             "walks": walks.len(), "runs": runs.len(), "traversals": traversals.len(),
-            "buildings": self.buildings.name(), "places": self.places, "seed": self.seed, "drift": self.drift,
+            "buildings": buildings, "places": self.places, "seed": self.seed, "drift": self.drift,
             "audits": method.audits(), "recover": method.recovers(),
         });
         sheet.line("source", &line)?;
-        self.print_source(&walks, !runs.is_empty(), sheet.text())?;
-        sheet.rate_rows(&report.rates)?;
-        if report.groups.iter().any(|group| group.wrong + group.undecided > 0) {
-            let text = sheet.text();
-            writeln!(text, "\n  Visits that are not right, by what they have in common:\n")?;
-            let rows: Vec<_> = report.groups.iter().map(group_row).collect();
-            print_rows(text, ["by", "", " wrong", "undecided", "    of", "    rate"], &rows)?;
-        }
-        writeln!(sheet.text())?;
+        self.print_source(buildings, &walks, !runs.is_empty(), &mut sheet.text)?;
+        sheet.figures(&Map::new(), &figures)?;
+        sheet.groups("Visits", &figures.groups, |group| {
+            let tally = group.tally;
+            json!({"wrong": tally.wrong, "undecided": tally.undecided, "of": tally.all()})
+        })?;
+        writeln!(sheet.text)?;
         for walk in &walks {
             self.add_walk(walk, &mut sheet)?;
         }
         for run in &runs {
             add_run(run, &mut sheet)?;
         }
-        for traversal in traversals.iter().filter(|it| it.outcome != TraversalOutcome::Right) {
-            sheet.failure(control::named(traversal), &traversal.outcome)?;
+        for made in &traversals {
+            if let Some(reason) = made.outcome.reason() {
+                sheet.failure(control::named(made), reason)?;
+            }
         }
-        sheet.rate_lines(&Map::new(), &report.rates)?;
-        for LaserGroup { by, what, wrong, undecided, of } in &report.groups {
-            let line =
-                json!({"by": by, "what": what, "wrong": wrong, "undecided": undecided, "of": of});
-            sheet.line("failures", &line)?;
-        }
-        let line = json!({ "target": report.standing().name(), "interrupted": interrupted });
-        let verdict = verdict_on_targets(outcome, ending, report.rates.iter().map(Rate::standing));
-        sheet.finish(out, ("verdict", &line), outcome, &format!("\n{verdict}"))
+        let line = json!({ "target": figures.status().name(), "interrupted": is_interrupted });
+        let verdict = ending.verdict_on_targets(outcome, &figures.statuses().collect::<Vec<_>>());
+        sheet.finish(out, ("verdict", line), outcome, &format!("\n{verdict}"))
     }
 
     /// Drives by scans from junction to junction of floor plans.
@@ -220,14 +175,15 @@ impl EvaluateLaserArguments {
         }
         let plans = usual_plans(self.seed, RandomPlans::Any(PLANS), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.seed, 1.0);
-        let progress = Progress::new("traversals", "traversals")?;
-        let driven = traversals.judged(0..count, &RobotEquipment::Laser(scanner), &progress);
-        progress.finish();
-        Ok(driven)
+        let equipment = RobotEquipment::Laser(scanner);
+        measure("traversals", "traversals", 0..count, |number, watch| {
+            traversals.traversal(number, &equipment, watch)
+        })
     }
 
     fn print_source(
         &self,
+        buildings: &str,
         walks: &[JudgedWalk],
         with_runs: bool,
         out: &mut dyn Write,
@@ -235,7 +191,7 @@ impl EvaluateLaserArguments {
         let visits = counted(walks.iter().map(|walk| walk.visits.len()).sum(), "visit");
         let count = counted(walks.len(), "walk");
         writeln!(out, "Laser scanner on {count} with {visits}, seed {}", self.seed)?;
-        writeln!(out, "  buildings: {}", self.buildings.name())?;
+        writeln!(out, "  buildings: {buildings}")?;
         if with_runs {
             let safeguards = safeguards_in_words(self.safeguards.folding());
             let text = format!("whole runs by the folding explorer {safeguards}");
@@ -251,28 +207,20 @@ impl EvaluateLaserArguments {
             if self.walk.is_none() && visit.verdict == LaserVerdict::Right {
                 continue;
             }
-            print_indented(
-                sheet.text(),
-                "  ",
-                4,
-                &format!("walk {}, {}", walk.number, in_words(visit)),
-            )?;
-            let found = visit.found;
+            let text = format!("walk {}, {}", walk.number, in_words(visit));
+            print_indented(&mut sheet.text, "  ", 4, &text)?;
             let line = json!({
-                "walk": walk.number, "way": rounded(visit.way),
-                "verdict": visit.verdict.name(),
-                "degree": visit.features.degree, "door": visit.door,
-                "found_degree": found.map(|(degree, _)| degree),
-                "found_door": found.and_then(|(_, door)| door),
+                "walk": walk.number, "way": rounded(visit.way), "verdict": visit.verdict.name(),
+                "degree": visit.degree, "door": visit.door,
+                "found_degree": visit.found.map(|(degree, _)| degree),
+                "found_door": visit.found.and_then(|(_, door)| door),
             });
             sheet.line("visit", &line)?;
         }
         for (degree, way) in &walk.invented {
             let doors = counted(*degree as usize, "door");
-            sheet.failure(
-                format!("walk {}, {way:.0} m", walk.number),
-                format!("invented, {doors}"),
-            )?;
+            let what = format!("walk {}, {way:.0} m", walk.number);
+            sheet.failure(what, format!("invented, {doors}"))?;
             let line = json!({
                 "walk": walk.number, "way": rounded(*way), "verdict": "invented",
                 "degree": null, "door": null, "found_degree": degree, "found_door": null,
@@ -285,41 +233,29 @@ impl EvaluateLaserArguments {
 
 fn add_run(run: &ScannedRun, sheet: &mut EvaluationReport) -> Result<(), CliError> {
     let ScannedRun { number, moves, way, recoveries, tally, outcome } = run;
-    let reason = match outcome {
-        ScannedOutcome::Right => None,
-        ScannedOutcome::GaveUp(reason) | ScannedOutcome::Wrong(reason) => Some(reason),
+    let verdict = match outcome.verdict() {
+        SampleVerdict::Right => "right",
+        SampleVerdict::Undecided => "gave up",
+        SampleVerdict::Wrong => "wrong",
     };
-    if let Some(reason) = reason {
+    let reason = outcome.reason();
+    if let Some(reason) = &reason {
         let moves = counted(*moves as usize, "move");
-        let how = format!("{}: {reason}", outcome.name());
-        sheet.failure(format!("run {number}, {moves}, {way:.0} m"), how)?;
+        let what = format!("run {number}, {moves}, {way:.0} m");
+        sheet.failure(what, format!("{verdict}: {reason}"))?;
     }
     let line = json!({
         "run": number, "moves": moves, "way": rounded(*way), "recoveries": recoveries,
         "percepts": tally.percepts, "wrong_percepts": tally.wrong,
-        "missing_percepts": tally.passed,
-        "verdict": outcome.name(), "reason": reason,
+        "missing_percepts": tally.passed, "verdict": verdict, "reason": reason,
     });
     sheet.line("run", &line)
 }
 
-fn group_row(group: &LaserGroup) -> [String; 6] {
-    let failed = group.wrong + group.undecided;
-    [
-        group.by.to_owned(),
-        group.what.clone(),
-        format!("{:>6}", grouped(group.wrong as u128)),
-        format!("{:>9}", grouped(group.undecided as u128)),
-        format!("{:>6}", grouped(group.of as u128)),
-        percent(failed as f64 / group.of.max(1) as f64),
-    ]
-}
-
-/// A visit, in words.
 fn in_words(visit: &JudgedLaserVisit) -> String {
-    let JudgedLaserVisit { features, way, door, found, verdict, .. } = visit;
+    let JudgedLaserVisit { degree, way, door, found, verdict, .. } = visit;
     let doors = |degree: u32| counted(degree as usize, "door");
-    let expected = format!("{}, left by door {door}", doors(features.degree));
+    let expected = format!("{}, left by door {door}", doors(*degree));
     let found = match found {
         Some((degree, Some(door))) => format!("; derived {}, door {door}", doors(*degree)),
         Some((degree, None)) => format!("; derived {}", doors(*degree)),
@@ -328,7 +264,6 @@ fn in_words(visit: &JudgedLaserVisit) -> String {
     format!("{way:.0} m: {}, {expected}{found}", verdict.name())
 }
 
-/// To a tenth.
 fn rounded(metres: f64) -> f64 {
     (metres * 10.0).round() / 10.0
 }

@@ -1,28 +1,23 @@
 //! `evaluate lengths`: the lengths and turns of hallways by odometry, false alarms, and changes that are
 //! detected.
 
-use std::io::Write;
+use std::{io::Write, iter};
 
 use serde_json::json;
-use toposlam_model::{
-    enumerate::Watch, mapping::MappingAlgorithm, measurement::MeasurementContradiction,
-};
+use toposlam_model::{mapping::MappingAlgorithm, measurement::MeasurementContradiction};
 use toposlam_simulator::evaluation::bound::upper_bound;
 use toposlam_terminal::{
-    CliError, Outcome,
-    exit_codes::help_end,
-    progress::Progress,
-    text::{counted, grouped, print_rows},
+    CliError, Outcome, exit_codes::help_end, progress::must_stop, text::counted,
 };
 
 use super::{
-    evaluation_report::{MeasurementEnd, outcome},
+    report::{MeasurementEnd, measure, number},
     robots::{RandomPlans, RobotArguments},
 };
 use toposlam_simulator::evaluation::{
     measured_run::{LENGTH_CHANGES, MeasuredRun},
     report::TargetStatus,
-    run_sampler::{Faults, RunSampler},
+    run_sampler::RunSampler,
 };
 
 /// Measure the lengths of hallways by odometry: how often do they contradict each other, and how many changes
@@ -66,34 +61,58 @@ impl EvaluateLengthsArguments {
         let mut sheet = self.robots.report.begin()?;
         let plans = self.robots.plans(RandomPlans::Large(self.plans), usize::MAX)?;
         let RobotArguments { seed, noise, .. } = self.robots;
-        let algorithm = MappingAlgorithm::Algorithm1;
-        let sampler = RunSampler::new(plans, usize::MAX, Faults::None, seed, noise, algorithm);
+        let sampler =
+            RunSampler::new(plans, usize::MAX, 0, seed, noise, MappingAlgorithm::Algorithm1);
         let equipment = self.robots.equipment()?;
         let numbers = 0..sampler.runs_with(self.traversals);
-        let progress = Progress::new("runs", "runs")?;
-        let runs = sampler.measured(numbers, &equipment, &progress);
-        let ending =
-            if progress.stop() { MeasurementEnd::Interrupted } else { MeasurementEnd::Whole };
-        progress.finish();
-        let tally = Tally::of(&runs);
-        let outcome = outcome(tally.status(), ending);
+        let runs = measure("runs", "runs", numbers, |number, watch| {
+            sampler.measured(number, &equipment, watch)
+        })?;
+        let ending = MeasurementEnd::interrupted_if(must_stop());
+        let [measured, compared]: [usize; 2] =
+            [runs.iter().map(|run| run.measured).sum(), runs.iter().map(|run| run.compared).sum()];
+        // With the calibration of the base, and with the uncertainty of a log: the false alarms, and for each of the
+        // changes, how many were found, and how many were made.
+        let tests = [0, 1].map(|test: usize| {
+            let tests = || runs.iter().map(move |run| &run.tests[test]);
+            let found = [0, 1, 2, 3].map(|change: usize| {
+                let made = || tests().filter_map(move |test| test.found[change]);
+                [made().filter(|&found| found).count(), made().count()]
+            });
+            (tests().map(|test| test.alarms.len()).sum::<usize>(), found)
+        });
+        let statuses = tests.map(|(alarms, _)| TargetStatus::from_counts(alarms, measured, TARGET));
+        let outcome = ending.outcome(statuses[0].max(statuses[1]));
 
-        let [measured, compared] =
-            [tally.measured, tally.compared].map(|count| grouped(count as u128));
-        let count = counted(runs.len(), "run");
-        let text = sheet.text();
-        writeln!(text, "Lengths of hallways, by {}, seed {seed}", self.robots.sensing())?;
-        writeln!(text, "  {measured} traversals in {count}")?;
-        writeln!(text, "  {compared} of them in hallways that were measured before")?;
+        writeln!(sheet.text, "Lengths of hallways, by {}, seed {seed}", self.robots.sensing())?;
+        writeln!(
+            sheet.text,
+            "  {} traversals in {}",
+            number(measured),
+            counted(runs.len(), "run")
+        )?;
+        let compared_text = number(compared);
+        writeln!(sheet.text, "  {compared_text} of them in hallways that were measured before")?;
         for (run, alarm) in alarms(&runs) {
             let what = format!("run {} in {}", run.case.number, run.case.plan_name);
             sheet.failure(what, alarm.measurement)?;
         }
-        print_rows(sheet.text(), ["", "calibrated base", "log"], &tally.rows())?;
-        for (noise, test) in ["calibrated", "log"].into_iter().zip(&tally.tests) {
-            let alarms = [test.alarms, test.measured];
-            sheet.share_line(&format!("false alarms, {noise}"), alarms)?;
-            for (metres, found) in LENGTH_CHANGES.into_iter().zip(test.found) {
+        let [robot, log] = tests.map(|(alarms, _)| {
+            let most = 100.0 * upper_bound(alarms, measured);
+            format!("{}, at most {most:.3} %", number(alarms))
+        });
+        let changes = LENGTH_CHANGES.into_iter().enumerate().map(|(change, metres)| {
+            let [robot, log] = tests.map(|(_, found)| {
+                let [found, of] = found[change].map(number);
+                format!("{found} of {of}")
+            });
+            [format!("{metres:.1} m found"), robot, log]
+        });
+        let rows = iter::once(["false alarms".to_owned(), robot, log]).chain(changes);
+        sheet.table(["", "calibrated base", "log"], rows)?;
+        for (noise, (alarms, found)) in ["calibrated", "log"].into_iter().zip(tests) {
+            sheet.share_line(&format!("false alarms, {noise}"), [alarms, measured])?;
+            for (metres, found) in LENGTH_CHANGES.into_iter().zip(found) {
                 sheet.share_line(&format!("{metres:.1} m found, {noise}"), found)?;
             }
         }
@@ -104,16 +123,18 @@ impl EvaluateLengthsArguments {
             })
         });
         let line = json!({
-            "runs": runs.len(), "traversals": tally.measured, "compared": tally.compared,
+            "runs": runs.len(), "traversals": measured, "compared": compared,
             "seed": seed, "target": TARGET, "first_alarm": first_alarm,
         });
-        let verdict = match (outcome, ending) {
-            (Outcome::Holds, _) => "holds: at most 1 false alarm in 10,000 traversals",
-            (Outcome::Violated, _) => "violated: more than 1 false alarm in 10,000 traversals",
-            (_, MeasurementEnd::Interrupted) => "incomplete, interrupted",
-            _ => "not shown: there are too few traversals",
-        };
-        sheet.finish(out, ("lengths", &line), outcome, verdict)
+        let verdict = ending.verdict(
+            outcome,
+            [
+                "holds: at most 1 false alarm in 10,000 traversals",
+                "violated: more than 1 false alarm in 10,000 traversals",
+                "not shown: there are too few traversals",
+            ],
+        );
+        sheet.finish(out, ("lengths", line), outcome, verdict)
     }
 }
 
@@ -122,59 +143,4 @@ fn alarms(
     runs: &[MeasuredRun],
 ) -> impl Iterator<Item = (&MeasuredRun, &MeasurementContradiction)> + '_ {
     runs.iter().flat_map(|run| run.tests[0].alarms.iter().map(move |alarm| (run, alarm)))
-}
-
-/// The sums over all runs.
-struct Tally {
-    measured: usize,
-    compared: usize,
-    /// With the calibration of the base, and with the uncertainty of a log.
-    tests: [TestTally; 2],
-}
-
-/// The results of the tests with some uncertainty.
-struct TestTally {
-    measured: usize,
-    alarms: usize,
-    /// For each of the changes, how many were found, and how many were made.
-    found: [[usize; 2]; 4],
-}
-
-impl Tally {
-    fn of(runs: &[MeasuredRun]) -> Self {
-        let sum = |of: fn(&MeasuredRun) -> usize| runs.iter().map(of).sum();
-        let measured = sum(|run| run.measured);
-        let tests = [0, 1].map(|test: usize| {
-            let tests = || runs.iter().map(move |run| &run.tests[test]);
-            let found = [0, 1, 2, 3].map(|change: usize| {
-                let made = || tests().filter_map(move |test| test.found[change]);
-                [made().filter(|&found| found).count(), made().count()]
-            });
-            TestTally { measured, alarms: tests().map(|test| test.alarms.len()).sum(), found }
-        });
-        Self { measured, compared: sum(|run| run.compared), tests }
-    }
-
-    /// The rows of the table, one column for each of the tests.
-    fn rows(&self) -> Vec<[String; 3]> {
-        let [robot, log] = self.tests.each_ref().map(|test| {
-            let most = 100.0 * upper_bound(test.alarms, test.measured);
-            format!("{}, at most {most:.3} %", grouped(test.alarms as u128))
-        });
-        let mut rows = vec![["false alarms".to_owned(), robot, log]];
-        for (index, metres) in LENGTH_CHANGES.into_iter().enumerate() {
-            let [robot, log] = self.tests.each_ref().map(|test| {
-                let [found, of] = test.found[index].map(|count| grouped(count as u128));
-                format!("{found} of {of}")
-            });
-            rows.push([format!("{metres:.1} m found"), robot, log]);
-        }
-        rows
-    }
-
-    /// Whether the target is met by both.
-    fn status(&self) -> TargetStatus {
-        let status = |test: &TestTally| TargetStatus::of(test.alarms, test.measured, TARGET);
-        self.tests.iter().map(status).max().unwrap_or(TargetStatus::NotShown)
-    }
 }

@@ -1,16 +1,14 @@
 //! `evaluate WHAT`: compares sensing, driving and whole runs with the ground truth.
 
-mod clutter;
 mod control;
-mod evaluation_report;
 mod failing;
 mod laser;
 mod lengths;
 mod mistakes;
+mod report;
 mod robots;
 mod runs;
 mod vision;
-mod vision_report;
 
 use std::{
     env,

@@ -12,7 +12,6 @@ use toposlam_model::{
     mapping::MappingMethod,
 };
 
-use toposlam_simulator::evaluation::report::TargetStatus;
 use toposlam_terminal::{
     CliError, Outcome,
     edge_range::EdgeRange,
@@ -20,10 +19,10 @@ use toposlam_terminal::{
     method_options::{MethodOptions, safeguards_in_words},
     output,
     progress::Progress,
-    text::{WIDTH, capital, counted, grouped, print_paragraph, print_rows, wrapped},
+    text::{WIDTH, capital, counted, grouped, print_paragraph, wrapped},
 };
 
-use super::evaluation_report::{MeasurementEnd, ReportArguments, outcome};
+use super::report::{EvaluationReport, MeasurementEnd, ReportArguments};
 
 /// Measure what one mistake does: is the map right, or is the mistake detected?
 ///
@@ -95,16 +94,11 @@ impl EvaluateMistakesArguments {
         let ending = if tally.interrupted {
             MeasurementEnd::Interrupted
         } else {
-            MeasurementEnd::of(all.runs() as usize, 0)
+            MeasurementEnd::from_counts(all.runs() as usize, 0)
         };
         let violations = violations(&tally);
-        let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
-        let outcome = outcome(status, ending);
-        self.print(method, &tally, sheet.text())?;
-        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
-            sheet
-                .line("mistake", &mistake_line(kind, tally.counts[at], tally.first[at].as_ref()))?;
-        }
+        let outcome = ending.outcome_with(violations);
+        self.add(method, &tally, &mut sheet)?;
         let line = json!({
             "class": self.class.name(), "algorithm": method.algorithm().name(),
             "audits": method.audits(), "recover": method.recovers(),
@@ -112,51 +106,49 @@ impl EvaluateMistakesArguments {
             "unnoticed": all.undetected(), "moves_total": tally.moves,
             "interrupted": tally.interrupted,
         });
-        let verdict = match (outcome, ending) {
-            (Outcome::Holds, _) => {
-                "holds: each run ends with the right map, or the mistake is detected".to_owned()
-            }
-            (Outcome::Violated, _) => format!(
-                "violated: {} of {} runs end with a detectable mistake that was not detected",
-                grouped(violations.into()),
-                grouped(all.runs().into()),
-            ),
-            (_, MeasurementEnd::Interrupted) => "incomplete, interrupted".to_owned(),
-            _ => "incomplete: there is nothing to check".to_owned(),
-        };
+        let violated = format!(
+            "violated: {} of {} runs end with a detectable mistake that was not detected",
+            grouped(violations.into()),
+            grouped(all.runs().into()),
+        );
+        let holds = "holds: each run ends with the right map, or the mistake is detected";
+        let verdict = ending.verdict(outcome, [holds, &violated, ""]);
         self.write_mistakes(&tally)?;
-        let verdict = wrapped(*WIDTH, "", 0, &verdict).join("\n");
-        sheet.finish(out, ("mistakes", &line), outcome, &format!("\n{verdict}"))
+        let verdict = wrapped(*WIDTH, "", 0, verdict).join("\n");
+        sheet.finish(out, ("mistakes", line), outcome, &format!("\n{verdict}"))
     }
 
-    fn print(
+    fn add(
         &self,
         method: MappingMethod,
         tally: &MistakeTally,
-        out: &mut dyn Write,
+        sheet: &mut EvaluationReport,
     ) -> Result<(), CliError> {
         let algorithm = capital(method.algorithm().in_words());
         let safeguards = match safeguards_in_words(method) {
             none if none.is_empty() => "alone".to_owned(),
             safeguards => safeguards,
         };
-        writeln!(out, "{algorithm} {safeguards}, one mistake a run, class {}", self.class)?;
+        let class = self.class;
+        writeln!(sheet.text, "{algorithm} {safeguards}, one mistake a run, class {class}")?;
         let starts = counted(tally.starts as usize, "start");
         let mean = tally.moves as f64 / tally.starts.max(1) as f64;
-        writeln!(out, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
-        let heads = ["mistake", "     runs", "    right", " detected", "wrong pose", "wrong map"];
+        writeln!(sheet.text, "  {starts}, {mean:.1} moves on average without a mistake\n")?;
+        let heads = ["mistake", ">runs", ">right", ">detected", ">wrong pose", ">wrong map"];
         let all = tally.all();
         let kinds = MISTAKE_KINDS.into_iter().map(MistakeKind::name).zip(tally.counts);
-        let rows: Vec<_> =
-            kinds.chain([("all", all)]).map(|(name, counts)| row(name, counts)).collect();
-        print_rows(out, heads, &rows)?;
+        sheet.table(heads, kinds.chain([("all", all)]).map(|(name, counts)| row(name, counts)))?;
         if method.recovers() {
             let extra = all.extra_moves as f64 / all.right.max(1) as f64;
-            writeln!(out, "\n  a right run took {extra:.1} more moves on average")?;
+            writeln!(sheet.text, "\n  a right run took {extra:.1} more moves on average")?;
         }
         for (kind, mistake) in first_mistakes(tally) {
-            writeln!(out)?;
-            print_paragraph(out, &in_words(kind, mistake))?;
+            writeln!(sheet.text)?;
+            print_paragraph(&mut sheet.text, &in_words(kind, mistake))?;
+        }
+        for (at, kind) in MISTAKE_KINDS.into_iter().enumerate() {
+            let line = mistake_line(kind, tally.counts[at], tally.first[at].as_ref());
+            sheet.line("mistake", &line)?;
         }
         Ok(())
     }
@@ -212,18 +204,12 @@ fn violations(tally: &MistakeTally) -> u64 {
 
 fn row(name: &str, counts: MistakeCounts) -> [String; 6] {
     let MistakeCounts { right, reported, too_large, wrong_pose, wrong_map, .. } = counts;
-    let number = |number: u64, width: usize| format!("{:>width$}", grouped(number.into()));
-    [
-        name.to_owned(),
-        number(counts.runs(), 9),
-        number(right, 9),
-        number(reported + too_large, 9),
-        number(wrong_pose, 10),
-        number(wrong_map, 9),
-    ]
+    let [runs, right, reported, wrong_pose, wrong_map] =
+        [counts.runs(), right, reported + too_large, wrong_pose, wrong_map]
+            .map(|count| grouped(count.into()));
+    [name.to_owned(), runs, right, reported, wrong_pose, wrong_map]
 }
 
-/// An undetected mistake in words.
 fn in_words(kind: MistakeKind, undetected: &UndetectedMistake) -> String {
     let UndetectedMistake { graph, mistake, flaw, .. } = undetected;
     let edges = counted(graph.edge_count(), "edge");

@@ -2,16 +2,12 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use toposlam_model::floor_plan::FloorPlan;
-use toposlam_terminal::{CliError, progress::Progress};
+use toposlam_terminal::{CliError, input, progress::Progress};
 use toposlam_vision::camera::Camera;
 
-use super::{
-    evaluation_report::{ReportArguments, unlearned, unmeasured},
-    vision::read_plan,
-};
+use super::report::{ReportArguments, unlearned, unmeasured};
 use toposlam_simulator::{
-    BuildingLook, LOOKS, LearnedSensors, RobotEquipment,
+    BuildingLook, LOOKS, LearnedSensors, NamedPlan, RobotEquipment,
     options::{
         appearance::{ImageSize, looks},
         noise,
@@ -56,9 +52,6 @@ pub(super) struct RobotArguments {
 /// The number of random plans in which driving is measured.
 pub(super) const PLANS: u64 = 40;
 
-/// A plan's name and the plan.
-pub(super) type NamedPlan = (String, Arc<FloorPlan>);
-
 /// Random plans.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RandomPlans {
@@ -78,7 +71,7 @@ impl RobotArguments {
         if self.plan.is_empty() {
             usual_plans(self.seed, random, most)
         } else {
-            self.plan.iter().map(|path| read_plan(path)).collect()
+            read_plans(&self.plan)
         }
     }
 
@@ -94,7 +87,7 @@ impl RobotArguments {
         if !self.images {
             return Ok(RobotEquipment::Scenes);
         }
-        let looks = if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() };
+        let looks = given_looks(&self.look);
         let progress = Progress::new("learning colours", "looks")?;
         let camera = Camera::superscout().sized(self.size.pixels());
         let sensors = LearnedSensors::new(&camera, &looks, &progress);
@@ -138,11 +131,23 @@ pub(super) fn usual_plans(
     };
     for number in 0..count {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
-        let plan = match size(number) {
-            None => random_plan(seed),
-            Some(junctions) => random_plan_with(seed, junctions),
-        };
+        let plan =
+            size(number).map_or_else(|| random_plan(seed), |size| random_plan_with(seed, size));
         named.push((format!("random-{number}"), Arc::new(plan.map_err(unmeasured)?)));
     }
     Ok(named)
+}
+
+/// The given looks, or all.
+pub(super) fn given_looks(given: &[&'static BuildingLook]) -> Vec<&'static BuildingLook> {
+    if given.is_empty() { LOOKS.iter().collect() } else { given.to_vec() }
+}
+
+pub(super) fn read_plans(paths: &[PathBuf]) -> Result<Vec<NamedPlan>, CliError> {
+    let read = |path: &PathBuf| {
+        let world = input::read_world(path)?;
+        let plan = input::floor_plan(path, &world)?.clone();
+        Ok((world.name, Arc::new(plan)))
+    };
+    paths.iter().map(read).collect()
 }

@@ -8,21 +8,18 @@ use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
     method_options::{MethodOptions, safeguards_in_words},
-    progress::Progress,
-    text::{counted, grouped, print_hanging, print_rows, tenths},
+    text::{counted, grouped, print_hanging, tenths},
 };
 
 use super::{
-    evaluation_report::{MeasurementEnd, outcome},
+    report::{MeasurementEnd, measure, number},
     robots::{RandomPlans, RobotArguments},
 };
 use toposlam_simulator::{
-    FAULTS, FaultKind, RobotEquipment,
-    evaluation::{
-        report::TargetStatus,
-        run_sampler::{Faults, JudgedRun, RunSampler},
-    },
+    FAULTS, RobotEquipment,
+    evaluation::run_sampler::{JudgedRun, RunSampler},
     run::{RunOutcome, WayToMarker},
+    sample_verdict::{SampleTally, SampleVerdict},
 };
 
 /// Measure whole runs: is every building mapped correctly, in the specified number of moves?
@@ -85,82 +82,84 @@ impl EvaluateRunsArguments {
         };
         let plans = self.robots.plans(random, most)?;
         let count = counted(plans.len(), "floor plan");
-        let faults = self.faults.map_or(Faults::None, Faults::Each);
         let method = self.method.method()?;
+        let (has_faults, recovers) = (self.faults.is_some(), method.recovers());
         let RobotArguments { seed, noise, .. } = self.robots;
+        let faults = self.faults.unwrap_or_default();
         let runs = RunSampler::new(plans, self.starts, faults, seed, noise, method);
-        let wanted = self.runs.unwrap_or(runs.starts() as u64);
-        let progress = Progress::new("runs", "runs")?;
-        let judged = runs.judged(0..wanted, &equipment, &progress);
-        progress.finish();
-        let ending = MeasurementEnd::of(judged.len(), wanted);
-        let violations = judged.iter().filter(|run| self.violates(run)).count();
-        let status = if violations > 0 { TargetStatus::Missed } else { TargetStatus::Met };
-        let outcome = outcome(status, ending);
+        let starts = runs.starts.len();
+        let wanted = self.runs.unwrap_or(starts as u64);
+        let judged = measure("runs", "runs", 0..wanted, |number, watch| {
+            runs.run(number, &equipment, watch)
+        })?;
+        // Without faults a run must be right, with faults it must not be wrong without an error.
+        let violates = |run: &&JudgedRun| {
+            if has_faults { run.is_violation() } else { run.ending != RunOutcome::Right }
+        };
+        let violations = judged.iter().filter(violates).count();
+        let ending = MeasurementEnd::from_counts(judged.len(), wanted);
+        let outcome = ending.outcome_with(violations as u64);
 
-        let text = sheet.text();
-        writeln!(text, "Whole runs by {}, seed {seed}", self.robots.sensing())?;
+        writeln!(sheet.text, "Whole runs by {}, seed {seed}", self.robots.sensing())?;
         let by = format!("{} {}", method.algorithm().in_words(), safeguards_in_words(method));
-        writeln!(text, "  by {}", by.trim_end())?;
-        writeln!(text, "  {} in {count}", counted(runs.starts(), "start"))?;
+        writeln!(sheet.text, "  by {}", by.trim_end())?;
+        writeln!(sheet.text, "  {} in {count}", counted(starts, "start"))?;
         for run in &judged {
             sheet.line("run", &run_line(run))?;
-            let is_wrong = matches!(run.ending, RunOutcome::Wrong(_));
-            if is_wrong || self.faults.is_none() && run.ending != RunOutcome::Right {
+            let verdict = run.ending.verdict();
+            if verdict == SampleVerdict::Wrong || !has_faults && verdict == SampleVerdict::Undecided
+            {
                 sheet.failure(named(run), &run.ending)?;
             }
         }
-        if self.faults.is_some() {
-            let heads = ["fault", " runs", "right", "given up", "wrong"];
-            let rows: Vec<_> = FAULTS.iter().map(|&(kind, ..)| row(&judged, kind)).collect();
-            print_rows(sheet.text(), heads, &rows)?;
+        if has_faults {
+            let rows = FAULTS.iter().map(|&(kind, name, ..)| {
+                let tally = tally(judged.iter().filter(|run| run.has_fault(kind)));
+                let [all, right, gave_up, wrong] =
+                    [tally.all(), tally.right, tally.undecided, tally.wrong].map(number);
+                [name.to_owned(), all, right, gave_up, wrong]
+            });
+            sheet.table(["fault", ">runs", ">right", ">given up", ">wrong"], rows)?;
         }
-        let [right, gave_up, wrong] = tally(judged.iter());
-        let [seen, all] = [right, judged.len()].map(|count| grouped(count as u128));
-        writeln!(sheet.text(), "  right    {seen} of {all}")?;
-        sheet.share_line("right", [right, judged.len()])?;
-        sheet.share("gave up", gave_up, judged.len())?;
-        sheet.share("wrong", wrong, judged.len())?;
-        if method.audits() > 0 || method.recovers() {
-            print_safeguards(method, &judged, sheet.text())?;
+        let tally = tally(&judged);
+        let all = judged.len();
+        writeln!(sheet.text, "  right    {} of {}", number(tally.right), number(all))?;
+        sheet.share_line("right", [tally.right, all])?;
+        sheet.share("gave up", tally.undecided, all)?;
+        sheet.share("wrong", tally.wrong, all)?;
+        if method.audits() > 0 || recovers {
+            print_safeguards(method, &judged, &mut sheet.text)?;
         }
-        self.print_moves(&judged, sheet.text())?;
-        let certificates = CertificateTotal::of(&judged);
+        // The right runs that left no hallway out: their moves without audits, and those of their certificates.
+        let whole = right(&judged).filter(|run| run.blocked().is_empty());
+        let [moves, certificates] = whole.fold([0, 0], |[moves, certificates], run| {
+            [moves + without_audits(run), certificates + run.certificate_moves]
+        });
+        let ratio = (certificates > 0).then(|| moves as f64 / certificates as f64);
+        self.print_moves(&judged, ratio.filter(|_| !has_faults), &mut sheet.text)?;
         let line = json!({
-            "runs": judged.len(), "seed": seed,
-            "moves_total": certificates.moves, "certificate_total": certificates.certificate_moves,
-            "ratio": certificates.ratio(),
-            "algorithm": method.algorithm().name(),
-            "audits": method.audits(), "recover": method.recovers(),
+            "runs": all, "seed": seed,
+            "moves_total": moves, "certificate_total": certificates, "ratio": ratio,
+            "algorithm": method.algorithm().name(), "audits": method.audits(), "recover": recovers,
             "violations": violations,
         });
-        let verdict = match (outcome, ending, self.faults.is_some()) {
-            (Outcome::Holds, _, false) => {
-                "holds in these runs: every map is right, and every move is as specified"
-            }
-            (Outcome::Holds, _, true) if method.recovers() => {
-                "holds in these runs: every map is right, or the robot gave up"
-            }
-            (Outcome::Holds, ..) => {
-                "holds in these runs: every map is right, or the robot gave up or was carried"
-            }
-            (Outcome::Violated, ..) => "violated",
-            (_, MeasurementEnd::Empty, _) => "incomplete: nothing was measured",
-            _ => "incomplete, interrupted",
+        let holds = match (has_faults, recovers) {
+            (false, _) => "every map is right, and every move is as specified",
+            (true, true) => "every map is right, or the robot gave up",
+            (true, false) => "every map is right, or the robot gave up or was carried",
         };
-        sheet.finish(out, ("runs", &line), outcome, verdict)
-    }
-
-    /// Whether a run fails: without faults it must be right, with faults it must not be wrong without an error.
-    fn violates(&self, run: &JudgedRun) -> bool {
-        match self.faults {
-            None => run.ending != RunOutcome::Right,
-            Some(_) => run.is_violation(),
-        }
+        let holds = format!("holds in these runs: {holds}");
+        let verdict = ending.verdict(outcome, [&holds, "violated", ""]);
+        sheet.finish(out, ("runs", line), outcome, verdict)
     }
 
     /// Prints what all runs took.
-    fn print_moves(&self, judged: &[JudgedRun], out: &mut dyn Write) -> Result<(), CliError> {
+    fn print_moves(
+        &self,
+        judged: &[JudgedRun],
+        ratio: Option<f64>,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
         if judged.is_empty() {
             return Ok(());
         }
@@ -170,7 +169,6 @@ impl EvaluateRunsArguments {
         let (moves, count) = (counted(moves as usize, "move"), grouped(count.into()));
         let frames = self.robots.frames();
         writeln!(out, "  {moves}, {count} {frames}, {hours} hours of simulated time")?;
-        let ratio = CertificateTotal::of(judged).ratio().filter(|_| self.faults.is_none());
         if let Some(ratio) = ratio {
             let times = "times the moves of their certificates";
             writeln!(out, "  the right runs took {ratio:.2} {times}")?;
@@ -189,7 +187,7 @@ fn run_line(run: &JudgedRun) -> Value {
         "moves": run.moves[0], "explore_moves": run.moves[1],
         "certificate_moves": run.certificate_moves,
         "right": run.ending == RunOutcome::Right,
-        "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
+        "gave_up": run.ending.gave_up(),
         "cut_off": run.way_to_marker == WayToMarker::None,
         "narrow": run.way_to_marker == WayToMarker::Narrow,
         "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
@@ -200,30 +198,16 @@ fn run_line(run: &JudgedRun) -> Value {
     })
 }
 
-/// The moves of the right runs that left no hallway out, audits apart, and those of their certificates.
-#[derive(Clone, Copy, Default)]
-struct CertificateTotal {
-    moves: u64,
-    certificate_moves: u64,
+fn tally<'r>(runs: impl IntoIterator<Item = &'r JudgedRun>) -> SampleTally {
+    runs.into_iter().map(|run| run.ending.verdict()).collect()
 }
 
-impl CertificateTotal {
-    fn of(judged: &[JudgedRun]) -> Self {
-        let whole =
-            judged.iter().filter(|run| run.ending == RunOutcome::Right && run.blocked().is_empty());
-        whole.fold(Self::default(), |sum, run| {
-            let audits = run.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
-            Self {
-                moves: sum.moves + run.moves[0].saturating_sub(audits),
-                certificate_moves: sum.certificate_moves + run.certificate_moves,
-            }
-        })
-    }
+fn right(judged: &[JudgedRun]) -> impl Iterator<Item = &JudgedRun> + Clone {
+    judged.iter().filter(|run| run.ending == RunOutcome::Right)
+}
 
-    /// `None` without such a run.
-    fn ratio(self) -> Option<f64> {
-        (self.certificate_moves > 0).then(|| self.moves as f64 / self.certificate_moves as f64)
-    }
+fn without_audits(run: &JudgedRun) -> u64 {
+    run.moves[0].saturating_sub(run.audit_moves())
 }
 
 /// What audits and recoveries took in all runs.
@@ -232,51 +216,41 @@ fn print_safeguards(
     judged: &[JudgedRun],
     out: &mut dyn Write,
 ) -> Result<(), CliError> {
-    let right = || judged.iter().filter(|run| run.ending == RunOutcome::Right);
-    let all = || right().filter_map(|run| run.mapped.as_ref());
-    let audits: u64 = all().map(|mapped| mapped.audit_moves).sum();
+    let right = || right(judged);
+    let number = |number: u64| grouped(number.into());
+    let audits: u64 = right().map(JudgedRun::audit_moves).sum();
     let [made, explored] = [0, 1].map(|at| right().map(|run| run.moves[at]).sum::<u64>());
     let extra = made.saturating_sub(audits).saturating_sub(explored);
-    let number = |number: u64| grouped(number.into());
-    let explored = number(explored);
-    let text =
-        format!("{explored} in the right runs without faults, {} more for audits", number(audits));
+    let (explored, audits) = (number(explored), number(audits));
+    let text = format!("{explored} in the right runs without faults, {audits} more for audits");
     if !method.recovers() {
         return Ok(print_hanging(out, "  moves    ", &text)?);
     }
-    let blocked = all().filter(|mapped| !mapped.blocked.is_empty()).count();
-    let recoveries: u32 = all().map(|mapped| mapped.recoveries).sum();
-    let recoveries = if recoveries == 1 {
-        "1 recovery".to_owned()
-    } else {
-        format!("{} recoveries", number(recoveries.into()))
+    let recoveries = |run: &JudgedRun| run.mapped.as_ref().map_or(0, |mapped| mapped.recoveries);
+    let all = match right().map(recoveries).sum() {
+        1 => "1 recovery".to_owned(),
+        all => format!("{} recoveries", number(u32::into(all))),
     };
-    let text = format!("{text}, {} more for {recoveries}", number(extra));
+    let text = format!("{text}, {} more for {all}", number(extra));
     print_hanging(out, "  moves    ", &text)?;
-    let recovered = || {
-        let is_one = |run: &&JudgedRun| run.mapped.as_ref().is_some_and(|map| map.recoveries > 0);
-        right().filter(is_one)
-    };
+    let recovered = || right().filter(|run| recoveries(run) > 0);
     let count = recovered().count();
     if count > 0 {
-        let mean = |moves: &dyn Fn(&JudgedRun) -> u64| {
+        let mean = |moves: fn(&JudgedRun) -> u64| {
             recovered().map(moves).sum::<u64>() as f64 / count as f64
         };
-        let audits = |run: &JudgedRun| run.mapped.as_ref().map_or(0, |mapped| mapped.audit_moves);
-        let extra =
-            mean(&|run| run.moves[0].saturating_sub(audits(run)).saturating_sub(run.moves[1]));
-        let over = mean(&|run| run.moves[1]);
+        let extra = mean(|run| without_audits(run).saturating_sub(run.moves[1]));
+        let over = mean(|run| run.moves[1]);
         let text = format!(
             "{extra:.1} more moves on average in the {} right runs that recovered; to start over, \
              {over:.1}",
-            grouped(count as u128)
+            number(count as u64)
         );
         print_hanging(out, "  cost     ", &text)?;
     }
-    let blocked = grouped(blocked as u128);
+    let blocked = number(right().filter(|run| !run.blocked().is_empty()).count() as u64);
     writeln!(out, "  blocked  {blocked} of the right runs are right but for a hallway")?;
-    let gave_up = judged.iter().filter(|run| matches!(run.ending, RunOutcome::GaveUp(_)));
-    let ended = |way| gave_up.clone().filter(|run| run.way_to_marker == way).count();
+    let gave_up = judged.iter().filter(|run| run.ending.gave_up());
     for (name, way, why) in [
         ("cut off", WayToMarker::None, "an obstacle leaves no way to the marker"),
         (
@@ -285,36 +259,11 @@ fn print_safeguards(
             "each way to the marker is beside an obstacle, within 0.4 m of the middle of a hallway",
         ),
     ] {
-        let text = format!("{} given up because {why}", counted(ended(way), "run"));
+        let count = gave_up.clone().filter(|run| run.way_to_marker == way).count();
+        let text = format!("{} given up because {why}", counted(count, "run"));
         print_hanging(out, &format!("  {name:<9}"), &text)?;
     }
     Ok(())
-}
-
-/// The number of runs that were right, given up, wrong.
-fn tally<'r>(runs: impl Iterator<Item = &'r JudgedRun>) -> [usize; 3] {
-    runs.fold([0; 3], |mut tally, run| {
-        let ending = match run.ending {
-            RunOutcome::Right => 0,
-            RunOutcome::GaveUp(_) => 1,
-            RunOutcome::Wrong(_) => 2,
-        };
-        tally[ending] += 1;
-        tally
-    })
-}
-
-fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
-    let runs = || judged.iter().filter(|run| run.has_fault(kind));
-    let [right, gave_up, wrong] = tally(runs());
-    let number = |count: usize, width: usize| format!("{:>width$}", grouped(count as u128));
-    [
-        kind.name().to_owned(),
-        number(runs().count(), 5),
-        number(right, 5),
-        number(gave_up, 8),
-        number(wrong, 5),
-    ]
 }
 
 fn named(run: &JudgedRun) -> String {

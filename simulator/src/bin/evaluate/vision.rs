@@ -1,42 +1,39 @@
 //! `evaluate vision`: compares the scenes of rendered views with the floor plan.
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{io::Write, path::PathBuf};
 
-use serde_json::json;
-
-use toposlam_model::floor_plan::FloorPlan;
+use serde_json::{Map, Value, json};
+use toposlam_simulator::evaluation::bound::upper_bound;
 use toposlam_terminal::{
-    CliError, Outcome, exit_codes::help_end, input, output, progress::Progress, remark,
+    CliError, Outcome,
+    exit_codes::help_end,
+    output,
+    progress::Progress,
+    remark,
+    text::{counted, grouped, print_hanging},
 };
 use toposlam_vision::camera::Camera;
 
 use super::{
-    clutter,
-    evaluation_report::{
-        EvaluationReport, MeasurementEnd, ReportArguments, outcome, unlearned, unmeasured,
-        verdict_on_targets,
+    failing,
+    report::{
+        EvaluationReport, MeasurementEnd, ReportArguments, measure, number, unlearned, unmeasured,
     },
-    failing, vision_report,
+    robots::{given_looks, read_plans},
 };
 use toposlam_simulator::{
-    BuildingLook, Effects, LOOKS,
+    BuildingLook, EffectSettings, Effects,
     evaluation::{
-        calibration::Calibration,
-        failure_groups::groups,
-        judge::{Judge, JudgingError},
+        judge::{Calibration, Judge, JudgingError},
         judged_view::{JudgedView, JudgedVisit},
-        report::{TargetStatus, VisionReport},
+        report::TargetStatus,
+        vision_report,
     },
-    options::appearance::{
-        EffectSetting, EffectsChoice, ImageSize, camera_with, looks, read_setting, settings,
-    },
+    options::appearance::{EffectSetting, ImageSize, camera_with, looks, read_setting, settings},
     plans,
-    rendered_view::WhichEffects,
+    sample_verdict::SampleTally,
     view_sampler::ViewSampler,
+    view_sampler::WhichEffects,
 };
 
 /// Measure sensing on rendered views against the floor plan
@@ -90,7 +87,7 @@ pub(super) struct EvaluateVisionArguments {
     plan: Vec<PathBuf>,
     /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: EffectsChoice,
+    effects: WhichEffects,
     /// Set one effect in every view (repeatable); they are listed by `toposlam draw --help`. Colours are
     /// learned without it
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
@@ -120,7 +117,7 @@ impl EvaluateVisionArguments {
         }
         let views = self.source()?;
         match self.view {
-            _ if self.clutter => clutter::measure(judge, &views, self.views, sheet, out),
+            _ if self.clutter => self.with_clutter(&views, sheet, out),
             Some(number) => self.one(&views, number, sheet, out),
             None => self.all(&views, sheet, out),
         }
@@ -134,59 +131,109 @@ impl EvaluateVisionArguments {
     ) -> Result<Outcome, CliError> {
         let calibrations = self.calibrations();
         let judge = judge(views, calibrations)?;
-        let visits = self.visits.unwrap_or(self.views / 20);
-        vision_report::add_source(&mut sheet, [self.views, visits], views)?;
+        let wanted = [self.views, self.visits.unwrap_or(self.views / 20)];
+        add_source(&mut sheet, wanted, views)?;
         let mut statuses = Vec::new();
         let mut ending = MeasurementEnd::Whole;
         for &calibration in calibrations {
-            let (judged, judged_visits) = self.measure(&judge, views, visits, calibration)?;
-            if (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits {
+            let is_right = calibration == Calibration::Right;
+            let (title, calibrated) = if is_right {
+                ("With a right calibration", "")
+            } else {
+                let title = "With a camera 5 pixels, 2 cm and 1 degree off its calibration";
+                (title, ", badly calibrated")
+            };
+            let judged = judged(&judge, views, self.views, calibration, calibrated)?;
+            let visits = judged_visits(&judge, views, wanted[1], calibration, calibrated)?;
+            if [judged.len() as u64, visits.len() as u64] != wanted {
                 ending = MeasurementEnd::Interrupted;
             }
-            let report = VisionReport::of(&judged, &judged_visits, calibration);
-            vision_report::add(&mut sheet, &report)?;
-            if calibration == Calibration::Right {
-                vision_report::add_groups(&mut sheet, &groups(&judged))?;
-            }
-            statuses.extend(report.statuses());
+            let figures = vision_report::figures(&judged, &visits, calibration);
+            writeln!(sheet.text, "\n{title}\n")?;
+            let name = failing::calibration_name(calibration);
+            sheet.figures(&Map::from_iter([("calibration".to_owned(), name.into())]), &figures)?;
+            sheet.groups(
+                "Views",
+                &figures.groups,
+                |group| json!({ "failed": group.tally.failed(), "of": group.tally.all() }),
+            )?;
+            statuses.extend(figures.statuses());
             if let Some(folder) = &self.out_dir {
-                let written = failing::write(folder, &judge, &judged, &judged_visits, calibration)?;
+                let written = failing::write(folder, &judge, &judged, &visits, calibration)?;
                 remark!("{written} in {}", folder.display());
             }
         }
         let status = statuses.iter().copied().max().unwrap_or(TargetStatus::NotShown);
-        let outcome = outcome(status, ending);
+        let outcome = ending.outcome(status);
         let count = |is| statuses.iter().filter(|&&status| status == is).count();
         let line = json!({
             "missed": count(TargetStatus::Missed), "not_shown": count(TargetStatus::NotShown),
-            "interrupted": matches!(ending, MeasurementEnd::Interrupted),
+            "interrupted": ending == MeasurementEnd::Interrupted,
         });
-        let verdict = verdict_on_targets(outcome, ending, statuses);
-        sheet.finish(out, ("verdict", &line), outcome, &format!("\n{verdict}"))
+        let verdict = ending.verdict_on_targets(outcome, &statuses);
+        sheet.finish(out, ("verdict", line), outcome, &format!("\n{verdict}"))
     }
 
-    fn measure(
+    /// Measures the same views with each kind of clutter.
+    fn with_clutter(
         &self,
-        judge: &Judge,
         views: &ViewSampler,
-        visits: u64,
-        calibration: Calibration,
-    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), CliError> {
-        let calibrated = match calibration {
-            Calibration::Right => "",
-            Calibration::Wrong => ", badly calibrated",
-        };
-        let progress = Progress::new(&format!("views{calibrated}"), "views")?;
-        let judged =
-            judge.views(views, 0..self.views, calibration, &progress).map_err(unmeasured)?;
-        progress.finish();
-        let progress = Progress::new(&format!("visits{calibrated}"), "visits")?;
-        let visits = judge.visits(views, 0..visits, calibration, &progress).map_err(unmeasured)?;
-        progress.finish();
-        Ok((judged, visits))
+        mut sheet: EvaluationReport,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, CliError> {
+        let mut rows = Vec::new();
+        let [mut all, mut all_wrong] = [0; 2];
+        let mut ending = MeasurementEnd::Whole;
+        let together = [("all of these", CLUTTER.map(|(_, settings)| settings).concat())];
+        let kinds = CLUTTER.map(|(name, settings)| (name, settings.to_vec()));
+        for (name, clutter) in [("none", Vec::new())].into_iter().chain(kinds).chain(together) {
+            let settings = EffectSettings::new(clutter.iter().copied()).map_err(unmeasured)?;
+            let views = ViewSampler { settings, ..views.clone() };
+            let judge = judge(&views, &[Calibration::Right])?;
+            let what = format!(", clutter: {name}");
+            let judged = judged(&judge, &views, self.views, Calibration::Right, &what)?;
+            let counting = judged.iter().filter(|view| view.counts());
+            let tally: SampleTally = counting.map(|view| view.verdict.verdict()).collect();
+            let wrong = judged.iter().filter(|view| view.verdict.is_wrong()).count();
+            let markers = judged.iter().filter(|view| view.has_wrong_marker()).count();
+            let effects: Map<String, Value> =
+                clutter.iter().map(|&(name, value)| (name.to_owned(), value.into())).collect();
+            let line = json!({
+                "clutter": name, "effects": effects, "views": tally.all(), "right": tally.right,
+                "unknown": tally.undecided, "all_views": judged.len(), "wrong": wrong,
+                "wrong_markers": markers,
+            });
+            sheet.line("clutter", &line)?;
+            let [right, unknown] = [tally.right, tally.undecided]
+                .map(|part| format!("{:.1} %", 100.0 * part as f64 / tally.all().max(1) as f64));
+            let of_all = |count| format!("{count} of {}", judged.len());
+            rows.push([
+                name.to_owned(),
+                right,
+                unknown,
+                of_all(wrong),
+                of_all(markers),
+                String::new(),
+            ]);
+            all += judged.len();
+            all_wrong += wrong + markers;
+            if (judged.len() as u64) < self.views {
+                ending = MeasurementEnd::Interrupted;
+                break;
+            }
+        }
+        let status = TargetStatus::from_counts(all_wrong, all, 0.0);
+        let count = grouped(self.views.into());
+        writeln!(sheet.text, "Sensing on {count} views with each kind of clutter\n")?;
+        let heads = ["clutter", ">right", ">unknown", ">wrong scenes", ">wrong markers", ""];
+        sheet.table(heads, rows)?;
+        let most = 100.0 * upper_bound(all_wrong, all.max(1));
+        let [wrong, views] = [all_wrong, all].map(number);
+        let status_name = status.name();
+        writeln!(sheet.text, "\nwrong: {wrong} of {views}, at most {most:.3} % ({status_name})")?;
+        sheet.print(out, ending.outcome(status))
     }
 
-    /// Measures one view.
     fn one(
         &self,
         views: &ViewSampler,
@@ -222,22 +269,18 @@ impl EvaluateVisionArguments {
         }
     }
 
-    /// The sampler of the views.
     fn source(&self) -> Result<ViewSampler, CliError> {
-        let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
+        let given = read_plans(&self.plan)?;
         Ok(ViewSampler {
             seed: self.seed,
             random_plans: given.is_empty(),
             plans: if given.is_empty() { plans().map_err(unmeasured)? } else { given },
-            looks: if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() },
+            looks: given_looks(&self.look),
             sizes: match self.size {
                 Some(size) => vec![size.pixels()],
                 None => vec![ImageSize::Large.pixels(), ImageSize::Small.pixels()],
             },
-            effects: match self.effects {
-                EffectsChoice::Default => WhichEffects::Default,
-                EffectsChoice::None => WhichEffects::None,
-            },
+            effects: self.effects,
             settings: settings(&self.effect)?,
         })
     }
@@ -256,8 +299,74 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Cli
     })
 }
 
-pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), CliError> {
-    let world = input::read_world(path)?;
-    let plan = input::floor_plan(path, &world)?.clone();
-    Ok((world.name, Arc::new(plan)))
+fn judged(
+    judge: &Judge,
+    views: &ViewSampler,
+    count: u64,
+    calibration: Calibration,
+    what: &str,
+) -> Result<Vec<JudgedView>, CliError> {
+    let judged = measure(&format!("views{what}"), "views", 0..count, |number, _| {
+        let view = views.view(number).map_err(JudgingError::from);
+        Some(view.and_then(|view| judge.view(view, calibration)))
+    })?;
+    judged.into_iter().collect::<Result<_, _>>().map_err(unmeasured)
 }
+
+fn judged_visits(
+    judge: &Judge,
+    views: &ViewSampler,
+    count: u64,
+    calibration: Calibration,
+    what: &str,
+) -> Result<Vec<JudgedVisit>, CliError> {
+    let visits = measure(&format!("visits{what}"), "visits", 0..count, |number, watch| {
+        let visit = views.visit(number).map_err(JudgingError::from);
+        visit.and_then(|views| judge.visit(views, calibration, watch)).transpose()
+    })?;
+    visits.into_iter().collect::<Result<_, _>>().map_err(unmeasured)
+}
+
+/// Adds what is measured: the numbers of views and visits, and where they come from.
+fn add_source(
+    sheet: &mut EvaluationReport,
+    [views, visits]: [u64; 2],
+    source: &ViewSampler,
+) -> Result<(), CliError> {
+    let sizes = source.sizes.iter().map(|[width, height]| format!("{width}x{height}"));
+    let sizes: Vec<_> = sizes.collect();
+    let mut plans: Vec<_> = source.plans.iter().map(|(name, _)| name.as_str()).collect();
+    if source.random_plans {
+        plans.push("random plans");
+    }
+    let looks: Vec<_> = source.looks.iter().map(|look| look.name).collect();
+    let effects = match source.effects {
+        WhichEffects::Default => "default",
+        WhichEffects::None => "none",
+    };
+    let seed = source.seed;
+    let line = json!({
+        "views": views, "visits": visits, "seed": seed,
+        "sizes": sizes, "plans": plans, "looks": looks, "effects": effects,
+    });
+    sheet.line("source", &line)?;
+    let text = &mut sheet.text;
+    let [views, visits] =
+        [(views, "view"), (visits, "visit")].map(|(count, noun)| counted(count as usize, noun));
+    writeln!(text, "Sensing on {views} and {visits}, seed {seed}")?;
+    print_hanging(text, "  floor plans  ", &plans.join(", "))?;
+    print_hanging(text, "  looks        ", &looks.join(", "))?;
+    writeln!(text, "  image sizes  {}", sizes.join(", "))?;
+    Ok(writeln!(text, "  effects      {effects}")?)
+}
+
+/// Effects that are off by default, as a photograph of a real mirror camera shows them: a name, and the settings.
+const CLUTTER: [(&str, &[(&str, f64)]); 7] = [
+    ("furniture", &[("furniture", 5.0)]),
+    ("cables", &[("cables", 6.0)]),
+    ("wide struts", &[("strut-width", 14.0)]),
+    ("open laptop", &[("laptop", 0.06)]),
+    ("yellow cast", &[("cast", 0.77)]),
+    ("cropped mirror", &[("zoom", 1.45), ("off-centre", -0.03)]),
+    ("dark rim", &[("dark-rim", 0.65)]),
+];

@@ -26,28 +26,23 @@ use toposlam_vision::{
 use super::{
     corridor_pilot::{CorridorPilot, PilotLeg},
     corridor_world::CorridorWorld,
+    nearest,
     robot_params::LaserRobotParams,
     smoothed_world::SmoothedWorld,
     walk::{WalkDriver, WalkStep, clockwise},
 };
 use crate::LaserScanner;
 
-/// Why a robot cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum ScanFailure {
-    /// It stands where it derives no junction.
+pub(super) enum ScanFailure {
     #[error("no junction is seen")]
     Missed,
-    /// What it sees does not decide how many doors a junction has.
     #[error("the number of doors is undecided")]
     Undecided,
-    /// It left by a door, and could not go on before it had driven as far as makes an arm.
     #[error("the door is that of an alcove")]
     Alcove,
-    /// It has driven too far.
     #[error("the run takes too long")]
     TooFar,
-    /// The run was ended.
     #[error("the run was ended")]
     Stopped,
 }
@@ -55,7 +50,6 @@ pub enum ScanFailure {
 /// What the robot has derived, compared with the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PerceptTally {
-    /// The percepts.
     pub percepts: u64,
     /// Those whose number of doors is wrong, or that are of no junction.
     pub wrong: u64,
@@ -63,43 +57,34 @@ pub struct PerceptTally {
     pub passed: u64,
 }
 
-/// The robot.
+/// A robot that maps a building by its scans.
 pub(super) struct LaserRobot<'w> {
-    pub(super) world: &'w CorridorWorld,
-    pub(super) smoothed: &'w SmoothedWorld,
-    pub(super) pilot: CorridorPilot<'w>,
-    pub(super) scanner: LaserScanner,
-    pub(super) visits: Visits<LaserSensor, ()>,
+    world: &'w CorridorWorld,
+    smoothed: &'w SmoothedWorld,
+    pilot: CorridorPilot<'w>,
+    scanner: LaserScanner,
+    visits: Visits<LaserSensor, ()>,
     pub(super) driver: WalkDriver,
-    pub(super) params: LaserParams,
+    params: LaserParams,
     /// The facing dart: where the marker lies.
-    pub(super) facing: Dart,
-    pub(super) watch: &'w dyn Watch,
-    /// The number of steps that were sensed.
-    pub(super) sensed: usize,
+    facing: Dart,
+    watch: &'w dyn Watch,
+    sensed: usize,
     /// From the local map to the frame of odometry, in the last view.
-    pub(super) odometry_from_map: Isometry2<f64>,
+    odometry_from_map: Isometry2<f64>,
     /// What may be junctions, in each view since it began to look around.
-    pub(super) seen: Vec<Vec<SeenPlace>>,
+    seen: Vec<Vec<SeenPlace>>,
     /// The centre and the extent of the place that it left last, while it is near, on the local map.
-    pub(super) left: Option<([f64; 2], f64)>,
+    left: Option<(Point2<f64>, f64)>,
     /// Where it turned around last, on the local map, and the length of its way then.
-    pub(super) looked: Option<([f64; 2], f64)>,
+    looked: Option<(Point2<f64>, f64)>,
     /// Whether the last view shows an opening beside it into which its scanner may not have looked.
-    pub(super) is_at_opening: bool,
-    /// Where it stands.
-    pub(super) here: Option<Here>,
+    is_at_opening: bool,
+    /// The directions on the plan of the doors of the place where it stands, clockwise from the one by which it came in.
+    doors: Option<Vec<f64>>,
     pub(super) tally: PerceptTally,
 }
 
-/// Where the robot stands.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Here {
-    /// The directions of the doors on the plan, clockwise from the one by which it came in.
-    doors: Vec<f64>,
-}
-
-/// Why a drive along a leg ended.
 enum LegResult {
     /// At the leg's end.
     Driven,
@@ -109,14 +94,44 @@ enum LegResult {
     AtPlace(SeenPlace, f64),
 }
 
-/// The parameters.
 const ROBOT: LaserRobotParams = LaserRobotParams::DEFAULT;
 
-impl LaserRobot<'_> {
+impl<'w> LaserRobot<'w> {
+    /// A robot that stands where its driver does.
+    pub(super) fn new(
+        world: &'w CorridorWorld,
+        smoothed: &'w SmoothedWorld,
+        scanner: LaserScanner,
+        params: LaserParams,
+        driver: WalkDriver,
+        facing: Dart,
+        watch: &'w dyn Watch,
+    ) -> Self {
+        Self {
+            world,
+            smoothed,
+            pilot: CorridorPilot::new(world),
+            scanner,
+            visits: Visits::by_laser(params),
+            driver,
+            params,
+            facing,
+            watch,
+            sensed: 0,
+            odometry_from_map: Isometry2::identity(),
+            seen: Vec::new(),
+            left: None,
+            looked: None,
+            is_at_opening: false,
+            doors: None,
+            tally: PerceptTally::default(),
+        }
+    }
+
     /// Drives away in a direction on the plan until it is at a junction, or cannot go on.
     pub(super) fn drive(&mut self, towards: f64) -> Result<(), ScanFailure> {
-        self.here = None;
-        let begin = self.driver.at();
+        self.doors = None;
+        let begin = self.driver.at;
         let mut leg = self.pilot.leave(begin, towards);
         // The way from there without what it drove to look into arms, in metres.
         let (mut along, mut before) = (0.0, begin);
@@ -136,28 +151,25 @@ impl LaserRobot<'_> {
                     self.tally.passed += u64::from(is_other && is_junction);
                     points.push(leg.to);
                     let Some(next) = self.pilot.after(&leg) else {
-                        along += distance(before, self.driver.at());
+                        along += distance(before, self.driver.at);
                         break;
                     };
                     leg = next;
                 }
             }
-            along += distance(before, self.driver.at());
-            before = self.driver.at();
+            along += distance(before, self.driver.at);
+            before = self.driver.at;
             if self.driver.way > ROBOT.longest_way {
                 return Err(ScanFailure::TooFar);
             }
         }
         if along < self.params.arm.min_arm {
-            for &point in points.iter().rev() {
-                self.driver.drive_to(point);
-                self.sense()?;
-            }
-            self.left = Some((self.on_local_map().into(), 1.0));
+            self.drive_along(points.into_iter().rev())?;
+            self.left = Some((self.on_local_map(), 1.0));
             return Err(ScanFailure::Alcove);
         }
         self.left = None;
-        let back = self.driver.heading().unwrap_or_default() + PI;
+        let back = self.driver.heading.unwrap_or_default() + PI;
         self.arrive(vec![wrapped(back)]);
         Ok(())
     }
@@ -165,35 +177,45 @@ impl LaserRobot<'_> {
     /// Stands at a place with doors in these directions.
     fn arrive(&mut self, doors: Vec<f64>) {
         self.tally.percepts += 1;
-        let here = Here { doors };
-        let is_true = self.truly_at(&here).is_some_and(|dart| {
-            self.smoothed.graph.degree_around(dart) as usize == here.doors.len()
-        });
+        let is_true = self
+            .truly_at(&doors)
+            .is_some_and(|dart| self.smoothed.graph.degree_around(dart) as usize == doors.len());
         self.tally.wrong += u64::from(!is_true);
-        self.here = Some(here);
+        self.doors = Some(doors);
+    }
+
+    fn drive_along(
+        &mut self,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Result<(), ScanFailure> {
+        for point in points {
+            self.driver.drive_to(point);
+            self.sense()?;
+        }
+        Ok(())
     }
 
     /// Drives along a leg until it is in the middle of what may be a junction, if it comes to one.
     fn drive_leg(&mut self, leg: &PilotLeg) -> Result<LegResult, ScanFailure> {
         self.driver.drive_near(leg.to);
-        let mut nearest: Option<(f64, SeenPlace)> = None;
-        while self.sensed < self.driver.step_count() {
+        let mut closest: Option<(f64, SeenPlace)> = None;
+        while self.sensed < self.driver.steps.len() {
             self.sense_step()?;
             let place = self.visits.status().filter(|place| !self.is_left(place));
             let place = place.map(|place| (distance(place.centre, self.on_local_map()), place));
-            match (place, &nearest) {
+            match (place, &closest) {
                 (None, None) if self.is_at_opening => {
                     self.driver.stop_after(self.sensed);
                     self.look_around()?;
                     return Ok(LegResult::LookedAround);
                 }
                 (None, None) => {}
-                (Some(place), None) => nearest = Some(place),
-                (Some(place), Some((least, _))) if place.0 < *least => nearest = Some(place),
+                (Some(place), None) => closest = Some(place),
+                (Some(place), Some((least, _))) if place.0 < *least => closest = Some(place),
                 _ => break,
             }
         }
-        let Some((_, place)) = nearest else { return Ok(LegResult::Driven) };
+        let Some((_, place)) = closest else { return Ok(LegResult::Driven) };
         self.driver.stop_after(self.sensed);
         let entry = self.came_from(&place);
         self.go_to(&place)?;
@@ -203,16 +225,19 @@ impl LaserRobot<'_> {
     /// Goes to the centre of a place, if it can stand there.
     fn go_to(&mut self, place: &SeenPlace) -> Result<(), ScanFailure> {
         let centre = self.plan_from_map() * place.centre;
-        if self.pilot.has_space_at(centre.into()) && distance(centre, self.driver.at()) > 0.2 {
-            self.driver.drive_to(centre.into());
-            self.sense()?;
+        if self.pilot.has_space_at(centre.into()) && distance(centre, self.driver.at) > 0.2 {
+            self.drive_along([centre.into()])?;
         }
         Ok(())
     }
 
     /// The directions on the plan of the doors of the place where it stands, clockwise from the entry; `None` if it is no
     /// junction.
-    fn decide(&mut self, place: SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, ScanFailure> {
+    fn decide(
+        &mut self,
+        place: SeenPlace,
+        entry: f64,
+    ) -> Result<Option<Vec<f64>>, ScanFailure> {
         self.look_around()?;
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
@@ -220,15 +245,10 @@ impl LaserRobot<'_> {
         for _ in 0..ROBOT.looks {
             let Some(place) = self.visits.status() else {
                 let off = |seen: &&SeenPlace| distance(seen.centre, self.on_local_map());
-                let near = self
-                    .seen
-                    .last()
-                    .into_iter()
-                    .flatten()
-                    .filter(|seen| off(seen) < ROBOT.same_place);
-                let near = near.min_by(|one, other| off(one).total_cmp(&off(other)));
-                let Some(seen) = near.filter(|_| !has_moved) else {
-                    self.left = Some((last.centre.into(), last.clearance));
+                let near = nearest(self.seen.last().into_iter().flatten(), off)
+                    .filter(|seen| off(seen) < ROBOT.same_place && !has_moved);
+                let Some(seen) = near else {
+                    self.left = Some((last.centre, last.clearance));
                     return Ok(None);
                 };
                 has_moved = true;
@@ -255,7 +275,7 @@ impl LaserRobot<'_> {
                     self.look_from_further(towards)?;
                     continue;
                 }
-                self.left = Some((place.centre.into(), place.clearance));
+                self.left = Some((place.centre, place.clearance));
                 return Err(ScanFailure::Undecided);
             }
             let doors: Vec<f64> = if is_undecided {
@@ -272,25 +292,24 @@ impl LaserRobot<'_> {
                     doors.push(arm);
                 }
             }
-            self.left = Some((place.centre.into(), place.clearance));
+            self.left = Some((place.centre, place.clearance));
             return Ok((doors.len() >= 3).then(|| in_order(doors, entry)));
         }
-        self.left = Some((last.centre.into(), last.clearance));
+        self.left = Some((last.centre, last.clearance));
         Err(ScanFailure::Undecided)
     }
 
     /// Drives into an arm and back. Returns whether it could drive as far as makes an arm.
     fn look_into(&mut self, towards: f64) -> Result<bool, ScanFailure> {
-        let begin = self.driver.at();
+        let begin = self.driver.at;
         let mut points = vec![begin];
         let mut leg = Some(self.pilot.leave(begin, towards));
         let (mut left, mut at) = (self.params.arm.min_arm, begin);
         while let Some(next) = leg {
             let length = distance(at, next.to);
             let share = (left / length.max(1e-9)).min(1.0);
-            let to = [0, 1].map(|axis| at[axis] + share * (next.to[axis] - at[axis]));
-            self.driver.drive_to(to);
-            self.sense()?;
+            let to = between(at, next.to, share);
+            self.drive_along([to])?;
             points.push(to);
             left -= length;
             at = next.to;
@@ -299,28 +318,24 @@ impl LaserRobot<'_> {
             }
             leg = self.pilot.after(&next);
         }
-        for &point in points.iter().rev().skip(1) {
-            self.driver.drive_to(point);
-            self.sense()?;
-        }
+        self.drive_along(points.into_iter().rev().skip(1))?;
         self.look_around()?;
         Ok(left <= 0.0)
     }
 
     /// Goes a little further, looks around there, and comes back.
     fn look_from_further(&mut self, towards: f64) -> Result<(), ScanFailure> {
-        let begin = self.driver.at();
+        let begin = self.driver.at;
         let leg = self.pilot.leave(begin, towards);
         let share = (ROBOT.further / distance(begin, leg.to).max(1e-9)).min(1.0);
-        self.driver.drive_to([0, 1].map(|axis| begin[axis] + share * (leg.to[axis] - begin[axis])));
+        self.driver.drive_to(between(begin, leg.to, share));
         self.driver.look_around();
-        self.driver.drive_to(begin);
-        self.sense()?;
+        self.drive_along([begin])?;
         self.look_around()
     }
 
     fn look_around(&mut self) -> Result<(), ScanFailure> {
-        self.looked = Some((self.on_local_map().into(), self.driver.way));
+        self.looked = Some((self.on_local_map(), self.driver.way));
         self.seen.clear();
         self.driver.look_around();
         self.sense()?;
@@ -332,8 +347,9 @@ impl LaserRobot<'_> {
     /// turned around nearby.
     fn is_opening(&self, view: &PlaceView, scan: &Scan) -> bool {
         let robot = view.robot.position;
+        let driven = self.last_step().map_or(0.0, |step| step.way);
         let has_looked = self.looked.is_some_and(|(at, way)| {
-            distance(at, robot) < ROBOT.looked && self.driver_way() - way < ROBOT.look_memory
+            distance(at, robot) < ROBOT.looked && driven - way < ROBOT.look_memory
         });
         if has_looked || scan.field_of_view() > ROBOT.all_around {
             return false;
@@ -346,16 +362,10 @@ impl LaserRobot<'_> {
         (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))
     }
 
-    /// The length of its way up to the last scan, in metres.
-    fn driver_way(&self) -> f64 {
-        self.last_step().map_or(0.0, |step| step.way)
-    }
-
     /// What may be a junction at a place, in a view.
     fn seen_at<'v>(view: &'v [SeenPlace], place: &SeenPlace) -> Option<&'v SeenPlace> {
         let off = |seen: &&SeenPlace| distance(seen.centre, place.centre);
-        let near = view.iter().filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre));
-        near.min_by(|one, other| off(one).total_cmp(&off(other)))
+        nearest(view, off).filter(|seen| off(seen) < place.clearance.max(ROBOT.at_centre))
     }
 
     /// The directions of the arms of a place that are not certain in most of the last views.
@@ -382,7 +392,7 @@ impl LaserRobot<'_> {
         let centre = self.plan_from_map() * place.centre;
         let far = place.clearance.max(1.0) + ROBOT.came_from;
         self.driver.before_entering(centre.into(), far).map_or_else(
-            || self.driver.heading().unwrap_or_default() + PI,
+            || self.driver.heading.unwrap_or_default() + PI,
             |point| direction(centre, point),
         )
     }
@@ -395,7 +405,7 @@ impl LaserRobot<'_> {
     }
 
     fn sense(&mut self) -> Result<(), ScanFailure> {
-        while self.sensed < self.driver.step_count() {
+        while self.sensed < self.driver.steps.len() {
             self.sense_step()?;
         }
         Ok(())
@@ -428,7 +438,7 @@ impl LaserRobot<'_> {
 
     /// Where it is on the local map.
     fn on_local_map(&self) -> Point2<f64> {
-        let at = self.last_step().map_or(self.driver.at(), |step| step.odometry.position);
+        let at = self.last_step().map_or(self.driver.at, |step| step.odometry.position);
         self.odometry_from_map.inverse() * Point2::from(at)
     }
 
@@ -446,23 +456,23 @@ impl LaserRobot<'_> {
         self.driver.steps.get(self.sensed.checked_sub(1)?)
     }
 
-    /// The dart by which a robot has truly come in that stands here.
-    fn truly_at(&self, here: &Here) -> Option<Dart> {
-        let at = self.driver.at();
-        let entry = *here.doors.first()?;
-        let is_here = |dart: &Dart| {
-            let place = self.smoothed.place_of(*dart);
-            distance(self.world.places[place], at)
-                < self.world.clearance(place) + ROBOT.marker_range
-        };
-        let off = |dart: &Dart| wrapped(self.direction_of(*dart) - entry).abs();
-        let darts = self.smoothed.graph.darts().filter(is_here);
-        darts.min_by(|one, other| off(one).total_cmp(&off(other)))
+    /// The dart by which a robot has truly come in that stands at a place with these doors.
+    fn truly_at(&self, doors: &[f64]) -> Option<Dart> {
+        let entry = *doors.first()?;
+        let darts = self.smoothed.graph.darts().filter(|dart| self.is_near_place_of(*dart));
+        nearest(darts, |dart| wrapped(self.direction_of(*dart) - entry).abs())
+    }
+
+    /// Whether the robot is at the place of a dart's vertex.
+    fn is_near_place_of(&self, dart: Dart) -> bool {
+        let place = self.smoothed.place_of(dart);
+        distance(self.world.places[place], self.driver.at)
+            < self.world.clearance(place) + ROBOT.marker_range
     }
 
     /// The dart by which the robot has truly come in.
     pub(super) fn truth(&self) -> Option<Dart> {
-        self.here.as_ref().and_then(|here| self.truly_at(here))
+        self.truly_at(self.doors.as_ref()?)
     }
 
     /// The direction on the plan in which a dart leaves its vertex.
@@ -471,17 +481,14 @@ impl LaserRobot<'_> {
         direction(from, to)
     }
 
-    /// What the robot sees of the marker.
-    fn sighting(&self, here: &Here) -> Sighting {
-        let place = self.smoothed.place_of(self.facing);
-        let off = distance(self.world.places[place], self.driver.at());
-        if off > self.world.clearance(place) + ROBOT.marker_range {
+    /// What the robot sees of the marker at a place with these doors.
+    fn sighting(&self, doors: &[f64]) -> Sighting {
+        if !self.is_near_place_of(self.facing) {
             return Sighting::Nothing;
         }
         let towards = self.direction_of(self.facing);
-        let off = |door: usize| wrapped(here.doors[door] - towards).abs();
-        let nearest = (0..here.doors.len()).min_by(|&one, &other| off(one).total_cmp(&off(other)));
-        nearest.map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door as u32)))
+        let door = nearest(0..doors.len(), |&door| wrapped(doors[door] - towards).abs());
+        door.map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door as u32)))
     }
 }
 
@@ -489,13 +496,13 @@ impl World for LaserRobot<'_> {
     type Error = ScanFailure;
 
     fn percept(&mut self) -> Result<Percept, ScanFailure> {
-        let here = self.here.as_ref().ok_or(ScanFailure::Missed)?;
-        Ok(Percept { degree: here.doors.len() as u32, sighting: self.sighting(here) })
+        let doors = self.doors.as_ref().ok_or(ScanFailure::Missed)?;
+        Ok(Percept { degree: doors.len() as u32, sighting: self.sighting(doors) })
     }
 
     fn traverse(&mut self, door: Door) -> Result<(), ScanFailure> {
-        let here = self.here.as_ref().ok_or(ScanFailure::Missed)?;
-        let towards = here.doors.get(door.0 as usize).ok_or(ScanFailure::Missed)?;
+        let doors = self.doors.as_ref().ok_or(ScanFailure::Missed)?;
+        let towards = doors.get(door.0 as usize).ok_or(ScanFailure::Missed)?;
         self.drive(*towards)
     }
 }
@@ -507,7 +514,7 @@ impl Relocate for LaserRobot<'_> {
             return Err(error);
         }
         for number in 0..ROBOT.tries {
-            let ahead = self.driver.heading().unwrap_or_default();
+            let ahead = self.driver.heading.unwrap_or_default();
             let towards = if number % 2 == 0 { ahead } else { ahead + PI };
             match self.drive(towards) {
                 Ok(()) => return Ok(()),
@@ -519,15 +526,19 @@ impl Relocate for LaserRobot<'_> {
     }
 }
 
+/// The point at this share of the way from one to another.
+fn between(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
+    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+}
+
 fn is_same(one: f64, other: f64) -> bool {
     wrapped(one - other).abs() < ROBOT.same_arm
 }
 
 /// Directions clockwise from the one that is nearest to the entry.
 fn in_order(mut doors: Vec<f64>, entry: f64) -> Vec<f64> {
-    let off = |door: &f64| wrapped(door - entry).abs();
-    let nearest = doors.iter().copied().min_by(|one, other| off(one).total_cmp(&off(other)));
-    let first = nearest.unwrap_or(entry);
+    let first = nearest(doors.iter().copied(), |door| wrapped(door - entry).abs());
+    let first = first.unwrap_or(entry);
     let turn = |door: f64| {
         let turn = clockwise(first, door);
         if turn > TAU - 1e-9 { 0.0 } else { turn }

@@ -4,8 +4,13 @@ mod corridor_pilot;
 pub mod corridor_world;
 pub mod judged_walk;
 pub mod laser_report;
-pub mod laser_robot;
-pub mod robot_params;
+mod laser_robot;
+mod robot_params;
 pub mod scanned_run;
-pub mod smoothed_world;
+mod smoothed_world;
 pub mod walk;
+
+/// The item with the least distance.
+fn nearest<T>(items: impl IntoIterator<Item = T>, off: impl Fn(&T) -> f64) -> Option<T> {
+    items.into_iter().min_by(|one, other| off(one).total_cmp(&off(other)))
+}

@@ -1,8 +1,7 @@
 //! A whole run by laser: a robot maps a random building by its scans alone. Corners are no vertices.
 
-use std::{borrow::Cow, sync::Arc};
+use std::borrow::Cow;
 
-use nalgebra::Isometry2;
 use rand::seq::IndexedRandom;
 use toposlam_model::{
     check::judge_map,
@@ -11,23 +10,20 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
-use toposlam_vision::visits::Visits;
 
 use super::{
-    super::parallel::made_in_turn,
-    corridor_pilot::CorridorPilot,
     corridor_world::CorridorWorld,
     judged_walk::WalkSampler,
-    laser_robot::{LaserRobot, PerceptTally, ScanFailure},
+    laser_robot::{LaserRobot, ScanFailure},
     smoothed_world::SmoothedWorld,
     walk::WalkDriver,
 };
-use crate::{LaserScanner, ScannedBuilding};
+use crate::run::RobotOutcome;
 
-/// A whole run.
+pub use super::laser_robot::PerceptTally;
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScannedRun {
-    /// Its number among the runs of the seed.
     pub number: u64,
     /// The number of moves, with those of recoveries and audits, if the map is complete.
     pub moves: u64,
@@ -37,31 +33,7 @@ pub struct ScannedRun {
     pub recoveries: u32,
     /// What the robot derived on its way.
     pub tally: PerceptTally,
-    /// How it ended.
-    pub outcome: ScannedOutcome,
-}
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ScannedOutcome {
-    /// The map and the pose are right.
-    Right,
-    /// The robot gave up, for this reason.
-    GaveUp(String),
-    /// The map or the pose is wrong, and the robot did not notice.
-    Wrong(String),
-}
-
-impl ScannedOutcome {
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::GaveUp(_) => "gave up",
-            Self::Wrong(_) => "wrong",
-        }
-    }
+    pub outcome: RobotOutcome<String>,
 }
 
 /// The robot begins this far from its first junction, or in the middle of the corridor, in metres.
@@ -70,24 +42,12 @@ const BEFORE: f64 = 9.0;
 const SPARE_DARTS: usize = 20;
 
 impl WalkSampler {
-    /// Makes whole runs by their numbers on all threads. If the watch stops, some are missing.
-    #[must_use]
-    pub fn runs(
-        &self,
-        numbers: std::ops::Range<u64>,
-        method: MappingMethod,
-        watch: &dyn Watch,
-    ) -> Vec<ScannedRun> {
-        made_in_turn(numbers, watch, Some, |number| self.run(number, method, watch))
-    }
-
     /// Makes the whole run with this number; `None` if the watch stops.
-    fn run(&self, number: u64, method: MappingMethod, watch: &dyn Watch) -> Option<ScannedRun> {
+    pub fn run(&self, number: u64, method: MappingMethod, watch: &dyn Watch) -> Option<ScannedRun> {
         let seed = self.run_seed(number);
         let world = CorridorWorld::random(self.buildings, seed);
-        let smoothed = SmoothedWorld::of(&world)?;
-        let params = self.scanner_of(number);
-        let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
+        let smoothed = SmoothedWorld::from_world(&world)?;
+        let scanner = self.scanner(&world, number, seed);
         let mut driver = WalkDriver::new(self.drift, seed);
         let graph = &smoothed.graph;
         let starts: Vec<Dart> =
@@ -96,26 +56,9 @@ impl WalkSampler {
         let [start, behind] = smoothed.first_corridor(facing).map(|place| world.places[place]);
         let off = [0, 1].map(|axis| behind[axis] - start[axis]);
         let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
-        driver.begin_at([0, 1].map(|axis| start[axis] + share * off[axis]));
-        let mut robot = LaserRobot {
-            world: &world,
-            smoothed: &smoothed,
-            pilot: CorridorPilot::new(&world),
-            scanner: LaserScanner::new(building, &params, seed),
-            visits: Visits::by_laser(self.sensing),
-            driver,
-            params: self.sensing,
-            facing,
-            watch,
-            sensed: 0,
-            odometry_from_map: Isometry2::identity(),
-            seen: Vec::new(),
-            left: None,
-            looked: None,
-            is_at_opening: false,
-            here: None,
-            tally: PerceptTally::default(),
-        };
+        driver.at = [0, 1].map(|axis| start[axis] + share * off[axis]);
+        let mut robot =
+            LaserRobot::new(&world, &smoothed, scanner, self.sensing, driver, facing, watch);
         let begun = robot.drive((-off[1]).atan2(-off[0]));
         if begun == Err(ScanFailure::Stopped) {
             return None;
@@ -124,23 +67,23 @@ impl WalkSampler {
         let (mapping, mapped) = method.map_world(&mut robot, bound, &[], &mut ());
         let (moves, recoveries, outcome) = match mapped {
             Err(MappingError::World(ScanFailure::Stopped)) => return None,
-            Err(error) => (mapping.moves(), 0, ScannedOutcome::GaveUp(error.to_string())),
+            Err(error) => (mapping.moves(), 0, RobotOutcome::GaveUp(error.to_string())),
             Ok(mapped) => {
                 // A robot at no junction is not at its pose in the map.
                 let truly = robot.truth().unwrap_or(Dart(u32::MAX));
-                let outcome = mapping.map().complete().map_or_else(
-                    || ScannedOutcome::GaveUp("the map is not complete".to_owned()),
-                    |map| {
+                let outcome = match mapping.map().complete() {
+                    None => RobotOutcome::GaveUp("the map is not complete".to_owned()),
+                    Some(map) => {
                         let graph = Cow::Borrowed(map);
                         let map = ExploredMap { graph, facing: FACING, pose: mapped.pose };
                         let mut candidate = Candidate::default();
                         let world = (&smoothed.graph, facing);
-                        let flaw = judge_map(&map, world, truly, &mut candidate).err();
-                        flaw.map_or(ScannedOutcome::Right, |flaw| {
-                            ScannedOutcome::Wrong(flaw.to_string())
-                        })
-                    },
-                );
+                        match judge_map(&map, world, truly, &mut candidate) {
+                            Ok(_) => RobotOutcome::Right,
+                            Err(flaw) => RobotOutcome::Wrong(flaw.to_string()),
+                        }
+                    }
+                };
                 (mapped.moves, mapped.recoveries, outcome)
             }
         };
@@ -173,8 +116,8 @@ mod tests {
             for field_of_view in [180.0, 360.0] {
                 let scanner = Some(ScannerParams { field_of_view, ..ScannerParams::PLAIN });
                 let sampler = WalkSampler { scanner, ..sampler(buildings, 1) };
-                for run in sampler.runs(0..2, folding(), &()) {
-                    assert_eq!(run.outcome, ScannedOutcome::Right, "{run:?}");
+                for run in (0..2).map(|number| sampler.run(number, folding(), &()).unwrap()) {
+                    assert_eq!(run.outcome, RobotOutcome::Right, "{run:?}");
                     let PerceptTally { percepts, wrong, passed } = run.tally;
                     // A scanner that sees half of a circle may pass a junction unnoticed.
                     let passed = if field_of_view == 360.0 { passed } else { 0 };
@@ -184,18 +127,15 @@ mod tests {
         }
     }
 
+    /// In this run what the robot derives contradicts itself.
     #[test]
     fn a_robot_that_recovers_ends_right_after_percepts_that_are_wrong() {
+        let sampler = sampler(BuildingKind::Diagonal, 4);
+        let without = sampler.run(3, folding(), &()).unwrap();
+        assert!(matches!(without.outcome, RobotOutcome::GaveUp(_)), "{without:?}");
         let recovering = MappingMethod::Recovering(RecoveryConfig::default());
-        let sampler = sampler(BuildingKind::Diagonal, RECOVERED.0);
-        let run = |method| sampler.runs(RECOVERED.1..RECOVERED.1 + 1, method, &()).remove(0);
-        let without = run(folding());
-        assert!(matches!(without.outcome, ScannedOutcome::GaveUp(_)), "{without:?}");
-        let with = run(recovering);
-        assert_eq!(with.outcome, ScannedOutcome::Right, "{with:?}");
+        let with = sampler.run(3, recovering, &()).unwrap();
+        assert_eq!(with.outcome, RobotOutcome::Right, "{with:?}");
         assert!(with.recoveries > 0, "{with:?}");
     }
-
-    /// The seed and the number of a run in which what the robot derives contradicts itself.
-    const RECOVERED: (u64, u64) = (4, 3);
 }

@@ -2,25 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use toposlam_model::embedded_graph::{Dart, EmbeddedGraph, Vertex};
+use toposlam_model::embedded_graph::{Dart, EmbeddedGraph};
 
 use super::corridor_world::CorridorWorld;
 
 /// A building as a graph: its bends are no vertices.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SmoothedWorld {
-    /// Junctions and dead ends.
-    pub graph: EmbeddedGraph,
-    /// The place of each vertex.
+pub(super) struct SmoothedWorld {
+    pub(super) graph: EmbeddedGraph,
     places: Vec<usize>,
     /// For each dart, the places to its other end.
     chains: Vec<Vec<usize>>,
 }
 
 impl SmoothedWorld {
-    /// The graph of a building.
-    #[must_use]
-    pub fn of(world: &CorridorWorld) -> Option<Self> {
+    pub(super) fn from_world(world: &CorridorWorld) -> Option<Self> {
         let is_vertex = |place: &usize| !matches!(world.arms(*place).len(), 0 | 2);
         let places: Vec<usize> = (0..world.places.len()).filter(is_vertex).collect();
         let mut names: BTreeMap<[usize; 2], String> = BTreeMap::new();
@@ -36,12 +32,9 @@ impl SmoothedWorld {
                     chain.push(world.arms_from(at, from)[1].to);
                 }
                 // An edge is named after its first corridors at both ends.
-                let count = names.len();
-                let (Some(&end), Some(&before)) = (chain.last(), chain.iter().rev().nth(1)) else {
-                    return None;
-                };
+                let &[.., before, end] = &chain[..] else { return None };
                 let known = names.get(&[end, before]).cloned();
-                let name = known.unwrap_or_else(|| format!("e{count}"));
+                let name = known.unwrap_or_else(|| format!("e{}", names.len()));
                 names.insert([place, arm.to], name.clone());
                 list.push(name);
                 chains.push(chain);
@@ -52,14 +45,9 @@ impl SmoothedWorld {
         Some(Self { graph, places, chains })
     }
 
-    /// The place of a vertex.
-    pub(super) fn place(&self, vertex: Vertex) -> usize {
-        self.places[vertex.at()]
-    }
-
     /// The place of the vertex of a dart.
     pub(super) fn place_of(&self, dart: Dart) -> usize {
-        self.place(self.graph.vertex(dart))
+        self.places[self.graph.vertex(dart).at()]
     }
 
     /// The places at both ends of the corridor by which a dart leaves its vertex.
@@ -77,7 +65,7 @@ mod tests {
     fn the_graph_of_a_building_has_its_junctions_and_dead_ends() {
         for seed in 0..200 {
             let world = CorridorWorld::random(BuildingKind::Mixed, seed);
-            let smoothed = SmoothedWorld::of(&world).unwrap();
+            let smoothed = SmoothedWorld::from_world(&world).unwrap();
             let graph = &smoothed.graph;
             let degrees = |degree: usize| {
                 (0..world.places.len()).filter(|&place| world.arms(place).len() == degree).count()
@@ -91,7 +79,7 @@ mod tests {
                 let mut back = smoothed.chains[graph.opposite(dart).at()].clone();
                 back.reverse();
                 assert_eq!(*chain, back, "{seed}");
-                assert_eq!(chain[0], smoothed.place(graph.vertex(dart)));
+                assert_eq!(chain[0], smoothed.place_of(dart));
             }
         }
     }

@@ -6,23 +6,20 @@ use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose, scene::wrapped};
-use toposlam_vision::geometry::distance;
+use toposlam_vision::geometry::{direction, distance};
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
 
 /// A walk: it begins and ends within a corridor, and passes places in between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserWalk {
-    /// The places that the robot passes.
     pub passed: Vec<PassedPlace>,
     /// Where the robot takes its scans.
     pub steps: Vec<WalkStep>,
 }
 
-/// A place that the robot passes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassedPlace {
-    /// The place.
     pub place: usize,
     /// Its arms, clockwise from the one by which the robot came.
     pub arms: Vec<CorridorArm>,
@@ -39,9 +36,7 @@ pub struct PassedPlace {
 pub struct WalkStep {
     /// The length of its way, in metres.
     pub way: f64,
-    /// Where it is.
     pub pose: Pose,
-    /// Where it is by odometry.
     pub odometry: Odometry,
     /// In seconds.
     pub time: f64,
@@ -66,11 +61,11 @@ const BACK: f64 = 0.08;
 #[derive(Clone, Debug)]
 pub(super) struct WalkDriver {
     pub(super) steps: Vec<WalkStep>,
-    /// Where it is, and the length of its way, in metres.
-    at: [f64; 2],
+    /// Where it is, or will be after its last step, and the length of its way, in metres.
+    pub(super) at: [f64; 2],
     pub(super) way: f64,
     /// The direction of the last leg.
-    heading: Option<f64>,
+    pub(super) heading: Option<f64>,
     /// Of the heading of the odometry, in radians a metre.
     drift: f64,
     pub(super) chance: Xoshiro256PlusPlus,
@@ -79,7 +74,6 @@ pub(super) struct WalkDriver {
 impl LaserWalk {
     /// The random walk of a seed that passes so many places. The heading of the odometry drifts by up to
     /// `drift` radians a metre, always to the same side.
-    #[must_use]
     pub fn random(world: &CorridorWorld, places: usize, drift: f64, seed: u64) -> Self {
         let mut passed: Vec<PassedPlace> = Vec::new();
         let mut driver = WalkDriver::new(drift, seed);
@@ -125,26 +119,6 @@ impl WalkDriver {
         Self { steps: Vec::new(), at: [0.0; 2], way: 0.0, heading: None, drift, chance }
     }
 
-    /// Puts the robot at a point, before it has driven.
-    pub(super) fn begin_at(&mut self, point: [f64; 2]) {
-        self.at = point;
-    }
-
-    /// Where it is, or will be after its last step.
-    pub(super) fn at(&self) -> [f64; 2] {
-        self.at
-    }
-
-    /// The direction of its last leg.
-    pub(super) fn heading(&self) -> Option<f64> {
-        self.heading
-    }
-
-    /// The number of its steps.
-    pub(super) fn step_count(&self) -> usize {
-        self.steps.len()
-    }
-
     /// Stays where it is after this number of steps. Those after them are not made.
     pub(super) fn stop_after(&mut self, steps: usize) {
         self.steps.truncate(steps);
@@ -174,7 +148,7 @@ impl WalkDriver {
         if length < 1e-6 {
             return;
         }
-        let ahead = (point[1] - from[1]).atan2(point[0] - from[0]);
+        let ahead = direction(from, point);
         let turn = self.heading.map_or(0.0, |heading| wrapped(ahead - heading));
         let turns = (turn.abs() / TURN).ceil();
         for part in 1..=turns as u32 {
@@ -214,13 +188,14 @@ impl WalkDriver {
 
     /// Adds a step, with odometry that drifts.
     fn push(&mut self, pose: Pose, way: f64) {
+        let Pose { position, heading } = pose;
         let Some(&last) = self.steps.last() else {
-            let odometry = Odometry { position: pose.position, heading: pose.heading };
+            let odometry = Odometry { position, heading };
             self.steps.push(WalkStep { way, pose, odometry, time: 0.0 });
             return;
         };
-        let off = [0, 1].map(|axis| pose.position[axis] - last.pose.position[axis]);
-        let (driven, turned) = (off[0].hypot(off[1]), wrapped(pose.heading - last.pose.heading));
+        let off = [0, 1].map(|axis| position[axis] - last.pose.position[axis]);
+        let (driven, turned) = (off[0].hypot(off[1]), wrapped(heading - last.pose.heading));
         let chance = &mut self.chance;
         let mut standard = || -> f64 { StandardNormal.sample(chance) };
         let (sine, cosine) = wrapped(last.odometry.heading - last.pose.heading).sin_cos();
@@ -241,7 +216,6 @@ fn middle(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 }
 
 /// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
-#[must_use]
 pub fn clockwise(from: f64, to: f64) -> f64 {
     (from - to).rem_euclid(TAU)
 }
@@ -257,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn the_robot_stays_on_the_floor() {
+    fn the_robot_stays_on_the_floor_and_leaves_a_place_by_the_corridor_to_the_next() {
         for seed in 0..60 {
             let (world, walk) = walk(seed, 0.0);
             let floor = world.plan.floor();
@@ -265,22 +239,13 @@ mod tests {
                 let is_on_floor = floor.iter().any(|piece| piece.holds(step.pose.position));
                 assert!(is_on_floor, "{seed}: {step:?}");
             }
-        }
-    }
-
-    #[test]
-    fn it_leaves_a_place_by_the_corridor_that_leads_to_the_next() {
-        for seed in 0..60 {
-            let (_, walk) = walk(seed, 0.0);
             assert_eq!(walk.passed.len(), 12);
             for two in walk.passed.windows(2) {
                 assert_eq!(two[0].arms[two[0].door].to, two[1].place);
                 assert_eq!(two[1].arms[0].to, two[0].place, "the first arm is the way back");
-                let doors = |place: &PassedPlace| {
-                    let entry = place.arms[0].direction;
-                    place.arms.iter().map(|arm| clockwise(entry, arm.direction)).collect::<Vec<_>>()
-                };
-                assert!(doors(&two[0]).is_sorted(), "{:?}", doors(&two[0]));
+                let entry = two[0].arms[0].direction;
+                let doors = two[0].arms.iter().map(|arm| clockwise(entry, arm.direction));
+                assert!(doors.is_sorted(), "{:?}", two[0]);
             }
         }
     }

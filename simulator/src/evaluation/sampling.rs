@@ -1,38 +1,27 @@
-//! Runs many cases on all threads and returns the results in order.
+//! The driver of all measurements.
 
-use std::convert::Infallible;
+use std::ops::Range;
 
 use rayon::prelude::*;
 use toposlam_model::enumerate::Watch;
 
-/// Works on numbers on all threads. The results are in the order of the numbers.
-pub(super) fn in_turn<R: Send, E: Send>(
-    numbers: std::ops::Range<u64>,
+/// Takes the samples of these numbers on all threads. The results are in the order of the numbers and do not depend on
+/// the number of threads. `sample` returns `None` if there is no such sample, or if the watch stopped it.
+pub fn sample<R: Send>(
+    numbers: Range<u64>,
     watch: &dyn Watch,
-    work: impl Fn(u64) -> Result<R, E> + Sync,
-) -> Result<Vec<R>, E> {
+    sample: impl Fn(u64) -> Option<R> + Sync,
+) -> Vec<R> {
     let count = usize::try_from(numbers.end.saturating_sub(numbers.start)).unwrap_or(usize::MAX);
     watch.parts(count);
-    let numbered = (0..count).into_par_iter().with_max_len(1);
     // The numbers after a stop are not even counted: there may be very many.
-    let results = numbered.take_any_while(|_| !watch.stop()).map(|index| {
-        let result = work(numbers.start + index as u64)?;
+    let indices = (0..count).into_par_iter().with_max_len(1).take_any_while(|_| !watch.stop());
+    let samples = indices.map(|index| {
+        let result = sample(numbers.start + index as u64);
         watch.part_done(1);
-        Ok(result)
+        result
     });
-    results.collect()
-}
-
-/// Makes the cases of these numbers, as far as they exist, on all threads. `make` returns `None` if the
-/// watch stopped it.
-pub(super) fn made_in_turn<C, R: Send>(
-    numbers: std::ops::Range<u64>,
-    watch: &dyn Watch,
-    case: impl Fn(u64) -> Option<C> + Sync,
-    make: impl Fn(C) -> Option<R> + Sync,
-) -> Vec<R> {
-    let made = in_turn(numbers, watch, |number| Ok::<_, Infallible>(case(number).and_then(&make)));
-    made.into_iter().flatten().flatten().collect()
+    samples.flatten_iter().collect()
 }
 
 #[cfg(test)]
@@ -62,11 +51,11 @@ mod tests {
     fn a_stop_ends_any_number_of_cases_at_once() {
         for most in [0, 100] {
             let watch = StopsAfter { most, ..StopsAfter::default() };
-            let made = made_in_turn(5..u64::MAX, &watch, Some, Some);
+            let made = sample(5..u64::MAX, &watch, Some);
             // A case that was begun is completed.
             assert!(made.len() as u64 >= most && made.is_sorted(), "{made:?}");
             assert_eq!(made.len() as u64, watch.done.into_inner());
         }
-        assert_eq!(made_in_turn(5..9, &(), Some, Some), [5, 6, 7, 8]);
+        assert_eq!(sample(5..9, &(), Some), [5, 6, 7, 8]);
     }
 }
