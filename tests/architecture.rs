@@ -145,7 +145,9 @@ fn no_public_type_name_is_used_twice() {
                 let item = line.split_once(") ").filter(|_| line.starts_with('('));
                 let item = item.map_or(line, |(_, item)| item).trim_start();
                 let Some((kind, rest)) = item.split_once(' ') else { continue };
-                if ["struct", "enum", "trait", "type", "union"].contains(&kind) {
+                // In a macro, a type has no name.
+                let is_named = !name(rest).is_empty();
+                if is_named && ["struct", "enum", "trait", "type", "union"].contains(&kind) {
                     files.entry(name(rest).to_owned()).or_default().push(file.clone());
                 }
             }

@@ -63,7 +63,7 @@ fn the_page_of_a_run_follows_it_to_its_end() {
                 "simulate worlds/shape-6.toml --seed 3 --size 640x480 --fault dropped@30 --html",
             ),
             ("blind", &format!("simulate {by_scene}")),
-            ("wrong", &format!("simulate --algorithm algorithm1 --fault carried@30 {by_scene}")),
+            ("wrong", "simulate worlds/shape-8.toml --by-scene --fault carried@80 --html"),
             ("large", "simulate worlds/building-25.toml --by-scene --html"),
         ],
     );
@@ -78,14 +78,13 @@ fn the_page_of_a_report_opens_and_leads_to_its_events() {
     crate::printed(program().args(run.split(' ')));
     let log = fs::read(&right).unwrap();
     fs::write(&cut, &log[..log.len() / 2]).unwrap();
-    // From the dead end around the loop again and again. Once a corner has four doors.
+    // From the marker around the loop again and again. Once its T has four doors.
     let visits = (0..5000).map(|visit| {
         let (degree, marker, door) = match visit {
-            0 => (1, -1, 0),
-            1 => (2, 1, 1),
-            2 => (3, -1, 1),
-            3501 => (4, -1, 1),
-            _ if visit % 4 == 2 => (3, -1, 2),
+            0 => (2, 0, 0),
+            1 => (3, -1, 1),
+            3501 => (4, -1, 2),
+            _ if visit % 4 == 1 => (3, -1, 2),
             _ => (2, -1, 1),
         };
         format!("{{\"degree\":{degree},\"marker\":{marker},\"door\":{door}}}\n")

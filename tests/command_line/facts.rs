@@ -52,4 +52,4 @@ macro_rules! files {
     };
 }
 
-files! { calibrate check compare explore explorer info input lines safeguards shards simulate train worlds }
+files! { calibrate check compare draw explore explorer info input lines names safeguards shards simulate train worlds }
