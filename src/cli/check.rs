@@ -227,15 +227,11 @@ impl CheckArguments {
         if self.add {
             return self.add_shards(out);
         }
-        let mapper = match &self.explorer.explorer {
-            Some(command) => {
-                let (options, marker) = (&self.explorer, self.marker);
-                Mapper::Explorer(ExplorerSweep { command, options, marker })
-            }
-            None => {
-                let algorithm = algorithm_for(self.algorithm, self.marker, choices)?;
-                Mapper::Algorithm(algorithm, choices)
-            }
+        let mapper = if let Some(command) = &self.explorer.explorer {
+            let (options, marker) = (&self.explorer, self.marker);
+            Mapper::Explorer(ExplorerSweep { command, options, marker })
+        } else {
+            Mapper::Algorithm(algorithm_for(self.algorithm, self.marker, choices)?, choices)
         };
         let work = match &self.from {
             Some(path) => self.listed(path)?,

@@ -211,7 +211,9 @@ impl ExploreArguments {
         match printer {
             RunPrinter::Doors(taken) => doors = Some(taken),
             RunPrinter::Summary(summary) => summary.print(&mut out)?,
-            RunPrinter::Story(story) => drop(story.finish()?),
+            RunPrinter::Story(story) => {
+                story.finish()?;
+            }
         }
         // All choices can take long.
         out.flush()?;
@@ -219,12 +221,11 @@ impl ExploreArguments {
         let certificate = || CertificateCost::with_doors(&world.graph, facing, moves);
         run.certificate = self.certificate.then(certificate);
         run.ways = algorithm.other_runs(choices, (&world.graph, facing), &StopSignal).transpose();
-        match doors {
-            Some(doors) => run.print_json(doors, &mut out)?,
-            None => {
-                let all = !self.summarises(world);
-                run.print(&mut out, if all { usize::MAX } else { STORY_VERTICES })?;
-            }
+        if let Some(doors) = doors {
+            run.print_json(doors, &mut out)?;
+        } else {
+            let all = !self.summarises(world);
+            run.print(&mut out, if all { usize::MAX } else { STORY_VERTICES })?;
         }
         out.flush()?;
         match run.map() {

@@ -58,22 +58,19 @@ impl CaseView {
                 Exhibit::Walk { world: place, marker, pose, doors } => {
                     let world = worlds.get(*place);
                     let there = world.filter(|world| pose.at() < world.graph.dart_count());
-                    match there.and_then(|world| Some((world, world.start?))) {
-                        Some((world, facing)) => {
-                            let (which, name) = (label(*place), marker.name());
-                            writeln!(view.text, "A walk in {which}, marker {name}:\n")?;
-                            let start = (*marker, facing, *pose);
-                            let mut walk = show_walk(&mut view.text, world, start, doors)?;
-                            walk["world"] = json!(place);
-                            view.walks.push(walk);
-                        }
-                        None => {
-                            let doors: Vec<_> =
-                                doors.iter().map(|door| door.0.to_string()).collect();
-                            let value =
-                                format!("from dart {} by the doors {}", pose.0, doors.join(","));
-                            view.show_value("walk", &value)?;
-                        }
+                    let start = there.and_then(|world| Some((world, world.start?)));
+                    if let Some((world, facing)) = start {
+                        let (which, name) = (label(*place), marker.name());
+                        writeln!(view.text, "A walk in {which}, marker {name}:\n")?;
+                        let start = (*marker, facing, *pose);
+                        let mut walk = show_walk(&mut view.text, world, start, doors)?;
+                        walk["world"] = json!(place);
+                        view.walks.push(walk);
+                    } else {
+                        let doors: Vec<_> = doors.iter().map(|door| door.0.to_string()).collect();
+                        let value =
+                            format!("from dart {} by the doors {}", pose.0, doors.join(","));
+                        view.show_value("walk", &value)?;
                     }
                 }
                 Exhibit::Value { name, value } => view.show_value(name, value)?,

@@ -162,6 +162,9 @@ fn a_case_holds_or_is_excluded() {
 
 #[test]
 fn a_lemma_with_another_number_of_cases_than_expected_fails() {
+    fn excluded<C>(_: &mut C) -> CaseResult {
+        Err(Stop::Excluded)
+    }
     for (pinned, cause) in
         [(5, "expected 5 cases within its bound, found 4 cases"), (1, "found 4 cases")]
     {
@@ -173,9 +176,6 @@ fn a_lemma_with_another_number_of_cases_than_expected_fails() {
         let line = &objects(&[true_lemma("low", pinned)], "--run low", Outcome::Violated)[0];
         assert_eq!((&line["cases"], &line["pinned"]), (&4.into(), &pinned.into()));
         assert_eq!((&line["holds"], &line["choices"]), (&false.into(), &Value::Null));
-    }
-    fn excluded<C>(_: &mut C) -> CaseResult {
-        Err(Stop::Excluded)
     }
     let (outcome, text) = run(&[lemma("none", 0, excluded, excluded)], "--run none");
     assert_eq!(outcome.unwrap(), Outcome::Violated, "{text}");

@@ -21,10 +21,7 @@ pub(super) enum ExplorerFault {
         Some(status) => format!("ended with {status}"),
         None => "closed its standard output".to_owned(),
     })]
-    Ended {
-        status: Option<String>,
-        failed: bool,
-    },
+    Ended { status: Option<String>, failed: bool },
     #[error("{}", refusal(refused))]
     RefusedAction { refused: RefusedAction },
     #[error("gave up: {reason}")]
