@@ -102,24 +102,15 @@ impl RecordedSettings {
         for word in text.split(' ') {
             let (name, number) = word.split_once('=').unwrap_or((word, ""));
             let real = || number.parse().ok().filter(|number: &f64| *number > 0.0);
-            let known = match name {
-                "max-moves" => {
-                    number.parse().map(|most| settings.budget.moves = Some(most)).is_ok()
-                }
-                "max-seconds" => real().map(|most| settings.budget.seconds = Some(most)).is_some(),
-                "max-metres" => real().map(|most| settings.budget.metres = Some(most)).is_some(),
-                "max-darts" => number.parse().map(|most| settings.dart_bound = most).is_ok(),
-                "resumed" => {
-                    settings.is_resumed = true;
-                    true
-                }
-                _ => {
-                    method.push(word);
-                    true
-                }
-            };
-            if !known {
-                return Err(format!("`{word}` has no number"));
+            let no_number = || format!("`{word}` has no number");
+            let budget = &mut settings.budget;
+            match name {
+                "max-moves" => budget.moves = Some(number.parse().map_err(|_| no_number())?),
+                "max-seconds" => budget.seconds = Some(real().ok_or_else(no_number)?),
+                "max-metres" => budget.metres = Some(real().ok_or_else(no_number)?),
+                "max-darts" => settings.dart_bound = number.parse().map_err(|_| no_number())?,
+                "resumed" => settings.is_resumed = true,
+                _ => method.push(word),
             }
         }
         settings.method = method.join(" ").parse()?;

@@ -19,7 +19,7 @@ use super::{
 
 /// A run that has ended.
 #[derive(Clone, Copy)]
-pub(super) struct EndedRun<'a> {
+pub(super) struct RobotRun<'a> {
     pub(super) method: MappingMethod,
     pub(super) mapping: &'a MapWalk,
     /// `None` if it ended early, for the reason in `error`.
@@ -33,7 +33,7 @@ pub(super) struct EndedRun<'a> {
     pub(super) frame_kind: &'static str,
 }
 
-impl EndedRun<'_> {
+impl RobotRun<'_> {
     /// The doors of the map whose hallways are blocked.
     pub(super) fn blocked(&self) -> &[Dart] {
         self.mapped.map_or(&[], |mapped| &mapped.blocked)
@@ -140,7 +140,7 @@ const LEAST_PRINTED: f64 = 0.01;
 
 impl RunReport {
     pub(super) fn new(
-        run: &EndedRun,
+        run: &RobotRun,
         certificate: Option<CertificateCost>,
         robot: RobotReport,
     ) -> Self {
@@ -167,7 +167,7 @@ impl RunReport {
     pub(super) fn print(
         &self,
         out: &mut dyn Write,
-        run: &EndedRun,
+        run: &RobotRun,
         ending: &[String],
     ) -> Result<(), CliError> {
         writeln!(out)?;

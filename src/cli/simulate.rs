@@ -27,7 +27,7 @@ use super::{
     robot_sensor::{SensorChoice, needs_camera},
     run_capture::RunCapture,
     run_options::{GivenOptions, RunOptions},
-    run_report::{EndedRun, RobotReport, RunReport},
+    run_report::{RobotReport, RobotRun, RunReport},
     text::{capital, grouped},
 };
 use crate::{page, picture, story};
@@ -283,7 +283,7 @@ impl SimulateArguments {
         let _ = offline(&recording, sensor, StoppedBy(&StopSignal), &settings);
         let compute_seconds = computed.elapsed().as_secs_f64();
         let missed: Vec<_> = self.fault.iter().filter(|fault| fault.frame > run.frames).collect();
-        let ended = EndedRun {
+        let ended = RobotRun {
             method: run.method,
             mapping: &run.mapping,
             mapped: run.mapped.as_ref(),
@@ -330,7 +330,7 @@ impl SimulateArguments {
         world: &NamedWorld,
         facing: Dart,
         run: &Run,
-        ended: &EndedRun,
+        ended: &RobotRun,
         missed: &[&RobotFault],
         compute_seconds: f64,
     ) -> RunReport {
@@ -358,7 +358,7 @@ impl SimulateArguments {
     }
 }
 
-fn in_words(run: &Run, ended: &EndedRun) -> String {
+fn in_words(run: &Run, ended: &RobotRun) -> String {
     match run.outcome() {
         RunOutcome::Wrong(why) => why,
         RunOutcome::Right if ended.blocked().is_empty() && !run.method.recovers() => {

@@ -112,6 +112,7 @@ impl Progress {
     }
 
     /// Shows no bar: the work prints its own progress.
+    #[must_use]
     pub fn hidden(self) -> Self {
         self.bar.set_draw_target(ProgressDrawTarget::hidden());
         self

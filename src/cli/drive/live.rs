@@ -17,7 +17,7 @@ use crate::cli::{
     progress::{always_stop_gracefully, must_stop, watch_for_interrupt},
     robot_sensor::{SensorChoice, needs_camera},
     run_capture::RunCapture,
-    run_report::{EndedRun, RobotReport, RunReport},
+    run_report::{RobotReport, RobotRun, RunReport},
 };
 
 /// The run is given up if the robot sends nothing for this long.
@@ -66,7 +66,7 @@ impl DriveArguments {
         drop(robot);
         capture.finish()?;
         logged.map_err(|error| self.options.unwritten(&error))?;
-        let run = EndedRun {
+        let run = RobotRun {
             method: settings.method,
             mapping: &mapping,
             mapped: mapped.as_ref().ok(),
