@@ -161,3 +161,52 @@ fn an_option_without_effect_is_an_error() {
         assert!(output.stdout.is_empty(), "{arguments:?}");
     }
 }
+
+#[test]
+fn results_are_the_same_on_any_number_of_threads() {
+    for command in [
+        "vision --size 640x480 --look tiles --views 24 --visits 2 --json",
+        "laser --walks 3 --places 6 --runs 1 --traversals 2 --json",
+        "control --traversals 3000 --plans 10 --json",
+    ] {
+        let measured = |threads| {
+            let output = run(command.split(' ').chain(["--threads", threads]));
+            (output.status.code(), stdout(&output))
+        };
+        let (code, text) = measured("1");
+        assert_eq!((code, text.clone()), measured("3"), "{command}");
+        let lines = objects(&text);
+        let verdict = lines.last().unwrap();
+        let cases = |of: &str, what: &str| rate(&lines, of, what)["cases"].as_u64().unwrap();
+        match command.split(' ').next().unwrap() {
+            "vision" => {
+                for kind in ["source", "rate", "errors", "confusion", "failures"] {
+                    assert!(lines.iter().any(|line| line["kind"] == kind), "{kind}");
+                }
+                let views = [
+                    cases("hallway", "called junction"),
+                    cases("junction", "kind or entry wrong"),
+                    cases("between", "unknown"),
+                    cases("past", "kind or entry wrong"),
+                    cases("turned", "kind wrong"),
+                ];
+                assert_eq!((views.iter().sum::<u64>(), cases("visit", "not decided")), (24, 2));
+            }
+            "laser" => {
+                assert!(cases("visit", "wrong") > 3 && cases("percept", "wrong") > 1, "{text}");
+                let whole = ["walk", "run", "control"].map(|of| cases(of, "wrong"));
+                assert_eq!(whole, [3, 1, 2]);
+                assert!(cases("hallway", "called junction") > 30, "{text}");
+                // Three walks are too few to show anything but a miss.
+                assert_eq!(code, Some(if verdict["target"] == "missed" { 1 } else { 3 }));
+            }
+            _ => {
+                assert_eq!((code, &verdict["traversals"]), (Some(0), &3000.into()));
+                assert_eq!(
+                    (&verdict["kind"], &verdict["holds"]),
+                    (&"control".into(), &true.into())
+                );
+            }
+        }
+    }
+}

@@ -233,11 +233,7 @@ impl<'w> LaserRobot<'w> {
 
     /// The directions on the plan of the doors of the place where it stands, clockwise from the entry; `None` if it is no
     /// junction.
-    fn decide(
-        &mut self,
-        place: SeenPlace,
-        entry: f64,
-    ) -> Result<Option<Vec<f64>>, ScanFailure> {
+    fn decide(&mut self, place: SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, ScanFailure> {
         self.look_around()?;
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
