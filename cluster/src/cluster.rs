@@ -97,7 +97,6 @@ impl ClusterProcess {
     }
 
     /// Whether this is process 0, which has the result.
-    #[must_use]
     pub fn is_first(&self) -> bool {
         self.process == 0
     }

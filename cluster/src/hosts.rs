@@ -40,13 +40,11 @@ impl Hosts {
         if addresses.is_empty() { Err(HostsError::Empty) } else { Ok(Self(addresses)) }
     }
 
-    #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
     /// The address of a process, and its number: `process 1 (host:port)`.
-    #[must_use]
     pub fn name(&self, process: usize) -> String {
         format!("process {process} ({})", self.address(process))
     }

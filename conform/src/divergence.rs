@@ -39,7 +39,6 @@ pub enum FaultClass {
 impl FaultClass {
     pub const ALL: [Self; 4] = [Self::Perception, Self::Motion, Self::Algorithm, Self::Log];
 
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Perception => "perception",
@@ -136,13 +135,11 @@ pub enum DivergenceCause {
 
 impl DivergenceCause {
     /// The class of the fault, as far as the event itself shows it.
-    #[must_use]
     pub fn fault(&self) -> FaultClass {
         self.name_and_fault().1
     }
 
     /// Its name in quirk files and reports.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.name_and_fault().0
     }

@@ -117,7 +117,6 @@ impl From<Door> for CheckedKind {
 
 impl CheckedEvent {
     /// What the robot perceived, if it stood at a junction.
-    #[must_use]
     pub fn arrival(&self) -> Option<&Arrival> {
         match &self.kind {
             CheckedKind::Arrival { arrival, .. } => Some(arrival),

@@ -132,7 +132,6 @@ impl Serialize for Evidence {
 
 impl Evidence {
     /// Its name in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Recorded => "recorded",
@@ -151,7 +150,6 @@ impl Evidence {
     }
 
     /// Whether a topic map has this source of events.
-    #[must_use]
     pub fn is_in(self, mapping: &TopicMap) -> bool {
         self.roles().iter().take(2).all(|role| mapping.carrier(*role).is_some())
     }
@@ -277,7 +275,6 @@ fn is_timed(entry: &Entry) -> bool {
 }
 
 /// The events that are inferred from scenes.
-#[must_use]
 pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
     let mut visits = Visits::by_camera(marked);
     for SensedScene { source, scene, odometry } in seen {

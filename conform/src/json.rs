@@ -86,13 +86,11 @@ pub struct LogsLine<'r> {
 }
 
 impl ConformReports {
-    #[must_use]
     pub fn count(&self, verdict: ConformVerdict) -> usize {
         self.logs.iter().filter(|report| report.verdict == verdict).count()
     }
 
     /// The logs together, with the cases that they cover.
-    #[must_use]
     pub fn together<'r>(&self, coverage: &'r [CoveredCase]) -> LogsLine<'r> {
         let mut classes: BTreeMap<_, _> = FaultClass::ALL.map(|one| (one.name(), 0)).into();
         for divergence in self.logs.iter().filter_map(|report| report.divergence.as_ref()) {
@@ -119,7 +117,6 @@ struct Step {
 }
 
 impl CheckedKind {
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Arrival { .. } => "percept",

@@ -80,7 +80,6 @@ pub enum ConformVerdict {
 }
 
 impl ConformVerdict {
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Conforms => "conforms",
@@ -346,7 +345,6 @@ impl Judgement {
         Ok(Self { events: self.events, unrecognised: Some(event), ..before })
     }
 
-    #[must_use]
     pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
             ConformVerdict::Diverged

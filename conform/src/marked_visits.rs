@@ -73,7 +73,6 @@ impl VisitedJunction {
 }
 
 /// A marker at the first junction that the robot visited, along its entry door.
-#[must_use]
 pub fn marker_at_start(junctions: &[VisitedJunction]) -> Option<MarkerPlace> {
     let first = junctions.iter().find(|junction| !junction.doors.is_empty())?;
     Some(MarkerPlace { position: first.centre, heading: first.doors.first().copied() })

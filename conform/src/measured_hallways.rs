@@ -71,7 +71,6 @@ impl MeasuredHallways {
 impl RunEvents {
     /// The visits of a run with the directional marker, with their measurements, identified by the folded trail;
     /// `None` if no world explains the run.
-    #[must_use]
     pub fn measured_visits(&self) -> Option<Vec<MeasuredVisit>> {
         let trace = self.trace().ok()?;
         let trail = fold(trace.percepts(), trace.doors()).ok()?;

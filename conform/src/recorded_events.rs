@@ -102,7 +102,6 @@ impl RecordedEvents {
     }
 
     /// The events.
-    #[must_use]
     pub fn finish(self) -> Vec<CheckedEvent> {
         self.events
     }

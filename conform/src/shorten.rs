@@ -35,7 +35,6 @@ pub struct ShortenedRun {
 ///
 /// If percepts and doors diverge, sequences of moves are removed; if measurements do, closed walks are; if an event
 /// contradicts itself or the odometry, only the last events are kept.
-#[must_use]
 pub fn shorten_run(
     judgement: &Judgement,
     config: &ConformConfig,
@@ -90,7 +89,6 @@ pub fn shorten_run(
 
 /// The shortest sequence of scenes from which an event is inferred; `None` if there is no short one, or
 /// the event cannot diverge by itself.
-#[must_use]
 pub fn shorten_frames<'s>(
     seen: &'s [SensedScene],
     event: &CheckedEvent,
@@ -115,7 +113,6 @@ const FAR: usize = 400;
 
 impl Divergence {
     /// Whether two divergences have the same cause and class, and for percepts the same expectation.
-    #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         let same = match (&self.cause, &other.cause) {
             (DivergenceCause::World(one), DivergenceCause::World(other)) => {

@@ -11,7 +11,6 @@ use super::{
 };
 
 /// The events of visits, and the junctions of those that are arrivals or undecided.
-#[must_use]
 pub fn visit_events(log: VisitLog<EventSource>) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
     let (mut events, mut junctions): (Vec<CheckedEvent>, Vec<_>) = (Vec::new(), Vec::new());
     let turned_back =

@@ -32,7 +32,6 @@ use super::{
 const ALL_AROUND: f64 = 270.0;
 
 /// The verdict on a log.
-#[must_use]
 pub fn verdict(verdict: ConformVerdict) -> &'static str {
     match verdict {
         ConformVerdict::Conforms => "conforms",
@@ -42,7 +41,6 @@ pub fn verdict(verdict: ConformVerdict) -> &'static str {
 }
 
 /// The result of a log in one sentence.
-#[must_use]
 pub fn result(report: &LogReport) -> String {
     match (&report.divergence, remarks(report).into_iter().next()) {
         (Some(divergence), _) => {
@@ -55,7 +53,6 @@ pub fn result(report: &LogReport) -> String {
 }
 
 /// The number of logs with each verdict.
-#[must_use]
 pub fn together(reports: &ConformReports) -> String {
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete]
@@ -68,7 +65,6 @@ pub fn together(reports: &ConformReports) -> String {
     format!("{logs}: {conform} conform, {diverged} diverge, {incomplete} incomplete{unread}")
 }
 
-#[must_use]
 pub fn fault(fault: FaultClass) -> &'static str {
     match fault {
         FaultClass::Perception => "a wrong percept",
@@ -79,7 +75,6 @@ pub fn fault(fault: FaultClass) -> &'static str {
 }
 
 /// The events of a log without a divergence.
-#[must_use]
 pub fn fits(report: &LogReport) -> String {
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
@@ -95,7 +90,6 @@ pub fn fits(report: &LogReport) -> String {
 }
 
 /// How often something was tolerated.
-#[must_use]
 pub fn times(count: usize) -> String {
     match count {
         1 => "once".to_owned(),
@@ -103,7 +97,6 @@ pub fn times(count: usize) -> String {
     }
 }
 
-#[must_use]
 pub fn event(kind: &CheckedKind) -> String {
     match kind {
         CheckedKind::Arrival { arrival, .. } => {
@@ -130,7 +123,6 @@ pub fn event(kind: &CheckedKind) -> String {
 }
 
 /// What is known of the robot's pose after an event.
-#[must_use]
 pub fn event_pose(pose: &EventPose) -> String {
     match pose {
         EventPose::At(pose) => pose_name(pose),
@@ -142,20 +134,17 @@ fn pose_name(PoseName { vertex, from }: &PoseName) -> String {
     format!("at {vertex}, having come from {from}")
 }
 
-#[must_use]
 pub fn found(divergence: &DivergenceReport) -> String {
     divergence.found.as_ref().map_or("end of the log".to_owned(), event)
 }
 
 /// Where a message stands in its log.
-#[must_use]
 pub fn message_place(place: &MessagePlace) -> String {
     let [number, offset] = [place.number, place.offset].map(|number| grouped(number.into()));
     format!("message {number} of the log, at {} {offset}", place.unit.name())
 }
 
 /// What is allowed instead.
-#[must_use]
 pub fn allowed(divergence: &DivergenceReport) -> Vec<String> {
     match divergence.cause {
         DivergenceCause::Number { expected, .. } => return vec![format!("number {expected}")],
@@ -185,7 +174,6 @@ fn more(listed: usize, all: usize) -> Option<String> {
 }
 
 /// The reasons for the verdict, and further remarks.
-#[must_use]
 pub fn remarks(report: &LogReport) -> Vec<String> {
     let LogReport { facts, verdict, events, .. } = report;
     let mut remarks: Vec<String> = other_world(facts).into_iter().collect();
@@ -251,7 +239,6 @@ pub fn remarks(report: &LogReport) -> Vec<String> {
 }
 
 /// A remark on a log that was recorded in another world.
-#[must_use]
 pub fn other_world(facts: &Facts) -> Option<String> {
     let recorded = facts.recorded.as_ref().filter(|it| it.same_world == Some(false))?;
     let comma = if recorded.world.is_empty() { "" } else { ", " };
@@ -259,13 +246,11 @@ pub fn other_world(facts: &Facts) -> Option<String> {
 }
 
 /// A remark on the lines that were skipped; `None` if there are none.
-#[must_use]
 pub fn skipped_lines(facts: &Facts) -> Option<String> {
     facts.skipped_lines.as_ref().map(|skipped| format!("skipped {skipped}"))
 }
 
 /// A remark on the messages that were skipped; `None` if there are none.
-#[must_use]
 pub fn skipped_messages(skipped: SkippedMessages) -> Option<String> {
     let SkippedMessages { off_clock, scans_without_odometry } = skipped;
     let far = format!("{} whose time is far from that of all others", grouped(off_clock.into()));
@@ -312,7 +297,6 @@ fn limit(reached: &Limit, facts: &Facts) -> String {
 }
 
 /// What was checked, and against what: names and texts.
-#[must_use]
 pub fn facts(report: &LogReport) -> Vec<(&'static str, String)> {
     let facts = &report.facts;
     let field = facts.field_of_view.to_degrees();
@@ -425,7 +409,6 @@ fn lengths(hallways: MeasuredHallways) -> Option<String> {
 }
 
 /// Whether the log determines its world; `None` if that is not known.
-#[must_use]
 pub fn unique(facts: &Facts) -> Option<String> {
     let Some(doors) = &facts.never_followed else {
         return (facts.unique == Some(false)).then(|| {
@@ -499,7 +482,6 @@ fn map(MapSize { complete, vertices: count, edges, unexplored }: MapSize) -> Str
 }
 
 /// The cases that are covered, and those that are not but can be.
-#[must_use]
 pub fn covered(coverage: &[CoveredCase]) -> String {
     // A run that diverged may cover cases that its world does not have.
     let is_possible = |case: &&CoveredCase| case.count > 0 || case.reachable != Some(false);
@@ -523,7 +505,6 @@ pub fn covered(coverage: &[CoveredCase]) -> String {
 }
 
 /// Which required cases are not covered.
-#[must_use]
 pub fn required(coverage: &RequiredCoverage) -> String {
     let RequiredCoverage { required, not_covered, not_applicable } = coverage;
     let not_covered = match &not_covered[..] {

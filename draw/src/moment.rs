@@ -7,7 +7,6 @@ const YEAR: u64 = 365 * 24 * 3600;
 /// A time in nanoseconds: a date if it can be one, otherwise seconds.
 ///
 /// A date counts from 1970, in UTC. A clock that starts with the computer shows less than a year.
-#[must_use]
 pub fn moment(nanoseconds: u64) -> String {
     let (seconds, milliseconds) = (nanoseconds / 1_000_000_000, nanoseconds / 1_000_000 % 1000);
     if seconds < YEAR {
@@ -20,7 +19,6 @@ pub fn moment(nanoseconds: u64) -> String {
 }
 
 /// Seconds since the first message of a log; a date if a message carries one and the log does not.
-#[must_use]
 pub fn since_start(seconds: f64) -> String {
     if is_date(seconds) {
         return moment((seconds * 1e9) as u64);
@@ -47,7 +45,6 @@ fn is_date(seconds: f64) -> bool {
 }
 
 /// A number with one decimal, and a comma between thousands, as in `1,127.8`.
-#[must_use]
 pub fn tenths(number: f64) -> String {
     let tenths = (number * 10.0).round().max(0.0) as u64;
     format!("{}.{}", grouped((tenths / 10).into()), tenths % 10)

@@ -5,7 +5,6 @@ use toposlam_model::driving::scene::{
 };
 
 /// A scene as labels and texts. The first label is `place`.
-#[must_use]
 pub fn rows(scene: &Scene) -> Vec<(&'static str, String)> {
     let mut rows = match &scene.place {
         Place::Hallway(hallway) => hallway_rows(hallway),
@@ -17,7 +16,6 @@ pub fn rows(scene: &Scene) -> Vec<(&'static str, String)> {
 }
 
 /// A scene in one line.
-#[must_use]
 pub fn in_words(scene: &Scene) -> String {
     let texts = rows(scene).into_iter().map(|(label, text)| match label {
         "place" => text,
@@ -69,7 +67,6 @@ fn marker_in_words(marker: &MarkerView) -> String {
 }
 
 /// A place in metres ahead and to the left of the robot, in words.
-#[must_use]
 pub fn place_in_words([x, y]: [f64; 2]) -> String {
     let side = if y < 0.0 { "right" } else { "left" };
     let (ahead, aside) = (if x < 0.0 { "behind" } else { "ahead" }, y.abs());
@@ -77,7 +74,6 @@ pub fn place_in_words([x, y]: [f64; 2]) -> String {
 }
 
 /// A direction in whole degrees, in words.
-#[must_use]
 pub fn bearing(angle: f64) -> String {
     let degrees = angle.to_degrees().round();
     match degrees {

@@ -297,7 +297,6 @@ impl<W: ?Sized, O: Write> Observer<W> for PrintedStory<O> {
 }
 
 /// The world and the start of a run.
-#[must_use]
 pub fn head(world: &NamedWorld, facing: Dart) -> String {
     let NamedWorld { name, edge_names, .. } = world;
     let (at, behind) = (world.at_text(facing), world.facing_text(facing));

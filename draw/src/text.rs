@@ -17,7 +17,6 @@ pub static WIDTH: LazyLock<usize> = LazyLock::new(|| {
 });
 
 /// The width of the text on a terminal of this width.
-#[must_use]
 pub fn readable(terminal: u16) -> usize {
     usize::from(terminal).clamp(MIN_WIDTH, MAX_WIDTH)
 }
@@ -51,7 +50,6 @@ pub fn print_indented(
 }
 
 /// The lines of a text after its head, none wider than `width` columns if its words are not.
-#[must_use]
 pub fn wrapped(width: usize, head: &str, indent: usize, text: &str) -> Vec<String> {
     if text.is_empty() {
         return vec![head.to_owned()];

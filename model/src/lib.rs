@@ -41,8 +41,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#![allow(clippy::must_use_candidate, reason = "most functions only compute a result")]
-
 pub mod ambiguity;
 pub mod check;
 mod clone_in_place;

@@ -18,7 +18,6 @@ impl Bytes {
     }
 
     /// The choices made so far, from which a [`CaseReplay`](crate::CaseReplay) makes the case again.
-    #[must_use]
     pub fn choices(&self) -> &[u8] {
         &self.choices
     }

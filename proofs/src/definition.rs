@@ -10,7 +10,6 @@ use toposlam_model::{
 };
 
 /// Whether the entry at each number's entry is that number, and the entry is another number.
-#[must_use]
 pub fn is_involution_without_fixed_points(array: &[u32]) -> bool {
     let mut dart = 0;
     while dart < array.len() {
@@ -24,7 +23,6 @@ pub fn is_involution_without_fixed_points(array: &[u32]) -> bool {
 }
 
 /// Whether each number below the length is an entry exactly once.
-#[must_use]
 pub fn is_permutation(array: &[u32]) -> bool {
     let mut number = 0;
     while number < array.len() {
@@ -46,7 +44,6 @@ pub fn is_permutation(array: &[u32]) -> bool {
 
 /// Whether each dart can be reached from the first by these two permutations. `reached` is scratch
 /// space, all `false`, at least as long as they are, which is at least 1.
-#[must_use]
 pub fn is_connected(opposite: &[u32], clockwise: &[u32], reached: &mut [bool]) -> bool {
     reached[0] = true;
     let mut round = 0;
@@ -70,7 +67,6 @@ pub fn is_connected(opposite: &[u32], clockwise: &[u32], reached: &mut [bool]) -
 
 /// Whether this is a connected embedded graph with an edge: every edge has two ends, every vertex has its
 /// edge ends in a cycle, and all can be reached. Linear time.
-#[must_use]
 pub fn is_world(graph: &EmbeddedGraph) -> bool {
     let darts = graph.dart_count();
     let mut listed = 0;
@@ -103,7 +99,6 @@ pub fn is_world(graph: &EmbeddedGraph) -> bool {
 }
 
 /// Whether there are no loops and no parallel edges.
-#[must_use]
 pub fn is_simple(graph: &EmbeddedGraph) -> bool {
     let far = |dart| graph.vertex(graph.opposite(dart));
     let mut pairs: Vec<_> = graph.darts().map(|dart| (graph.vertex(dart), far(dart))).collect();
@@ -113,7 +108,6 @@ pub fn is_simple(graph: &EmbeddedGraph) -> bool {
 
 /// Whether two starts are isomorphic: from the two facing darts, the opposite and the clockwise darts of
 /// paired darts are paired, and this pairs the darts one to one.
-#[must_use]
 pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) -> bool {
     let mut pairs = vec![(one.1, other.1)];
     let mut next = 0;
@@ -138,7 +132,6 @@ pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) ->
 /// Whether these pairs of states are a bisimulation that contains the starts of the two worlds: the
 /// states exist, and a marker that cannot be carried stays in its place; in each pair the robots perceive
 /// the same and have the same actions; and each action leads to a pair.
-#[must_use]
 pub fn is_bisimulation<M: Marker + Clone>(
     pairs: &[(State, State)],
     one: &GraphWorld<M>,

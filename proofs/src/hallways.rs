@@ -95,13 +95,11 @@ impl PathJunction {
     }
 
     /// The direction of a door that it has.
-    #[must_use]
     pub fn direction(&self, door: Door) -> f64 {
         self.doors().nth(door.0 as usize).unwrap_or(self.entry)
     }
 
     /// The distance of its turning point from the robot.
-    #[must_use]
     pub fn distance(&self, robot: &Odometry) -> f64 {
         Odometry { position: self.at, heading: 0.0 }.distance(robot)
     }
@@ -127,7 +125,6 @@ impl PathJunction {
     }
 
     /// The knowledge of a robot that stands there.
-    #[must_use]
     pub fn standing(&self) -> Standing {
         let percept = Percept { degree: self.form.degree(), sighting: Sighting::Nothing };
         Standing { form: self.form, percept, entry: self.entry }
@@ -193,13 +190,11 @@ impl HallwayDrive {
     }
 
     /// A junction of the path, by its place on it.
-    #[must_use]
     pub fn junction(&self, place: usize) -> &PathJunction {
         &self.junctions[place]
     }
 
     /// The junction nearest to the robot; the later one if it is on the path twice.
-    #[must_use]
     pub fn nearest(&self) -> &PathJunction {
         let distance = |junction: &PathJunction| junction.distance(&self.robot);
         let mut nearest = &self.junctions[0];

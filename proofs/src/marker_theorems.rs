@@ -53,7 +53,6 @@ const fn no_robot(
 }
 
 /// The theorem about this kind of marker in this class of worlds, if there is one.
-#[must_use]
 pub fn about(marker: &str, class: Class) -> Option<&'static MarkerTheorem> {
     MARKER_THEOREMS
         .iter()

@@ -110,7 +110,6 @@ impl fmt::Display for Counterexample {
 }
 
 /// Numbers separated by commas.
-#[must_use]
 pub fn listed(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }

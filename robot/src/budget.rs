@@ -109,7 +109,6 @@ impl Allowance {
     }
 
     /// The limit that would not allow to take a door and to return to the marker.
-    #[must_use]
     pub fn forbids(&self, door: Door, spent: Spent) -> Option<BudgetLimit> {
         if !self.legs.is_empty() && self.door(door) == 0 {
             return None;
@@ -163,14 +162,12 @@ impl Allowance {
     }
 
     /// The door of the way back; `None` at the marker, or if the way is not known.
-    #[must_use]
     pub fn door_back(&self) -> Option<Door> {
         let is_away = self.knows_way && !self.legs.is_empty();
         is_away.then(|| Door(self.entry).inverse(self.degree.max(1)))
     }
 
     /// Whether the robot is at the marker.
-    #[must_use]
     pub fn is_at_marker(&self) -> bool {
         self.knows_way && self.legs.is_empty() && self.leaving.is_none()
     }

@@ -124,12 +124,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
 
     /// The moves that ended at a junction or before an obstacle, with those of recoveries and audits. A move on which the
     /// robot got lost is not counted.
-    #[must_use]
     pub fn moves(&self) -> u64 {
         self.moves
     }
 
-    #[must_use]
     pub fn is_at_obstacle(&self) -> bool {
         matches!(self.place, Some(Standpoint::Obstacle { .. }))
     }

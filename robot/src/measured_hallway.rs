@@ -16,7 +16,6 @@ use crate::superscout::MEASUREMENT_NOISE;
 
 /// The uncertainty of the hallways in a log of this project. It does not record the calibration of its base, which
 /// may be several times worse than that of a SuperScout on tiles.
-#[must_use]
 pub fn log_noise() -> MeasurementNoise {
     MEASUREMENT_NOISE.times(3.0, 5.0)
 }
@@ -52,7 +51,6 @@ impl MeasuredHallway {
     }
 
     /// The measurement up to an arrival with this direction of the entry door.
-    #[must_use]
     pub fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
         let length = self.way.length().filter(|_| self.moved)?;
         Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
@@ -60,13 +58,11 @@ impl MeasuredHallway {
 }
 
 /// The turn from the direction of the door by which a robot left to that in which it comes in.
-#[must_use]
 pub fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
     exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
 }
 
 /// The direction of a door of a junction, in the frame of odometry.
-#[must_use]
 pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
     let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
     let quarter = doors.nth(door.0 as usize)?;

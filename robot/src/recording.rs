@@ -15,7 +15,6 @@ pub struct Recording {
 }
 
 impl Recording {
-    #[must_use]
     pub fn robot(&self) -> RecordedRobot<Cloned<std::slice::Iter<'_, Frame>>> {
         RecordedRobot::new(self.frames.iter().cloned())
     }

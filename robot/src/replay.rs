@@ -39,7 +39,6 @@ impl Agreement {
     }
 
     /// Whether all were reproduced.
-    #[must_use]
     pub fn is_whole(self) -> bool {
         self.agree == self.of
     }

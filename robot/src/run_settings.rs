@@ -53,7 +53,6 @@ impl Default for RecordedSettings {
 
 impl RunSettings {
     /// What the head of its log says.
-    #[must_use]
     pub fn recorded(&self) -> RecordedSettings {
         let Self { method, budget, dart_bound, .. } = *self;
         RecordedSettings { method, budget, is_resumed: !self.earlier.is_empty(), dart_bound }

@@ -7,7 +7,6 @@
 // Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 #![allow(
-    clippy::must_use_candidate,
     clippy::missing_errors_doc,
     reason = "only the programs of this workspace use this crate, and its error types say what is wrong"
 )]

@@ -136,7 +136,6 @@ fn without_ros() -> CliError {
 
 /// Runs the verb on the command line, and returns the exit code of the program. The revision of its sources is
 /// part of its version.
-#[must_use]
 pub fn run(revision: Option<&str>) -> ExitCode {
     version::set_revision(revision);
     let renamed = match old_names::with_new_names(env::args_os().collect()) {
@@ -173,7 +172,6 @@ pub fn run(revision: Option<&str>) -> ExitCode {
 }
 
 /// The command line, for what is made of it: manual pages, completions.
-#[must_use]
 pub fn command() -> Command {
     CommandLine::command()
 }

@@ -2,7 +2,6 @@
 //! input and output files, and the options of how a robot maps.
 
 #![allow(clippy::missing_errors_doc, reason = "each error names its place and its cause")]
-#![allow(clippy::must_use_candidate, reason = "programs use this crate, not libraries")]
 #![warn(clippy::print_stderr, reason = "--quiet is obeyed in `terminal.rs`")]
 
 /// Prints a remark on standard error, unless `--quiet` is given.

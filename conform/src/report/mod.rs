@@ -181,7 +181,6 @@ pub struct FoldedReport {
 
 impl CheckedLog {
     /// The report on a log that was checked.
-    #[must_use]
     pub fn report(&self, source: &LogSource, log: String) -> LogReport {
         let judgement = &self.judgement;
         let divergence = judgement.divergence.as_ref();
@@ -316,7 +315,6 @@ impl CheckedLog {
 
 impl LogReport {
     /// The coverage of several logs together. A case is reachable if it is in the world of any log.
-    #[must_use]
     pub fn coverage_of(reports: &[Self]) -> Vec<CoveredCase> {
         let mut together: Vec<CoveredCase> = Vec::new();
         for covered in reports.iter().flat_map(|report| &report.coverage) {

@@ -47,7 +47,6 @@ pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
 }
 
 /// A picture of a graph with its open darts; `None` of an empty one.
-#[must_use]
 pub fn open_svg(map: &OpenGraph) -> Option<String> {
     let (graph, drawing) = stage(map, None)?;
     let names = names(&graph, drawing.known);

@@ -106,7 +106,6 @@ struct VisitedPlace<'v> {
 }
 
 /// The picture of a recorded run as an SVG document. The same run gives the same bytes.
-#[must_use]
 pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
     let walls = picture.hits.walls();
     let metres = extent(picture, &walls);

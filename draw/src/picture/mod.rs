@@ -153,7 +153,6 @@ pub enum Placement<'a> {
 
 impl<'a> Placement<'a> {
     /// The positions, if they are given.
-    #[must_use]
     pub fn positions(self) -> Option<&'a [[f64; 2]]> {
         match self {
             Self::Free => None,
@@ -200,7 +199,6 @@ impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
 }
 
 /// The picture as an SVG document. The same picture gives the same bytes.
-#[must_use]
 pub fn svg(picture: &WorldPicture) -> String {
     svg::document(picture, &drawing::Drawing::of(picture), svg::Legend::Below)
 }

@@ -91,18 +91,15 @@ impl AmbiguityCandidate {
         (usize::from(length) == words.len()).then_some(candidate)
     }
 
-    #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
 
-    #[must_use]
     pub fn quotient(&self) -> &[u8] {
         self.parts().map_or(&[], |(quotient, _)| quotient)
     }
 
     /// The placed world; `None` if the bytes are not those of a candidate.
-    #[must_use]
     pub fn world(&self) -> Option<PlacedWorld> {
         let (_, world) = self.parts()?;
         let words: Vec<u32> = world.get(1..)?.iter().copied().map(to_word).collect();

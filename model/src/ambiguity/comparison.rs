@@ -80,7 +80,6 @@ impl<'a> Comparison<'a> {
 
     /// The two worlds with their markers where they were placed, and in each a robot that has come in
     /// by such a dart, which is one of the graph's.
-    #[must_use]
     pub fn starts(&self, poses: [Dart; 2]) -> [PlacedRobot<'a>; 2] {
         let [one, other] = &self.worlds;
         let begun =
@@ -90,7 +89,6 @@ impl<'a> Comparison<'a> {
 
     /// Whether no walk from these starts distinguishes the worlds.
     // paper: marker.undirected-insufficient, marker.none-cycles
-    #[must_use]
     pub fn indistinguishable(&self, poses: [Dart; 2]) -> bool {
         // Nothing stops it.
         self.in_one_class(poses, &()).unwrap_or_default()
@@ -99,7 +97,6 @@ impl<'a> Comparison<'a> {
     /// The first start in the second world that is indistinguishable from this pose in the first. The
     /// robot in the second world may begin in any pose that places the marker alike. Returns `None` if
     /// each of these starts has a walk that distinguishes it.
-    #[must_use]
     pub fn start_like(&self, pose: Dart) -> Option<Dart> {
         let world = &self.worlds[1];
         let starts = self.marker.starts(world.graph(), world.pose());
@@ -108,7 +105,6 @@ impl<'a> Comparison<'a> {
 
     /// Why they cannot: all pairs of states that they can be in, breadth-first; `None` if they
     /// can. There are at most as many pairs as states of the one times states of the other.
-    #[must_use]
     pub fn relation(&self, poses: [Dart; 2]) -> Option<Relation> {
         match self.bisimulation(poses, usize::MAX, &()) {
             Ok(Some(Bisimulation::Relation(relation))) => Some(relation),
@@ -147,7 +143,6 @@ impl<'a> Comparison<'a> {
     }
 
     /// Does the same as [`walk_watched`](Self::walk_watched). Nothing stops it.
-    #[must_use]
     pub fn walk(&self, poses: [Dart; 2]) -> Option<Walk> {
         self.walk_watched(poses, &()).unwrap_or_default()
     }
@@ -192,7 +187,6 @@ pub enum Bisimulation {
 
 impl Bisimulation {
     /// Whether this proves that the robots in the two worlds never perceive a difference.
-    #[must_use]
     pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
         match self {
             Self::Relation(relation) => relation.verify(one, other),

@@ -134,13 +134,11 @@ impl Findings {
 
     /// The smallest pair: the one with the fewest edges in its larger world; then in its smaller
     /// world; then with the least codes.
-    #[must_use]
     pub fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
         self.groups.first()?.smallest()
     }
 
     /// All pairs, the smallest first. A group of `k` worlds has `k (k - 1) / 2` of them.
-    #[must_use]
     pub fn pairs(&self) -> Vec<[&PlacedWorld; 2]> {
         let mut pairs = Vec::new();
         for AmbiguousGroup { worlds } in &self.groups {

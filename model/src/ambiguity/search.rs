@@ -40,7 +40,6 @@ pub struct SearchPart {
 }
 
 impl SearchPart {
-    #[must_use]
     pub fn edges(&self) -> usize {
         self.edges
     }
@@ -75,7 +74,6 @@ impl<'m> AmbiguitySearch<'m> {
     }
 
     /// The most bytes that a candidate of this search has.
-    #[must_use]
     pub fn candidate_bytes(&self) -> usize {
         let edges = self.sizes.len();
         let darts = 2 * edges;
@@ -120,7 +118,6 @@ impl<'m> AmbiguitySearch<'m> {
     }
 
     /// The parts of the search, those of small worlds first. Equal searches have equal parts on every machine.
-    #[must_use]
     pub fn parts(&self) -> Vec<SearchPart> {
         let parts = |(worlds, edges): (&Enumeration, usize)| {
             worlds.parts().into_iter().map(move |part| SearchPart { edges, part })
@@ -129,7 +126,6 @@ impl<'m> AmbiguitySearch<'m> {
     }
 
     /// The number of placed worlds in a part, and those that may be ambiguous.
-    #[must_use]
     pub fn look_at_part(&self, part: &SearchPart) -> (u64, Vec<AmbiguityCandidate>) {
         let mut seen = Seen::default();
         let _ = part.part.for_each(&mut |found| {

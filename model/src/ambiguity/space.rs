@@ -14,7 +14,6 @@ pub(super) type StateLabel = (Percept, bool);
 
 /// How many states a robot and the marker can be in, in a world: its poses, and for each of them, with
 /// a marker that can be moved, where this lies or that it is carried.
-#[must_use]
 pub fn state_count(graph: &EmbeddedGraph, marker: &dyn Marker) -> usize {
     States::from_start(graph, marker, Dart(0)).len()
 }

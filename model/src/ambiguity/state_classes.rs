@@ -20,13 +20,11 @@ impl StateClasses {
         Self { states, class, count }
     }
 
-    #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
     /// The states of each class: those of the first world, and those of the second.
-    #[must_use]
     pub fn classes(&self) -> Vec<[Vec<State>; 2]> {
         let mut classes = vec![[Vec::new(), Vec::new()]; self.count];
         let (one, other) = self.class.split_at(self.states[0].len().min(self.class.len()));
@@ -42,7 +40,6 @@ impl StateClasses {
     /// a class, the robots are in states of one class, states of one class have the same percept, and
     /// turning, crossing and handling the marker lead from them to states of one class.
     // paper: fig1.base, fig1.step, fig1.cases
-    #[must_use]
     pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
         /// What states of one class have in common.
         type Common = (StateLabel, [Option<u32>; 3]);

@@ -46,7 +46,6 @@ const MOST_DARTS: usize = 4096;
 /// relation.
 ///
 /// Worlds for a marker that can be moved are not searched.
-#[must_use]
 pub fn twins(
     graph: &EmbeddedGraph,
     marker: &dyn Marker,

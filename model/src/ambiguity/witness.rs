@@ -26,7 +26,6 @@ impl Relation {
     /// never perceive a difference: they are among the pairs; in each pair they perceive the same
     /// and can do the same; and whatever they do leads to another of the pairs.
     // paper: fig1.base, fig1.step, fig1.cases
-    #[must_use]
     pub fn verify<M: Marker + Clone>(
         &self,
         one: &GraphWorld<'_, M>,
@@ -65,7 +64,6 @@ impl Relation {
 impl Walk {
     /// Whether this walk can be walked by the robots in both worlds, and they perceive the same up
     /// to its end, and there what it says, which differs.
-    #[must_use]
     pub fn verify<M: Marker + Clone>(
         &self,
         one: &GraphWorld<'_, M>,

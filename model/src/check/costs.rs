@@ -28,7 +28,6 @@ pub enum ChoicesLimit {
 
 impl ChoicesLimit {
     /// Its name, as in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::States(_) => "max-states",
@@ -66,23 +65,19 @@ impl Costs {
         size_of::<u64>() * self.0.len()
     }
 
-    #[must_use]
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = u64> + '_ {
         (0..self.0.len() as u64 * 64).filter(|&cost| self.contains(cost))
     }
 
     /// Whether a run can take this number of moves.
-    #[must_use]
     pub fn contains(&self, cost: u64) -> bool {
         self.0.get((cost / 64) as usize).is_some_and(|word| word >> (cost % 64) & 1 == 1)
     }
 
-    #[must_use]
     pub fn min(&self) -> Option<u64> {
         self.iter().next()
     }
 
-    #[must_use]
     pub fn max(&self) -> Option<u64> {
         self.iter().next_back()
     }

@@ -14,7 +14,6 @@ use crate::{
 ///
 /// `None` if that is not known: with a marker whose sightings folding does not identify, that is, with all but
 /// [`Directional`] and [`NoMarker`]; or if a door does not exist, or the walk is too long to be folded.
-#[must_use]
 pub fn determines_world(
     (graph, facing): (&EmbeddedGraph, Dart),
     marker: &dyn Marker,

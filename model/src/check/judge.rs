@@ -135,7 +135,6 @@ pub fn first_false_step<E: Explorer>(
 
 /// Whether the known map embeds in the world, start to start: dart for dart, orders kept, no two
 /// darts at the same place.
-#[must_use]
 fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
     let mut image = vec![None; map.dart_count()];
     let mut taken = vec![false; graph.dart_count()];

@@ -36,12 +36,10 @@ impl MappingAlgorithm {
         Ok(bijection)
     }
 
-    #[must_use]
     pub fn sweep(self, sweep: &Check, choices: RunChoices, watch: &dyn Watch) -> Tally {
         with_explorer!(self, E => sweep.run(E::default, choices, watch))
     }
 
-    #[must_use]
     pub fn lazy_sweep(
         self,
         sweep: &SharedPrefixCheck,
@@ -51,32 +49,26 @@ impl MappingAlgorithm {
         with_explorer!(self, E => sweep.resume(E::default, units, watch))
     }
 
-    #[must_use]
     pub fn unit_count(self, sweep: &SharedPrefixCheck) -> usize {
         with_explorer!(self, E => sweep.unit_count(E::default))
     }
 
-    #[must_use]
     pub fn pieces(self, sweep: &SharedPrefixCheck, watch: &dyn Watch) -> CheckPieces {
         with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
     }
 
-    #[must_use]
     pub fn check_piece(self, of: &CheckPieces, piece: usize, watch: &dyn Watch) -> PartTally {
         with_explorer!(self, E => of.check(piece, E::default(), watch))
     }
 
-    #[must_use]
     pub fn finished_pieces(self, counts: PartTally) -> Tally {
         with_explorer!(self, E => CheckPieces::finished(counts, E::default))
     }
 
-    #[must_use]
     pub fn probe(self, sweep: &SharedPrefixCheck, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         with_explorer!(self, E => sweep.probe(E::default(), numbers, watch))
     }
 
-    #[must_use]
     pub fn check_worlds(
         self,
         graphs: &[EmbeddedGraph],

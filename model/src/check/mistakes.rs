@@ -39,7 +39,6 @@ pub const MISTAKE_KINDS: [MistakeKind; 5] = [
 ];
 
 impl MistakeKind {
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Degree => "wrong degree",
@@ -190,13 +189,11 @@ pub struct MistakeCounts {
 }
 
 impl MistakeCounts {
-    #[must_use]
     pub fn runs(&self) -> u64 {
         self.right + self.reported + self.too_large + self.undetected()
     }
 
     /// The number of runs that end with a wrong map or a wrong pose.
-    #[must_use]
     pub fn undetected(&self) -> u64 {
         self.wrong_pose + self.wrong_map
     }
@@ -248,7 +245,6 @@ impl MistakeTally {
         }
     }
 
-    #[must_use]
     pub fn all(&self) -> MistakeCounts {
         let mut all = MistakeCounts::default();
         self.counts.iter().for_each(|&counts| all.add(counts));

@@ -30,12 +30,10 @@ impl Shard {
     /// The whole check.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    #[must_use]
     pub fn index(self) -> usize {
         self.index
     }
 
-    #[must_use]
     pub fn of(self) -> usize {
         self.of
     }
@@ -85,7 +83,6 @@ impl Check {
         Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard })
     }
 
-    #[must_use]
     pub fn class(&self) -> Class {
         self.worlds.class()
     }

@@ -32,7 +32,6 @@ impl EnumeratedStart {
     }
 
     /// The start; `None` if the code is not that of a start.
-    #[must_use]
     pub fn start(&self) -> Option<(EmbeddedGraph, Dart)> {
         let graph = StartCode::start_of(&self.code)?;
         let facing = Dart(self.facing);
@@ -178,7 +177,6 @@ impl<W, F> Default for Tally<W, F> {
 
 impl<F> Tally<WorstStart, F> {
     /// The most moves of a run with the default choices; 0 if there is none.
-    #[must_use]
     pub fn moves_max(&self) -> u64 {
         self.worst.as_ref().map_or(0, |worst| worst.moves)
     }
@@ -186,18 +184,15 @@ impl<F> Tally<WorstStart, F> {
 
 impl<W, F> Tally<W, F> {
     /// With all choices: starts with runs that were not tried.
-    #[must_use]
     pub fn gave_up(&self) -> u64 {
         self.over_budget + self.over_memory
     }
 
-    #[must_use]
     pub fn failed(&self) -> u64 {
         self.starts - self.mapped - self.unknown
     }
 
     /// The largest ratio of moves to the order of the cost, for worlds with `edges` edges.
-    #[must_use]
     pub fn largest_ratio(&self, edges: usize, order: CostOrder) -> f64 {
         let (moves, vertices) = self.most_moves_per_vertex.unwrap_or((0, 1));
         moves as f64 / order.value(edges as f64, vertices as f64)

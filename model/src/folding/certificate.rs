@@ -124,7 +124,6 @@ impl<'g> CertificateWalk<'g> {
 /// where `d` is the distance from the marker, `A` is the number of hanging edges, a hanging leaf is a
 /// vertex of degree 1 behind one, and `a(l)` is the number of hanging edges on its way to the marker.
 /// It depends on the marker's vertex, and not on where the marker points.
-#[must_use]
 pub fn certificate_length(graph: &EmbeddedGraph, facing: Dart) -> usize {
     let mut tree = MarkerTree::default();
     tree.grow(graph, graph.vertex(facing));
@@ -140,7 +139,6 @@ pub(crate) fn certificate_darts(graph: &EmbeddedGraph, marked: Vertex) -> Vec<Da
 }
 
 /// The doors of a shortest walk that determines the world of a start.
-#[must_use]
 pub fn certificate(graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
     let darts = certificate_darts(graph, graph.vertex(facing));
     let mut pose = facing;

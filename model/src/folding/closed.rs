@@ -19,7 +19,6 @@ impl FoldedTrail {
     /// The folded trail as a world with a dead end behind each open dart. It explains the walk. If the
     /// trail [is complete](Self::is_complete) it is the only world that does. `None` if nothing was
     /// perceived.
-    #[must_use]
     pub fn closed(&self) -> Option<ClosedTrail> {
         (self.vertex_count() > 0).then(|| self.closed_by(&[]).0)
     }

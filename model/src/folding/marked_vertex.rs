@@ -28,7 +28,6 @@ impl FoldedTrail {
 
     /// The trails in which all vertices with an undirected marker are one. Each world that explains the walk
     /// is a world that explains one of them. Without any, no world explains the walk.
-    #[must_use]
     pub fn with_one_marked_vertex(&self, watch: &dyn Watch) -> MarkedTrails {
         let mut found = MarkedTrails::default();
         let mut open = vec![self.clone()];

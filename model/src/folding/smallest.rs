@@ -75,7 +75,6 @@ pub enum SearchLimit {
 /// Finds the world of a class with the fewest edges that explains the walk of a trail: a robot from some
 /// start in it, with the directional or an undirected marker somewhere or without one, has the percepts of the
 /// walk. Of several, it is the first in the order of the search.
-#[must_use]
 pub fn smallest_world(
     trail: &FoldedTrail,
     search: WorldSearch,

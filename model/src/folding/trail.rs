@@ -189,60 +189,51 @@ impl FoldedTrail {
     }
 
     #[inline]
-    #[must_use]
     pub fn moves(&self) -> usize {
         self.moves
     }
 
     /// The robot's pose at the start, as a dart of a root. There is one if anything was perceived.
-    #[must_use]
     pub fn start(&self) -> Dart {
         self.root_of(Dart(0))
     }
 
     /// The robot's pose: the dart by which it came in, as a dart of a root.
     #[inline]
-    #[must_use]
     pub fn pose(&self) -> Dart {
         Dart(self.classes.find(self.pose))
     }
 
     /// The dart along which the marker, or an arrow on an edge, points, as a dart of a root. If the arrow was only
     /// seen where its edge ends, and the edge was not traversed, there is none.
-    #[must_use]
     pub fn marker(&self) -> Option<Dart> {
         let [tail, _] = self.arrow.ends(&self.classes);
         self.marker.map(|dart| self.root_of(dart)).or(tail)
     }
 
     /// The number of trail vertices, folded or not.
-    #[must_use]
     pub fn trail_vertex_count(&self) -> usize {
         self.classes.trail_vertex_count()
     }
 
     /// The number of vertices: places that are not proved to be one.
-    #[must_use]
     pub fn vertex_count(&self) -> usize {
         self.classes.count
     }
 
     /// The number of darts of all trail vertices, folded or not.
-    #[must_use]
     pub fn dart_count(&self) -> usize {
         self.classes.dart_count()
     }
 
     /// The number of open darts: ends of edges that were never traversed.
     #[inline]
-    #[must_use]
     pub fn open_count(&self) -> usize {
         self.classes.open
     }
 
     /// For each vertex, in the order of the first visits, the dart by which the robot first came in. The doors
     /// are those of the walk.
-    #[must_use]
     pub fn first_entries(&self, doors: &[Door]) -> Vec<Dart> {
         let mut entries = Vec::new();
         let mut seen = vec![false; self.trail_vertex_count()];
@@ -259,7 +250,6 @@ impl FoldedTrail {
 
     /// The folded trail as it is seen from the robot: vertices are numbered breadth first. Two walks with one form have
     /// the same future.
-    #[must_use]
     pub fn seen_from_robot(&self) -> Vec<u32> {
         let mut number = vec![None; self.trail_vertex_count()];
         number[self.vertex(self.pose())] = Some(0);
@@ -294,7 +284,6 @@ impl FoldedTrail {
     }
 
     /// Whether no edge is a loop and no two edges join the same vertices.
-    #[must_use]
     pub fn is_simple(&self) -> bool {
         let mut seen_from = vec![OPEN; self.trail_vertex_count()];
         self.vertices().all(|first| {
@@ -309,14 +298,12 @@ impl FoldedTrail {
     }
 
     /// Whether the walk determines its world: no dart is open, and the marker was seen.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.open_count() == 0 && self.marker().is_some()
     }
 
     /// The dart of a root that stands for a dart.
     #[inline]
-    #[must_use]
     pub fn root_of(&self, dart: Dart) -> Dart {
         Dart(self.classes.find(dart.0))
     }
@@ -335,7 +322,6 @@ impl FoldedTrail {
 
     /// The other end of a dart's edge, as a dart of a root; `None` if the dart is open.
     #[inline]
-    #[must_use]
     pub fn opposite(&self, dart: Dart) -> Option<Dart> {
         match self.classes.opposite(self.classes.find(dart.0)) {
             OPEN => None,
@@ -351,21 +337,18 @@ impl FoldedTrail {
 
     /// The dart behind a door, for a robot with this pose; doors are counted modulo the degree.
     #[inline]
-    #[must_use]
     pub fn behind(&self, pose: Dart, door: Door) -> Dart {
         Dart(self.classes.turned(self.classes.find(pose.0), door.0))
     }
 
     /// The door that leads to a dart, for a robot with this pose at the same vertex.
     #[inline]
-    #[must_use]
     pub fn door(&self, pose: Dart, dart: Dart) -> Door {
         self.classes.door(self.classes.find(pose.0), self.classes.find(dart.0))
     }
 
     /// The number of the root of a dart's vertex, below [`trail_vertex_count`](Self::trail_vertex_count).
     #[inline]
-    #[must_use]
     pub fn vertex(&self, dart: Dart) -> usize {
         self.classes.owner(self.classes.find(dart.0)) as usize
     }
@@ -377,7 +360,6 @@ impl FoldedTrail {
     }
 
     #[inline]
-    #[must_use]
     pub fn degree(&self, dart: Dart) -> u32 {
         self.classes.degree(dart.0)
     }

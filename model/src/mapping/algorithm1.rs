@@ -171,7 +171,6 @@ impl Algorithm1Run {
 
     /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would
     /// have come in, from the farthest from the marker to the nearest.
-    #[must_use]
     pub fn hypotheses(&self) -> &[Dart] {
         &self.hypotheses
     }

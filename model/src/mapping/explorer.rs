@@ -130,7 +130,6 @@ pub enum CostOrder {
 
 impl CostOrder {
     /// Its value for a world of this size.
-    #[must_use]
     pub fn value(self, edges: f64, vertices: f64) -> f64 {
         match self {
             Self::EdgesVertices => edges * vertices,

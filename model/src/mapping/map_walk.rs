@@ -143,7 +143,6 @@ impl MapWalk {
 
     /// The map S, with the unexplored edges U.
     #[inline]
-    #[must_use]
     pub fn map(&self) -> &PartialMap {
         &self.map
     }
@@ -152,7 +151,6 @@ impl MapWalk {
     /// known pose.
     // paper: alg1.located
     #[inline]
-    #[must_use]
     pub fn robot(&self) -> Dart {
         self.robot
     }
@@ -160,7 +158,6 @@ impl MapWalk {
     /// The moves made so far.
     // paper: cost.moves, cost.lower-bound
     #[inline]
-    #[must_use]
     pub fn moves(&self) -> u64 {
         self.moves
     }
@@ -378,25 +375,21 @@ macro_rules! has_walk {
         impl $run {
             /// The robot's walk: its map, its pose in the map and its moves.
             #[inline]
-            #[must_use]
             pub fn walk(&self) -> &$crate::mapping::MapWalk {
                 &self.walk
             }
 
             #[inline]
-            #[must_use]
             pub fn map(&self) -> &$crate::mapping::PartialMap {
                 self.walk.map()
             }
 
             #[inline]
-            #[must_use]
             pub fn robot(&self) -> $crate::embedded_graph::Dart {
                 self.walk.robot()
             }
 
             #[inline]
-            #[must_use]
             pub fn moves(&self) -> u64 {
                 self.walk.moves()
             }

@@ -47,23 +47,19 @@ algorithms! { $
 pub(crate) use with_explorer;
 
 impl MappingAlgorithm {
-    #[must_use]
     pub fn info(self) -> ExplorerInfo {
         with_explorer!(self, E => E::INFO)
     }
 
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.info().option
     }
 
-    #[must_use]
     pub fn in_words(self) -> &'static str {
         self.info().in_words
     }
 
     /// The marker with which it maps.
-    #[must_use]
     pub fn marker(self) -> &'static dyn Marker {
         let name = with_explorer!(self, E => E::default().marker().name());
         marker::named(name).unwrap_or(&Directional)
@@ -75,7 +71,6 @@ impl MappingAlgorithm {
     }
 
     /// The most moves that it may make in a world of this size.
-    #[must_use]
     pub fn move_bound(self, edges: usize, vertices: usize) -> u64 {
         with_explorer!(self, E => E::default().move_bound(edges, vertices))
     }

@@ -38,7 +38,6 @@ pub enum MappingEvent {
 
 impl MappingEvent {
     /// Whether the map has changed.
-    #[must_use]
     pub fn grows_map(&self) -> bool {
         matches!(
             self,
@@ -50,7 +49,6 @@ impl MappingEvent {
     }
 
     /// The robot's action, if the event is one.
-    #[must_use]
     pub fn action(self) -> Option<Action> {
         match self {
             Self::Moved { door, .. } => Some(Action::Take(door)),

@@ -34,7 +34,6 @@ impl From<MappingAlgorithm> for MappingMethod {
 }
 
 impl MappingMethod {
-    #[must_use]
     pub fn algorithm(self) -> MappingAlgorithm {
         match self {
             Self::By { algorithm, .. } => algorithm,
@@ -42,20 +41,17 @@ impl MappingMethod {
         }
     }
 
-    #[must_use]
     pub fn audits(self) -> u32 {
         match self {
             Self::By { audits, .. } | Self::Recovering(RecoveryConfig { audits, .. }) => audits,
         }
     }
 
-    #[must_use]
     pub fn recovers(self) -> bool {
         matches!(self, Self::Recovering(_))
     }
 
     /// Whether the robot tries blocked doors once more at the end.
-    #[must_use]
     pub fn retries_blocked(self) -> bool {
         matches!(self, Self::Recovering(RecoveryConfig { retries_blocked: true, .. }))
     }

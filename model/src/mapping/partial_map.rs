@@ -51,25 +51,21 @@ impl PartialMap {
         self.unexplored -= 2;
     }
 
-    #[must_use]
     pub fn vertex_count(&self) -> usize {
         self.known.vertex_count()
     }
 
     /// The number of known darts, explored or not.
-    #[must_use]
     pub fn dart_count(&self) -> usize {
         self.known.dart_count()
     }
 
     /// The number of unexplored darts: the size of U.
-    #[must_use]
     pub fn unexplored_count(&self) -> u32 {
         self.unexplored
     }
 
     #[inline]
-    #[must_use]
     pub fn unexplored_is_empty(&self) -> bool {
         self.unexplored == 0
     }
@@ -85,7 +81,6 @@ impl PartialMap {
     }
 
     /// The unexplored darts of one vertex, in the order of their numbers.
-    #[must_use]
     pub fn unexplored_at(&self, vertex: Vertex) -> impl DoubleEndedIterator<Item = Dart> + '_ {
         let darts = self.known.darts_of(vertex);
         darts.filter(|&dart| self.known.joined(dart).is_none())
@@ -103,37 +98,31 @@ impl PartialMap {
 
     /// The other end of an explored dart; `None` for an unexplored one.
     #[inline]
-    #[must_use]
     pub fn opposite(&self, dart: Dart) -> Option<Dart> {
         self.known.joined(dart)
     }
 
     #[inline]
-    #[must_use]
     pub fn vertex(&self, dart: Dart) -> Vertex {
         self.known.vertex(dart)
     }
 
     #[inline]
-    #[must_use]
     pub fn degree(&self, vertex: Vertex) -> u32 {
         self.known.degree(vertex)
     }
 
     /// The dart's place clockwise from the one by which its vertex was first entered.
     #[inline]
-    #[must_use]
     pub fn index(&self, dart: Dart) -> u32 {
         self.known.index(dart)
     }
 
-    #[must_use]
     pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
         self.known.dart(vertex, index)
     }
 
     /// The darts of a vertex in the order of their indices.
-    #[must_use]
     pub fn darts_of(
         &self,
         vertex: Vertex,
@@ -143,7 +132,6 @@ impl PartialMap {
 
     /// The door that leads to the dart `to` for a robot that came in by `pose`, at the same vertex.
     #[inline]
-    #[must_use]
     pub fn door(&self, pose: Dart, to: Dart) -> Door {
         let degree = self.known.degree_around(pose);
         Door::between(self.index(pose), self.index(to), degree)
@@ -152,7 +140,6 @@ impl PartialMap {
     /// The percept expected of a robot that comes in by the dart `pose`, if the directional marker lies
     /// at the start vertex.
     #[inline]
-    #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {
         let sighting = if self.vertex(pose) == START {
             Sighting::Pointing(self.door(pose, FACING))
@@ -169,7 +156,6 @@ impl PartialMap {
     }
 
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].
-    #[must_use]
     pub fn complete(&self) -> Option<&EmbeddedGraph> {
         (self.unexplored == 0 && self.vertex_count() > 0).then_some(&self.known)
     }
@@ -181,7 +167,6 @@ impl PartialMap {
     }
 
     /// All known vertices in the order of discovery.
-    #[must_use]
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + DoubleEndedIterator + use<> {
         self.known.vertices()
     }

@@ -43,7 +43,6 @@ pub enum MatchedChoices {
 
 /// Matches a trace with an algorithm; Algorithm 1 with the default choices as long as they match, otherwise
 /// with any choices. At most `bound` darts may become known.
-#[must_use]
 pub fn match_algorithm(
     algorithm: MappingAlgorithm,
     trace: &Trace,
@@ -84,7 +83,6 @@ fn matched(
 /// Matches a trace with an algorithm with the default choices, and then with audits of its map. If the map is
 /// not complete before the end of the trace, it is a match with the algorithm. At most `bound` darts may
 /// become known.
-#[must_use]
 pub fn match_audited(
     algorithm: MappingAlgorithm,
     audits: u32,

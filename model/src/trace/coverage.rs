@@ -40,7 +40,6 @@ impl AlgorithmCase {
         Self::MarkerMissed,
     ];
 
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::NewVertex => "new-vertex",
@@ -68,7 +67,6 @@ pub struct AlgorithmCoverage {
 
 impl AlgorithmCoverage {
     /// How often a case happened.
-    #[must_use]
     pub fn count(&self, case: AlgorithmCase) -> u64 {
         self.counts.get(&case).copied().unwrap_or(0)
     }
@@ -124,7 +122,6 @@ impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
 
 /// How often each case happens when a world is mapped from each of its starts, with the default
 /// choices.
-#[must_use]
 pub fn reachable(graph: &EmbeddedGraph) -> AlgorithmCoverage {
     let mut coverage = AlgorithmCoverage::default();
     let mut exploration = Algorithm1Run::default();

@@ -41,14 +41,12 @@ pub enum MisfitReason {
 }
 
 /// The states of a robot that has just put its marker down along its entry dart, at every dart.
-#[must_use]
 pub fn anywhere(graph: &EmbeddedGraph, marker: &impl Marker) -> Vec<State> {
     let start = |facing| GraphWorld::with_marker(graph, marker, facing).state();
     graph.darts().map(start).collect()
 }
 
 /// Follows a trace in a known world from all possible start states.
-#[must_use]
 pub fn poses(
     graph: &EmbeddedGraph,
     marker: &impl Marker,
@@ -60,7 +58,6 @@ pub fn poses(
 
 /// Follows a trace in a known world. At a percept that fits no state, `amend` may return the percept that
 /// takes its place; it must be one that a candidate expects.
-#[must_use]
 pub fn poses_amended(
     graph: &EmbeddedGraph,
     marker: &impl Marker,

@@ -121,19 +121,16 @@ impl Trace {
 
     /// The percepts, by their numbers from 0, at vertices to which the robot came after it got lost. The first
     /// one is among them if the run began at an unknown place.
-    #[must_use]
     pub fn relocations(&self) -> &[usize] {
         &self.relocations
     }
 
     /// Whether a percept, by its number from 0, is at a vertex to which the robot came after it got lost.
-    #[must_use]
     pub fn is_relocation(&self, percept: usize) -> bool {
         self.relocations.binary_search(&percept).is_ok()
     }
 
     /// Those of [`Self::relocations`] at which the robot got lost in this run: without the first percept.
-    #[must_use]
     pub fn lost(&self) -> &[usize] {
         self.relocations.strip_prefix(&[0]).unwrap_or(&self.relocations)
     }
@@ -148,7 +145,6 @@ impl Trace {
     }
 
     /// The number of events; never 0.
-    #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "it is never empty")]
     pub fn len(&self) -> usize {
         self.ids.len()
@@ -160,13 +156,11 @@ impl Trace {
     }
 
     /// The percepts: at the start, and after each move.
-    #[must_use]
     pub fn percepts(&self) -> &[Percept] {
         &self.percepts
     }
 
     /// The doors that were taken.
-    #[must_use]
     pub fn doors(&self) -> &[Door] {
         &self.doors
     }
@@ -193,7 +187,6 @@ impl Trace {
     }
 
     /// An event by its index; the last one if there are fewer.
-    #[must_use]
     pub fn event(&self, index: usize) -> TraceEvent {
         let index = index.min(self.len() - 1);
         let kind = match WalkEvent::at(index) {
@@ -204,19 +197,16 @@ impl Trace {
     }
 
     /// The percept after some moves; the last event if there are fewer.
-    #[must_use]
     pub fn percept_event(&self, moves: usize) -> TraceEvent {
         self.event(WalkEvent::Percept(moves).index())
     }
 
     /// The door that was taken after some moves; the last event if there are fewer.
-    #[must_use]
     pub fn door_event(&self, moves: usize) -> TraceEvent {
         self.event(WalkEvent::Door(moves).index())
     }
 
     /// The index of the first event with this id or a larger one.
-    #[must_use]
     pub fn index_of(&self, id: usize) -> usize {
         self.ids.partition_point(|&one| one < id)
     }

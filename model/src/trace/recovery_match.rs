@@ -26,7 +26,6 @@ pub struct RecordedVisit {
 /// Matches a trace with a robot that recovers, from its start at the marker. `visits` are those of its percepts. At
 /// most `bound` darts may become known: then the robot forgets all, and what it does is only known if that is
 /// its own bound.
-#[must_use]
 pub fn match_recovering(
     config: RecoveryConfig,
     trace: &Trace,

@@ -8,7 +8,6 @@ const TRIALS: usize = 20_000;
 /// Removes sequences of moves from a trace while `shows` holds, from the longest to the shortest, until
 /// none can be removed. The result is short, not shortest; it is the trace itself if `shows` does not
 /// hold for it.
-#[must_use]
 pub fn shortened(trace: &Trace, mut shows: impl FnMut(&Trace) -> bool) -> Trace {
     let mut shortest = trace.clone();
     let mut trials = 0;

@@ -51,7 +51,6 @@ impl<'t> TraceWorld<'t> {
     }
 
     /// The moves made so far.
-    #[must_use]
     pub fn moves(&self) -> usize {
         self.moves
     }

@@ -86,7 +86,6 @@ impl LiveRobot {
     }
 
     /// The number of images or scans that were requested.
-    #[must_use]
     pub fn frames(&self) -> u64 {
         self.asked
     }

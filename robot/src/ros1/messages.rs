@@ -96,7 +96,6 @@ pub fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
 }
 
 /// The body of odometry.
-#[must_use]
 pub fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&(number, odometry_message(reckoning)))
 }
@@ -114,13 +113,11 @@ pub(super) fn read_odometry(bytes: &[u8]) -> Option<Reckoning> {
 }
 
 /// The body of the transform from the frame of odometry to the robot.
-#[must_use]
 pub fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
     write(&vec![(number, odometry_message(reckoning).transform())])
 }
 
 /// The body of an image.
-#[must_use]
 pub fn image(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
     write(&(number, CompressedImage::new(time(stamp), file)))
 }
@@ -133,7 +130,6 @@ pub(super) fn read_image(bytes: &[u8]) -> Option<Stamped<Vec<u8>>> {
 }
 
 /// The body of a scan.
-#[must_use]
 pub fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
     write(&(number, LaserScanMessage::new(time(stamp), scan)))
 }
@@ -152,7 +148,6 @@ pub(super) fn read_scan(bytes: &[u8]) -> Option<Stamped<Scan>> {
 }
 
 /// The body of the marker's pose in the robot's frame.
-#[must_use]
 pub fn marker(number: u32, stamp: Nanoseconds, marker: &MarkerView) -> Vec<u8> {
     let at = odometry::Odometry { position: marker.position, heading: marker.axis };
     let header = Header { stamp: time(stamp), frame_id: BASE };

@@ -186,7 +186,6 @@ const STOP_INTERVAL: Duration = Duration::from_millis(20);
 
 impl<T> Subscription<T> {
     /// Takes the last message, if it was not taken yet.
-    #[must_use]
     pub fn take(&self) -> Option<T> {
         self.shared.last().message.take()
     }

@@ -46,7 +46,6 @@ pub const MEASUREMENT_NOISE: MeasurementNoise = MeasurementNoise {
 };
 
 /// The direction of a sonar relative to the robot's heading, in (-pi, pi].
-#[must_use]
 pub fn sonar_direction(sonar: usize) -> f64 {
     let place = if sonar <= SONARS / 2 { sonar as f64 } else { sonar as f64 - SONARS as f64 };
     place * (TAU / SONARS as f64)

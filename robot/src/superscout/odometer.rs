@@ -22,7 +22,6 @@ impl Odometer {
     }
 
     /// The odometry that the robot reports, in whole units of length and angle.
-    #[must_use]
     pub fn reading(&self) -> Odometry {
         let whole = |value: f64, unit: f64| (value / unit).round() * unit;
         Odometry {
@@ -34,7 +33,6 @@ impl Odometer {
 
 /// The pose after driving for a time in seconds: on an arc, whose chord lies halfway between the headings
 /// before and after.
-#[must_use]
 pub fn along_arc(from: &Odometry, wheels: WheelSpeeds, seconds: f64) -> Odometry {
     let half = wheels.turn_rate() * seconds / 2.0;
     let chord = wheels.speed() * seconds * if half == 0.0 { 1.0 } else { half.sin() / half };

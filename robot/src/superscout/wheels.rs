@@ -23,13 +23,11 @@ impl WheelSpeeds {
     }
 
     /// The robot's speed ahead, in metres a second.
-    #[must_use]
     pub fn speed(self) -> f64 {
         f64::midpoint(self.left, self.right)
     }
 
     /// Its turn rate counter-clockwise, in radians a second.
-    #[must_use]
     pub fn turn_rate(self) -> f64 {
         (self.right - self.left) / WHEEL_BASE
     }

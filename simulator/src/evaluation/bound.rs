@@ -7,7 +7,6 @@ const CONFIDENCE: f64 = 0.95;
 /// `of` independent cases: with any greater rate, so few would be seen in less than one of twenty
 /// trials. The bound is exact (Clopper and Pearson 1934, one-sided). For none seen it is the rule
 /// of three, about `3 / of`.
-#[must_use]
 pub fn upper_bound(seen: usize, of: usize) -> f64 {
     if seen >= of {
         return 1.0;
@@ -27,14 +26,12 @@ pub fn upper_bound(seen: usize, of: usize) -> f64 {
 
 /// The lower bound, with a confidence of 95 %, of the rate of an event that was seen in `seen` of `of`
 /// independent cases. It is exact, as [`upper_bound`].
-#[must_use]
 pub fn lower_bound(seen: usize, of: usize) -> f64 {
     if seen == 0 { 0.0 } else { 1.0 - upper_bound(of.saturating_sub(seen), of) }
 }
 
 /// The least number of cases, none of them the event, after which the upper bound of its rate is at most
 /// `limit`.
-#[must_use]
 #[expect(clippy::cast_sign_loss, reason = "both logarithms are negative")]
 pub fn cases_needed(limit: f64) -> usize {
     ((1.0 - CONFIDENCE).ln() / (-limit).ln_1p()).ceil() as usize

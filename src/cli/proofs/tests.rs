@@ -279,8 +279,13 @@ fn an_interrupt_does_not_wait_for_the_case() {
     ] {
         let checked = [(&endless, CheckedLemma::new(&endless, &AtOnce).unwrap())];
         assert!(checked[0].1.interrupted);
-        let arguments =
-            ProofsArguments { run: Vec::new(), choices: None, engine: Engine::Exhaustive, json, ci: CiOptions::default() };
+        let arguments = ProofsArguments {
+            run: Vec::new(),
+            choices: None,
+            engine: Engine::Exhaustive,
+            json,
+            ci: CiOptions::default(),
+        };
         let mut out = Vec::new();
         assert_eq!(arguments.print_end(2, &checked, &mut out).unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();

@@ -29,7 +29,6 @@ const SCRIPT: &str = include_str!("../browser/conform.js");
 
 /// The page of these reports as an HTML document; several, and those with required cases, have a summary above. The
 /// same reports give the same bytes.
-#[must_use]
 pub fn conform_page(reports: &ConformReports, origin: &ReportOrigin) -> String {
     let alone = match &reports.logs[..] {
         [report] if reports.unread.is_empty() && reports.required.is_none() => Some(report),

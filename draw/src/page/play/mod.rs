@@ -26,7 +26,6 @@ const SCRIPT: [&str; 7] = [
 ];
 
 /// The page as an HTML document: the robot starts by this dart. The same start gives the same bytes.
-#[must_use]
 pub fn play_page(world: &NamedWorld, facing: Dart) -> String {
     let (title, caption, marker) = ("", "", &Directional as &dyn Marker);
     let start = Some(facing);

@@ -23,7 +23,6 @@ const SCRIPT: [&str; 4] = [
 ];
 
 /// The page of a run as an HTML document. The same run gives the same bytes.
-#[must_use]
 pub fn run_page(run_data: &RunPageData) -> String {
     let drawn = run_drawing(run_data);
     filled(PAGE, |place| match place {

@@ -43,7 +43,6 @@ const SCRIPT: [&str; 5] = [
 ];
 
 /// The page as an HTML document. The same worlds give the same bytes.
-#[must_use]
 pub fn page(page: &WalkPage) -> String {
     let robots = page.comparison.starts(page.poses);
     let [one, other] = [0, 1].map(|at| WalkSide::new(page.worlds[at], &robots[at]));

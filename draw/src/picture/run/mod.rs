@@ -22,7 +22,6 @@ use calls::Badges;
 use ground::Ground;
 
 /// The picture of a run as an SVG document. The same run gives the same bytes.
-#[must_use]
 pub fn run_svg(run_data: &RunPageData) -> String {
     let drawing = RunDrawing::of(run_data);
     let extent = drawing.extent();

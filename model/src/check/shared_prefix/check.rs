@@ -78,7 +78,6 @@ impl SharedPrefixCheck {
         Ok(Self { worlds, draft: Draft::new(class, edges)?, shard })
     }
 
-    #[must_use]
     pub fn class(&self) -> Class {
         self.worlds.class()
     }
@@ -126,7 +125,6 @@ impl SharedPrefixCheck {
     /// Knuth's random probe of the tree of all runs. Each number draws one of the possible answers; then every
     /// answer is given, until all is decided. The expected value of a count times the weight is that of the
     /// whole tree. There is one decision for the degree of the start vertex, and one for each edge.
-    #[must_use]
     pub fn probe<E: Explorer>(&self, explorer: E, numbers: Vec<u64>, watch: &dyn Watch) -> Probe {
         let most_moves = AtomicU64::new(u64::MAX);
         let (tally, weight) =
@@ -184,12 +182,10 @@ impl CheckPieces {
         }
     }
 
-    #[must_use]
     pub fn count(&self) -> usize {
         self.units.len() + self.world_parts.len()
     }
 
-    #[must_use]
     pub fn unit_count(&self) -> usize {
         self.units.len()
     }

@@ -143,13 +143,11 @@ impl FoldingRun {
         Self { strict: true, ..Self::default() }
     }
 
-    #[must_use]
     pub fn trail(&self) -> &FoldedTrail {
         &self.trail
     }
 
     /// Whether the map is the world.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.trail.is_complete() && self.map().complete().is_some()
     }
