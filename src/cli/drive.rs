@@ -3,7 +3,7 @@
 #[cfg(feature = "ros1")]
 mod live;
 
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 use toposlam_logs::recorder::{CMD_VEL, IMAGE, MARKER, ODOM, SCAN};
 
@@ -64,6 +64,9 @@ pub(super) struct DriveArguments {
     /// Use another topic (repeatable); the topics are listed below
     #[arg(long, value_name = "WHAT=TOPIC", value_parser = topic)]
     topic: Vec<(&'static str, String)>,
+    /// Stop if the robot sends nothing for this long, in seconds
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = patience)]
+    patience: Duration,
     #[command(flatten)]
     options: RunOptions,
 }
@@ -85,6 +88,13 @@ fn topic(text: &str) -> Result<(&'static str, String), String> {
     });
     let names = TOPICS.map(|(what, ..)| what).join(", ");
     known.ok_or_else(|| format!("write WHAT=TOPIC, as in images=/camera; WHAT is one of {names}"))
+}
+
+/// Parses the time without messages.
+fn patience(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.1..=60.0).contains(seconds));
+    let cause = || "expected a number of seconds from 0.1 to 60".to_owned();
+    seconds.map(Duration::from_secs_f64).ok_or_else(cause)
 }
 
 impl DriveArguments {

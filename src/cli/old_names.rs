@@ -74,7 +74,7 @@ pub(super) fn with_new_names(mut arguments: Vec<OsString>) -> Result<RenamedArgu
 }
 
 /// The options that have another name, or none: the command, the old name, and what to write.
-const OPTIONS: [(&[&str], &str, &str); 16] = [
+const OPTIONS: [(&[&str], &str, &str); 18] = [
     (&["check"], "max-edges", "--edges 1..=N"),
     (&["counterexample"], "edges", "--max-edges"),
     (&["counterexample"], "out", "--out-dir"),
@@ -90,7 +90,9 @@ const OPTIONS: [(&[&str], &str, &str); 16] = [
     (&["drive"], "marker-topic", "--topic marker=TOPIC"),
     (&["drive"], "odom-topic", "--topic odometry=TOPIC"),
     (&["drive"], "cmd-vel-topic", "--topic wheels=TOPIC"),
-    (&["simulate"], "picture-time", "--image-time"),
+    (&["drive"], "plan", "`toposlam conform --world` checks the log"),
+    (&["simulate"], "frames", "the images are in the file of --log"),
+    (&["camera", "train"], "folds", "there are 5 parts"),
 ];
 
 /// The command line with the old names. The error for one says the new one.

@@ -1,6 +1,6 @@
 //! A run of a live robot: its inputs, its story and its files.
 
-use std::{io::Write, time::Duration};
+use std::io::Write;
 
 use toposlam_logs::record::RobotSensor;
 use toposlam_model::mapping::{FACING, MappingError};
@@ -19,9 +19,6 @@ use crate::cli::{
     run_capture::RunCapture,
     run_report::{RobotReport, RobotRun, RunReport},
 };
-
-/// The run is given up if the robot sends nothing for this long.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 impl DriveArguments {
     pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
@@ -45,7 +42,7 @@ impl DriveArguments {
             odometry: self.topic("odometry"),
             wheels: self.topic("wheels"),
         };
-        let robot = match LiveRobot::connect(&topics, live, PATIENCE, must_stop) {
+        let robot = match LiveRobot::connect(&topics, live, self.patience, must_stop) {
             Ok(robot) => robot,
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
             Err(error) => return Err(CliError::at("--ros", error)),
