@@ -19,25 +19,20 @@ const KINDS: usize = 16;
 
 impl SkippedLines {
     /// The number of lines of each kind that is not known, by their first word or `kind`.
-    #[must_use]
     pub fn unknown(&self) -> &BTreeMap<String, u64> {
         &self.unknown
     }
 
     /// The number of lines of further kinds that are not known.
-    #[must_use]
     pub fn others(&self) -> u64 {
         self.others
     }
 
     /// The number of lines whose clock is far from that of their neighbours.
-    #[must_use]
     pub fn off_clock(&self) -> u64 {
         self.off_clock
     }
 
-    /// Whether none are skipped.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.unknown.is_empty() && self.off_clock == 0
     }

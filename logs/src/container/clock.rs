@@ -11,16 +11,12 @@ const LATE: u64 = 1_000_000_000;
 /// The largest step ahead, in nanoseconds.
 const PAUSE: u64 = 3_600_000_000_000;
 
-/// The clock at a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
-    /// Whether any step is accepted.
     is_free: bool,
     /// The latest time, in nanoseconds.
     latest: Option<u64>,
-    /// The number of the last lines that were off the clock.
     off: u32,
-    /// The number of all lines that were.
     off_total: u64,
     /// The time of the last line, in seconds.
     last: f64,
@@ -67,7 +63,6 @@ impl Clock {
         (self.off >= Self::MOST_OFF).then_some([from, self.last])
     }
 
-    /// The number of lines that were off the clock.
     pub(super) fn off_total(&self) -> u64 {
         self.off_total
     }

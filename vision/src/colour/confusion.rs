@@ -11,7 +11,6 @@ pub struct Confusion {
 }
 
 impl Confusion {
-    /// The classes that the classifier can give.
     pub const GIVEN: [PixelClass; 5] = [
         PixelClass::Floor,
         PixelClass::Stripe,
@@ -29,21 +28,17 @@ impl Confusion {
         }
     }
 
-    /// All pixels of a class.
-    #[must_use]
     pub fn of(&self, is: PixelClass) -> u64 {
         let rows = PixelClass::LEARNED.iter().zip(&self.pixels).filter(|(class, _)| **class == is);
         rows.flat_map(|(_, row)| row).sum()
     }
 
     /// The share of a class's pixels that is given this class; `None` without pixels.
-    #[must_use]
     pub fn recall(&self, class: PixelClass) -> Option<f64> {
         share(self.right(class), self.of(class))
     }
 
     /// The share of the pixels given a class that is of this class; `None` without pixels.
-    #[must_use]
     pub fn precision(&self, class: PixelClass) -> Option<f64> {
         let column = Self::GIVEN.iter().position(|&given| given == class)?;
         share(self.right(class), self.pixels.iter().map(|row| row[column]).sum())
