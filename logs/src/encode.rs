@@ -100,30 +100,28 @@ pub(super) fn scene_of(message: &Scene) -> Option<scene::Scene> {
     Some(scene::Scene { place, marker })
 }
 
+/// The words of states; any other state is [`PathState::Unknown`], `unknown`.
+const STATES: [(PathState, &str); 3] = [
+    (PathState::Leaving, "leaving"),
+    (PathState::Hallway, "hallway"),
+    (PathState::Junction, "junction"),
+];
 const UNCLEAR: [Unclear; 3] =
     [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind];
 const REASONS: [Reason; 4] =
     [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
 
 pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Command) -> Command {
-    let state = match state {
-        PathState::Leaving => "leaving",
-        PathState::Hallway => "hallway",
-        PathState::Junction => "junction",
-        PathState::Unknown => "unknown",
-    };
+    let word = STATES.into_iter().find(|(known, _)| *known == state);
+    let state = word.map_or("unknown", |(_, word)| word);
     let algorithm2::Command { turn, forward } = command;
     Command { stamp, state: state.to_owned(), turn, forward }
 }
 
 /// The command in a message. A state that is not known is [`PathState::Unknown`].
 pub(super) fn command_of(command: &Command) -> EventKind {
-    let state = match command.state.as_str() {
-        "leaving" => PathState::Leaving,
-        "hallway" => PathState::Hallway,
-        "junction" => PathState::Junction,
-        _ => PathState::Unknown,
-    };
+    let state = STATES.into_iter().find(|(_, word)| *word == command.state);
+    let state = state.map_or(PathState::Unknown, |(state, _)| state);
     let Command { turn, forward, .. } = *command;
     EventKind::Command { state, command: Some(algorithm2::Command { turn, forward }) }
 }

@@ -8,7 +8,7 @@ use std::{
 
 use serde::Serialize;
 use toposlam_logs::{
-    FileCompression, Format,
+    FileCompression, Format, SkippedLines,
     error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
@@ -24,7 +24,6 @@ use super::{
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    skipped_lines::SkippedLinesFields,
     text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
@@ -85,7 +84,7 @@ struct InfoLine<'l> {
     truncated: Option<TruncatedLine>,
     /// Whether it has an index.
     indexed: bool,
-    skipped: Option<SkippedLinesFields<'l>>,
+    skipped: Option<&'l SkippedLines>,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the topics file.
@@ -341,7 +340,7 @@ fn line<'l>(
         messages: log.messages_total(),
         truncated: log.truncation().map(TruncatedLine::from),
         indexed: has_index(log),
-        skipped: log.skipped().map(SkippedLinesFields::from),
+        skipped: log.skipped(),
         verification: verification.map(|found| verification_line(Some(log), found)),
         topics: log
             .topics()

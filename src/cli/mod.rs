@@ -25,7 +25,6 @@ mod run_options;
 mod safeguards;
 mod sense;
 mod simulate;
-mod skipped_lines;
 mod version;
 mod walk_page;
 

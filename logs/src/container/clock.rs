@@ -17,7 +17,7 @@ pub(crate) struct Clock {
     /// The latest time, in nanoseconds.
     latest: Option<u64>,
     off: u32,
-    off_total: u64,
+    pub(super) off_total: u64,
     /// The time of the last line, in seconds.
     last: f64,
 }
@@ -62,10 +62,6 @@ impl Clock {
         let from = self.latest.unwrap_or_default() as f64 / 1e9;
         (self.off >= Self::MOST_OFF).then_some([from, self.last])
     }
-
-    pub(super) fn off_total(&self) -> u64 {
-        self.off_total
-    }
 }
 
 #[cfg(test)]
@@ -83,7 +79,7 @@ mod tests {
             assert_eq!(times(100.0), Some(100_000_000_000));
         }
         assert_eq!(times(3700.0), Some(3_700_000_000_000));
-        assert_eq!((clock.off_total(), clock.jump()), (7, None));
+        assert_eq!((clock.off_total, clock.jump()), (7, None));
     }
 
     #[test]

@@ -142,7 +142,7 @@ pub(super) fn scan(
         }
         add(&mut scan, line.start..line.end, (number, before), message);
     }
-    state.skipped.set_off_clock(clock.off_total());
+    state.skipped.off_clock = clock.off_total;
     if source.is_cut {
         return Ok((scan.truncated(truncation(number, TruncationKind::Compressed)), state));
     }

@@ -78,9 +78,9 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
             log.topics().iter().map(|topic| (&*topic.name, topic.messages)).collect();
         assert_eq!(topics, [("ODOM", 2), ("FLASER", 1), ("RLASER", 1)]);
         let skipped = log.skipped().unwrap();
-        let unknown: Vec<_> = skipped.unknown().iter().collect();
+        let unknown: Vec<_> = skipped.unknown.iter().collect();
         assert_eq!(unknown, [(&"NEFF".to_owned(), &1), (&"SYNC".to_owned(), &1)]);
-        assert_eq!(skipped.off_clock(), 2);
+        assert_eq!(skipped.off_clock, 2);
         assert_eq!((log.start(), log.end()), (Some(10_500_000_000), Some(12_000_000_000)));
         // The front scanner is preferred.
         let mapping = TopicMap::from_log(&log).unwrap();
@@ -211,9 +211,9 @@ fn the_logs_of_real_robots_are_read_as_awk_reads_them() {
         let found = scans(&log);
         assert_eq!(found.len(), count, "{name}");
         let skipped = log.skipped().unwrap();
-        assert_eq!(skipped.unknown()["NEFF"], count as u64);
+        assert_eq!(skipped.unknown["NEFF"], count as u64);
         let messages = log.topics().iter().find(|topic| topic.name == "ODOM").unwrap().messages;
-        assert_eq!(messages + skipped.off_clock(), odometry, "{name}");
+        assert_eq!(messages + skipped.off_clock, odometry, "{name}");
         // By another way: the words of the lines.
         let mut text = String::new();
         GzDecoder::new(File::open(&path).unwrap()).read_to_string(&mut text).unwrap();
