@@ -17,7 +17,6 @@ fn main() {
 
 const DEFINITION: &str = "builtin_interfaces/Time stamp\nfloat64[9] numbers\nuint8[] data\n";
 
-/// A message with this number of incompressible bytes.
 fn message(data: u32) -> Vec<u8> {
     let mut message = vec![0; 88];
     message[1] = 1;
@@ -30,7 +29,6 @@ fn message(data: u32) -> Vec<u8> {
     message
 }
 
-/// A log with this number of messages of this size.
 fn log(messages: u64, data: u32, compression: Option<Compression>) -> Log {
     let options = WriteOptions::new().compression(compression);
     let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
@@ -46,7 +44,6 @@ fn log(messages: u64, data: u32, compression: Option<Compression>) -> Log {
     Log::of_bytes(writer.into_inner().into_inner()).unwrap()
 }
 
-/// Reads and decodes all messages.
 fn read(bencher: Bencher<'_, '_>, messages: u64, data: u32, compression: Option<Compression>) {
     let log = log(messages, data, compression);
     let counted = bencher.counter(ItemsCount::new(messages)).counter(BytesCount::new(log.size()));

@@ -9,22 +9,18 @@ use std::{
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
-use super::storage::Storage;
+use super::source::Storage;
 
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// How a file is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileCompression {
-    /// By gzip.
     Gzip,
-    /// By Zstandard.
     Zstandard,
 }
 
 impl FileCompression {
-    /// The compression of a file with these first bytes.
     pub(super) fn of(head: &[u8]) -> Option<Self> {
         match head {
             head if head.starts_with(GZIP) => Some(Self::Gzip),
@@ -33,8 +29,6 @@ impl FileCompression {
         }
     }
 
-    /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Gzip => "gzip",
@@ -48,7 +42,6 @@ pub(super) struct Decompressed {
     file: SharedFile,
     compression: FileCompression,
     decoder: Box<dyn Read + Send>,
-    /// The number of bytes that the decoder has returned.
     decoded: u64,
     position: u64,
     length: u64,
@@ -121,12 +114,10 @@ impl Seek for Decompressed {
 struct SharedFile {
     storage: Arc<Mutex<Box<dyn Storage>>>,
     at: u64,
-    /// Whether bytes after its end were asked for.
     ended: bool,
 }
 
 impl SharedFile {
-    /// Whether there are more bytes.
     fn goes_on(&self) -> io::Result<bool> {
         let mut ahead = Self { at: self.at, ..self.clone() };
         Ok(ahead.read(&mut [0])? > 0)

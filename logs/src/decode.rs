@@ -11,58 +11,36 @@ use super::{
     value::{ByteOrder, Numbers, Value, number},
 };
 
-/// Why bytes are not a message of a definition.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("byte {offset} of the message{}: {cause}", in_field(.field))]
+#[error("byte {offset} of the message{}: {cause}", shown(.field))]
 pub struct DecodeError {
-    /// The offset in the message.
     pub offset: usize,
     /// In which field of the message itself, if in one.
     pub field: String,
-    /// The error.
     #[source]
     pub cause: DecodeErrorKind,
 }
 
-fn in_field(field: &str) -> String {
+fn shown(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!(", `{field}`") }
 }
 
-/// The kind of an error in a message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum DecodeErrorKind {
-    /// The message is shorter than its definition.
     #[error("{needed} more bytes are needed, and {left} are left")]
-    Short {
-        /// How many are needed.
-        needed: u64,
-        /// How many there are.
-        left: usize,
-    },
-    /// The message is longer than its definition.
+    Short { needed: u64, left: usize },
     #[error("{0} bytes are left over")]
     LeftOver(usize),
-    /// A list is longer than its definition allows.
     #[error("a list of {found}, which may have {most}")]
-    TooMany {
-        /// How long it is.
-        found: u32,
-        /// How long it may be.
-        most: u32,
-    },
-    /// A line ends before a field.
+    TooMany { found: u32, most: u32 },
     #[error("the line ends before it")]
     NoWord,
-    /// A word of a line is not a number, or not one of the right kind.
     #[error("\"{0}\" is not a number of its kind")]
     NotANumber(String),
-    /// A line is longer than its definition.
     #[error("{0} words are left over")]
     WordsLeft(usize),
-    /// The first bytes name an unknown encoding.
     #[error("the encapsulation {0:#06x} is not known; known are 0x0000 and 0x0001, plain CDR")]
     Encapsulation(u16),
-    /// The width of a letter is not defined.
     #[error("wstring is not supported: writers encode it differently")]
     WideText,
 }
@@ -80,42 +58,33 @@ const PADDING: usize = 7;
 pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'a>, DecodeError> {
     let mut at = Decoder { definition, bytes, next: 0, origin: 0, order: ByteOrder::Little };
     if definition.dialect() == Dialect::Ros2 {
-        at.encapsulation().map_err(|(offset, cause)| DecodeError {
-            offset,
-            field: String::new(),
-            cause,
-        })?;
+        at.encapsulation().map_err(in_field(""))?;
     }
     let root = definition.root();
     let mut values = Vec::with_capacity(root.fields.len());
     for field in &root.fields {
-        values.push(at.field(field).map_err(|(offset, cause)| DecodeError {
-            offset,
-            field: field.name.clone(),
-            cause,
-        })?);
+        values.push(at.field(field).map_err(in_field(&field.name))?);
     }
     let left = bytes.len() - at.next;
     let most = if definition.dialect() == Dialect::Ros2 { PADDING } else { 0 };
     if left > most {
-        return Err(DecodeError {
-            offset: at.next,
-            field: String::new(),
-            cause: DecodeErrorKind::LeftOver(left),
-        });
+        return Err(in_field("")((at.next, DecodeErrorKind::LeftOver(left))));
     }
     Ok(Value::Struct(root, values))
 }
 
 /// An error and its offset.
-type Failure = (usize, DecodeErrorKind);
+pub(super) type Failure = (usize, DecodeErrorKind);
+
+/// The error of a field of the message; of none if the name is empty.
+pub(super) fn in_field(field: &str) -> impl Fn(Failure) -> DecodeError {
+    move |(offset, cause)| DecodeError { offset, field: field.to_owned(), cause }
+}
 
 struct Decoder<'a> {
     definition: &'a Definition,
     bytes: &'a [u8],
-    /// Never beyond the bytes.
     next: usize,
-    /// The start for alignment.
     origin: usize,
     order: ByteOrder,
 }

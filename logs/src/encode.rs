@@ -19,23 +19,18 @@ use toposlam_model::{
 use super::messages::{Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp};
 use crate::record::{Arrival, EventKind, MapRecord, RunEnd, RunEnding};
 
-/// Stands for none in a message.
 const NONE: i32 = -1;
 /// Stands for an unknown number of moves in a message.
 const UNKNOWN: u32 = u32::MAX;
 
-/// A number of a dart, a door or a vertex.
 fn number(number: u32) -> i32 {
     i32::try_from(number).unwrap_or(i32::MAX)
 }
 
-/// A count as a message records it.
 fn count(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// The message of a scene.
-#[must_use]
 pub fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
     let mut message = Scene { stamp, marker_door: NONE, ..Scene::default() };
     match &scene.place {
@@ -105,37 +100,32 @@ pub(super) fn scene_of(message: &Scene) -> Option<scene::Scene> {
     Some(scene::Scene { place, marker })
 }
 
+/// The words of states; any other state is [`PathState::Unknown`], `unknown`.
+const STATES: [(PathState, &str); 3] = [
+    (PathState::Leaving, "leaving"),
+    (PathState::Hallway, "hallway"),
+    (PathState::Junction, "junction"),
+];
 const UNCLEAR: [Unclear; 3] =
     [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind];
 const REASONS: [Reason; 4] =
     [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
 
-/// What Algorithm 2 answered.
 pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Command) -> Command {
-    let state = match state {
-        PathState::Leaving => "leaving",
-        PathState::Hallway => "hallway",
-        PathState::Junction => "junction",
-        PathState::Unknown => "unknown",
-    };
+    let word = STATES.into_iter().find(|(known, _)| *known == state);
+    let state = word.map_or("unknown", |(_, word)| word);
     let algorithm2::Command { turn, forward } = command;
     Command { stamp, state: state.to_owned(), turn, forward }
 }
 
 /// The command in a message. A state that is not known is [`PathState::Unknown`].
 pub(super) fn command_of(command: &Command) -> EventKind {
-    let state = match command.state.as_str() {
-        "leaving" => PathState::Leaving,
-        "hallway" => PathState::Hallway,
-        "junction" => PathState::Junction,
-        _ => PathState::Unknown,
-    };
+    let state = STATES.into_iter().find(|(_, word)| *word == command.state);
+    let state = state.map_or(PathState::Unknown, |(state, _)| state);
     let Command { turn, forward, .. } = *command;
     EventKind::Command { state, command: Some(algorithm2::Command { turn, forward }) }
 }
 
-/// An arrival at a junction.
-#[must_use]
 pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
     let Arrival { number: moves, degree, sighting, form, entry } = arrival;
     // A marker that points along no door is written along any.
@@ -180,18 +170,14 @@ pub(super) fn sighting_of(marker: i64) -> Result<Sighting, String> {
     door.map_err(|_| format!("its marker is {marker}, which is not a door and not -1, no marker"))
 }
 
-/// The sighting of a marker that points along no door.
 pub(super) fn seen(is_seen: bool) -> Sighting {
     if is_seen { Sighting::Lying(1) } else { Sighting::Nothing }
 }
 
-/// The robot leaves by a door.
-#[must_use]
 pub fn door(stamp: Stamp, number: Option<u32>, door: percept::Door) -> Door {
     Door { stamp, r#move: number.unwrap_or(UNKNOWN), door: door.0 }
 }
 
-/// The door in a message.
 pub(super) fn door_of(message: &Door) -> EventKind {
     EventKind::Door { number: known(message.r#move), door: percept::Door(message.door) }
 }
@@ -263,7 +249,6 @@ pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Optio
     })
 }
 
-/// A map.
 pub(super) fn map(stamp: Stamp, map: &MapRecord) -> Map {
     let MapRecord { moves, degrees, opposite, robot } = map;
     let opposite = opposite.iter().map(|dart| dart.map_or(NONE, |Dart(far)| number(far)));
@@ -276,7 +261,6 @@ pub(super) fn map(stamp: Stamp, map: &MapRecord) -> Map {
     }
 }
 
-/// The map that a message has.
 pub(super) fn map_of(map: &Map) -> MapRecord {
     MapRecord {
         moves: map.r#move.into(),
@@ -286,7 +270,6 @@ pub(super) fn map_of(map: &Map) -> MapRecord {
     }
 }
 
-/// The end of a run.
 pub(super) fn end(stamp: Stamp, end: &RunEnd) -> End {
     let (ending, cause) = match &end.ending {
         RunEnding::Mapped => ("mapped", ""),

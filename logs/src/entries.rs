@@ -15,12 +15,10 @@ use super::{
     event_line::{self, Parsed},
     fiducials::{FiducialSighting, Fiducials},
     from_value::FromValue,
-    image::image_of,
-    laser_scan,
     merge::{RawMessage, RawMessages},
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
-    standard::Quaternion,
+    sensor_data::{self, image_of},
     topic::{Encoding, Topic},
     topic_map::{BoundTopicMap, Carried, MessagePart, Role},
     transforms::{self, Mounts},
@@ -28,7 +26,6 @@ use super::{
 };
 use crate::record::{Arrival, EventId, EventKind, Frame};
 
-/// Something that a log records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// When it was recorded, in nanoseconds.
@@ -37,48 +34,36 @@ pub struct Entry {
     pub offset: u64,
     /// The number of its message in the log, counted from 1.
     pub id: EventId,
-    /// The index of its topic.
     pub topic: usize,
     /// The `stamp` or `header.stamp` of the message, or that of its transform; without one, when it was
     /// recorded.
     pub stamp: Stamp,
-    /// What is recorded.
     pub content: Content,
 }
 
-/// What an entry records.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
-    /// The head of the log.
     Run(Run),
-    /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
-    /// A sighting of the marker, which is a fiducial.
     Fiducial(FiducialSighting),
-    /// The robot turned back between two junctions.
     TurnedBack,
-    /// The robot was at a junction that was not recognised.
     Undecided,
     /// Any other event. A frame has an image, a scan or a scene, and the last odometry before it.
     Event(EventKind),
 }
 
-/// The entries of a log.
 pub struct Entries<'l> {
     log: &'l Log,
     bound: BoundTopicMap,
     messages: RawMessages<'l>,
     mounts: Mounts<'l>,
     fiducials: Fiducials,
-    /// The last odometry.
     odometry: Odometry,
-    /// What the last message carries beyond its first.
     next: VecDeque<Entry>,
 }
 
 impl Log {
     /// Its entries by a topic map, in the order of time. Ends after the first error.
-    #[must_use]
     pub fn entries(&self, mapping: &BoundTopicMap) -> Entries<'_> {
         let messages = self.read(&mapping.topics());
         let (odometry, next) = (Odometry::default(), VecDeque::new());
@@ -104,7 +89,6 @@ impl Iterator for Entries<'_> {
 }
 
 impl Entries<'_> {
-    /// Appends the entries of a message.
     fn decode(&mut self, message: &RawMessage) -> Result<(), LogError> {
         let log = self.log;
         let Some(topic) = log.topics().get(message.topic) else { return Ok(()) };
@@ -135,8 +119,9 @@ impl Entries<'_> {
             let frame = Frame { id: number, taken, odometry: self.odometry, ..Frame::default() };
             match (carried.role, &*carried.type_name) {
                 (Role::Scan, "sensor_msgs/LaserScan") => {
-                    let mount = self.mounts.of(&laser_scan::frame(&value))?;
-                    let scan = mount.and_then(|mount| laser_scan::scan_of(&value, &mount));
+                    let mount =
+                        self.mounts.of(&value.text_at("header.frame_id").unwrap_or_default())?;
+                    let scan = mount.and_then(|mount| sensor_data::scan_of(&value, &mount));
                     let scan = Some(Arc::new(scan.map_err(wrong)?));
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
                 }
@@ -175,7 +160,6 @@ impl Entries<'_> {
         Ok(())
     }
 
-    /// The time and the contents of a line with an event.
     fn event(
         &self,
         file: &LogFile,
@@ -225,7 +209,7 @@ fn is_carmen(topic: &Topic) -> bool {
 }
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
-    let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.at(path)?.stamp());
+    let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.stamp_at(path));
     found.unwrap_or(Stamp::of(time))
 }
 
@@ -283,19 +267,9 @@ fn own<M: FromValue>(value: &Value<'_>) -> Result<M, String> {
 
 fn number(carried: &Carried, value: &Value<'_>, part: MessagePart) -> Result<f64, String> {
     let path = carried.paths.get(&part).map_or("", String::as_str);
-    number_at(value, path)
+    value.finite_at(path)
 }
 
-fn number_at(value: &Value<'_>, path: &str) -> Result<f64, String> {
-    let found = value.at(path).and_then(|value| value.f64());
-    match found {
-        Some(number) if number.is_finite() => Ok(number),
-        Some(number) => Err(format!("its `{path}` is {number}")),
-        None => Err(format!("it has no `{path}`")),
-    }
-}
-
-/// A whole number, where it is mapped.
 fn whole<N: TryFrom<i64>>(
     carried: &Carried,
     value: &Value<'_>,
@@ -312,10 +286,8 @@ fn odometry(carried: &Carried, value: &Value<'_>) -> Result<Odometry, String> {
     let heading = match carried.paths.get(&MessagePart::Quaternion) {
         None => number(carried, value, MessagePart::Heading)? * carried.angle.in_radians(),
         Some(path) => {
-            let part = |name| number_at(value, &format!("{path}.{name}"));
-            Quaternion { x: part("x")?, y: part("y")?, z: part("z")?, w: part("w")? }
-                .heading()
-                .ok_or_else(|| format!("its `{path}` is no rotation"))?
+            let rotation = value.quaternion_at(path, Value::finite_at)?;
+            rotation.heading().ok_or_else(|| format!("its `{path}` is no rotation"))?
         }
     };
     let length = carried.length.in_metres();

@@ -24,38 +24,30 @@ const LATEST: f64 = 1.8e10;
 
 const NAMES: [&str; 6] = ["index", "stamp", "degree", "door", "marker", "turned_back"];
 
-/// A line.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub(super) struct VisitLine {
-    /// Which visit it is.
     pub(super) index: Option<u32>,
     /// When it was, in seconds.
     pub(super) stamp: Option<f64>,
-    /// The number of doors.
     #[serde(default, deserialize_with = "given")]
     degree: LineDegree,
     /// The door by which the robot left, clockwise from the way back; `None` if the log ends there.
     pub(super) door: Option<u32>,
     /// The marker; `None`: not recorded.
     marker: Option<LineMarker>,
-    /// Whether the robot turned back on its way there.
     #[serde(default)]
     pub(super) turned_back: Option<bool>,
 }
 
-/// The marker in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LineMarker {
     /// The door along which it points; -1: no marker is there.
     Door(i64),
-    /// Whether it is there.
     Seen(bool),
 }
 
-/// The number of doors in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum LineDegree {
-    /// The line has no such field.
     #[default]
     Missing,
     /// It has; `None` if the junction was not recognised.
@@ -109,22 +101,18 @@ impl VisitLine {
     }
 }
 
-/// What a line is, without its other fields.
 #[derive(Deserialize)]
 struct AnyLine {
     kind: Option<String>,
 }
 
-/// What a line is.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Parsed {
     /// An event with its degree; `None` if the junction was not recognised.
     Event(VisitLine, Option<u32>),
-    /// A line of another kind.
     Other(String),
 }
 
-/// Whether a file begins with lines of events, after comments.
 pub(super) fn is_events(head: &[u8]) -> bool {
     let mut lines = head
         .split(|&byte| byte == b'\n')
@@ -156,7 +144,6 @@ impl Columns {
         (has("degree") && has("door")).then_some(columns)
     }
 
-    /// The name of a column that is there twice.
     pub(super) fn repeated(&self) -> Option<&'static str> {
         let known = || self.0.iter().flatten();
         let names = NAMES.iter().enumerate();
@@ -210,7 +197,6 @@ fn cells(line: &str) -> Vec<Cow<'_, str>> {
     cells
 }
 
-/// The first cell of a line, and the line after its comma.
 fn cell(line: &str) -> (Cow<'_, str>, Option<&str>) {
     let plain = || match line.split_once(',') {
         Some((cell, next)) => (cell.trim().into(), Some(next)),
@@ -242,7 +228,6 @@ fn cell(line: &str) -> (Cow<'_, str>, Option<&str>) {
     }
 }
 
-/// The message of an error, whose line is always 1.
 fn cause(error: &serde_json::Error) -> String {
     let message = error.to_string();
     message.split(" at line ").next().unwrap_or_default().replace(char::is_control, " ")
@@ -319,51 +304,33 @@ mod tests {
         }
     }
 
+    /// The header of a CSV file, a line, and its error. Of 13 digits are milliseconds.
+    const ERRORS: &str = r#"
+ | {"door":1} | it has no degree
+ | {"degree": | EOF while parsing a value
+ | {"degree":-1} | invalid value: integer `-1`, expected u32
+ | {"degree":2,"stamp":-1} | its stamp is -1.0; seconds are expected
+ | {"degree":2,"stamp":1e300} | its stamp is 1e300; seconds are expected
+ | {"degree":2,"stamp":1700000000000} | its stamp is 1700000000000.0; seconds are expected
+degree,door,stamp | 2,1,9e99 | its stamp is 9e99; seconds are expected
+ | {"degree":2,"marker":-9} | its marker is -9, which is not a door and not -1, no marker
+ | {"degree":2,"marker":99999999999} | its marker is 99999999999, which is not a door and not -1, no marker
+ | {"degree":2,"marker":"north"} | invalid type: string "north", expected the marker: a door, -1, true, false or null
+degree,door | 2 | it has 1 cells, and the header 2
+degree,door | 2,x | its door is "x"
+ | {"degree":2,"turned_back":1} | invalid type: integer `1`, expected a boolean"#;
+
     #[test]
     fn a_wrong_line_is_an_error() {
-        let [columns, stamped] = ["degree,door", "degree,door,stamp"]
-            .map(|header| Columns::read(header.as_bytes()).unwrap());
-        for (line, columns, error) in [
-            ("{\"door\":1}", None, "it has no degree"),
-            ("{\"degree\":", None, "EOF while parsing a value"),
-            ("{\"degree\":-1}", None, "invalid value: integer `-1`, expected u32"),
-            ("{\"degree\":2,\"stamp\":-1}", None, "its stamp is -1.0; seconds are expected"),
-            ("{\"degree\":2,\"stamp\":1e300}", None, "its stamp is 1e300; seconds are expected"),
-            // Milliseconds.
-            (
-                "{\"degree\":2,\"stamp\":1700000000000}",
-                None,
-                "its stamp is 1700000000000.0; seconds are expected",
-            ),
-            ("2,1,9e99", Some(&stamped), "its stamp is 9e99; seconds are expected"),
-            (
-                "{\"degree\":2,\"marker\":-9}",
-                None,
-                "its marker is -9, which is not a door and not -1, no marker",
-            ),
-            (
-                "{\"degree\":2,\"marker\":99999999999}",
-                None,
-                "its marker is 99999999999, which is not a door and not -1, no marker",
-            ),
-            (
-                "{\"degree\":2,\"marker\":\"north\"}",
-                None,
-                "invalid type: string \"north\", expected the marker: a door, -1, true, false or null",
-            ),
-            ("2", Some(&columns), "it has 1 cells, and the header 2"),
-            ("2,x", Some(&columns), "its door is \"x\""),
-            (
-                "{\"degree\":2,\"turned_back\":1}",
-                None,
-                "invalid type: integer `1`, expected a boolean",
-            ),
-        ] {
-            assert_eq!(parse(line.as_bytes(), columns), Err(error.to_owned()), "{line}");
+        for row in ERRORS.lines().skip(1) {
+            let [header, line, error]: [&str; 3] =
+                row.split(" | ").collect::<Vec<_>>().try_into().unwrap();
+            let columns = Columns::read(header.as_bytes());
+            assert_eq!(parse(line.as_bytes(), columns.as_ref()), Err(error.to_owned()), "{line}");
         }
         assert_eq!(Columns::read(b"degree,exit"), None);
         let repeated = Columns::read(b"degree,door,marker,Marker").unwrap();
         assert_eq!(repeated.repeated(), Some("marker"));
-        assert_eq!(columns.repeated(), None);
+        assert_eq!(Columns::read(b"degree,door").unwrap().repeated(), None);
     }
 }

@@ -12,7 +12,6 @@ use toposlam_model::driving::odometry::Odometry;
 use super::{
     error::LogError,
     messages::Stamp,
-    standard::Quaternion,
     topic_map::{APRIL_TAGS, Carried, DETECTIONS},
     transforms::{
         self, Mounts, frame_name, heading, is_odometry, is_transforms, isometry, on_floor,
@@ -20,7 +19,6 @@ use super::{
     value::Value,
 };
 
-/// A sighting of the marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiducialSighting {
     /// Where the marker is, in metres in the frame of odometry.
@@ -36,7 +34,6 @@ pub(super) struct Fiducials {
     tags: VecDeque<(Stamp, String, Placed)>,
 }
 
-/// A pose in a frame.
 struct Placed {
     frame: String,
     pose: Isometry3<f64>,
@@ -99,7 +96,6 @@ impl Fiducials {
         Ok(Ok(sightings))
     }
 
-    /// The poses of the tags whose detections and transforms have the same stamp.
     fn matched(&mut self) -> Vec<Placed> {
         let mut found = Vec::new();
         self.detections.retain(|(stamp, frame)| {
@@ -120,12 +116,12 @@ impl Fiducials {
 
 /// The stamps and the frames of the tags in a message of `apriltag_msgs`.
 fn detected_tags(carried: &Carried, message: &Value<'_>) -> Result<Vec<(Stamp, String)>, String> {
-    let stamp = message.at("header.stamp").and_then(|stamp| stamp.stamp());
+    let stamp = message.stamp_at("header.stamp");
     let stamp = stamp.ok_or("it has no `header.stamp`")?;
     let mut tags = Vec::new();
-    for tag in message.at("detections").and_then(|list| list.elements()).unwrap_or_default() {
+    for tag in message.list_at("detections") {
         let id = tag.at("id").and_then(|id| id.i64()).ok_or("a detection in it has no `id`")?;
-        let family = tag.at("family").and_then(|family| Some(family.text()?.into_owned()));
+        let family = tag.text_at("family");
         let name = format!("{}:{id}", family.unwrap_or_default());
         let wanted = carried.id.as_ref();
         if wanted.is_none_or(|wanted| *wanted == id.to_string() || *wanted == name) {
@@ -138,11 +134,10 @@ fn detected_tags(carried: &Carried, message: &Value<'_>) -> Result<Vec<(Stamp, S
 /// The poses in a message of `vision_msgs`: of each detection, that of its best hypothesis.
 fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed>, String> {
     let mut found = Vec::new();
-    for object in message.at("detections").and_then(|list| list.elements()).unwrap_or_default() {
-        let results = object.at("results").and_then(|list| list.elements()).unwrap_or_default();
+    for object in message.list_at("detections") {
+        let results = object.list_at("results");
         let score = |result: &Value<'_>| {
-            let score = result.at("hypothesis.score").or_else(|| result.at("score"));
-            score.and_then(|score| score.f64()).unwrap_or_default()
+            result.f64_at("hypothesis.score").or(result.f64_at("score")).unwrap_or_default()
         };
         let best = results
             .into_iter()
@@ -155,38 +150,24 @@ fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed
         if carried.id.is_some() && carried.id != name {
             continue;
         }
-        let frame = ["header.frame_id"].into_iter().find_map(|path| {
-            [object.at(path), message.at(path)].into_iter().flatten().find_map(|frame| {
-                frame.text().filter(|frame| !frame.is_empty()).map(Cow::into_owned)
-            })
-        });
+        let frames = [&object, message].map(|value| value.text_at("header.frame_id"));
+        let frame = frames.into_iter().flatten().find(|frame| !frame.is_empty());
         let pose = pose_at(&best, "pose.pose")?;
         found.push(Placed { frame: frame.unwrap_or_default(), pose });
     }
     Ok(found)
 }
 
-/// The pose in a message of `geometry_msgs`.
 fn posed(message: &Value<'_>) -> Result<Placed, String> {
-    let frame = message.at("header.frame_id");
-    let frame = frame.and_then(|frame| Some(frame.text()?.into_owned())).unwrap_or_default();
+    let frame = message.text_at("header.frame_id").unwrap_or_default();
     let nested = message.at("pose.pose").is_some();
     let pose = pose_at(message, if nested { "pose.pose" } else { "pose" })?;
     Ok(Placed { frame, pose })
 }
 
 fn pose_at(value: &Value<'_>, path: &str) -> Result<Isometry3<f64>, String> {
-    let number = |part: &str| {
-        let path = format!("{path}.{part}");
-        let number = value.at(&path).and_then(|number| number.f64());
-        number.ok_or_else(|| format!("it has no number `{path}`"))
-    };
-    let translation = [number("position.x")?, number("position.y")?, number("position.z")?];
-    let rotation = Quaternion {
-        x: number("orientation.x")?,
-        y: number("orientation.y")?,
-        z: number("orientation.z")?,
-        w: number("orientation.w")?,
-    };
+    let part = |name: &str| value.number_at(&format!("{path}.position.{name}"));
+    let translation = [part("x")?, part("y")?, part("z")?];
+    let rotation = value.quaternion_at(&format!("{path}.orientation"), Value::number_at)?;
     isometry(translation, rotation).ok_or_else(|| format!("its `{path}` is no pose"))
 }

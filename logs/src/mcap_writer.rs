@@ -32,14 +32,11 @@ pub(super) struct McapWriter<W: Write> {
     /// `None` after the end and after an error.
     out: Option<W>,
     length: u64,
-    /// Of all bytes so far.
     checksum: Hasher,
     chunk: Chunk,
     chunk_count: u32,
     metadata_count: u32,
-    /// The number of messages on each channel.
     counts: BTreeMap<u16, u64>,
-    /// The times of the first and of the last message.
     times: Option<[u64; 2]>,
     schemas: Vec<u8>,
     channels: Vec<u8>,
@@ -47,17 +44,14 @@ pub(super) struct McapWriter<W: Write> {
     metadata_indexes: Vec<u8>,
 }
 
-/// What the present chunk will contain.
 #[derive(Default)]
 struct Chunk {
     records: Vec<u8>,
     times: Option<[u64; 2]>,
-    /// The time and the place of each message on a channel.
     messages: BTreeMap<u16, Vec<[u64; 2]>>,
 }
 
 impl<W: Write> McapWriter<W> {
-    /// Writes the beginning of the file.
     pub(super) fn new(out: W, profile: &str, library: &str) -> io::Result<Self> {
         let mut writer = Self {
             out: Some(out),
@@ -110,7 +104,6 @@ impl<W: Write> McapWriter<W> {
         *self.counts.entry(channel).or_default() += 1;
     }
 
-    /// Ends the present chunk, and writes entries under a name.
     pub(super) fn write_metadata(
         &mut self,
         name: &str,
@@ -189,7 +182,6 @@ impl<W: Write> McapWriter<W> {
         Ok(())
     }
 
-    /// The summary section and the footer.
     fn summary(&self) -> Vec<u8> {
         let [first, last] = self.times.unwrap_or_default();
         let channels = self.counts.len();
@@ -229,12 +221,10 @@ impl<W: Write> Drop for McapWriter<W> {
     }
 }
 
-/// The schema of a channel.
 pub(super) struct Schema<'a> {
     pub(super) name: &'a str,
     pub(super) encoding: &'a str,
     pub(super) text: String,
-    /// How the messages of the channel are encoded.
     pub(super) message_encoding: &'a str,
 }
 
@@ -245,7 +235,6 @@ fn compressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     Ok(encoder.finish()?)
 }
 
-/// The content of a record.
 struct Fields(Vec<u8>);
 
 impl Fields {
@@ -272,7 +261,6 @@ impl Fields {
         self.map(text.as_bytes())
     }
 
-    /// The entries of a map or an array, after their length in bytes.
     fn map(self, entries: &[u8]) -> Self {
         let mut fields = self.u32(entries.len() as u32);
         fields.0.extend(entries);

@@ -12,10 +12,8 @@ use super::{
     reader::Log,
 };
 
-/// A message of a log, not yet decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RawMessage {
-    /// The index of its topic.
     pub topic: usize,
     /// When it was recorded, in nanoseconds.
     pub time: u64,
@@ -25,25 +23,19 @@ pub struct RawMessage {
     pub(super) file: usize,
     /// Its number in the order of time, counted from 1.
     pub number: u64,
-    /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
 /// The largest size of the chunks in memory, in bytes.
 const HELD: u64 = 64 << 20;
 
-/// The messages of a log in the order of their times.
 pub struct RawMessages<'l> {
     log: &'l Log,
-    /// Whether each topic is wanted.
     wanted: Vec<bool>,
-    /// The sections that are not yet read, the last one first.
     ahead: Vec<usize>,
-    /// The messages of the sections that are read, the oldest first.
     waiting: BinaryHeap<Reverse<Waiting>>,
     held: BTreeMap<usize, Held>,
     held_bytes: u64,
-    /// The number of requests.
     asked: u64,
     number: u64,
 }
@@ -53,7 +45,6 @@ pub struct RawMessages<'l> {
 struct Waiting {
     time: u64,
     section: usize,
-    /// The place of its record in the section.
     at: usize,
     place: u64,
     start: usize,
@@ -61,7 +52,6 @@ struct Waiting {
     topic: usize,
 }
 
-/// A section with waiting messages.
 struct Held {
     bytes: Option<Vec<u8>>,
     waiting: usize,
@@ -73,19 +63,15 @@ impl Log {
     /// order of the file. Ends after the first error.
     ///
     /// Chunks that overlap in time are in memory together, up to 64 MiB; beyond that they are read again.
-    #[must_use]
     pub fn read(&self, topics: &[usize]) -> RawMessages<'_> {
         RawMessages::new(self, topics)
     }
 
-    /// A section and its file.
     pub(super) fn section(&self, index: usize) -> Option<(&Section, &LogFile)> {
         let section = self.sections.get(index)?;
         Some((section, self.files.get(section.file)?))
     }
 
-    /// The messages of all topics.
-    #[must_use]
     pub fn read_all(&self) -> RawMessages<'_> {
         RawMessages::new(self, &(0..self.topics.len()).collect::<Vec<_>>())
     }
@@ -110,7 +96,6 @@ impl<'l> RawMessages<'l> {
         }
     }
 
-    /// Ends the iteration.
     pub(super) fn end(&mut self) {
         self.ahead.clear();
         self.waiting.clear();
@@ -159,7 +144,6 @@ impl<'l> RawMessages<'l> {
         }
     }
 
-    /// Adds the messages of a section to those that wait.
     fn read_section(&mut self, index: usize, start: u64) -> Result<(), LogError> {
         let log = self.log;
         let Some((section, file)) = log.section(index) else { return Ok(()) };
@@ -206,7 +190,6 @@ impl<'l> RawMessages<'l> {
         Ok(taken)
     }
 
-    /// A message of a section was returned.
     fn release(&mut self, index: usize) {
         let Some(held) = self.held.get_mut(&index) else { return };
         held.waiting -= 1;

@@ -11,8 +11,7 @@ use super::{
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
     rosbag2::{self, BagFile},
     skipped_lines::SkippedLines,
-    source::Source,
-    storage::Storage,
+    source::{Source, Storage},
     topic::{Topic, Topics},
 };
 
@@ -20,11 +19,9 @@ use super::{
 ///
 /// Its messages stay in the file until they are asked for.
 pub struct Log {
-    /// At least one.
     pub(super) files: Vec<LogFile>,
     pub(super) format: Format,
     pub(super) topics: Vec<Topic>,
-    /// The topic of each connection of each file.
     pub(super) connections: BTreeMap<(usize, u32), usize>,
     /// Those with messages, in the order of the files.
     pub(super) sections: Vec<Section>,
@@ -79,7 +76,6 @@ impl Log {
         Self::of_files(vec![file], format)
     }
 
-    /// Scans the files of a log.
     fn of_files(mut files: Vec<LogFile>, format: Format) -> Result<Self, LogError> {
         let mut topics = Topics::default();
         let mut all_sections = Vec::new();
@@ -124,7 +120,6 @@ impl Log {
         Ok(log)
     }
 
-    /// Counts the messages of each topic.
     fn count(&mut self) {
         for section in &self.sections {
             for (id, count) in section.counts.iter().flatten() {
@@ -144,74 +139,56 @@ impl Log {
         self.times = times.reduce(|[first, last], [start, end]| [first.min(start), last.max(end)]);
     }
 
-    /// Its format.
-    #[must_use]
     pub fn format(&self) -> Format {
         self.format
     }
 
     /// What the offsets of its messages count. rosbag2 writes all files of a folder in one format.
-    #[must_use]
     pub fn offset_unit(&self) -> OffsetUnit {
         self.files.first().map_or(self.format, |file| file.format).unit()
     }
 
-    /// The size of its files, in bytes.
-    #[must_use]
     pub fn size(&self) -> u64 {
         self.files.iter().fold(0, |sum, file| sum.saturating_add(file.source.size))
     }
 
-    /// How its first file is compressed, if it is.
-    #[must_use]
     pub fn compression(&self) -> Option<FileCompression> {
         self.files.first().and_then(|file| file.source.compression)
     }
 
     /// The lines that are skipped, of a log of lines; `None` if there are none.
-    #[must_use]
     pub fn skipped(&self) -> Option<&SkippedLines> {
         self.files.first().map(|file| &file.text.skipped).filter(|skipped| !skipped.is_empty())
     }
 
-    /// Its topics, in the order of the file.
-    #[must_use]
     pub fn topics(&self) -> &[Topic] {
         &self.topics
     }
 
     /// The time of its first message, in nanoseconds; `None` if it has none.
-    #[must_use]
     pub fn start(&self) -> Option<u64> {
         self.times.map(|[start, _]| start)
     }
 
     /// The time of its last message, in nanoseconds; `None` if it has none.
-    #[must_use]
     pub fn end(&self) -> Option<u64> {
         self.times.map(|[_, end]| end)
     }
 
-    /// The number of its messages, on all topics.
-    #[must_use]
     pub fn messages_total(&self) -> u64 {
         self.topics.iter().fold(0, |sum, topic| sum.saturating_add(topic.messages))
     }
 
     /// Whether it has an index of its messages. If not, all of it was read to find them.
-    #[must_use]
     pub fn is_indexed(&self) -> bool {
         self.indexed
     }
 
-    /// Where it is truncated, if it is.
-    #[must_use]
     pub fn truncation(&self) -> Option<&Truncation> {
         self.truncation.as_ref()
     }
 }
 
-/// Opens a file, and recognises its format.
 fn open(
     storage: Box<dyn Storage>,
     path: Option<&Path>,

@@ -18,20 +18,15 @@ use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
 pub const IMAGE: &str = "/camera/image/compressed";
 /// The topic of the same images with the scene drawn over them.
 pub const ANNOTATED: &str = "/camera/annotated/compressed";
-/// The topic of the scans of the laser scanner.
 pub const SCAN: &str = "/scan";
 /// The topic on which a live robot's detector reports the marker. A log has the marker in its scenes.
 pub const MARKER: &str = "/marker";
-/// The topic of the commands of the wheels.
 pub const CMD_VEL: &str = "/cmd_vel";
-/// The topic of odometry.
 pub const ODOM: &str = "/odom";
-/// The topic of odometry as a transform.
 pub const TF: &str = "/tf";
 /// The name of the note with the content of the message [`Run`](messages::Run).
 pub const NOTE: &str = "toposlam";
 
-/// The quality of annotated images.
 const QUALITY: u8 = 85;
 
 /// Writes the events of a run.
@@ -41,12 +36,10 @@ const QUALITY: u8 = 85;
 /// the time when it was taken.
 pub struct Recorder<W: Write> {
     out: LogWriter<W>,
-    /// The first error.
     error: Option<LogWriteError>,
     camera: Option<Camera>,
     /// The time of the last event, in nanoseconds.
     now: u64,
-    /// The last command of the wheels.
     twist: Twist,
 }
 
@@ -74,14 +67,12 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// Writes a message now.
     fn write<M: Message>(&mut self, topic: &str, message: &M) {
         if self.error.is_none() {
             self.error = self.out.write(topic, self.now, message).err();
         }
     }
 
-    /// Writes a message of the project now.
     fn write_own<M: ProjectMessage>(&mut self, message: &M) {
         self.write(M::TOPIC, message);
     }
@@ -102,7 +93,6 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// The image with the scene drawn over it, as a JPEG file.
     fn annotated(&self, frame: &Frame) -> Option<Vec<u8>> {
         let image = frame.image.as_ref()?.pixels().ok()?;
         let drawn = annotate::over(image, self.camera.as_ref()?, frame.scene.as_ref()?);
@@ -157,7 +147,6 @@ impl<W: Write> RunObserver for Recorder<W> {
     }
 }
 
-/// The head of a log, as a note.
 fn entries(run: &messages::Run) -> BTreeMap<String, String> {
     let entries = [
         ("version", run.version.clone()),

@@ -10,10 +10,9 @@ use saphyr_parser::{Event, Parser};
 
 use super::{
     error::{LogError, LogErrorKind},
-    storage::Storage,
+    source::Storage,
 };
 
-/// The file that describes a folder.
 pub const METADATA: &str = "metadata.yaml";
 
 /// The most files that a log may have.
@@ -23,7 +22,6 @@ const MOST_FILES: usize = 10_000;
 const ENDINGS: [&str; 2] = [".db3", ".mcap"];
 const COMPRESSED: &str = ".zstd";
 
-/// One file of a folder.
 pub(super) struct BagFile {
     pub(super) name: String,
     pub(super) path: PathBuf,
@@ -111,7 +109,6 @@ pub fn file_names(metadata: &[u8]) -> Result<Vec<String>, LogError> {
     reading.names.into_iter().map(|path| base(&path).map_err(|what| at_line(what, 1))).collect()
 }
 
-/// The last part of a path, which is a name.
 fn base(path: &str) -> Result<String, String> {
     let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
     if name.is_empty() || name == "." || name == ".." || name.contains(char::is_control) {
@@ -127,10 +124,8 @@ fn in_metadata(error: LogError) -> LogError {
     LogError { file: Some(METADATA.to_owned()), ..error }
 }
 
-/// The key of the list.
 const FILES: &str = "relative_file_paths";
 
-/// What the parser is in.
 #[derive(Default)]
 struct Reading {
     /// Of each mapping the key that was read last; of each list nothing.
@@ -138,7 +133,6 @@ struct Reading {
     names: Vec<String>,
 }
 
-/// A key of a mapping.
 #[derive(Clone, Copy, PartialEq)]
 enum Key {
     None,
@@ -156,14 +150,12 @@ impl Reading {
         self.value_ended();
     }
 
-    /// The value of a key has ended.
     fn value_ended(&mut self) {
         if let Some(Some(key)) = self.path.last_mut() {
             *key = Key::None;
         }
     }
 
-    /// A word is a key, or a value that may be the name of a file.
     fn word(&mut self, word: &str) {
         if let Some(Some(key @ Key::None)) = self.path.last_mut() {
             *key = if word == FILES { Key::Files } else { Key::Other };

@@ -8,36 +8,19 @@ use toposlam_model::counts::grouped;
 /// The number of lines of a log that are skipped, by the reason. Comments do not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SkippedLines {
-    unknown: BTreeMap<String, u64>,
+    /// Of each kind that is not known, by their first word or `kind`.
+    pub unknown: BTreeMap<String, u64>,
+    /// Of further kinds that are not known.
     #[serde(rename = "other_kinds")]
-    others: u64,
-    off_clock: u64,
+    pub others: u64,
+    /// Those whose clock is far from that of their neighbours.
+    pub off_clock: u64,
 }
 
 /// The largest number of kinds that are counted apart.
 const KINDS: usize = 16;
 
 impl SkippedLines {
-    /// The number of lines of each kind that is not known, by their first word or `kind`.
-    #[must_use]
-    pub fn unknown(&self) -> &BTreeMap<String, u64> {
-        &self.unknown
-    }
-
-    /// The number of lines of further kinds that are not known.
-    #[must_use]
-    pub fn others(&self) -> u64 {
-        self.others
-    }
-
-    /// The number of lines whose clock is far from that of their neighbours.
-    #[must_use]
-    pub fn off_clock(&self) -> u64 {
-        self.off_clock
-    }
-
-    /// Whether none are skipped.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.unknown.is_empty() && self.off_clock == 0
     }
@@ -48,10 +31,6 @@ impl SkippedLines {
         } else {
             self.others += 1;
         }
-    }
-
-    pub(super) fn set_off_clock(&mut self, lines: u64) {
-        self.off_clock = lines;
     }
 }
 

@@ -6,19 +6,18 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use super::{
-    compressed::{Decompressed, FileCompression},
-    storage::Storage,
-};
+use super::compressed::{Decompressed, FileCompression};
+
+pub trait Storage: Read + Seek + Send {}
+
+impl<S: Read + Seek + Send> Storage for S {}
 
 /// A file with random access, perhaps compressed.
 pub(super) struct Source {
     storage: Mutex<Box<dyn Storage>>,
     length: u64,
-    /// The size of the file on the disk.
     pub(super) size: u64,
     pub(super) compression: Option<FileCompression>,
-    /// Whether the end of the compressed data is missing.
     pub(super) is_cut: bool,
 }
 
@@ -70,7 +69,6 @@ pub(super) struct Window<'s> {
     bytes: Vec<u8>,
 }
 
-/// How far ahead.
 const AHEAD: u64 = 1 << 16;
 
 impl<'s> Window<'s> {
@@ -92,12 +90,10 @@ impl<'s> Window<'s> {
         Ok(self.bytes.get(start..end))
     }
 
-    /// Whether the file goes on to there.
     pub(super) fn within(&self, end: u64) -> bool {
         end <= self.source.length
     }
 
-    /// A number of four bytes.
     pub(super) fn u32(&mut self, start: u64) -> io::Result<Option<u32>> {
         Ok(self.get(start, 4)?.and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes))
     }

@@ -15,55 +15,35 @@ use super::{
 /// A topic of a log. One name may stand for several topics, of different types.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Topic {
-    /// Its name.
     pub name: String,
     /// The type of its messages in the log; empty if it has none.
     pub type_name: String,
-    /// The encoding of its messages.
     pub encoding: Encoding,
-    /// The definition of its messages.
     pub definition: Result<Definition, Undecodable>,
-    /// The number of its messages.
     pub messages: u64,
 }
 
-/// The encoding of messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// As ROS 1 does.
     Ros1,
-    /// In CDR, as ROS 2 does.
     Cdr,
-    /// As a line of a CARMEN log.
     Carmen,
-    /// As a line of a list of events.
     Event,
-    /// In another way, which is not read.
     Other(String),
 }
 
-/// Why the messages of a topic cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Undecodable {
-    /// Their definition is wrong.
     #[error(transparent)]
     Definition(#[from] DefinitionError),
-    /// They are written in a way that is not known.
     #[error("messages in {messages:?} by a schema in {schema:?} cannot be read")]
-    Encoding {
-        /// How the messages are written.
-        messages: String,
-        /// How their definition is.
-        schema: String,
-    },
-    /// There is no definition.
+    Encoding { messages: String, schema: String },
     #[error("the log does not define its messages")]
     NoSchema,
 }
 
 impl Topic {
     /// The type of its messages as `package/Type`, in ROS 2 as in ROS 1.
-    #[must_use]
     pub fn short_type(&self) -> String {
         short_name(&self.type_name)
     }
@@ -72,7 +52,6 @@ impl Topic {
     ///
     /// # Errors
     /// Returns an error if the bytes are not a message of the topic.
-    #[must_use]
     pub fn decode<'a>(&'a self, bytes: &'a [u8]) -> Option<Result<Value<'a>, DecodeError>> {
         let definition = self.definition.as_ref().ok()?;
         match self.encoding {
@@ -87,11 +66,8 @@ impl Topic {
 #[derive(Default)]
 pub(super) struct Topics {
     pub(super) list: Vec<Topic>,
-    /// Of each topic, the text that defines it.
     texts: Vec<Vec<u8>>,
-    /// The topic of each connection of each file.
     pub(super) connections: BTreeMap<(usize, u32), usize>,
-    /// Of the present file.
     schemas: BTreeMap<u16, Schema>,
     file: usize,
 }
@@ -103,7 +79,6 @@ struct Schema {
 }
 
 impl Topics {
-    /// Goes on with the records of a file.
     pub(super) fn in_file(&mut self, file: usize) -> &mut Self {
         if file != self.file {
             self.file = file;
@@ -176,7 +151,6 @@ impl Topics {
     }
 }
 
-/// The encoding of messages, and their definition.
 fn defined(
     messages: String,
     schema: String,

@@ -6,32 +6,25 @@ use std::borrow::Cow;
 use super::{
     definition::{FieldType, Struct},
     messages::Stamp,
+    standard::Quaternion,
 };
 
-/// The value of a message or a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value<'a> {
-    /// True or false.
     Bool(bool),
-    /// A whole number of a type with a sign.
     Int(i64),
     /// A whole number of a type without a sign.
     Unsigned(u64),
-    /// A number with a fraction.
     Float(f64),
-    /// A text, which should be UTF-8.
     Text(&'a [u8]),
     /// A time or a duration of ROS 1: seconds and nanoseconds.
     Time(i64, i64),
-    /// A list of truths or numbers.
     Numbers(Numbers<'a>),
-    /// A list of texts, times or messages.
     List(Vec<Value<'a>>),
     /// A message: its fields in their order.
     Struct(&'a Struct, Vec<Value<'a>>),
 }
 
-/// A list of truths or numbers, as it stands in a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<'a> {
     pub(super) bytes: &'a [u8],
@@ -39,36 +32,26 @@ pub struct Numbers<'a> {
     pub(super) order: ByteOrder,
 }
 
-/// Which byte of a number comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByteOrder {
-    /// The least.
     Little,
-    /// The greatest.
     Big,
 }
 
 impl<'a> Numbers<'a> {
-    /// How many there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.bytes.len() / self.size()
     }
 
-    /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = Value<'a>> + use<'a> {
         let (kind, order) = (self.kind, self.order);
         self.bytes.chunks_exact(self.size()).map(move |bytes| number(kind, order, bytes))
     }
 
-    /// One of them.
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<Value<'a>> {
         self.bytes
             .chunks_exact(self.size())
@@ -86,7 +69,6 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// A truth or a number, of its bytes.
 pub(super) fn number<'a>(kind: FieldType, order: ByteOrder, bytes: &[u8]) -> Value<'a> {
     let mut all = [0; 8];
     let used = bytes.iter().take(8);
@@ -111,7 +93,6 @@ pub(super) fn number<'a>(kind: FieldType, order: ByteOrder, bytes: &[u8]) -> Val
 impl<'a> Value<'a> {
     /// The value at a path such as `pose.pose.position.x` or `doors[0]`; the empty path is the
     /// message itself. Of a time `sec` and `nanosec` are parts (`secs` and `nsecs`, too).
-    #[must_use]
     pub fn at(&self, path: &str) -> Option<Value<'a>> {
         if path.is_empty() {
             return Some(self.clone());
@@ -129,8 +110,6 @@ impl<'a> Value<'a> {
         Some(here.into_owned())
     }
 
-    /// A number, with a precision of 53 bits.
-    #[must_use]
     pub fn f64(&self) -> Option<f64> {
         match *self {
             Self::Int(number) => Some(number as f64),
@@ -141,7 +120,6 @@ impl<'a> Value<'a> {
     }
 
     /// A whole number, also where the type has fractions.
-    #[must_use]
     pub fn i64(&self) -> Option<i64> {
         match *self {
             Self::Int(number) => Some(number),
@@ -155,7 +133,6 @@ impl<'a> Value<'a> {
     }
 
     /// A whole number that is not negative, also where the type has fractions.
-    #[must_use]
     pub fn u64(&self) -> Option<u64> {
         match *self {
             Self::Unsigned(number) => Some(number),
@@ -163,8 +140,6 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// True or false.
-    #[must_use]
     pub fn bool(&self) -> Option<bool> {
         match *self {
             Self::Bool(truth) => Some(truth),
@@ -173,7 +148,6 @@ impl<'a> Value<'a> {
     }
 
     /// A text. What is not UTF-8 in it is replaced by `U+FFFD`.
-    #[must_use]
     pub fn text(&self) -> Option<Cow<'a, str>> {
         match *self {
             Self::Text(bytes) => Some(String::from_utf8_lossy(bytes)),
@@ -182,7 +156,6 @@ impl<'a> Value<'a> {
     }
 
     /// A list of bytes (`uint8[]`, `char[]`, `int8[]`).
-    #[must_use]
     pub fn bytes(&self) -> Option<&'a [u8]> {
         match *self {
             Self::Numbers(Numbers {
@@ -194,8 +167,6 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A time, of ROS 1 or of ROS 2.
-    #[must_use]
     pub fn stamp(&self) -> Option<Stamp> {
         let [sec, nanosec] =
             ["sec", "nanosec"].map(|name| self.at(name).and_then(|part| part.i64()));
@@ -203,8 +174,44 @@ impl<'a> Value<'a> {
         Some(Stamp { sec: sec? as i32, nanosec: nanosec?.try_into().ok()? })
     }
 
-    /// The elements of a list.
-    #[must_use]
+    pub(super) fn f64_at(&self, path: &str) -> Option<f64> {
+        self.at(path)?.f64()
+    }
+
+    pub(super) fn text_at(&self, path: &str) -> Option<String> {
+        self.at(path)?.text().map(Cow::into_owned)
+    }
+
+    pub(super) fn stamp_at(&self, path: &str) -> Option<Stamp> {
+        self.at(path)?.stamp()
+    }
+
+    pub(super) fn list_at(&self, path: &str) -> Vec<Value<'a>> {
+        self.at(path).and_then(|list| list.elements()).unwrap_or_default()
+    }
+
+    pub(super) fn number_at(&self, path: &str) -> Result<f64, String> {
+        self.f64_at(path).ok_or_else(|| format!("it has no number `{path}`"))
+    }
+
+    pub(super) fn finite_at(&self, path: &str) -> Result<f64, String> {
+        match self.f64_at(path) {
+            Some(number) if number.is_finite() => Ok(number),
+            Some(number) => Err(format!("its `{path}` is {number}")),
+            None => Err(format!("it has no `{path}`")),
+        }
+    }
+
+    /// The parts x, y, z and w of a rotation, each read in a way.
+    pub(super) fn quaternion_at<E>(
+        &self,
+        path: &str,
+        number: impl Fn(&Self, &str) -> Result<f64, E>,
+    ) -> Result<Quaternion, E> {
+        let part = |name| number(self, &format!("{path}.{name}"));
+        Ok(Quaternion { x: part("x")?, y: part("y")?, z: part("z")?, w: part("w")? })
+    }
+
     pub fn elements(&self) -> Option<Vec<Value<'a>>> {
         match self {
             Self::Numbers(numbers) => Some(numbers.iter().collect()),

@@ -13,16 +13,11 @@ use super::{
     topic::Topics,
 };
 
-/// What was read of a log, and what is wrong with it.
 #[derive(Debug, Default)]
 pub struct Verification {
-    /// The number of chunks that were read.
     pub chunks: u64,
-    /// The number of messages that were read.
     pub messages: u64,
-    /// The number of bytes of the file that a checksum covers.
     pub covered: u64,
-    /// What is damaged.
     pub damage: Vec<LogError>,
     /// Whether everything was read: the watch did not stop it.
     pub complete: bool,
@@ -83,7 +78,6 @@ impl Verifier<'_> {
         Ok(())
     }
 
-    /// Reads a chunk, or messages outside of chunks.
     fn section(&mut self, section: &Section, file: &LogFile) -> Result<(), LogError> {
         let bytes = match section.load(file) {
             Ok(bytes) => bytes,

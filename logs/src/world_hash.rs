@@ -10,7 +10,6 @@ use toposlam_model::{
 
 /// SHA-256, in hexadecimal, of the code of a start, each word of it in four bytes, the least first.
 /// Isomorphic starts have the same.
-#[must_use]
 pub fn world_hash(graph: &EmbeddedGraph, facing: Dart) -> String {
     let mut digest = Sha256::new();
     for word in code(graph, facing).words() {

@@ -26,20 +26,12 @@ pub const CHUNK_BYTES: usize = 1 << 20;
 /// Before the body of a message: plain CDR, the lesser byte first.
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
-/// Why a log cannot be written.
 #[derive(Debug, Error)]
 pub enum LogWriteError {
-    /// The file does not take it.
     #[error(transparent)]
     File(#[from] io::Error),
-    /// A message cannot be encoded in CDR.
     #[error("{topic}: {cause}")]
-    Message {
-        /// The topic of the message.
-        topic: String,
-        /// Why.
-        cause: cdr::Error,
-    },
+    Message { topic: String, cause: cdr::Error },
 }
 
 /// A log that is being written. Dropped before it is finished, it still becomes a file that is whole;
@@ -55,11 +47,9 @@ pub struct LogWriter<W: Write> {
 #[derive(Clone, Copy, Debug)]
 struct Topic {
     channel: u16,
-    /// The number of the next message.
     sequence: u32,
 }
 
-/// The chunk that is being filled.
 #[derive(Clone, Copy, Debug)]
 struct Chunk {
     begun: u64,
@@ -134,7 +124,6 @@ impl<W: Write> LogWriter<W> {
         Ok(self.out.finish()?.ok_or_else(closed)?)
     }
 
-    /// The channel of a topic, and the number of its next message.
     fn next_of<M: Message>(&mut self, topic: &str) -> (u16, u32) {
         let known = if let Some(known) = self.topics.get_mut(topic) {
             known
@@ -142,7 +131,7 @@ impl<W: Write> LogWriter<W> {
             let schema = Schema {
                 name: M::TYPE,
                 encoding: "ros2msg",
-                text: schema::<M>(),
+                text: schema(M::DEFINITION),
                 message_encoding: "cdr",
             };
             let channel = self.out.add_channel(topic, &schema);
@@ -173,7 +162,6 @@ mod tests {
         log.finish().unwrap()
     }
 
-    /// The bytes of each message, as far as the file can be read.
     fn bodies(file: &[u8]) -> Vec<Vec<u8>> {
         let messages =
             MessageStream::new_with_options(file, Options::IgnoreEndMagic.into()).unwrap();
@@ -219,16 +207,10 @@ mod tests {
         assert_eq!((header.profile.as_str(), header.library.as_str()), ("ros2", "toposlam"));
         let message = MessageStream::new(&file).unwrap().next().unwrap().unwrap();
         let schema = message.channel.schema.as_ref().unwrap();
-        assert_eq!(
-            (schema.name.as_str(), schema.encoding.as_str()),
-            (<Door as ProjectMessage>::TYPE, "ros2msg")
-        );
+        assert_eq!((schema.name.as_str(), schema.encoding.as_str()), (Door::TYPE, "ros2msg"));
         let text = String::from_utf8(schema.data.to_vec()).unwrap();
         let time = "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-        assert!(
-            text.starts_with(<Door as ProjectMessage>::DEFINITION) && text.ends_with(time),
-            "{text}"
-        );
+        assert!(text.starts_with(Door::DEFINITION) && text.ends_with(time), "{text}");
         assert_eq!(message.channel.message_encoding, "cdr");
     }
 
@@ -262,7 +244,6 @@ mod tests {
         assert!(lengths.iter().zip([600_000, 500_000, 3_000_000, 1000]).all(|(&l, n)| l == n + 36));
     }
 
-    /// A file with room for this many bytes.
     struct Full(usize);
 
     impl Write for Full {

@@ -7,7 +7,7 @@ use std::{
 
 use serde::{Serialize, Serializer};
 use toposlam_logs::{
-    FileCompression, Format,
+    FileCompression, Format, SkippedLines,
     reader::Log,
     topic::{Encoding, Topic},
     topic_map::{RoleGuess, TopicMap, guess},
@@ -22,7 +22,6 @@ use super::{
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    skipped_lines::SkippedLinesFields,
     text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
@@ -82,7 +81,7 @@ struct LogReport<'l> {
     messages: u64,
     truncated: Option<TruncatedLine>,
     indexed: bool,
-    skipped: Option<SkippedLinesFields<'l>>,
+    skipped: Option<&'l SkippedLines>,
     verification: Option<VerificationReport>,
     topics: Vec<TopicReport<'l>>,
     /// For each role, the topics that could carry it, or the one in the topics file.
@@ -311,7 +310,7 @@ impl<'l> LogReport<'l> {
             truncated: log.truncation().map(TruncatedLine::from),
             // Lines have none: all of them are read.
             indexed: !matches!(log.format(), Format::Carmen | Format::Events) && log.is_indexed(),
-            skipped: log.skipped().map(SkippedLinesFields::from),
+            skipped: log.skipped(),
             verification: verification.map(|found| VerificationReport::new(found, outcome)),
             topics: log.topics().iter().map(topic).collect(),
             mapping,

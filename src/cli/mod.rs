@@ -24,7 +24,6 @@ mod run_options;
 mod run_report;
 mod sense;
 mod simulate;
-mod skipped_lines;
 mod version;
 mod walk_page;
 

@@ -46,7 +46,6 @@ fn pixel_to_ground(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// The whole table.
 #[divan::bench(args = CALIBRATIONS, sample_count = 20)]
 fn table(bencher: Bencher<'_, '_>, name: &str) {
     let camera = camera(name);

@@ -1,8 +1,7 @@
 //! Agreement: an outline compared with what is seen on each bearing. Section 3.
 //!
-//! A place has walls *and* floor. If floor is seen behind a wall of an outline, or a wall where it has
-//! floor, the outline is wrong. A door of the floor's colour looks like floor, too, but it is narrower
-//! than any hallway, and there is wall on both sides of it.
+//! Floor behind a wall of an outline, or a wall where it has floor, contradicts it. A door of the floor's colour looks
+//! like floor, too, but it is narrower than any hallway, and there is wall on both sides of it.
 
 use nalgebra::{Point2, Vector2};
 
@@ -16,7 +15,6 @@ use crate::{
 /// How an outline agrees with what is seen: the number of bearings of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutlineAgreement {
-    /// The wall of the outline is seen.
     pub support: u32,
     /// The floor ends at the wall of the outline, but without a stripe: at a door or a gap.
     pub ended: u32,
@@ -26,13 +24,11 @@ pub struct OutlineAgreement {
     pub door: u32,
     /// Floor is seen behind a wall of the outline, where there can be no door.
     pub through: u32,
-    /// A wall is seen where the outline has floor.
     pub against: u32,
     /// The number of the four directions in which neither its wall nor its floor is seen.
     pub blank: u32,
 }
 
-/// How an outline agrees with what is seen on one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Support,
@@ -40,17 +36,13 @@ enum Held {
     Silent,
     Through,
     Against,
-    /// Floor is seen behind a wall, through a door.
     Door,
-    /// Floor is seen where the outline has floor.
     Open,
-    /// Nothing is seen where the outline has floor.
     Unseen,
 }
 
 impl Outline {
     /// How the outline agrees with what is seen, on one bearing in `every`.
-    #[must_use]
     pub fn agreement(
         &self,
         boundary: &Boundary,
@@ -202,7 +194,6 @@ struct Seen {
 }
 
 impl Seen {
-    /// Whether it is hardly seen, although many bearings lead there.
     fn is_blank(self, every: usize, params: &OutlineParams) -> bool {
         let Self { due, seen } = self;
         f64::from(due) > bearings(params.narrow, every)
@@ -212,7 +203,6 @@ impl Seen {
 
 impl OutlineAgreement {
     /// What supports the outline minus what contradicts it, which has more weight.
-    #[must_use]
     pub fn balance(&self, params: &OutlineParams) -> f64 {
         self.good(params)
             - params.through_weight * f64::from(self.through)
@@ -220,34 +210,29 @@ impl OutlineAgreement {
     }
 
     /// The part of what is seen that supports the outline, from 0 to 1.
-    #[must_use]
     pub fn trust(&self, params: &OutlineParams) -> f64 {
         let good = self.good(params);
         good / (good + f64::from(self.through + self.against)).max(1.0)
     }
 
     /// The part of the outline's walls that is seen, from 0 to 1.
-    #[must_use]
     pub fn cover(&self, params: &OutlineParams) -> f64 {
         let all = self.support + self.ended + self.silent + self.door + self.through + self.against;
         self.good(params) / f64::from(all.max(1))
     }
 
     /// How certain the place is, from 0 to 1.
-    #[must_use]
     pub fn confidence(&self, params: &OutlineParams) -> f64 {
         self.trust(params) * self.cover(params).sqrt()
     }
 
     /// What supports the outline, as a number of bearings on which its wall is seen.
-    #[must_use]
     pub fn good(&self, params: &OutlineParams) -> f64 {
         f64::from(self.support) + params.ended_weight * f64::from(self.ended)
     }
 
     /// Whether the trust is at least this, few bearings contradict the outline, and there is not
     /// much more door than wall.
-    #[must_use]
     pub fn holds(&self, trust: f64, params: &OutlineParams) -> bool {
         let good = self.good(params);
         self.trust(params) >= trust
@@ -257,7 +242,6 @@ impl OutlineAgreement {
 }
 
 /// A part of all bearings, as a number of bearings, of which one in `every` is used.
-#[must_use]
 pub fn bearings(part: f64, every: usize) -> f64 {
     part * (BEARINGS / every) as f64
 }
@@ -284,13 +268,12 @@ mod tests {
         drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
     }
 
+    fn agreement(outline: &Outline, boundary: &Boundary) -> OutlineAgreement {
+        outline.agreement(boundary, &WallFrame::along(0.0), 1, &params())
+    }
+
     fn held(doors: [bool; 4], boundary: &Boundary) -> OutlineAgreement {
-        Outline::junction(doors, SQUARE, &params()).agreement(
-            boundary,
-            &WallFrame::along(0.0),
-            1,
-            &params(),
-        )
+        agreement(&Outline::junction(doors, SQUARE, &params()), boundary)
     }
 
     #[test]
@@ -325,7 +308,7 @@ mod tests {
         let beside = |gap: [f64; 2]| {
             let mut hallway = DrawnPlace::junction([true, false, true, false], HALF);
             hallway.floor.push([gap[0], 0.0, gap[1], 9.0]);
-            outline.agreement(&seen(&hallway), &WallFrame::along(0.0), 1, &params())
+            agreement(&outline, &seen(&hallway))
         };
         for from in [-0.45, -0.2, 0.1] {
             let door = beside([from, from + 0.9]);
@@ -343,7 +326,7 @@ mod tests {
         let boundary = drawn_place::bearings().look(&view);
         let square = Square { middle: Point2::new(0.8, 0.0), half: HALF - drawn_place::TAPE };
         let l = Outline::junction([false, true, true, false], square, &params());
-        let agreement = l.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
+        let agreement = agreement(&l, &boundary);
         assert!(agreement.against > 60, "{agreement:?}");
         assert!(!agreement.holds(0.75, &params()), "{agreement:?}");
     }
@@ -356,7 +339,7 @@ mod tests {
             // A little too wide and too near: a camera that is not as calibrated gives such an error.
             let square = Square { middle: Point2::new(before - 0.05, 0.0), half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
-            let agreement = bar.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
+            let agreement = agreement(&bar, &boundary);
             assert_eq!(agreement.door, 0, "{before} before: {agreement:?}");
         }
     }
@@ -376,7 +359,7 @@ mod tests {
         }
         let boundary = drawn_place::bearings().look(&view);
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
-        let agreement = outline.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
+        let agreement = agreement(&outline, &boundary);
         assert!(agreement.door == 0 && agreement.through > 60, "{agreement:?}");
     }
 
@@ -401,7 +384,7 @@ mod tests {
             boundary.sights[BEARINGS - 1 - bearing] = Sight::default();
         }
         let outline = Outline::junction(doors, SQUARE, &params());
-        let agreement = outline.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
+        let agreement = agreement(&outline, &boundary);
         assert_eq!(agreement.blank, 1, "{agreement:?}");
         assert!(agreement.trust(&params()) > 0.99, "what is not seen does not speak against it");
     }
@@ -412,9 +395,7 @@ mod tests {
         let square = Square { middle: Point2::origin(), half: 0.55 };
         let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn_place::TAPE));
         let blank = |boundary: &Boundary| {
-            Outline::junction(doors, square, &params())
-                .agreement(boundary, &WallFrame::along(0.0), 1, &params())
-                .blank
+            agreement(&Outline::junction(doors, square, &params()), boundary).blank
         };
         assert_eq!(blank(&boundary), 0);
         for bearing in 3 * BEARINGS / 8..5 * BEARINGS / 8 {

@@ -20,21 +20,15 @@ use crate::{
 
 pub use legend::{LegendSign, StageLegend, legend};
 
-/// The robot's body.
 pub(crate) const BODY: Rgb<u8> = Rgb([90, 90, 90]);
 /// The direction of the edge on which the robot is.
 pub(crate) const GREEN: Rgb<u8> = Rgb([0, 200, 60]);
-/// The directions of the other edges.
 pub(crate) const RED: Rgb<u8> = Rgb([235, 30, 30]);
-/// The marker.
 const BLUE: Rgb<u8> = Rgb([40, 90, 255]);
-/// Walls.
 pub(crate) const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 /// Edges: corners that bend outwards.
 pub(crate) const ORANGE: Rgb<u8> = Rgb([255, 150, 0]);
-/// Corners of the room, which bend inwards.
 pub(crate) const CYAN: Rgb<u8> = Rgb([0, 220, 230]);
-/// The colours of clusters, in turn.
 const CLUSTERS: [Rgb<u8>; 6] = [
     Rgb([230, 80, 70]),
     Rgb([80, 170, 255]),
@@ -46,19 +40,15 @@ const CLUSTERS: [Rgb<u8>; 6] = [
 /// The length of a centre line in a picture, in metres.
 const CENTRE_LINE: f64 = 1.6;
 /// The pixels around each pixel of a line over an image.
-const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-/// The floor up to its farthest point.
+const PEN: [[f32; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
 pub(crate) const REACH: Rgb<u8> = Rgb([40, 60, 40]);
-/// Walls of a scene.
 const WALL: Rgb<u8> = Rgb([150, 150, 150]);
-/// The background.
 pub(crate) const DARK: Rgb<u8> = Rgb([24, 24, 28]);
 
 /// The names of the steps, in their order.
 pub const STAGES: [&str; 6] =
     ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
 
-/// The name of each step, and its picture.
 pub type Stages = [(&'static str, RgbImage); 6];
 
 /// The scene in an image, and a picture of each step that leads to it.
@@ -79,8 +69,6 @@ pub fn stages(sensor: &mut Sensor, image: &RgbImage) -> Result<(Scene, Stages), 
     Ok((found, stages))
 }
 
-/// The colour of a class in pictures.
-#[must_use]
 pub fn shade(class: PixelClass) -> Rgb<u8> {
     match class {
         PixelClass::Unseen => Rgb([0, 0, 0]),
@@ -92,8 +80,6 @@ pub fn shade(class: PixelClass) -> Rgb<u8> {
     }
 }
 
-/// A ground view: each pixel in the colour of its class.
-#[must_use]
 pub fn classes(view: &GroundView) -> RgbImage {
     let side = GroundView::SIDE as u32;
     let mut picture = RgbImage::new(side, side);
@@ -104,8 +90,6 @@ pub fn classes(view: &GroundView) -> RgbImage {
     picture
 }
 
-/// The boundary points, and the floor up to its farthest point.
-#[must_use]
 pub fn boundary(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for (bearing, sight) in
@@ -123,8 +107,6 @@ pub fn boundary(trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// The clusters, each in its own colour.
-#[must_use]
 pub fn clusters(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for (cluster, colour) in trace.clusters.iter().zip(CLUSTERS.into_iter().cycle()) {
@@ -137,7 +119,6 @@ pub fn clusters(trace: &SensingTrace) -> RgbImage {
 }
 
 /// Straight lines, in the colours of their clusters. Walls are thick, with a point at both ends.
-#[must_use]
 pub fn lines(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for piece in &trace.lines {
@@ -153,8 +134,6 @@ pub fn lines(trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// The scene: walls, corners, centre lines, the marker.
-#[must_use]
 pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for wall in &trace.walls {
@@ -182,8 +161,6 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// The image with the centre lines and the marker drawn over it.
-#[must_use]
 pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
     let mut picture = image.clone();
     let mut path = |from: Point2<f64>, to: Point2<f64>, colour| {
@@ -193,7 +170,7 @@ pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
             let ends =
                 [camera.ground_to_pixel(point(step)), camera.ground_to_pixel(point(step + 1))];
             if let [Some(from), Some(to)] = ends {
-                for [right, down] in PEN {
+                for [right, down] in PEN.map(|off| off.map(f64::from)) {
                     let end =
                         |pixel: Point2<f64>| [(pixel.x + right) as f32, (pixel.y + down) as f32];
                     draw::line(&mut picture, end(from), end(to), colour);
@@ -235,7 +212,6 @@ fn centre_lines(scene: &Scene) -> Vec<(Point2<f64>, Point2<f64>, Rgb<u8>)> {
     }
 }
 
-/// The corners of the marker.
 fn rectangle(marker: &MarkerView) -> [Point2<f64>; 4] {
     let robot_from_marker = Isometry2::new(marker.position.into(), marker.axis);
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(ahead, left)| {
@@ -243,7 +219,6 @@ fn rectangle(marker: &MarkerView) -> [Point2<f64>; 4] {
     })
 }
 
-/// The two ends of a wall.
 fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[Point2<f64>; 2]> {
     let robot_from_walls = trace.frame?.robot_from_walls();
     Some([wall.from, wall.to].map(|end| robot_from_walls * wall.along.point(end, wall.offset)))
@@ -277,7 +252,7 @@ fn line(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<
 
 fn thick(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
     let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
-    for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
+    for [u, v] in PEN {
         draw::line(picture, [from[0] + u, from[1] + v], [to[0] + u, to[1] + v], colour);
     }
 }

@@ -1,10 +1,7 @@
-//! Boundary points: where the floor ends at a stripe, seen from the robot outwards. Section 3,
-//! Figure 6(d).
+//! Boundary points: where the floor ends at a stripe, seen from the robot outwards. Section 3, Figure 6(d).
 //!
-//! Walls are higher than the camera, so on each bearing only one wall can be seen, with its stripe at
-//! the end of the floor. But joints between tiles and reflections of lamps look like stripes, too, and a
-//! wall may have the floor's colour. So a bearing may have several edges, the last of them sure or not.
-//! The neighbouring bearings decide which of them are walls.
+//! Joints between tiles and reflections look like stripes, too, and a wall may have the floor's colour. So a bearing
+//! may have several edges, the last of them sure or not; the neighbouring bearings decide.
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
@@ -24,7 +21,6 @@ pub struct Boundary {
     pub sights: Vec<Sight>,
 }
 
-/// What is seen on one bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
     /// Where floor ends at a stripe, outwards. The first ones are used, the others are `None`.
@@ -33,7 +29,6 @@ pub struct Sight {
     pub floor: f64,
 }
 
-/// Where floor ends at a stripe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// Its range, in metres.
@@ -44,7 +39,6 @@ pub struct Edge {
     pub width: f64,
 }
 
-/// The most edges on one bearing.
 const EDGES: usize = 3;
 /// The number of bearings: one each half degree.
 pub const BEARINGS: usize = 720;
@@ -67,7 +61,6 @@ pub struct Bearings {
 
 impl Bearings {
     /// The bearings of a camera at this height above the floor, in metres, for walls with this stripe.
-    #[must_use]
     pub fn new(stripe: Stripe, height: f64, params: &BoundaryParams) -> Self {
         let pixels = (0..BEARINGS)
             .flat_map(|bearing| {
@@ -93,7 +86,6 @@ impl Bearings {
     /// What is seen on each bearing of a ground view.
     // paper: sense.boundary
     // paper: sense.boundary-points
-    #[must_use]
     pub fn look(&self, view: &GroundView) -> Boundary {
         let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
             let mut classes = [PixelClass::Unseen; STEPS];
@@ -166,24 +158,19 @@ impl Bearings {
 
 impl Sight {
     /// A bearing on which a wall was measured at this range. A wall behind [`REACH`] is not looked at.
-    #[must_use]
     pub(crate) fn measured(range: f64) -> Self {
         if range < REACH { Self::at(Some(range)) } else { Self { floor: REACH, ..Self::default() } }
     }
 
-    /// A bearing with one sure edge or none.
     pub(crate) fn at(range: Option<f64>) -> Self {
         let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
         Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
     }
 
-    /// Where floor ends at a stripe, outwards.
     pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
         self.edges.iter().flatten().copied()
     }
 
-    /// The range of the sure edge.
-    #[must_use]
     pub fn sure(&self) -> Option<f64> {
         self.edges().find(|edge| edge.sure).map(|edge| edge.range)
     }
@@ -196,13 +183,10 @@ fn floor_follows(behind: &[PixelClass], params: &BoundaryParams) -> bool {
     behind.filter(|&&class| class == PixelClass::Floor).count() >= params.floor_behind_steps
 }
 
-/// The range of a step.
 fn range(step: f64) -> f64 {
     NEAREST + step * GroundView::SCALE
 }
 
-/// The unit vector on a bearing.
-#[must_use]
 pub fn direction(bearing: usize) -> Vector2<f64> {
     static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> = LazyLock::new(|| {
         std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64))
@@ -211,7 +195,6 @@ pub fn direction(bearing: usize) -> Vector2<f64> {
 }
 
 /// The bearing nearest to a direction, in radians counter-clockwise from ahead.
-#[must_use]
 pub fn bearing(direction: f64) -> usize {
     (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
 }

@@ -19,7 +19,6 @@ pub struct Cluster {
 /// The pieces of wall, without those that are noise.
 // paper: sense.cluster
 // paper: sense.small-clusters
-#[must_use]
 pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
     let mut chains: Vec<Chain> = Vec::new();
     // The indices of those that may go on.
@@ -94,8 +93,6 @@ fn follows(
 }
 
 impl Cluster {
-    /// The longer side of the box around the points, in metres.
-    #[must_use]
     pub fn extent(&self) -> f64 {
         let side = |axis: usize| {
             let along = self.points.iter().map(|point| point[axis]);
@@ -114,7 +111,6 @@ mod tests {
         super::clusters(boundary, &ClusterParams::default())
     }
 
-    /// A boundary from the range on each bearing.
     fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {
         let sights =
             (0..BEARINGS).map(|bearing| Sight::at(range(TAU * bearing as f64 / BEARINGS as f64)));

@@ -7,7 +7,6 @@ use crate::{
     wall::{Axis, WallSegment},
 };
 
-/// Where a wall along x and a wall along y of a frame meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// In the frame, in metres.
@@ -15,27 +14,19 @@ pub struct Corner {
     /// The directions of its two walls, on x and on y: -1 or 1. This is its type: the wall behind it,
     /// followed ahead, turns to the left or to the right.
     pub arms: Vector2<f64>,
-    /// Whether it is a corner of the room or an edge.
     pub bend: Bend,
-    /// What it was found from.
     pub formed: CornerSource,
 }
 
-/// The direction in which a corner bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bend {
-    /// A quarter of floor, three of wall.
     Inwards,
-    /// A quarter of wall, three of floor.
     Outwards,
 }
 
-/// What a corner was found from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CornerSource {
-    /// The ends of two clusters.
     Clusters,
-    /// Two pieces of one cluster.
     Cluster,
     /// The end of a wall whose continuation around the corner cannot be seen from the robot.
     End,
@@ -44,7 +35,6 @@ pub enum CornerSource {
 /// All corners of some walls.
 // paper: sense.corner.pair
 // paper: sense.corner.direction
-#[must_use]
 pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
     let along = |axis: Axis| walls.iter().filter(move |wall| wall.along == axis);
     let mut corners: Vec<Corner> = Vec::new();
@@ -84,7 +74,6 @@ fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, touch: f64) -> Option<Cor
     Some(Corner { position, arms, bend, formed })
 }
 
-/// The edge that a wall's end may be: the wall turns away from the robot there.
 fn edge(wall: &WallSegment, end: f64, back: f64) -> Corner {
     let position = wall.along.point(end, wall.offset);
     let arms = wall.along.point(back, wall.offset.signum()).coords;

@@ -10,7 +10,6 @@ fn put(image: &mut RgbImage, u: i32, v: i32, colour: Rgb<u8>) {
     }
 }
 
-/// A line from one place to another, by Bresenham's algorithm.
 pub(crate) fn line(image: &mut RgbImage, from: [f32; 2], to: [f32; 2], colour: Rgb<u8>) {
     let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
     let turned = |[u, v]: [f32; 2]| if steep { [v, u] } else { [u, v] };
@@ -51,7 +50,6 @@ fn eighth(radius: i32) -> impl Iterator<Item = (i32, i32)> {
     })
 }
 
-/// A circle.
 pub(crate) fn ring(image: &mut RgbImage, [u, v]: [i32; 2], radius: i32, colour: Rgb<u8>) {
     for (x, y) in eighth(radius) {
         for (right, down) in
@@ -62,7 +60,6 @@ pub(crate) fn ring(image: &mut RgbImage, [u, v]: [i32; 2], radius: i32, colour: 
     }
 }
 
-/// A filled circle.
 pub(crate) fn disc(image: &mut RgbImage, [u, v]: [i32; 2], radius: i32, colour: Rgb<u8>) {
     for (x, y) in eighth(radius) {
         for (half, down) in [(x, y), (y, x), (x, -y), (y, -x)] {
@@ -71,7 +68,6 @@ pub(crate) fn disc(image: &mut RgbImage, [u, v]: [i32; 2], radius: i32, colour: 
     }
 }
 
-/// A filled convex polygon.
 pub(crate) fn convex_polygon(image: &mut RgbImage, corners: &[[i32; 2]], colour: Rgb<u8>) {
     let rows = corners.iter().map(|corner| corner[1]);
     let (Some(first), Some(last)) = (rows.clone().min(), rows.max()) else { return };

@@ -16,10 +16,8 @@ pub(crate) struct DrawnPlace {
 
 /// The width of the tape along the walls, in metres.
 pub(crate) const TAPE: f64 = 0.05;
-/// The tape as a stripe.
 pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAPE };
 
-/// The bearings of a camera above such a floor.
 pub(crate) fn bearings() -> Bearings {
     Bearings::new(STRIPE, 1.05, &BoundaryParams::default())
 }
@@ -53,7 +51,6 @@ impl DrawnPlace {
         })
     }
 
-    /// What a robot sees at a position with a heading.
     pub(crate) fn seen_from(&self, position: [f64; 2], heading: f64) -> GroundView {
         const RAYS: usize = 4 * 720;
         let exits: Vec<f64> = (0..RAYS)

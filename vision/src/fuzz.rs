@@ -17,14 +17,12 @@ use crate::{
 /// The name of a target, of its folder in `fuzz/corpus/`, and its body.
 pub type VisionFuzzTarget = (&'static str, fn(&[u8]));
 
-/// All targets.
 pub const TARGETS: &[VisionFuzzTarget] =
     &[("image", image), ("calibration", calibration), ("colours", colours)];
 
 /// The size of the images: the smallest with which hallways and junctions can be distinguished.
 const SIZE: [u32; 2] = [96, 72];
 
-/// The colours of the seeds.
 const COLOURS: &str = include_str!("../../fuzz/corpus/colours/of-the-images");
 
 thread_local! {
@@ -61,13 +59,16 @@ pub fn image(bytes: &[u8]) {
     });
 }
 
-fn assert_is_of_numbers(scene: &Scene) {
+/// # Panics
+/// Panics if a number of a scene is not finite, or a junction has no door or more than four.
+pub fn assert_is_of_numbers(scene: &Scene) {
     let mut numbers = Vec::new();
     match &scene.place {
         Place::Hallway(view) => {
             numbers.extend([view.heading, view.left, view.right, view.confidence]);
         }
         Place::Junction(view) => {
+            assert!((1..=4).contains(&view.doors.len()), "{scene:?}");
             let lines = view.doors.iter().map(|door| (door.through, door.direction));
             numbers.extend(lines.flat_map(|([x, y], direction)| [x, y, direction]));
             numbers.extend(view.turning_point);

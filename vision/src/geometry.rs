@@ -7,9 +7,7 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
-/// The unit vector in a direction.
 #[inline]
-#[must_use]
 pub fn unit(direction: f64) -> Vector2<f64> {
     let (sine, cosine) = direction.sin_cos();
     Vector2::new(cosine, sine)
@@ -17,37 +15,29 @@ pub fn unit(direction: f64) -> Vector2<f64> {
 
 /// The direction of a vector, from -pi to pi.
 #[inline]
-#[must_use]
 pub fn angle(vector: Vector2<f64>) -> f64 {
     vector.y.atan2(vector.x)
 }
 
 /// The direction from one point to another, from -pi to pi.
-#[must_use]
 pub fn direction(from: impl Into<Point2<f64>>, to: impl Into<Point2<f64>>) -> f64 {
     angle(to.into() - from.into())
 }
 
-/// The distance of two points.
-#[must_use]
 pub fn distance(one: impl Into<Point2<f64>>, other: impl Into<Point2<f64>>) -> f64 {
     (other.into() - one.into()).norm()
 }
 
 /// The motion from the robot's frame to the one in which its pose is given.
-#[must_use]
 pub fn from_robot(pose: &Odometry) -> Isometry2<f64> {
     Isometry2::new(Vector2::from(pose.position), pose.heading)
 }
 
 /// The motion after which a robot at the first pose is at the second.
-#[must_use]
 pub fn motion_between(from: &Odometry, to: &Odometry) -> Isometry2<f64> {
     from_robot(to) * from_robot(from).inverse()
 }
 
-/// Where a motion takes a robot.
-#[must_use]
 pub fn moved(motion: &Isometry2<f64>, pose: &Odometry) -> Odometry {
     Odometry {
         position: (motion * Point2::from(pose.position)).into(),

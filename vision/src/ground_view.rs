@@ -23,7 +23,6 @@ pub struct GroundView {
 }
 
 impl GroundView {
-    /// Pixels on a side.
     pub const SIDE: usize = 800;
     /// Metres per pixel.
     pub const SCALE: f64 = 0.0075;
@@ -32,21 +31,17 @@ impl GroundView {
     /// The pixels from the robot to the middle of the first row's pixels, and of the first column's.
     const MIDDLE: f64 = (Self::SIDE as f64 - 1.0) / 2.0;
 
-    /// A view of nothing.
-    #[must_use]
     pub fn unseen() -> Self {
         Self { classes: vec![PixelClass::Unseen; Self::SIDE * Self::SIDE], marker: Vec::new() }
     }
 
     /// The point of the floor in the middle of a pixel.
-    #[must_use]
     pub fn ground(index: usize) -> Point2<f64> {
         let (row, column) = (index / Self::SIDE, index % Self::SIDE);
         Point2::new(row, column).map(|at| (Self::MIDDLE - at as f64) * Self::SCALE)
     }
 
     /// The pixel that contains a point of the floor; `None` outside of the view.
-    #[must_use]
     pub fn index(point: Point2<f64>) -> Option<usize> {
         let [row, column] = point.map(|at| (Self::MIDDLE - at / Self::SCALE).round()).into();
         let inside = 0.0..Self::SIDE as f64;
@@ -66,8 +61,6 @@ impl Unwrapping {
     /// Stands for a pixel of the ground view that no pixel of the image shows.
     const UNSEEN: u32 = u32::MAX;
 
-    /// The table for a camera.
-    #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let pixels: Vec<u32> = (0..GroundView::SIDE * GroundView::SIDE)
             .map(|index| camera.seen_pixel(GroundView::ground(index)).unwrap_or(Self::UNSEEN))

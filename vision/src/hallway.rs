@@ -12,54 +12,37 @@ use crate::{
     wall::{Axis, WallFrame, WallSegment},
 };
 
-/// A hallway that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedHallway {
-    /// The frame that fits the walls best.
     pub frame: WallFrame,
-    /// Its axis in the frame.
     pub axis: Axis,
     /// Its centre line and half its width, between the edges that are seen.
     pub square: Square,
-    /// Whether it is clear.
     pub status: HallwayStatus,
-    /// The agreement of its walls with what is seen.
     pub agreement: OutlineAgreement,
 }
 
 /// The hallway that the robot is in, if any.
 // paper: sense.hallway.two-clusters
 // paper: sense.hallway.major
-#[must_use]
 pub fn hallway(
     walls: &[WallSegment],
     boundary: &Boundary,
     frame: &WallFrame,
     params: &SensingParams,
 ) -> Option<FittedHallway> {
-    [Axis::X, Axis::Y]
-        .into_iter()
-        .filter_map(|axis| along(axis, walls, boundary, frame, params))
-        .max_by(|one, other| one.balance(params).total_cmp(&other.balance(params)))
-}
-
-/// The best hallway along an axis, between the nearest walls on both sides.
-fn along(
-    axis: Axis,
-    walls: &[WallSegment],
-    boundary: &Boundary,
-    frame: &WallFrame,
-    params: &SensingParams,
-) -> Option<FittedHallway> {
-    let lefts = majors(axis, 1.0, walls, &params.hallway);
-    let rights = majors(axis, -1.0, walls, &params.hallway);
-    let pairs = lefts.iter().flat_map(|&left| rights.iter().map(move |&right| (left, right)));
+    let pairs = [Axis::X, Axis::Y].into_iter().flat_map(|axis| {
+        let [lefts, rights] = [1.0, -1.0].map(|side| majors(axis, side, walls, &params.hallway));
+        lefts.into_iter().flat_map(move |left| {
+            rights.clone().into_iter().map(move |right| (axis, [left, right]))
+        })
+    });
     pairs
-        .filter_map(|(left, right)| between(axis, [left, right], walls, boundary, frame, params))
+        .filter_map(|(axis, offsets)| between(axis, offsets, walls, boundary, frame, params))
         .max_by(|one, other| one.balance(params).total_cmp(&other.balance(params)))
 }
 
-/// The hallway along an axis between walls with these offsets.
+/// The hallway between walls with these offsets, on the left and on the right.
 fn between(
     axis: Axis,
     [left, right]: [f64; 2],
@@ -125,8 +108,8 @@ fn goes_on(
     frame: &WallFrame,
     params: &SensingParams,
 ) -> bool {
-    let HallwayParams { sector, floor_ahead, wall_ahead, .. } = params.hallway;
-    let (along, _) = axis.split();
+    let HallwayParams { sector, floor_ahead, wall_ahead, off_wall, .. } = params.hallway;
+    let (along, across) = axis.split();
     let whither = frame.robot_from_walls() * axis.point(sign, 0.0);
     let least = square.half + floor_ahead;
     let first = bearing(angle(whither.coords)) + BEARINGS - sector;
@@ -141,28 +124,16 @@ fn goes_on(
             _ => far += 1,
         }
     }
+    let reaches = |wall: &WallSegment| {
+        let off = ((wall.offset - square.middle[across]).abs() - square.half).abs();
+        let least = square.half + wall_ahead;
+        let far = if sign > 0.0 { wall.to > least } else { wall.from < -least };
+        wall.along == axis && off < off_wall && far
+    };
     // Behind the robot it may be dark; the robot came from there.
-    let enough = !ahead
-        || far > sector / 3
-        || reaches(axis, sign * (square.half + wall_ahead), square, walls, &params.hallway);
+    let enough = !ahead || far > sector / 3 || walls.iter().any(reaches);
     let closed = near > sector / 2 && near > far;
     enough && !closed && !is_closed(axis, sign * least, square, walls, params.outline.door_width)
-}
-
-/// Whether a wall at a side reaches this coordinate.
-fn reaches(
-    axis: Axis,
-    least: f64,
-    square: Square,
-    walls: &[WallSegment],
-    params: &HallwayParams,
-) -> bool {
-    let centre = square.middle[axis.split().1];
-    walls.iter().any(|wall| {
-        let off = ((wall.offset - centre).abs() - square.half).abs();
-        let far = if least > 0.0 { wall.to > least } else { wall.from < least };
-        wall.along == axis && off < params.off_wall && far
-    })
 }
 
 /// Whether nearer walls close half of the hallway or more; doors in them count as wall.
@@ -241,13 +212,11 @@ pub(crate) fn status(
 }
 
 impl FittedHallway {
-    /// Whether the robot is between its walls.
     pub(crate) fn has_robot(&self) -> bool {
         self.square.middle[self.axis.split().1].abs() < self.square.half
     }
 
     /// Whether no part of its walls looks open, so that there is no need to search for a junction.
-    #[must_use]
     pub fn is_sure(&self, params: &SensingParams) -> bool {
         self.agreement.holds(params.hallway.sure_trust, &params.outline)
     }
@@ -259,7 +228,6 @@ impl FittedHallway {
     /// The hallway in a scene. `margin` is the distance from the edges that are seen to the wall
     /// planes.
     // paper: sense.distances
-    #[must_use]
     pub fn view(&self, margin: f64, params: &OutlineParams) -> HallwayView {
         let heading = undirected(self.frame.angle() + self.axis.direction());
         let (_, across) = self.axis.split();
@@ -296,7 +264,6 @@ mod tests {
     const DOOR_WIDTH: f64 = 0.75;
     const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: 0.8 };
 
-    /// The hallway for a robot at the origin of a place that looks along x.
     fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
         let boundary = drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
         let params = SensingParams::default();
@@ -305,7 +272,6 @@ mod tests {
         hallway(&frame.walls(&lines, &params.wall), &boundary, &frame, &params)
     }
 
-    /// A hallway along x with this width between its tapes.
     fn straight(width: f64) -> DrawnPlace {
         DrawnPlace::junction([true, false, true, false], width / 2.0 + drawn_place::TAPE)
     }

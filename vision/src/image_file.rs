@@ -5,27 +5,18 @@ use std::io::Cursor;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, RgbImage};
 use thiserror::Error;
 
-/// An image file. Only its header has been read.
 pub struct ImageFile<'bytes> {
     decoder: Box<dyn ImageDecoder + 'bytes>,
 }
 
-/// Why bytes are not an image.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ImageFileError {
-    /// It is neither PNG nor JPEG.
     #[error("this is not an image; it must be PNG or JPEG")]
     NotAnImage,
-    /// It is only the beginning of a JPEG.
     #[error("this cannot be read as an image: the file is truncated")]
     Truncated,
-    /// The image is larger than that of any camera.
     #[error("the image has {} x {} pixels, which are too many", .size[0], .size[1])]
-    TooLarge {
-        /// Its width and height.
-        size: [u32; 2],
-    },
-    /// It cannot be decoded.
+    TooLarge { size: [u32; 2] },
     #[error("this cannot be read as an image: {0}")]
     Undecodable(String),
 }
@@ -56,8 +47,6 @@ impl<'bytes> ImageFile<'bytes> {
         Ok(Self { decoder: Box::new(decoder) })
     }
 
-    /// The image's width and height, in pixels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.decoder.dimensions().into()
     }

@@ -1,10 +1,7 @@
 //! Junctions: the corners and walls of each kind of junction, and its doors. Section 3, Figures 8 and 9.
 //!
-//! A corner and the width of the hallways give a turning point. The type of the corner gives the
-//! junctions that it can belong to: an edge belongs to an L between its two doors, or to a T with these
-//! doors; a corner of the room belongs to an L opposite its two doors, or to one of two dead ends. Each
-//! of these candidates is compared with all that is seen, so the second corner and the straight wall of
-//! the paper must be there, too.
+//! A corner and the width of the hallways give a turning point, and the type of the corner the junctions that it can
+//! belong to. Each of these candidates is compared with all that is seen.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -21,27 +18,20 @@ use crate::{
     wall::{Axis, WallFrame, WallSegment},
 };
 
-/// A junction that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedJunction {
-    /// The frame that fits the walls best.
     pub frame: WallFrame,
     /// Whether there is a door in each of the four [`DIRECTIONS`] of the frame.
     pub doors: [bool; 4],
     /// The turning point, and half the width between the edges that are seen.
     pub square: Square,
-    /// The agreement of its walls with what is seen.
     pub agreement: OutlineAgreement,
 }
 
-/// The result of the search for a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JunctionSearch {
-    /// One junction fits best.
     Junction(FittedJunction),
-    /// Different junctions fit about as well.
     Ambiguous,
-    /// No junction fits.
     Nothing,
 }
 
@@ -49,7 +39,6 @@ pub enum JunctionSearch {
 // paper: sense.junction.type
 // paper: sense.junction.two
 // paper: sense.junction.three
-#[must_use]
 pub fn junction(
     corners: &[Corner],
     walls: &[WallSegment],
@@ -118,7 +107,6 @@ fn best_first(guesses: &mut [FittedJunction], params: &OutlineParams) {
     guesses.sort_by(|one, other| balance(other).total_cmp(&balance(one)));
 }
 
-/// The distance between two turning points.
 fn apart(one: Square, other: Square) -> f64 {
     distance(&one.middle, &other.middle)
 }
@@ -163,7 +151,6 @@ fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
 }
 
 impl FittedJunction {
-    /// The same junction, moved so that its walls fit best.
     fn fitted(self, boundary: &Boundary, params: &OutlineParams) -> Self {
         let (mut square, mut frame) = (self.square, self.frame);
         for _ in 0..3 {
@@ -176,15 +163,12 @@ impl FittedJunction {
     }
 
     /// Whether the robot is there: the turning point is neither far ahead nor far behind.
-    #[must_use]
     pub fn is_here(&self, params: &JunctionParams) -> bool {
         let away = -self.square.middle.x;
         let aside = self.square.middle.y.abs();
         (-params.ahead..=params.behind).contains(&away) && aside <= params.ahead
     }
 
-    /// The hallway of the junction that the robot is in.
-    #[must_use]
     pub fn hallway(&self, walls: &[WallSegment], params: &HallwayParams) -> Option<FittedHallway> {
         let axis = self.arm()?;
         let mut square = self.square;
@@ -195,7 +179,6 @@ impl FittedJunction {
         Some(hallway).filter(FittedHallway::has_robot)
     }
 
-    /// The axis of the hallway that the robot is in.
     fn arm(&self) -> Option<Axis> {
         let far = |direction: Vector2<f64>| -direction.dot(&self.square.middle.coords);
         (0..4)
@@ -209,7 +192,6 @@ impl FittedJunction {
     /// The junction in a scene: its doors clockwise from the one behind.
     // paper: sense.junction.entry
     // paper: sense.centre-lines
-    #[must_use]
     pub fn view(&self, params: &OutlineParams) -> JunctionView {
         let turning_point = (self.frame.robot_from_walls() * self.square.middle).into();
         let doors = (0..4).rev().filter(|&number| self.doors[number]).map(|number| CentreLine {
@@ -246,15 +228,22 @@ mod tests {
         for bearing in hidden {
             boundary.sights[bearing % BEARINGS] = Sight::default();
         }
-        finding(&boundary)
+        finding(&boundary, &walls_of(&boundary))
     }
 
-    fn finding(boundary: &Boundary) -> JunctionSearch {
+    fn walls_of(boundary: &Boundary) -> (WallFrame, Vec<WallSegment>) {
         let params = SensingParams::default();
         let lines = lines(&clusters(boundary, &params.cluster), &params.line);
         let frame = WallFrame::of(&lines, &params.wall).unwrap();
-        let walls = frame.walls(&lines, &params.wall);
-        junction(&corners(&walls, &params.corner), &walls, boundary, &frame, &params)
+        (frame, frame.walls(&lines, &params.wall))
+    }
+
+    fn finding(
+        boundary: &Boundary,
+        (frame, walls): &(WallFrame, Vec<WallSegment>),
+    ) -> JunctionSearch {
+        let params = SensingParams::default();
+        junction(&corners(walls, &params.corner), walls, boundary, frame, &params)
     }
 
     // paper: sense.junction.two
@@ -303,10 +292,7 @@ mod tests {
     fn no_junction_is_found_on_few_bearings() {
         let far_off = DrawnPlace::junction([false, true, true, true], 0.55);
         let boundary = bearings_of(&far_off, [-1.9, 0.0]);
-        let params = SensingParams::default();
-        let lines = lines(&clusters(&boundary, &params.cluster), &params.line);
-        let frame = WallFrame::of(&lines, &params.wall).unwrap();
-        let walls = frame.walls(&lines, &params.wall);
+        let walls = walls_of(&boundary);
         let found = |every: usize| {
             let mut boundary = boundary.clone();
             for (bearing, sight) in boundary.sights.iter_mut().enumerate() {
@@ -314,7 +300,7 @@ mod tests {
                     *sight = Sight::default();
                 }
             }
-            junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
+            finding(&boundary, &walls)
         };
         // Half of its walls is seen, but on only a seventh of all bearings.
         assert!(matches!(found(1), JunctionSearch::Junction(_)));

@@ -30,16 +30,12 @@ impl<const N: usize> NormalEquations<N> {
     }
 }
 
-/// The line that fits points best.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrincipalAxis {
-    /// The mean of the points.
     pub(crate) mean: Point2<f64>,
     /// The unit vector along the line; which of the two, is not defined.
     pub(crate) along: Vector2<f64>,
-    /// The variance of the points along the line.
     pub(crate) major: f64,
-    /// The variance across it.
     pub(crate) minor: f64,
 }
 

@@ -4,22 +4,17 @@ use nalgebra::{Point2, Vector2, distance};
 
 use crate::{cluster::Cluster, geometry::angle, least_squares::PrincipalAxis, params::LineParams};
 
-/// A straight piece of wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallLine {
-    /// The mean of its points.
     pub middle: Point2<f64>,
     /// The unit vector along it, from the first point to the last.
     pub along: Vector2<f64>,
     /// Its first end, counter-clockwise as seen from the robot, in metres.
     pub from: Point2<f64>,
-    /// Its last end.
     pub to: Point2<f64>,
     /// The root mean square of its points' distances from it, in metres.
     pub spread: f64,
-    /// The number of its points.
     pub points: usize,
-    /// The index of its cluster.
     pub cluster: usize,
 }
 
@@ -27,7 +22,6 @@ impl WallLine {
     /// The line that fits the points best: their first principal component. `None` for fewer than two
     /// different points.
     // paper: sense.pca
-    #[must_use]
     pub fn through(points: &[Point2<f64>]) -> Option<Self> {
         let (first, last) = (*points.first()?, *points.last()?);
         let PrincipalAxis { mean: middle, along, major, minor } = PrincipalAxis::of(points);
@@ -41,19 +35,16 @@ impl WallLine {
         Some(Self { from: line.foot(first), to: line.foot(last), ..line })
     }
 
-    /// The point of the line that is nearest to a point.
     fn foot(&self, point: Point2<f64>) -> Point2<f64> {
         self.middle + (point - self.middle).dot(&self.along) * self.along
     }
 
     /// Its length in metres.
-    #[must_use]
     pub fn length(&self) -> f64 {
         distance(&self.from, &self.to)
     }
 
     /// Its direction, in radians counter-clockwise from ahead.
-    #[must_use]
     pub fn direction(&self) -> f64 {
         angle(self.along)
     }
@@ -62,7 +53,6 @@ impl WallLine {
 /// The straight pieces of clusters. A cluster is split at the point farthest from the chord between its
 /// ends, until no point is far (Ramer 1972, Douglas and Peucker 1973).
 // paper: sense.corner.single
-#[must_use]
 pub fn lines(clusters: &[Cluster], params: &LineParams) -> Vec<WallLine> {
     let pieces = clusters.iter().enumerate().flat_map(|(number, cluster)| {
         split(cluster, params).into_iter().map(move |line| WallLine { cluster: number, ..line })

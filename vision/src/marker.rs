@@ -17,7 +17,6 @@ use crate::{
 
 /// The marker, if enough of its colour is seen on the floor.
 // paper: marker-sense.present, marker-sense.direction
-#[must_use]
 pub fn marker(
     view: &GroundView,
     boundary: &Boundary,
@@ -103,7 +102,6 @@ mod tests {
         params::{MARKER_LENGTH, MARKER_WIDTH},
     };
 
-    /// Floor everywhere except under the body, and a marker on it.
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
         let mut view = GroundView::unseen();
         for index in 0..view.classes.len() {

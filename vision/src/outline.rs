@@ -25,10 +25,8 @@ pub struct Outline {
     pub(crate) width: f64,
 }
 
-/// A side of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OutlineSide {
-    /// Wall or opening.
     kind: Kind,
     /// Its direction from the middle, an index in [`DIRECTIONS`].
     pub(crate) towards: usize,
@@ -43,11 +41,9 @@ pub(crate) struct OutlineSide {
 enum Kind {
     /// A wall on this side of the middle, on the axis across it: -1 or 1.
     Wall(f64),
-    /// An opening. What is behind it does not matter.
     Open,
 }
 
-/// A hallway or a junction in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
     /// The turning point of a junction; the point of a hallway's centre line beside the robot.
@@ -56,12 +52,10 @@ pub struct Square {
     pub half: f64,
 }
 
-/// The most sides of a junction.
 const MOST_SIDES: usize = 12;
 
 impl Outline {
     /// A piece of hallway along an axis, between two coordinates along it.
-    #[must_use]
     pub fn hallway(axis: Axis, square: Square, from: f64, to: f64) -> Self {
         let (along, across) = axis.split();
         let [beside, centre] = [square.middle[along], square.middle[across]];
@@ -89,7 +83,6 @@ impl Outline {
     }
 
     /// A junction with doors in some of the four [`DIRECTIONS`].
-    #[must_use]
     pub fn junction(
         doors: [bool; 4],
         Square { middle, half }: Square,
@@ -153,7 +146,6 @@ impl Outline {
 
     /// The place moved, turned and widened so that its walls fit the boundary points near them best,
     /// by least squares; and the frame turned with it.
-    #[must_use]
     pub fn fitted(
         &self,
         square: Square,
@@ -199,7 +191,6 @@ impl Outline {
 }
 
 impl OutlineSide {
-    /// Whether there is a wall.
     pub(crate) fn is_wall(&self) -> bool {
         self.kind != Kind::Open
     }

@@ -1,18 +1,14 @@
-//! The parameters of sensing: the thresholds of Section 3's pipeline, in one place.
+//! The parameters of sensing: the thresholds of Section 3's pipeline, in one place. The paper gives none of them.
 //!
-//! Lengths are in metres and angles in radians. A *bearing* is half a degree, a *step* is one pixel of
-//! the ground view along a bearing: 7.5 mm. "A part of" is a number from 0 to 1.
-//!
-//! The paper gives the steps of sensing but none of their thresholds. The values come from:
+//! Lengths are in metres and angles in radians. A *bearing* is half a degree, a *step* is one pixel of the ground view
+//! along a bearing: 7.5 mm. "A part of" is a number from 0 to 1. The values come from:
 //!
 //! * **geometry**: the robot, the camera or the building gives the value;
-//! * **views**: chosen on rendered views, where it meets the targets of `evaluate vision`
-//!   (`docs/sensing.md`).
+//! * **views**: chosen on rendered views, where it meets the targets of `evaluate vision` (`docs/sensing.md`).
 //!
-//! Not here: the resolution and the range of the ground view and of the bearings and the number of edges on one,
-//! which size tables ([`GroundView`](crate::ground_view::GroundView), [`boundary`](crate::boundary)), and what is
-//! shared by other work: [`colour::params`](crate::colour::params) by training and sensing,
-//! [`camera::params`](crate::camera::params) by calibrations, and [`laser::params`](crate::laser::params).
+//! Not here are the sizes of tables ([`GroundView`](crate::ground_view::GroundView),
+//! [`boundary`](crate::boundary)), and the parameters of [`colour`](crate::colour::params),
+//! [`camera`](crate::camera::params) and [`laser`](crate::laser::params).
 
 use std::ops::RangeInclusive;
 
@@ -102,7 +98,6 @@ macro_rules! params {
         }
 
         impl $name {
-            /// The defaults.
             pub const DEFAULT: Self = Self { $($field: $default,)* };
         }
 
@@ -139,23 +134,14 @@ params! {
         /// The fewest bearings on which floor is seen; with fewer there is no scene. Geometry: a fifth
         /// of the 720 bearings.
         min_floor_bearings: usize = 144,
-        /// Where the floor ends.
         boundary: BoundaryParams = BoundaryParams::DEFAULT,
-        /// Clusters of boundary points.
         cluster: ClusterParams = ClusterParams::DEFAULT,
-        /// Straight lines in clusters.
         line: LineParams = LineParams::DEFAULT,
-        /// Walls at right angles to each other.
         wall: WallParams = WallParams::DEFAULT,
-        /// Corners of walls.
         corner: CornerParams = CornerParams::DEFAULT,
-        /// Outlines of places, compared with what is seen.
         outline: OutlineParams = OutlineParams::DEFAULT,
-        /// Hallways.
         hallway: HallwayParams = HallwayParams::DEFAULT,
-        /// Junctions.
         junction: JunctionParams = JunctionParams::DEFAULT,
-        /// The marker.
         marker: MarkerParams = MarkerParams::DEFAULT,
     }
 
@@ -370,7 +356,6 @@ pub const ROBOT_RADIUS: f64 = 0.205;
 
 impl HallwayParams {
     /// Whether a hallway can be this wide; `half` is half its width.
-    #[must_use]
     pub fn has_width(&self, half: f64) -> bool {
         (self.half_width[0]..=self.half_width[1]).contains(&half)
     }

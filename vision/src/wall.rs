@@ -19,33 +19,24 @@ pub struct WallFrame {
     robot_from_walls: UnitComplex<f64>,
 }
 
-/// An axis of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// Nearest to ahead.
     X,
-    /// Across.
     Y,
 }
 
-/// A segment of a wall, in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSegment {
-    /// Its axis.
     pub along: Axis,
     /// Its coordinate on the other axis, in metres.
     pub offset: f64,
-    /// Its lesser end.
     pub from: f64,
-    /// Its greater end.
     pub to: f64,
-    /// The index of its cluster.
     pub cluster: usize,
 }
 
 impl WallFrame {
     /// The frame with an axis in this direction.
-    #[must_use]
     pub fn along(direction: f64) -> Self {
         let angle = wrapped(4.0 * direction) / 4.0;
         Self { angle, robot_from_walls: UnitComplex::new(angle) }
@@ -53,7 +44,6 @@ impl WallFrame {
 
     /// The frame along which the most lines run, by length; `None` without lines.
     // paper: env.right-angles
-    #[must_use]
     pub fn of(lines: &[WallLine], params: &WallParams) -> Option<Self> {
         let angles: Vec<_> =
             lines.iter().map(|line| (Self::along(line.direction()).angle, line.length())).collect();
@@ -76,31 +66,25 @@ impl WallFrame {
     }
 
     /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
-    #[must_use]
     pub fn angle(&self) -> f64 {
         self.angle
     }
 
     /// The direction along an axis that is rather ahead than behind: 1 or -1.
-    #[must_use]
     pub fn ahead(&self, axis: Axis) -> f64 {
         if axis == Axis::Y && self.angle > 0.0 { -1.0 } else { 1.0 }
     }
 
     /// The turn from the frame to the robot's floor coordinates.
-    #[must_use]
     pub fn robot_from_walls(&self) -> UnitComplex<f64> {
         self.robot_from_walls
     }
 
     /// The turn from the robot's floor coordinates to the frame.
-    #[must_use]
     pub fn walls_from_robot(&self) -> UnitComplex<f64> {
         self.robot_from_walls.inverse()
     }
 
-    /// The lines that run along an axis.
-    #[must_use]
     pub fn walls(&self, lines: &[WallLine], params: &WallParams) -> Vec<WallSegment> {
         lines.iter().filter_map(|line| self.wall(line, params)).collect()
     }
@@ -130,7 +114,6 @@ impl WallFrame {
 
 impl Axis {
     /// The index of the coordinate along the axis, and of the one across it.
-    #[must_use]
     pub fn split(self) -> (usize, usize) {
         match self {
             Self::X => (0, 1),
@@ -138,7 +121,6 @@ impl Axis {
         }
     }
 
-    /// The other axis.
     #[must_use]
     pub fn across(self) -> Self {
         match self {
@@ -148,7 +130,6 @@ impl Axis {
     }
 
     /// The point with this coordinate along the axis, and that across it.
-    #[must_use]
     pub fn point(self, along: f64, across: f64) -> Point2<f64> {
         match self {
             Self::X => Point2::new(along, across),
@@ -157,7 +138,6 @@ impl Axis {
     }
 
     /// Its direction in a frame, in radians counter-clockwise from the frame's x.
-    #[must_use]
     pub fn direction(self) -> f64 {
         match self {
             Self::X => 0.0,
@@ -167,8 +147,6 @@ impl Axis {
 }
 
 impl WallSegment {
-    /// Whether a point of the frame lies on it.
-    #[must_use]
     pub fn contains(&self, point: Point2<f64>, params: &WallParams) -> bool {
         let (along, across) = self.along.split();
         let near = params.on_wall;
@@ -176,8 +154,6 @@ impl WallSegment {
             && (point[across] - self.offset).abs() <= near
     }
 
-    /// Its length in metres.
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.to - self.from
     }
@@ -185,7 +161,6 @@ impl WallSegment {
 
 /// The boundary with the edges that lie on long walls sure, too: what is behind a wall may have the
 /// floor's colour.
-#[must_use]
 pub fn confirmed(
     boundary: Boundary,
     walls: &[WallSegment],

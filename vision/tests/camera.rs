@@ -14,12 +14,14 @@ use toposlam_vision::{
     geometry::distance,
 };
 
-/// The bytes of a file for the tests.
 fn file(name: &str) -> io::Result<Vec<u8>> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cameras").join(name))
 }
 
-/// The camera of a calibration file for the tests.
+fn text(name: &str) -> String {
+    String::from_utf8(file(name).unwrap()).unwrap()
+}
+
 fn camera(name: &str) -> Camera {
     calibration::read(&file(name).unwrap(), &mut file).unwrap()
 }
@@ -29,7 +31,6 @@ fn camera_of(text: &str, named: &str) -> Result<Camera, CalibrationError> {
     calibration::read(text.as_bytes(), &mut |_| Ok(named.as_bytes().to_vec()))
 }
 
-/// The mirror of a camera.
 fn mirror(camera: &Camera) -> SphericalMirror {
     match camera.optics {
         OpticsModel::SphericalMirror(mirror) => mirror,
@@ -130,12 +131,12 @@ fn opencv_maps_points_to_the_same_pixels() {
 #[test]
 fn a_pixel_of_ocamcalib_looks_along_its_polynomial() {
     // cam2world as the paper prints it, computed in another language.
-    let text = String::from_utf8(file("calib_results.txt").unwrap()).unwrap();
-    let text = text
+    let results = text("calib_results.txt");
+    let results = results
         .replace("480.000000 640.000000", "471.25 655.5")
         .replace("1.000000 0.000000 0.000000", "1.0021 -0.0130 0.0085");
-    let toml = String::from_utf8(file("ocamcalib.toml").unwrap()).unwrap();
-    let camera = camera_of(&toml, &text).unwrap();
+    let toml = text("ocamcalib.toml");
+    let camera = camera_of(&toml, &results).unwrap();
     let shown = [
         ([700.0, 400.0], [0.294_792_844_901, 0.188_539_424_042]),
         ([655.5, 471.25], [0.0, 0.0]),
@@ -168,7 +169,7 @@ fn other_tools_calibrations_of_the_superscout_agree_with_its_mirror() {
 #[test]
 fn ahead_and_left_are_as_in_the_calibration() {
     for name in ["superscout.toml", "ocamcalib.toml", "camodocal.toml"] {
-        let text = String::from_utf8(file(name).unwrap()).unwrap();
+        let text = text(name);
         // Ahead at the top: left is on the right when seen from below, on the left from above.
         // Ahead at the right: left is below, or above.
         for (ahead, seen_from, ahead_at, left_at) in [
@@ -196,10 +197,10 @@ fn ahead_and_left_are_as_in_the_calibration() {
 
 #[test]
 fn a_false_inverse_polynomial_does_no_harm() {
-    let text = String::from_utf8(file("calib_results.txt").unwrap()).unwrap();
-    let toml = String::from_utf8(file("ocamcalib.toml").unwrap()).unwrap();
-    let right = camera_of(&toml, &text).unwrap();
-    let (before, after) = text.split_once("11 353.137914").unwrap();
+    let results = text("calib_results.txt");
+    let toml = text("ocamcalib.toml");
+    let right = camera_of(&toml, &results).unwrap();
+    let (before, after) = results.split_once("11 353.137914").unwrap();
     let (_, after) = after.split_once('\n').unwrap();
     for inverse in ["1 0.0", "2 -5e5 1e9", "3 353 -900 7"] {
         let wrong = camera_of(&toml, &format!("{before}{inverse}\n{after}")).unwrap();
@@ -213,14 +214,14 @@ fn a_false_inverse_polynomial_does_no_harm() {
 
 #[test]
 fn either_sign_of_the_polynomial_looks_down() {
-    let text = String::from_utf8(file("calib_results.txt").unwrap()).unwrap();
-    let turned = text.replace(
+    let results = text("calib_results.txt");
+    let turned = results.replace(
         "5 -2.553753e+02 0.000000e+00 1.770647e-03 -2.520355e-06 9.359533e-09",
         "5 2.553753e+02 0.000000e+00 -1.770647e-03 2.520355e-06 -9.359533e-09",
     );
-    assert_ne!(text, turned);
-    let toml = String::from_utf8(file("ocamcalib.toml").unwrap()).unwrap();
-    let [one, other] = [text, turned].map(|text| camera_of(&toml, &text).unwrap());
+    assert_ne!(results, turned);
+    let toml = text("ocamcalib.toml");
+    let [one, other] = [results, turned].map(|text| camera_of(&toml, &text).unwrap());
     assert_eq!(one.ground_to_pixel([1.0, 2.0]), other.ground_to_pixel([1.0, 2.0]));
 }
 
@@ -400,19 +401,10 @@ proptest! {
     }
 
     #[test]
-    fn ocamcalibs_camera_maps_pixels_to_floor_and_back(
-        (text, named) in ocamcalib(), pixel in pixel(), ground in ground(),
+    fn a_single_viewpoint_maps_pixels_to_floor_and_back(
+        (text, named) in prop_oneof![ocamcalib(), mei()], pixel in pixel(), ground in ground(),
     ) {
-        let camera = camera_of(&text, &named).unwrap();
-        round_trips(&camera, pixel, ground)?;
-    }
-
-    #[test]
-    fn the_unified_camera_maps_pixels_to_floor_and_back(
-        (text, named) in mei(), pixel in pixel(), ground in ground(),
-    ) {
-        let camera = camera_of(&text, &named).unwrap();
-        round_trips(&camera, pixel, ground)?;
+        round_trips(&camera_of(&text, &named).unwrap(), pixel, ground)?;
     }
 
     #[test]

@@ -5,11 +5,9 @@
 use image::{GrayImage, Luma};
 use toposlam_vision::camera::rim::{self, RimError};
 
-/// Random numbers.
 struct Chance(u64);
 
 impl Chance {
-    /// Between 0 and 1. (xorshift64*)
     fn number(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -21,19 +19,16 @@ impl Chance {
         low + (high - low) * self.number()
     }
 
-    /// A number with mean 0 and a standard deviation of about 1.
     fn noise(&mut self) -> f64 {
         (0..12).map(|_| self.number()).sum::<f64>() - 6.0
     }
 }
 
-/// The parameters of drawn images.
 #[derive(Clone, Copy)]
 struct Drawn {
     size: [u32; 2],
     centre: [f64; 2],
     radius: f64,
-    /// The brightness outside.
     around: f64,
     noise: f64,
 }
@@ -98,16 +93,18 @@ fn found(drawn: &Drawn, count: u64, seed: u64) {
     assert!(rim.spread < 1.0 && rim.seen <= 1.0, "{what} {}", rim.spread);
 }
 
+/// A disc somewhere in the middle, with a radius in a range.
+fn anywhere(seed: u64, [across, down]: [[f64; 2]; 2], radius: [f64; 2]) -> Drawn {
+    let mut chance = Chance(seed);
+    let mut between = |[low, high]: [f64; 2]| chance.between(low, high);
+    Drawn { centre: [between(across), between(down)], radius: between(radius), ..PLAIN }
+}
+
 #[test]
 #[ignore = "a long sweep, for `.ci/run --all`"]
 fn the_rim_of_a_bright_disc_is_found_within_half_a_pixel() {
     for seed in 0..6 {
-        let mut chance = Chance(seed + 77);
-        let drawn = Drawn {
-            centre: [chance.between(280.0, 360.0), chance.between(225.0, 255.0)],
-            radius: chance.between(140.0, 220.0),
-            ..PLAIN
-        };
+        let drawn = anywhere(seed + 77, [[280.0, 360.0], [225.0, 255.0]], [140.0, 220.0]);
         found(&drawn, 1, seed);
         found(&drawn, 4, seed);
     }
@@ -116,12 +113,7 @@ fn the_rim_of_a_bright_disc_is_found_within_half_a_pixel() {
 #[test]
 fn a_rim_that_the_images_border_crops_is_found_by_its_arcs() {
     for seed in 0..4 {
-        let mut chance = Chance(seed + 7);
-        let drawn = Drawn {
-            centre: [chance.between(300.0, 340.0), chance.between(225.0, 255.0)],
-            radius: chance.between(260.0, 290.0),
-            ..PLAIN
-        };
+        let drawn = anywhere(seed + 7, [[300.0, 340.0], [225.0, 255.0]], [260.0, 290.0]);
         found(&drawn, 4, seed);
     }
 }

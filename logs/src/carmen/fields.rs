@@ -1,7 +1,7 @@
 //! The fields of a line, by the definition of its message.
 
 use crate::{
-    decode::{DecodeError, DecodeErrorKind},
+    decode::{DecodeError, DecodeErrorKind, Failure, in_field},
     definition::{Count, Definition, Field, FieldType},
     value::Value,
 };
@@ -27,32 +27,22 @@ pub(crate) fn decode<'a>(
             (_, Count::One) => words.value(field),
             _ => words.list(field),
         };
-        values.push(value.map_err(|(offset, cause)| DecodeError {
-            offset,
-            field: field.name.clone(),
-            cause,
-        })?);
+        values.push(value.map_err(in_field(&field.name))?);
     }
     let offset = words.next;
     let left = std::iter::from_fn(|| words.next()).count();
     if left > 0 {
-        let field = String::new();
-        return Err(DecodeError { offset, field, cause: DecodeErrorKind::WordsLeft(left) });
+        return Err(in_field("")((offset, DecodeErrorKind::WordsLeft(left))));
     }
     Ok(Value::Struct(root, values))
 }
 
-/// An error and its offset.
-type Failure = (usize, DecodeErrorKind);
-
-/// The words of a line.
 struct Words<'a> {
     line: &'a [u8],
     next: usize,
 }
 
 impl<'a> Words<'a> {
-    /// The next word, with its place.
     fn next(&mut self) -> Option<(usize, &'a [u8])> {
         let rest = self.line.get(self.next..)?;
         let start = self.next + rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
@@ -87,7 +77,6 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// A list, behind the number of its elements.
     fn list(&mut self, field: &Field) -> Result<Value<'a>, Failure> {
         let count = Field { name: String::new(), kind: FieldType::Unsigned(4), count: Count::One };
         let many = self.value(&count)?;

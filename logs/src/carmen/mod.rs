@@ -1,7 +1,5 @@
-//! CARMEN logs: one message a line, its keyword first, then its fields, separated by spaces.
-//!
-//! The format is that of the Carnegie Mellon Robot Navigation Toolkit, `logger_io.h`, and of Radish, the
-//! Robotics Data Set Repository. A list stands behind the number of its elements. The last field is the
+//! CARMEN logs (`logger_io.h` of the Carnegie Mellon Robot Navigation Toolkit): one message a line, its keyword first,
+//! then its fields, separated by spaces. A list stands behind the number of its elements. The last field is the
 //! logger's clock; the third last is the clock of the program that sent the message.
 
 mod fields;
@@ -10,11 +8,8 @@ mod scan;
 pub(super) use fields::decode;
 pub(super) use scan::{RecordedScan, reading};
 
-/// A kind of line.
 pub(super) struct LineKind {
-    /// The first word of the line.
     pub(super) keyword: &'static str,
-    /// The type of its message.
     pub(super) type_name: &'static str,
     /// The fields after the keyword, as a definition of ROS 1.
     pub(super) definition: &'static str,
@@ -37,20 +32,12 @@ const TRUE_POSE: &str = "float64 x\nfloat64 y\nfloat64 theta\nfloat64 odom_x\nfl
 
 /// The kinds of lines that are read. Others are skipped.
 pub(super) const KINDS: [LineKind; 5] = [
-    kind("FLASER", "carmen/FLASER", OLD_LASER),
-    kind("RLASER", "carmen/RLASER", OLD_LASER),
-    kind("ROBOTLASER1", "carmen/ROBOTLASER1", ROBOT_LASER),
-    kind("ODOM", "carmen/ODOM", ODOM),
-    kind("TRUEPOS", "carmen/TRUEPOS", TRUE_POSE),
+    LineKind { keyword: "FLASER", type_name: "carmen/FLASER", definition: OLD_LASER },
+    LineKind { keyword: "RLASER", type_name: "carmen/RLASER", definition: OLD_LASER },
+    LineKind { keyword: "ROBOTLASER1", type_name: "carmen/ROBOTLASER1", definition: ROBOT_LASER },
+    LineKind { keyword: "ODOM", type_name: "carmen/ODOM", definition: ODOM },
+    LineKind { keyword: "TRUEPOS", type_name: "carmen/TRUEPOS", definition: TRUE_POSE },
 ];
-
-const fn kind(
-    keyword: &'static str,
-    type_name: &'static str,
-    definition: &'static str,
-) -> LineKind {
-    LineKind { keyword, type_name, definition }
-}
 
 /// The first word of a line with a parameter: its name, its value, and times that are often 0.
 pub(super) const PARAMETER: &[u8] = b"PARAM";
@@ -82,7 +69,6 @@ impl Parameters {
     }
 }
 
-/// The first word of a line.
 pub(super) fn keyword(line: &[u8]) -> &[u8] {
     let line = line.trim_ascii();
     line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
@@ -94,7 +80,6 @@ pub(super) fn logger_time(line: &[u8]) -> Option<f64> {
     std::str::from_utf8(last).ok()?.parse().ok()
 }
 
-/// Whether some lines are those of a CARMEN log.
 pub(super) fn is_carmen(head: &[u8]) -> bool {
     let mut lines = head.split(|&byte| byte == b'\n');
     lines.any(|line| {

@@ -15,7 +15,6 @@ use crate::value::Value;
 /// At this range the SICK scanners of these robots see nothing; 81.9 m is their sign of an error.
 const OLD_RANGE: f64 = 50.0;
 
-/// A scan, and the odometry that its line records with it.
 pub(crate) struct RecordedScan {
     pub(crate) scan: Scan,
     pub(crate) odometry: Odometry,
@@ -66,26 +65,17 @@ fn old_geometry(readings: usize) -> ScanGeometry {
     }
 }
 
-/// The angles that a line records.
 fn geometry(line: &Value<'_>) -> Result<ScanGeometry, String> {
-    let most = number(line, "maximum_range")?;
+    let most = line.finite_at("maximum_range")?;
     Ok(ScanGeometry {
-        angle_min: number(line, "start_angle")?,
-        angle_increment: number(line, "angular_resolution")?,
+        angle_min: line.finite_at("start_angle")?,
+        angle_increment: line.finite_at("angular_resolution")?,
         range_min: 0.0,
         range_max: if most > 0.0 { most } else { OLD_RANGE },
     })
 }
 
 fn pose(line: &Value<'_>, names: [&str; 3]) -> Result<Odometry, String> {
-    let [x, y, heading] = names.map(|name| number(line, name));
+    let [x, y, heading] = names.map(|name| line.finite_at(name));
     Ok(Odometry { position: [x?, y?], heading: wrapped(heading?) })
-}
-
-fn number(line: &Value<'_>, name: &str) -> Result<f64, String> {
-    match line.at(name).and_then(|value| value.f64()) {
-        Some(number) if number.is_finite() => Ok(number),
-        Some(number) => Err(format!("its `{name}` is {number}")),
-        None => Err(format!("it has no `{name}`")),
-    }
 }

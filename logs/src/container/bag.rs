@@ -12,7 +12,6 @@ use crate::{
     source::{Source, Window},
 };
 
-/// How a bag begins.
 pub(crate) const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
 const MESSAGE: u8 = 2;
@@ -22,7 +21,6 @@ const CHUNK: u8 = 5;
 const CHUNK_INFO: u8 = 6;
 const CONNECTION: u8 = 7;
 
-/// The fields of a header.
 #[derive(Clone, Copy)]
 struct Fields<'a>(&'a [u8]);
 
@@ -85,7 +83,6 @@ fn connection<'a>(header: Fields<'a>, body: Fields<'a>) -> Result<Record<'a>, &'
     read().ok_or(CONNECTION_HEADER)
 }
 
-/// The first record of some bytes, and how long it is.
 pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> {
     let read = || {
         let header_end = 4_usize.checked_add(u32_at(bytes, 0)? as usize)?;
@@ -110,14 +107,12 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
     ))
 }
 
-/// The first record of a bag.
 struct Head {
     index: u64,
     connections: u32,
     chunks: u32,
 }
 
-/// Looks through a bag.
 pub(super) fn scan(
     source: &Source,
     listener: &mut Listener<'_>,
@@ -133,17 +128,18 @@ pub(super) fn scan(
         let Some((header, body)) = lengths(&mut window, at).map_err(unreadable(at))? else {
             return Ok(scan.truncated(truncated(TruncationKind::RestOfRecord)));
         };
-        let read = one(&mut window, at, header, body.clone(), &mut scan, listener);
-        match read? {
-            Ok(CONNECTION) if is_in_index(head.as_ref(), at) => connections += 1,
+        match read_record(&mut window, at, header, body.clone(), &mut scan, listener) {
+            Ok(CONNECTION) if head.as_ref().is_some_and(|head: &Head| at >= head.index) => {
+                connections += 1;
+            }
             Ok(CHUNK_INFO) => chunks += 1,
             Ok(HEADER) => head = head_of(&mut window, at).map_err(unreadable(at))?,
             Ok(_) => {}
             // A recorder that crashed has not written the length of its last chunk.
-            Err(what) if head.as_ref().is_some_and(|head: &Head| head.index == 0) => {
+            Err(LogErrorKind::Malformed(what)) if matches!(head, Some(Head { index: 0, .. })) => {
                 return Ok(scan.truncated(truncated(TruncationKind::Malformed(what))));
             }
-            Err(what) => return Err(LogErrorKind::Malformed(what).at(at)),
+            Err(cause) => return Err(cause.at(at)),
         }
         at = body.end;
     }
@@ -159,11 +155,6 @@ pub(super) fn scan(
         }
     };
     Ok(scan.truncated(Truncation::at_byte(at, cause)))
-}
-
-/// Whether a record is among the repeated connections.
-fn is_in_index(head: Option<&Head>, at: u64) -> bool {
-    head.is_some_and(|head| at >= head.index)
 }
 
 /// The length of a record's header, and the place of its body; `None` if the file ends before it.
@@ -186,79 +177,62 @@ fn head_of(window: &mut Window<'_>, at: u64) -> std::io::Result<Option<Head>> {
     }))
 }
 
-/// Reads one record.
-fn one(
+/// Reads one record, and returns its type.
+fn read_record(
     window: &mut Window<'_>,
     at: u64,
     header_length: u32,
     body: Range<u64>,
     scan: &mut FileStructure,
     listener: &mut Listener<'_>,
-) -> Result<Result<u8, &'static str>, LogError> {
-    let header_bytes = window.get(at + 4, header_length.into()).map_err(unreadable(at))?;
-    let header = Fields(header_bytes.unwrap_or_default());
-    let Some(op) = header.op() else { return Ok(Err("its type is missing")) };
-    let found = match op {
-        MESSAGE => match message(header) {
-            Ok(message) => {
-                scan.add_loose(at..body.end, Some(message));
-                Ok(op)
-            }
-            Err(what) => Err(what),
-        },
+) -> Result<u8, LogErrorKind> {
+    let header = Fields(window.get(at + 4, header_length.into())?.unwrap_or_default());
+    let length = body.end - body.start;
+    let op = header.op().ok_or(LogErrorKind::Malformed("its type is missing"))?;
+    match op {
+        MESSAGE => {
+            let message = message(header).map_err(LogErrorKind::Malformed)?;
+            scan.add_loose(at..body.end, Some(message));
+        }
         CONNECTION => {
-            let start = u64::from(header_length) + 8;
-            let length = body.end - at;
-            let bytes = window.get(at, length).map_err(unreadable(at))?.unwrap_or_default();
-            let header = bytes.get(4..start as usize - 4).unwrap_or_default();
-            let fields = bytes.get(start as usize..).unwrap_or_default();
-            connection(Fields(header), Fields(fields)).map(|record| {
-                listener(&record);
-                scan.add_loose(at..body.end, None);
-                op
-            })
+            let start = header_length as usize + 8;
+            let bytes = window.get(at, body.end - at)?.unwrap_or_default();
+            let header = Fields(bytes.get(4..start - 4).unwrap_or_default());
+            let fields = Fields(bytes.get(start..).unwrap_or_default());
+            listener(&connection(header, fields).map_err(LogErrorKind::Malformed)?);
+            scan.add_loose(at..body.end, None);
         }
         CHUNK => {
             scan.end_loose();
             let found = header.get("compression").zip(header.u32("size"));
-            let Some((compression, size)) = found else {
-                return Ok(Err("a chunk without compression and size"));
-            };
-            let compression = Compression::of_bag(compression).map_err(|cause| cause.at(at))?;
+            let missing = LogErrorKind::Malformed("a chunk without compression and size");
+            let (compression, size) = found.ok_or(missing)?;
+            let compression = Compression::of_bag(compression)?;
             let size = u64::from(size);
-            if compression == Compression::None && size != body.end - body.start {
-                return Ok(Err("an uncompressed chunk has another length than its header states"));
+            if compression == Compression::None && size != length {
+                let what = "an uncompressed chunk has another length than its header states";
+                return Err(LogErrorKind::Malformed(what));
             }
             scan.sections.push(Section {
-                file: 0,
-                offset: at,
-                bytes: body.clone(),
+                bytes: body,
                 compression,
                 size,
-                checksum: 0,
-                times: None,
                 // Of an empty one there is no index.
                 counts: (size == 0).then(BTreeMap::new),
                 in_chunk: true,
-                text: None,
+                ..Section::loose(at)
             });
-            Ok(op)
         }
         INDEX => {
             let found = header.u32("ver").zip(header.u32("conn"));
-            let length = body.end - body.start;
-            let bytes = window.get(body.start, length).map_err(unreadable(at))?.unwrap_or_default();
+            let bytes = window.get(body.start, length)?.unwrap_or_default();
             if let (Some((1, connection)), Some(chunk)) = (found, scan.sections.last_mut()) {
                 let counts = chunk.counts.get_or_insert_default();
                 *counts.entry(connection).or_default() += length / 12;
-                for time in bytes.chunks_exact(12).filter_map(time) {
-                    let [first, last] = chunk.times.unwrap_or([time; 2]);
-                    chunk.times = Some([first.min(time), last.max(time)]);
-                }
+                bytes.chunks_exact(12).filter_map(time).for_each(|time| chunk.add_time(time));
             }
-            Ok(op)
         }
-        other => Ok(other),
-    };
-    Ok(found)
+        _ => {}
+    }
+    Ok(op)
 }

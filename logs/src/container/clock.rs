@@ -11,17 +11,13 @@ const LATE: u64 = 1_000_000_000;
 /// The largest step ahead, in nanoseconds.
 const PAUSE: u64 = 3_600_000_000_000;
 
-/// The clock at a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
-    /// Whether any step is accepted.
     is_free: bool,
     /// The latest time, in nanoseconds.
     latest: Option<u64>,
-    /// The number of the last lines that were off the clock.
     off: u32,
-    /// The number of all lines that were.
-    off_total: u64,
+    pub(super) off_total: u64,
     /// The time of the last line, in seconds.
     last: f64,
 }
@@ -66,11 +62,6 @@ impl Clock {
         let from = self.latest.unwrap_or_default() as f64 / 1e9;
         (self.off >= Self::MOST_OFF).then_some([from, self.last])
     }
-
-    /// The number of lines that were off the clock.
-    pub(super) fn off_total(&self) -> u64 {
-        self.off_total
-    }
 }
 
 #[cfg(test)]
@@ -88,7 +79,7 @@ mod tests {
             assert_eq!(times(100.0), Some(100_000_000_000));
         }
         assert_eq!(times(3700.0), Some(3_700_000_000_000));
-        assert_eq!((clock.off_total(), clock.jump()), (7, None));
+        assert_eq!((clock.off_total, clock.jump()), (7, None));
     }
 
     #[test]

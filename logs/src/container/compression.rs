@@ -7,7 +7,6 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
 use crate::error::{CheckedPart, LogErrorKind};
 
-/// The largest factor between the size of a chunk and its compressed size.
 pub const MOST_GROWTH: u64 = 1000;
 
 /// Every decoder of Zstandard supports a window of this many bytes.
@@ -16,21 +15,15 @@ const USUAL_WINDOW: u64 = 8 << 20;
 /// memory twice.
 const MOST_WINDOW_GROWTH: u64 = 300;
 
-/// How a chunk is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compression {
-    /// Not at all.
     None,
-    /// By bzip2.
     Bz2,
-    /// By LZ4, in its frame format.
     Lz4,
-    /// By Zstandard.
     Zstd,
 }
 
 impl Compression {
-    /// As a bag calls it.
     pub(super) fn of_bag(name: &[u8]) -> Result<Self, LogErrorKind> {
         match name {
             b"none" => Ok(Self::None),
@@ -52,7 +45,6 @@ impl Compression {
         }
     }
 
-    /// As MCAP calls it.
     pub(super) fn of_mcap(name: &[u8]) -> Result<Self, LogErrorKind> {
         match name {
             b"" => Ok(Self::None),
@@ -106,10 +98,8 @@ pub(super) fn decompress(
     Ok(whole)
 }
 
-/// How a frame of Zstandard begins.
 pub(super) const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// A message that is a frame of Zstandard.
 pub(super) fn decompress_message(bytes: &[u8]) -> Result<Vec<u8>, LogErrorKind> {
     let compressed = bytes.len() as u64;
     let most = compressed.saturating_mul(MOST_GROWTH);

@@ -1,6 +1,6 @@
 //! MCAP files (mcap.dev/spec): a record has an opcode, a length and its content.
 
-use std::{collections::BTreeMap, io, ops::Range};
+use std::{collections::BTreeMap, ops::Range};
 
 use super::{
     Compression, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at, unreadable,
@@ -10,7 +10,6 @@ use crate::{
     source::{Source, Window},
 };
 
-/// How an MCAP file begins and ends.
 pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 pub(super) const FOOTER: u8 = 2;
@@ -22,7 +21,6 @@ const MESSAGE_INDEX: u8 = 7;
 pub(super) const STATISTICS: u8 = 11;
 pub(super) const DATA_END: u8 = 15;
 
-/// The opcode and length of a record.
 pub(super) const HEAD: usize = 9;
 /// The fields before the bytes of a message: channel, sequence, and two times.
 const MESSAGE_HEAD: usize = 22;
@@ -54,7 +52,6 @@ fn channel(content: &[u8]) -> Option<Record<'_>> {
     Some(Record::Channel { id, schema, topic, encoding })
 }
 
-/// The first record of some bytes, and how long it is.
 pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> {
     let read = || {
         let length = usize::try_from(u64_at(bytes, 1)?).ok()?;
@@ -75,7 +72,6 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
     Ok((record.ok_or("it is shorter than its length field")?, end))
 }
 
-/// Looks through an MCAP file.
 pub(super) fn scan(
     source: &Source,
     listener: &mut Listener<'_>,
@@ -100,8 +96,9 @@ pub(super) fn scan(
             return Ok(scan.truncated(Truncation::at_byte(at, cause)));
         };
         let record = at..content.end;
-        let taken = one(&mut window, op, &record, &content, &mut scan, listener, &mut total);
-        taken.map_err(unreadable(at))?.map_err(|cause| cause.at(at))?;
+        let taken =
+            read_record(&mut window, op, &record, &content, &mut scan, listener, &mut total);
+        taken.map_err(|cause| cause.at(at))?;
         at = content.end;
         if op == FOOTER {
             break;
@@ -124,7 +121,7 @@ pub(super) fn scan(
 }
 
 /// Reads one record; `total` becomes the number of messages by the statistics of the file.
-fn one(
+fn read_record(
     window: &mut Window<'_>,
     op: u8,
     record: &Range<u64>,
@@ -132,87 +129,57 @@ fn one(
     scan: &mut FileStructure,
     listener: &mut Listener<'_>,
     total: &mut Option<u64>,
-) -> io::Result<Result<(), LogErrorKind>> {
-    const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than its length field");
+) -> Result<(), LogErrorKind> {
     let most = match op {
         MESSAGE => MESSAGE_HEAD as u64,
         SCHEMA | CHANNEL => u64::MAX,
         CHUNK => 1 << 10,
         MESSAGE_INDEX => 6,
         STATISTICS => 8,
-        _ => return Ok(Ok(())),
+        _ => return Ok(()),
     };
     let length = (content.end - content.start).min(most);
     let bytes = window.get(content.start, length)?.unwrap_or_default();
-    Ok(match op {
-        MESSAGE => match message(bytes) {
-            Some(message) => {
-                scan.add_loose(record.clone(), Some(message));
-                Ok(())
-            }
-            None => Err(SHORT),
-        },
+    match op {
+        MESSAGE => scan.add_loose(record.clone(), Some(message(bytes).ok_or(SHORT)?)),
         SCHEMA | CHANNEL => {
             let definition = if op == SCHEMA { schema(bytes) } else { channel(bytes) };
-            match definition {
-                Some(definition) => {
-                    listener(&definition);
-                    scan.add_loose(record.clone(), None);
-                    Ok(())
-                }
-                None => Err(SHORT),
-            }
+            listener(&definition.ok_or(SHORT)?);
+            scan.add_loose(record.clone(), None);
         }
         CHUNK => {
             scan.end_loose();
-            match chunk(record.start, content, bytes) {
-                Some(Ok(chunk)) => {
-                    scan.sections.push(chunk);
-                    Ok(())
-                }
-                Some(Err(cause)) => Err(cause),
-                None => Err(SHORT),
-            }
+            scan.sections.push(chunk(record.start, content, bytes)?);
         }
         MESSAGE_INDEX => {
             let entry = u16_at(bytes, 0).zip(u32_at(bytes, 2));
-            match (entry, scan.sections.last_mut()) {
-                (Some((channel, length)), Some(chunk)) => {
-                    let counts = chunk.counts.get_or_insert_default();
-                    *counts.entry(channel.into()).or_default() += u64::from(length) / 16;
-                    Ok(())
-                }
-                (None, _) => Err(SHORT),
-                (_, None) => Ok(()),
+            let (channel, length) = entry.ok_or(SHORT)?;
+            if let Some(chunk) = scan.sections.last_mut() {
+                let counts = chunk.counts.get_or_insert_default();
+                *counts.entry(channel.into()).or_default() += u64::from(length) / 16;
             }
         }
-        STATISTICS => {
-            *total = u64_at(bytes, 0);
-            Ok(())
-        }
-        _ => Ok(()),
-    })
+        _ => *total = u64_at(bytes, 0),
+    }
+    Ok(())
 }
 
-/// The chunk that begins with some bytes; `None` if it is too short.
-fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Section, LogErrorKind>> {
-    let times = [u64_at(bytes, 0)?, u64_at(bytes, 8)?];
-    let (size, checksum) = (u64_at(bytes, 16)?, u32_at(bytes, 24)?);
+const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than its length field");
+
+/// The chunk that begins with some bytes.
+fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Result<Section, LogErrorKind> {
+    let number = |at| u64_at(bytes, at).ok_or(SHORT);
+    let times = [number(0)?, number(8)?];
+    let (size, checksum) = (number(16)?, u32_at(bytes, 24).ok_or(SHORT)?);
     // A longer name is of no known compression.
-    let name_length = u32_at(bytes, 28)? as usize;
-    let name = bytes.get(32..).map(|rest| rest.get(..name_length).unwrap_or(rest))?;
-    let compression = match Compression::of_mcap(name) {
-        Ok(compression) => compression,
-        Err(cause) => return Some(Err(cause)),
-    };
-    let (_, at) = text_at(bytes, 28)?;
+    let name_length = u32_at(bytes, 28).ok_or(SHORT)? as usize;
+    let name = bytes.get(32..).map(|rest| rest.get(..name_length).unwrap_or(rest));
+    let compression = Compression::of_mcap(name.ok_or(SHORT)?)?;
+    let (_, at) = text_at(bytes, 28).ok_or(SHORT)?;
     let start = content.start + at as u64 + 8;
-    let length = u64_at(bytes, at)?;
-    let end = start.checked_add(length).filter(|end| *end <= content.end)?;
-    Some(Ok(Section {
-        file: 0,
-        offset,
-        bytes: start..end,
+    let end = start.checked_add(number(at)?).filter(|end| *end <= content.end);
+    Ok(Section {
+        bytes: start..end.ok_or(SHORT)?,
         compression,
         size,
         checksum,
@@ -220,6 +187,6 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
         times: (size > 0 && times[0] <= times[1]).then_some(times),
         counts: (size == 0).then(BTreeMap::new),
         in_chunk: true,
-        text: None,
-    }))
+        ..Section::loose(offset)
+    })
 }

@@ -1,9 +1,10 @@
 //! What an MCAP file stores about itself: checksums, and the number of its messages.
 
-use std::io;
+use std::{io, ops::Range};
+
+use crc32fast::Hasher;
 
 use super::{
-    checksum::StoredChecksum,
     mcap::{DATA_END, FOOTER, HEAD, MAGIC, STATISTICS},
     u32_at, u64_at,
 };
@@ -14,17 +15,13 @@ use crate::{
 
 const ATTACHMENT: u8 = 9;
 
-/// Of an MCAP file that is not truncated.
 #[derive(Default)]
 pub(crate) struct SelfDescription {
     pub(crate) checksums: Vec<StoredChecksum>,
-    /// The offset of the statistics, and the number of messages by them.
     pub(crate) messages: Option<(u64, u64)>,
-    /// What is wrong with the structure of the file.
     pub(crate) damage: Vec<LogError>,
 }
 
-/// Reads the records outside of chunks.
 pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
     let mut found = SelfDescription::default();
     let mut window = Window::new(source);
@@ -79,9 +76,32 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
 
 impl SelfDescription {
     /// Adds a checksum. The value 0 means that there is none.
-    fn add(&mut self, offset: u64, part: CheckedPart, bytes: std::ops::Range<u64>, value: u32) {
+    fn add(&mut self, offset: u64, part: CheckedPart, bytes: Range<u64>, value: u32) {
         if value != 0 {
             self.checksums.push(StoredChecksum { offset, part, bytes, value });
         }
+    }
+}
+
+pub(crate) struct StoredChecksum {
+    offset: u64,
+    part: CheckedPart,
+    pub(crate) bytes: Range<u64>,
+    value: u32,
+}
+
+const PIECE: u64 = 1 << 16;
+
+impl StoredChecksum {
+    pub(crate) fn error(&self, source: &Source) -> io::Result<Option<LogError>> {
+        let mut hasher = Hasher::new();
+        let mut at = self.bytes.start;
+        while at < self.bytes.end {
+            let end = self.bytes.end.min(at + PIECE);
+            hasher.update(&source.read(at..end)?);
+            at = end;
+        }
+        let right = hasher.finalize() == self.value;
+        Ok((!right).then(|| LogErrorKind::Checksum(self.part).at(self.offset)))
     }
 }

@@ -1,19 +1,15 @@
-//! The containers of logs. ROS 1 bags and MCAP files consist of records, most of them in chunks; other
-//! logs consist of lines.
+//! The containers of logs. ROS 1 bags and MCAP files consist of records, most of them in chunks; other logs consist of
+//! lines or rows.
 //!
-//! Each is first looked through from record to record, by their lengths, from which comes a list of
-//! sections: chunks, and stretches of messages outside of chunks. What the indices at the ends of files
-//! say is not needed for that, so files without them are read the same way.
+//! Each is first looked through from record to record, without its index, for a list of sections: chunks, and
+//! stretches of messages outside of chunks.
 
 mod bag;
-mod checksum;
 mod clock;
 mod compression;
 mod database;
-mod file;
 mod mcap;
 mod mcap_end;
-mod rows;
 mod text;
 
 use std::{collections::BTreeMap, io, ops::Range};
@@ -21,34 +17,28 @@ use std::{collections::BTreeMap, io, ops::Range};
 pub(super) use bag::MAGIC as BAG_MAGIC;
 use clock::Clock;
 pub use compression::MOST_GROWTH;
-use compression::{Compression, decompress};
+use compression::{Compression, ZSTANDARD, decompress, decompress_message};
 pub(super) use database::Database;
-pub(super) use file::LogFile;
 pub(super) use mcap::MAGIC as MCAP_MAGIC;
 pub(super) use mcap_end::describe;
 pub(super) use text::{EVENT, HEAD as TEXT_HEAD, TextState, recognise};
 
-use super::error::{LogError, LogErrorKind, OffsetUnit, Truncation};
+use super::{
+    error::{LogError, LogErrorKind, OffsetUnit, Truncation},
+    source::Source,
+};
 
-/// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A ROS 1 bag, version 2.0.
     Bag,
-    /// MCAP.
     Mcap,
-    /// A CARMEN log.
     Carmen,
-    /// Events as JSON lines or CSV.
     Events,
-    /// A database of rosbag2, `.db3`.
     Database,
-    /// A folder of rosbag2, with databases or MCAP files.
     Folder,
 }
 
 impl Format {
-    /// What the offsets in a file count.
     pub(super) fn unit(self) -> OffsetUnit {
         match self {
             Self::Bag | Self::Mcap | Self::Folder => OffsetUnit::Byte,
@@ -58,10 +48,40 @@ impl Format {
     }
 }
 
-/// A record that is of use.
+/// One file of a log; it has a name if the log has several.
+pub(super) struct LogFile {
+    pub(super) name: Option<String>,
+    pub(super) format: Format,
+    pub(super) source: Source,
+    pub(super) database: Option<Database>,
+    pub(super) text: TextState,
+}
+
+impl LogFile {
+    pub(super) fn error(&self, cause: LogErrorKind, offset: u64) -> LogError {
+        LogError { offset, unit: self.format.unit(), file: self.name.clone(), cause }
+    }
+
+    pub(super) fn in_file(&self, error: LogError) -> LogError {
+        LogError { file: self.name.clone(), ..error }
+    }
+
+    /// The bytes of a message. rosbag2 may compress each; CDR never begins as a compressed message does.
+    pub(super) fn message(&self, bytes: Vec<u8>) -> Result<Vec<u8>, LogErrorKind> {
+        let is_rosbag2 = self.name.is_some() || self.database.is_some();
+        if is_rosbag2 && bytes.starts_with(ZSTANDARD) {
+            return decompress_message(&bytes);
+        }
+        Ok(bytes)
+    }
+}
+
 pub(super) enum Record<'a> {
-    /// A message, with the place of its bytes in the record.
-    Message { connection: u32, time: u64, bytes: Range<usize> },
+    Message {
+        connection: u32,
+        time: u64,
+        bytes: Range<usize>,
+    },
     /// A topic, the encoding of its messages, and their definition in the language of a schema.
     Connection {
         id: u32,
@@ -71,11 +91,18 @@ pub(super) enum Record<'a> {
         schema: &'a [u8],
         definition: &'a [u8],
     },
-    /// In MCAP: the definition of messages.
-    Schema { id: u16, name: &'a [u8], encoding: &'a [u8], text: &'a [u8] },
-    /// In MCAP: a topic.
-    Channel { id: u16, schema: u16, topic: &'a [u8], encoding: &'a [u8] },
-    /// Any other.
+    Schema {
+        id: u16,
+        name: &'a [u8],
+        encoding: &'a [u8],
+        text: &'a [u8],
+    },
+    Channel {
+        id: u16,
+        schema: u16,
+        topic: &'a [u8],
+        encoding: &'a [u8],
+    },
     Other,
 }
 
@@ -83,40 +110,31 @@ pub(super) enum Record<'a> {
 /// of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
-    /// The index of its file in the log.
     pub(super) file: usize,
-    /// The offset of its record, or of the first one.
     pub(super) offset: u64,
-    /// The place of its records, perhaps compressed.
     bytes: Range<u64>,
     compression: Compression,
-    /// The decompressed size.
     size: u64,
     /// The checksum of the decompressed bytes; 0: unknown.
     checksum: u32,
-    /// The time of its first message, and of its last one.
     pub(super) times: Option<[u64; 2]>,
     /// The number of messages of each connection, if known.
     pub(super) counts: Option<BTreeMap<u32, u64>>,
-    /// Whether it is a chunk.
     in_chunk: bool,
     /// Of a log of lines: the number of its first line, and the clock before it.
     text: Option<(u64, Clock)>,
 }
 
-/// The structure of a file.
 #[derive(Default)]
 pub(super) struct FileStructure {
     pub(super) sections: Vec<Section>,
     pub(super) truncation: Option<Truncation>,
-    /// The section of messages outside of chunks that is still growing.
     loose: Option<Section>,
 }
 
 /// Receives the records of topics, each once or several times.
 pub(super) type Listener<'l> = dyn FnMut(&Record<'_>) + 'l;
 
-/// Scans a file.
 pub(super) fn scan(
     file: &LogFile,
     listener: &mut Listener<'_>,
@@ -136,7 +154,6 @@ pub(super) fn scan(
 const LOOSE: u64 = 1 << 20;
 
 impl FileStructure {
-    /// A message outside of chunks, or another record among those.
     fn add_loose(&mut self, record: Range<u64>, message: Option<(u32, u64)>) {
         let fits = |section: &Section| {
             section.bytes.end == record.start && record.end - section.offset <= LOOSE
@@ -148,7 +165,6 @@ impl FileStructure {
         section.extend(record.end, message);
     }
 
-    /// Ends the section outside of chunks.
     fn end_loose(&mut self) {
         self.sections.extend(self.loose.take().filter(|section| section.times.is_some()));
     }
@@ -165,7 +181,6 @@ impl FileStructure {
 }
 
 impl Section {
-    /// An empty section outside of chunks.
     fn loose(start: u64) -> Self {
         Self {
             file: 0,
@@ -181,16 +196,19 @@ impl Section {
         }
     }
 
-    /// Adds a record, which may be a message of a connection.
     fn extend(&mut self, end: u64, message: Option<(u32, u64)>) {
         self.bytes.end = end;
         self.size = self.bytes.end - self.bytes.start;
         let Some((connection, time)) = message else { return };
-        let [first, last] = self.times.unwrap_or([time; 2]);
-        self.times = Some([first.min(time), last.max(time)]);
+        self.add_time(time);
         if let Some(counts) = &mut self.counts {
             *counts.entry(connection).or_default() += 1;
         }
+    }
+
+    fn add_time(&mut self, time: u64) {
+        let [first, last] = self.times.unwrap_or([time; 2]);
+        self.times = Some([first.min(time), last.max(time)]);
     }
 
     /// Its records, decompressed.
@@ -205,7 +223,6 @@ impl Section {
         decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
     }
 
-    /// Its offset, or its first line.
     pub(super) fn first(&self) -> u64 {
         self.text.map_or(self.offset, |(line, _)| line)
     }
@@ -228,7 +245,6 @@ impl Section {
         Ok(covers.then(|| self.bytes.clone()))
     }
 
-    /// Its size in memory, in bytes.
     pub(super) fn size(&self) -> u64 {
         self.size
     }
@@ -241,7 +257,6 @@ impl Section {
         }
     }
 
-    /// Its records in order.
     pub(super) fn records<'a>(
         &'a self,
         file: &'a LogFile,
@@ -261,7 +276,7 @@ impl Section {
                     *line += 1;
                     Ok(text::record(file.format, &file.text, clock, rest))
                 }
-                (Format::Database, _) => match rows::row(rest) {
+                (Format::Database, _) => match database::row(rest) {
                     Some((number, record, length)) => {
                         place = number;
                         Ok((record, length))
@@ -284,26 +299,21 @@ impl Section {
     }
 }
 
-/// A record of a section.
 pub(super) struct PlacedRecord<'a> {
-    /// Where its bytes begin in the section.
     pub(super) at: usize,
     /// Its offset in the file: see [`LogError::offset`].
     pub(super) place: u64,
     pub(super) record: Record<'a>,
 }
 
-/// A number of four bytes, the lesser first.
 fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
     bytes.get(at..at.checked_add(4)?)?.try_into().ok().map(u32::from_le_bytes)
 }
 
-/// A number of eight bytes, the lesser first.
 fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
     bytes.get(at..at.checked_add(8)?)?.try_into().ok().map(u64::from_le_bytes)
 }
 
-/// A number of two bytes, the lesser first.
 fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
     bytes.get(at..at.checked_add(2)?)?.try_into().ok().map(u16::from_le_bytes)
 }

@@ -12,25 +12,18 @@ use crate::{
     source::Source,
 };
 
-/// The longest line that is read, in bytes.
 const LONGEST: usize = 1 << 20;
-/// The number of bytes that are read at once.
 const PIECE: u64 = 1 << 16;
 /// The largest size of a section, in bytes, unless it is one line.
 const SECTION: u64 = 1 << 18;
-/// The type of a line with an event.
 pub(crate) const EVENT: &str = "toposlam/Event";
 /// The number of bytes by which a log of lines is recognised.
 pub(crate) const HEAD: u64 = 1 << 14;
 
-/// What a log of lines states for all of them.
 #[derive(Default)]
 pub(crate) struct TextState {
-    /// Of a CSV file.
     pub(crate) columns: Option<Columns>,
-    /// Of a CARMEN log.
     pub(crate) parameters: Parameters,
-    /// The index of the first event.
     pub(crate) first_event: u32,
     pub(crate) skipped: SkippedLines,
 }
@@ -44,16 +37,15 @@ pub(crate) fn recognise(head: &[u8]) -> Option<Format> {
     }
 }
 
-/// What is in a line.
 enum Content {
-    /// Nothing, a comment, or the header of a CSV file.
     Nothing,
-    /// A parameter of a CARMEN log.
     Parameter,
-    /// Something that is not read.
     Unknown(String),
     /// A message of a kind, with its time in seconds if it has one.
-    Message { kind: u32, time: Option<f64> },
+    Message {
+        kind: u32,
+        time: Option<f64>,
+    },
 }
 
 fn content(format: Format, columns: Option<&Columns>, line: &[u8]) -> Result<Content, String> {
@@ -85,7 +77,6 @@ fn content(format: Format, columns: Option<&Columns>, line: &[u8]) -> Result<Con
     Ok(Content::Message { kind, time: Some(time) })
 }
 
-/// Looks through a log of lines.
 pub(super) fn scan(
     format: Format,
     source: &Source,
@@ -99,8 +90,7 @@ pub(super) fn scan(
     loop {
         number += 1;
         let Some(line) = lines.next().map_err(|cause| at_line(cause, number))? else { break };
-        let truncated =
-            |cause| Truncation { offset: number, unit: OffsetUnit::Line, file: None, cause };
+        let truncated = |cause| truncation(number, cause);
         if line.is_last && source.is_cut {
             return Ok((scan.truncated(truncated(TruncationKind::Compressed)), state));
         }
@@ -152,17 +142,14 @@ pub(super) fn scan(
         }
         add(&mut scan, line.start..line.end, (number, before), message);
     }
-    state.skipped.set_off_clock(clock.off_total());
+    state.skipped.off_clock = clock.off_total;
     if source.is_cut {
-        let cause = TruncationKind::Compressed;
-        let truncation = Truncation { offset: number, unit: OffsetUnit::Line, file: None, cause };
-        return Ok((scan.truncated(truncation), state));
+        return Ok((scan.truncated(truncation(number, TruncationKind::Compressed)), state));
     }
     scan.end_loose();
     Ok((scan, state))
 }
 
-/// The topic of a kind of lines.
 fn topic(format: Format, kind: u32) -> Record<'static> {
     let (name, type_name, encoding, definition) = match carmen::KINDS.get(kind as usize) {
         Some(kind) if format == Format::Carmen => {
@@ -180,7 +167,6 @@ fn topic(format: Format, kind: u32) -> Record<'static> {
     }
 }
 
-/// The index of the first event.
 fn first_index(line: &[u8], columns: Option<&Columns>) -> u32 {
     match event_line::parse(line, columns) {
         Ok(Parsed::Event(event, _)) => event.index.unwrap_or_default(),
@@ -198,7 +184,6 @@ fn check(format: Format, kind: u32, line: &[u8]) -> Result<(), String> {
     carmen::decode(&definition, line).map(|_| ()).map_err(|error| error.to_string())
 }
 
-/// Adds a line to the last section, or to a new one.
 fn add(
     scan: &mut FileStructure,
     line: Range<u64>,
@@ -212,7 +197,6 @@ fn add(
     scan.loose.get_or_insert_with(new).extend(line.end, message);
 }
 
-/// The record of a line in a section.
 pub(super) fn record<'a>(
     format: Format,
     state: &TextState,
@@ -231,28 +215,25 @@ pub(super) fn record<'a>(
     (record.unwrap_or(Record::Other), next)
 }
 
+fn truncation(line: u64, cause: TruncationKind) -> Truncation {
+    Truncation { unit: OffsetUnit::Line, ..Truncation::at_byte(line, cause) }
+}
+
 fn at_line(cause: LogErrorKind, line: u64) -> LogError {
     LogError { unit: OffsetUnit::Line, ..cause.at(line) }
 }
 
-/// The lines of a file.
 struct Lines<'s> {
     source: &'s Source,
-    /// The place of the bytes in the file.
     start: u64,
     bytes: Vec<u8>,
-    /// The number of bytes of lines that were returned.
     used: usize,
 }
 
-/// A line without its end.
 struct Line<'l> {
     bytes: &'l [u8],
-    /// Its place in the file.
     start: u64,
-    /// The place of the next line.
     end: u64,
-    /// Whether the file ends before the end of the line.
     is_last: bool,
 }
 

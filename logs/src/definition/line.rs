@@ -5,20 +5,14 @@ use super::{
     error::{DefinitionErrorKind, quoted},
 };
 
-/// The content of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum DefinitionLine<'t> {
-    /// Nothing.
     Empty,
-    /// The following lines define another message.
     Separator,
-    /// A field.
     Field { type_name: &'t str, count: Count, name: &'t str },
-    /// A constant.
     Constant { type_name: &'t str, name: &'t str, value: &'t str },
 }
 
-/// Reads one line.
 pub(super) fn line(
     dialect: Dialect,
     text: &str,

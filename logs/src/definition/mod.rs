@@ -1,9 +1,7 @@
 //! Definitions of messages, as logs carry them: ROS 1 (`ros1msg`) and ROS 2 (`ros2msg`).
 //!
-//! A log holds, with each topic, the text of its message's definition, and after it those of all
-//! messages that it uses, each behind a line of `=` and a line `MSG: package/Type`. A line is a field
-//! (`float64[9] K`), a constant (`uint8 LEFT=1`), a comment, or empty; a field of ROS 2 may have a
-//! default. `Header` is short for `std_msgs/Header`.
+//! The definitions of the messages that a message uses follow its own, each behind a line of `=` and a line
+//! `MSG: package/Type`. `Header` is short for `std_msgs/Header`.
 
 mod error;
 mod line;
@@ -22,24 +20,20 @@ pub enum Dialect {
 
 /// The longest definition that is read, in bytes.
 pub const MOST_BYTES: usize = 1 << 20;
-/// How deep messages may be nested.
 pub const MOST_DEPTH: usize = 32;
 /// How many fields a message may have, those of the messages in it counted too; a list counts once.
 pub const MOST_FIELDS: usize = 1 << 16;
 
-/// A definition of which every type is known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
     dialect: Dialect,
     structs: Vec<Struct>,
 }
 
-/// A message, or one within a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Struct {
     /// Its type, as `package/Type`.
     pub name: String,
-    /// Its fields, in their order.
     pub fields: Vec<Field>,
     /// Its constants: the name, and the value as it is written.
     pub constants: Vec<(String, String)>,
@@ -47,50 +41,35 @@ pub struct Struct {
     least: usize,
 }
 
-/// A field of a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
     pub name: String,
-    /// Its type, or the type of the items of its list.
     pub kind: FieldType,
-    /// Whether it is a list.
     pub count: Count,
 }
 
-/// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldType {
-    /// `bool`.
     Bool,
     /// A whole number with a sign, with this number of bytes. `byte` in ROS 1.
     Int(u8),
     /// A whole number without a sign, with this number of bytes. `char`; `byte` in ROS 2.
     Unsigned(u8),
-    /// A number with a fraction, with this number of bytes.
     Float(u8),
-    /// `string`.
     Text,
-    /// `wstring`.
     WideText,
     /// `time` of ROS 1: two numbers without a sign.
     Time,
     /// `duration` of ROS 1: two numbers with a sign.
     Duration,
-    /// A message: which of the definition's.
     Struct(usize),
 }
 
-/// How many there are of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
-    /// It is no list.
     One,
-    /// A list of fixed length.
     Fixed(u32),
-    /// A list of any length.
     Any,
-    /// A list of limited length.
     AtMost(u32),
 }
 
@@ -105,29 +84,21 @@ impl Definition {
         resolve::resolve(dialect, type_name, text)
     }
 
-    /// In which language it is written.
-    #[must_use]
     pub fn dialect(&self) -> Dialect {
         self.dialect
     }
 
-    /// The message itself.
-    #[must_use]
     pub fn root(&self) -> &Struct {
         // There is always a first one; the other is never made.
-        static NOTHING: Struct =
-            Struct { name: String::new(), fields: Vec::new(), constants: Vec::new(), least: 0 };
+        static NOTHING: Struct = Struct::empty(String::new());
         self.structs.first().unwrap_or(&NOTHING)
     }
 
-    /// A message within it.
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<&Struct> {
         self.structs.get(index)
     }
 
     /// The field at a path such as `pose.position.x` or `doors[0]`, if anything can.
-    #[must_use]
     pub fn at(&self, path: &str) -> Option<(FieldType, Count)> {
         let mut here = (FieldType::Struct(0), Count::One);
         for step in path.split('.') {
@@ -167,15 +138,16 @@ fn least(kind: FieldType, structs: &[Struct]) -> usize {
 }
 
 impl Struct {
-    /// The field of a name, and which it is.
-    #[must_use]
+    const fn empty(name: String) -> Self {
+        Self { name, fields: Vec::new(), constants: Vec::new(), least: 0 }
+    }
+
     pub fn field(&self, name: &str) -> Option<(usize, &Field)> {
         self.fields.iter().enumerate().find(|(_, field)| field.name == name)
     }
 }
 
 /// A type without the `msg` that ROS 2 puts in its middle: `package/Type`.
-#[must_use]
 pub fn short_name(type_name: &str) -> String {
     type_name.replacen("/msg/", "/", 1)
 }

@@ -11,14 +11,12 @@ use super::{
     short_name,
 };
 
-/// A message as lines.
 struct Section<'t> {
     name: String,
     line: usize,
     lines: Vec<(usize, DefinitionLine<'t>)>,
 }
 
-/// The types that need no definition.
 const KNOWN: [(&str, &str); 2] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec"),
@@ -54,14 +52,10 @@ pub(super) fn resolve(
     let mut sizes = vec![Size::default(); sections.len()];
     resolver.add(0, 1, &mut structs, &mut sizes, &mut BTreeSet::new())?;
     // Those that nothing uses stay empty.
-    let structs = structs.into_iter().zip(&sections).map(|(made, section)| {
-        made.unwrap_or_else(|| Struct {
-            name: section.name.clone(),
-            fields: Vec::new(),
-            constants: Vec::new(),
-            least: 0,
-        })
-    });
+    let structs = structs
+        .into_iter()
+        .zip(&sections)
+        .map(|(made, section)| made.unwrap_or_else(|| Struct::empty(section.name.clone())));
     Ok(Definition { dialect, structs: structs.collect() })
 }
 
@@ -69,7 +63,6 @@ fn last_part(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// The messages of a text.
 fn sections<'t>(
     dialect: Dialect,
     type_name: &str,
@@ -98,12 +91,9 @@ fn sections<'t>(
     Ok(sections)
 }
 
-/// The size of a message type.
 #[derive(Clone, Copy, Default)]
 struct Size {
-    /// Its fields, and those of the messages in it.
     fields: usize,
-    /// The depth of nested messages, including itself.
     depth: usize,
 }
 
@@ -115,7 +105,6 @@ struct Resolver<'t> {
 }
 
 impl Resolver<'_> {
-    /// Adds a message type and the types of its fields, and counts the fields of each.
     fn add(
         &self,
         index: usize,
@@ -129,12 +118,7 @@ impl Resolver<'_> {
             return Err(DefinitionErrorKind::TooDeep.at(section.line));
         }
         within.insert(index);
-        let mut made = Struct {
-            name: section.name.clone(),
-            fields: Vec::new(),
-            constants: Vec::new(),
-            least: 0,
-        };
+        let mut made = Struct::empty(section.name.clone());
         let mut names = BTreeSet::new();
         let mut size = Size { fields: 0, depth: 1 };
         for (number, parsed) in &section.lines {

@@ -58,36 +58,28 @@ fn a_message_of_ros_2_has_bounds_and_defaults() {
     assert_eq!(ros1("").unwrap().root().least, 0);
 }
 
+/// A definition, and the line and the cause of its error.
+const ERRORS: &str = r"
+int32 | 1: `int32` is neither a field nor a constant
+int32 a\nint32 a | 2: there are two fields `a`
+int32 1a | 1: `1a` is not a name
+int32[x] a | 1: `int32[x] a` is neither a field nor a constant
+\nB b | 2: the type `B` is not defined
+B B=1 | 1: the type `B` cannot be used for a constant
+A a | 1: `A` is a part of itself
+B b\n===\nMSG: a/B\nA[] a | 4: `A` is a part of itself
+B[] b\n===\nMSG: a/B\n | 1: a list of `B`, which has no fields
+B b\n===\nMSG: c/B\nint8 x\n===\nMSG: d/B\nint8 x | 1: the type `B` is defined more than once
+===\nint8 x | 2: `int8 x` is neither a field nor a constant
+int8 x 1 | 1: `int8 x 1` is neither a field nor a constant";
+
 #[test]
 fn an_error_has_its_line() {
-    let after = |section: &str, text: &str| format!("{section}\n{LINE}\nMSG: {text}");
-    for (text, message) in [
-        ("int32".to_owned(), "line 1 of the definition: `int32` is neither a field nor a constant"),
-        ("int32 a\nint32 a".into(), "line 2 of the definition: there are two fields `a`"),
-        ("int32 1a".into(), "line 1 of the definition: `1a` is not a name"),
-        (
-            "int32[x] a".into(),
-            "line 1 of the definition: `int32[x] a` is neither a field nor a constant",
-        ),
-        ("\nB b".into(), "line 2 of the definition: the type `B` is not defined"),
-        ("B B=1".into(), "line 1 of the definition: the type `B` cannot be used for a constant"),
-        ("A a".into(), "line 1 of the definition: `A` is a part of itself"),
-        (after("B b", "a/B\nA[] a"), "line 4 of the definition: `A` is a part of itself"),
-        (after("B[] b", "a/B\n"), "line 1 of the definition: a list of `B`, which has no fields"),
-        (
-            after("B b", "c/B\nint8 x\n===\nMSG: d/B\nint8 x"),
-            "line 1 of the definition: the type `B` is defined more than once",
-        ),
-        (
-            "===\nint8 x".into(),
-            "line 2 of the definition: `int8 x` is neither a field nor a constant",
-        ),
-        (
-            "int8 x 1".into(),
-            "line 1 of the definition: `int8 x 1` is neither a field nor a constant",
-        ),
-    ] {
-        assert_eq!(ros1(&text).unwrap_err(), message);
+    for row in ERRORS.lines().skip(1) {
+        let (text, error) = row.split_once(" | ").unwrap();
+        let (line, cause) = error.split_once(": ").unwrap();
+        let expected = format!("line {line} of the definition: {cause}");
+        assert_eq!(ros1(&text.replace(r"\n", "\n")).unwrap_err(), expected);
     }
 }
 

@@ -17,27 +17,20 @@ use super::{Frame, MapRecord};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EventId(pub u64);
 
-/// Something that happened in a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Which event it is.
     pub id: EventId,
     /// When it happened, in nanoseconds since the robot was switched on, or by the clock of the log.
     pub time: u64,
-    /// The robot's true pose, if it is known.
     pub truth: Option<Pose>,
-    /// What happened.
     pub kind: EventKind,
 }
 
-/// What happened.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventKind {
     /// The sensors gave something. A log has images and scenes in frames of their own.
     Frame(Frame),
-    /// Algorithm 2 answered the last frame.
     Command {
-        /// The state of Algorithm 2 afterwards.
         state: PathState,
         /// What the robot does; `None` if the path has ended.
         command: Option<Command>,
@@ -45,46 +38,32 @@ pub enum EventKind {
     /// The robot turned to look around, after the last frame: a scanner that does not see all round shows too little of
     /// where it is. A frame that is followed by this event has no scene. Logs have the motion, and not this event.
     LookAround {
-        /// Radians counter-clockwise.
         turn: f64,
     },
-    /// The robot leaves a junction.
     Door {
         /// Which move begins, counted from 1, if known.
         number: Option<u32>,
-        /// By which door.
         door: Door,
     },
-    /// The robot stands at a junction.
     Arrival(Arrival),
-    /// The mapping algorithm made a step.
     Hypothesis {
-        /// The number of moves made.
         moves: u64,
-        /// The step.
         event: MappingEvent,
     },
-    /// The map has grown.
     Map(MapRecord),
-    /// The wheels were commanded.
     Motion {
         /// Metres a second ahead.
         forward: f64,
         /// Radians a second, counter-clockwise.
         turn: f64,
     },
-    /// The wheels were read.
     Odometry(Odometry),
-    /// The run ended.
     End(RunEnd),
 }
 
-/// What the robot perceives at a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// The number of moves made, if known.
     pub number: Option<u32>,
-    /// The number of doors.
     pub degree: u32,
     /// What was seen of the marker; `None` if that is not recorded.
     pub sighting: Option<Sighting>,
@@ -95,8 +74,6 @@ pub struct Arrival {
 }
 
 impl Arrival {
-    /// The arrival of a robot after a number of moves.
-    #[must_use]
     pub fn new(moves: u64, at: &Standing) -> Self {
         let &Standing { form, percept, entry } = at;
         let number = Some(u32::try_from(moves).unwrap_or(u32::MAX));
@@ -105,19 +82,16 @@ impl Arrival {
     }
 
     /// The percept; `None` if it is not recorded whether the marker was seen.
-    #[must_use]
     pub fn percept(&self) -> Option<Percept> {
         Some(Percept { degree: self.degree, sighting: self.sighting? })
     }
 
     /// Whether the robot stands before an obstacle, where it sees no junction.
-    #[must_use]
     pub fn is_at_obstacle(&self) -> bool {
         self.degree == 1 && self.form.is_none() && self.entry.is_some()
     }
 
     /// Whether another arrival can be at the same junction, entered by a door of this one.
-    #[must_use]
     pub fn is_same_from(&self, other: &Self, door: Door) -> bool {
         if self.degree != other.degree || door.0 >= self.degree {
             return false;
@@ -130,38 +104,27 @@ impl Arrival {
         sightings.is_none_or(|(one, other)| one == other)
     }
 
-    /// Whether a percept agrees with it, as far as it is recorded.
-    #[must_use]
     pub fn agrees(&self, percept: &Percept) -> bool {
         self.degree == percept.degree
             && self.sighting.is_none_or(|sighting| sighting == percept.sighting)
     }
 }
 
-/// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunEnd {
-    /// The number of moves made.
     pub moves: u64,
-    /// How.
     pub ending: RunEnding,
 }
 
-/// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunEnding {
-    /// The map is complete.
     Mapped,
-    /// The user stopped the run, or its observer did.
     Stopped,
-    /// The robot gave up, for this reason.
     GaveUp(String),
-    /// The robot turned back to keep within its budget, for this reason.
     OutOfBudget(String),
 }
 
 /// Seconds since the robot was switched on, in nanoseconds.
-#[must_use]
 pub fn nanoseconds(seconds: f64) -> u64 {
     (seconds * 1e9).round() as u64
 }

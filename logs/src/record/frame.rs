@@ -22,11 +22,8 @@ pub struct Frame {
     pub id: u64,
     /// When it was taken, in seconds since the robot was switched on or the log began.
     pub taken: f64,
-    /// Where the robot was by its wheels.
     pub odometry: Odometry,
-    /// The camera image, if there is one.
     pub image: Option<CameraImage>,
-    /// The scan of the laser scanner, if there is one.
     pub scan: Option<Arc<Scan>>,
     /// The marker, if a detector of its own has seen it: a scanner does not.
     pub marker: Option<MarkerView>,
@@ -36,7 +33,6 @@ pub struct Frame {
 
 impl Frame {
     /// Whether the sensors gave the same data: the same image or scan, or without both the same capture.
-    #[must_use]
     pub fn same_data(&self, other: &Self) -> bool {
         if (&self.image, &self.scan) != (&other.image, &other.scan) {
             return false;
@@ -65,14 +61,10 @@ impl CameraImage {
         Self { file: Some(file.into()), pixels: Arc::default() }
     }
 
-    /// An image without a file.
-    #[must_use]
     pub fn raw(pixels: RgbImage) -> Self {
         Self { file: None, pixels: Arc::new(Ok(pixels).into()) }
     }
 
-    /// The encoded file, if the camera gave one.
-    #[must_use]
     pub fn file(&self) -> Option<&[u8]> {
         self.file.as_deref()
     }

@@ -7,16 +7,13 @@ use toposlam_model::{
 
 use super::Event;
 
-/// Observes a run.
 pub trait RunObserver {
-    /// Something happened.
     fn event(&mut self, _event: &Event) {}
 
     /// The mapping algorithm made a step. The events [`Hypothesis`](super::EventKind::Hypothesis) and
     /// [`Map`](super::EventKind::Map) follow; a story needs the whole journey.
     fn mapping(&mut self, _journey: &MapWalk, _event: MappingEvent) {}
 
-    /// Whether the run is to stop.
     fn stop(&self) -> bool {
         false
     }
@@ -56,7 +53,6 @@ impl<O: RunObserver + ?Sized> RunObserver for &mut O {
     }
 }
 
-/// Stops a run when a watch stops.
 #[derive(Clone, Copy)]
 pub struct StoppedBy<'w>(pub &'w dyn Watch);
 
@@ -66,7 +62,6 @@ impl RunObserver for StoppedBy<'_> {
     }
 }
 
-/// The first observes each event before the second.
 impl<A: RunObserver, B: RunObserver> RunObserver for (A, B) {
     fn event(&mut self, event: &Event) {
         self.0.event(event);

@@ -10,7 +10,6 @@ use toposlam_vision::{
 
 use super::Frame;
 
-/// Makes a scene of a frame.
 pub trait FrameSensor {
     /// The scene.
     ///
@@ -18,29 +17,40 @@ pub trait FrameSensor {
     /// Returns an error if the frame cannot be sensed.
     fn scene(&mut self, frame: &Frame) -> Result<Scene, SensingError>;
 
+    /// The laser scanner's part, which must look around where it sees too little.
+    fn scanner(&mut self) -> Option<&mut ScanPlaceSensor> {
+        None
+    }
+
     /// The headings to which the robot turns to look around before the frame is sensed, one after the other, relative
     /// to the frame's; empty if it need not. The last one is 0.
-    fn headings_to_look_around(&self, _frame: &Frame) -> Vec<f64> {
-        Vec::new()
+    fn headings_to_look_around(&mut self, frame: &Frame) -> Vec<f64> {
+        let scanner = self.scanner().zip(frame.scan.as_ref());
+        scanner.map_or_else(Vec::new, |(scanner, scan)| {
+            ScanPlaceSensor::headings_to_look_around(scanner, scan, &frame.odometry)
+        })
     }
 
     /// The robot begins to look around where it took this frame.
-    fn begin_to_look_around(&mut self, _frame: &Frame) {}
+    fn begin_to_look_around(&mut self, frame: &Frame) {
+        if let Some(scanner) = self.scanner() {
+            ScanPlaceSensor::begin_to_look_around(scanner, &frame.odometry);
+        }
+    }
 
-    /// Remembers a frame that was taken while the robot looks around.
-    fn remember(&mut self, _frame: &Frame) {}
+    fn remember(&mut self, frame: &Frame) {
+        if let Some((scanner, scan)) = self.scanner().zip(frame.scan.as_ref()) {
+            ScanPlaceSensor::remember(scanner, scan, &frame.odometry);
+        }
+    }
 }
 
-/// Why a frame cannot be sensed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SensingError {
-    /// Its image cannot be decoded.
     #[error(transparent)]
     Image(#[from] ImageFileError),
-    /// Its image is not of the calibrated camera.
     #[error(transparent)]
     Size(#[from] WrongSize),
-    /// It has an image, and no scene.
     #[error("sensing an image needs the camera's calibration and the colours of the building")]
     NoSensor,
 }
@@ -66,29 +76,14 @@ impl FrameSensor for ScanPlaceSensor {
         }
     }
 
-    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
-        frame.scan.as_ref().map_or_else(Vec::new, |scan| {
-            ScanPlaceSensor::headings_to_look_around(self, scan, &frame.odometry)
-        })
-    }
-
-    fn begin_to_look_around(&mut self, frame: &Frame) {
-        ScanPlaceSensor::begin_to_look_around(self, &frame.odometry);
-    }
-
-    fn remember(&mut self, frame: &Frame) {
-        if let Some(scan) = &frame.scan {
-            ScanPlaceSensor::remember(self, scan, &frame.odometry);
-        }
+    fn scanner(&mut self) -> Option<&mut ScanPlaceSensor> {
+        Some(self)
     }
 }
 
-/// Senses with a camera or with a laser scanner.
 #[derive(Clone, Debug)]
 pub enum RobotSensor {
-    /// A camera.
     Camera(Box<Sensor>),
-    /// A laser scanner.
     Laser(Box<ScanPlaceSensor>),
 }
 
@@ -100,27 +95,14 @@ impl FrameSensor for RobotSensor {
         }
     }
 
-    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
+    fn scanner(&mut self) -> Option<&mut ScanPlaceSensor> {
         match self {
-            Self::Camera(_) => Vec::new(),
-            Self::Laser(sensor) => FrameSensor::headings_to_look_around(&**sensor, frame),
-        }
-    }
-
-    fn begin_to_look_around(&mut self, frame: &Frame) {
-        if let Self::Laser(sensor) = self {
-            FrameSensor::begin_to_look_around(&mut **sensor, frame);
-        }
-    }
-
-    fn remember(&mut self, frame: &Frame) {
-        if let Self::Laser(sensor) = self {
-            FrameSensor::remember(&mut **sensor, frame);
+            Self::Camera(_) => None,
+            Self::Laser(sensor) => Some(sensor),
         }
     }
 }
 
-/// Takes the scene that is already in the frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoSensor;
 
@@ -138,19 +120,7 @@ impl<S: FrameSensor> FrameSensor for Option<S> {
         }
     }
 
-    fn headings_to_look_around(&self, frame: &Frame) -> Vec<f64> {
-        self.as_ref().map_or_else(Vec::new, |sensor| sensor.headings_to_look_around(frame))
-    }
-
-    fn begin_to_look_around(&mut self, frame: &Frame) {
-        if let Some(sensor) = self {
-            sensor.begin_to_look_around(frame);
-        }
-    }
-
-    fn remember(&mut self, frame: &Frame) {
-        if let Some(sensor) = self {
-            sensor.remember(frame);
-        }
+    fn scanner(&mut self) -> Option<&mut ScanPlaceSensor> {
+        self.as_mut()?.scanner()
     }
 }

@@ -12,7 +12,6 @@ use crate::{
     transforms::is_transforms,
 };
 
-/// A mapping that fits a log.
 #[derive(Clone, Debug)]
 pub struct BoundTopicMap {
     pub(crate) carried: Vec<Carried>,
@@ -23,28 +22,21 @@ pub struct BoundTopicMap {
 pub(crate) struct Carried {
     pub(crate) role: Role,
     pub(crate) topic: usize,
-    /// None for messages that are read by their type.
     pub(crate) paths: BTreeMap<MessagePart, String>,
-    /// Whether its messages are read by their type.
     pub(crate) own: bool,
-    /// The type of its messages.
     pub(crate) type_name: String,
     pub(crate) length: LengthUnit,
     pub(crate) angle: AngleUnit,
-    /// The name or the number of the marker, among several.
     pub(crate) id: Option<String>,
     /// The frame of the marker, if it is not the usual one.
     pub(crate) frame: Option<String>,
 }
 
 impl BoundTopicMap {
-    /// Whether a role is carried.
     pub(crate) fn carries(&self, role: Role) -> bool {
         self.carried.iter().any(|carried| carried.role == role)
     }
 
-    /// The topics of the log that carry something.
-    #[must_use]
     pub fn topics(&self) -> Vec<usize> {
         self.carried.iter().map(|carried| carried.topic).collect()
     }
@@ -139,7 +131,6 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Topi
     }
 }
 
-/// Whether a path leads to the type of a part.
 fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
     let found = definition.at(path);
     if part != MessagePart::Quaternion {

@@ -1,100 +1,54 @@
-//! Topic maps: the topics of a log that carry each role, for logs of any program.
+//! Topic maps: the topics of a log that carry each role, for logs of any program. `docs/logs.md` describes the file.
 //!
 //! ```toml
-//! [image]                        # sensor_msgs CompressedImage, or Image in rgb8, bgr8 or mono8
-//! topic = "/camera/image/compressed"
-//!
 //! [odometry]
-//! topic = "/odom"
-//! x = "pose.pose.position.x"     # the usual types need no paths
-//! y = "pose.pose.position.y"
-//! quaternion = "pose.pose.orientation"   # or heading = "theta"
-//! length = "metres"              # or "inches"
-//! angle = "radians"              # or "degrees"; of a heading
-//!
-//! [motion]
-//! topic = "/cmd_vel"
-//! forward = "linear.x"
-//! turn = "angular.z"
-//!
-//! [percept]
-//! topic = "/junction"
-//! degree = "exits"
-//! marker = "marker_door"
-//!
-//! [door]
-//! topic = "/decision"
-//! door = "exit"
-//!
-//! [marker]                       # AprilTagDetectionArray, Detection3DArray or PoseStamped
-//! topic = "/detections"
-//! id = 3                         # of several tags
-//! frame = "tag36h11:3"           # of its transforms; this is the usual one
+//! topic = "/place"
+//! x = "at.x"           # the usual types need no paths; a path leads through the fields of a message, `a.b[0].c`
+//! y = "at.y"
+//! quaternion = "at.orientation"
+//! length = "inches"
 //! ```
-//!
-//! or, for a marker that was not there,
-//!
-//! ```toml
-//! [marker]
-//! at = [12.0, 3.5, 1.57]         # x, y and heading in the frame of odometry
-//! ```
-//!
-//! And `[run]`, `[end]`, `[scene]`, `[command]`, `[hypothesis]` and `[map]`, with a topic, for the
-//! project's own messages. A path leads through the fields of a message, `a.b[0].c`.
 
 mod bound;
 mod error;
-mod guess;
-mod marker_place;
 mod read;
 mod role;
 
 pub use bound::BoundTopicMap;
 pub(super) use bound::Carried;
 pub use error::{TopicMapError, TopicMapErrorKind};
-pub use guess::{RoleGuess, guess};
-pub use marker_place::MarkerPlace;
 pub(super) use role::{APRIL_TAGS, DETECTIONS};
 pub use role::{AngleUnit, LengthUnit, MessagePart, Role};
 
-use std::{collections::BTreeMap, fmt::Write};
+use std::{
+    collections::BTreeMap,
+    fmt::{self, Write},
+};
 
 use toposlam_model::format::document::TextPosition;
 
-use super::reader::Log;
+use super::{reader::Log, topic::Topic};
 
-/// The topics that carry each role.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
-    /// The place of a marker that is assumed.
     assumed: Option<MarkerPlace>,
 }
 
-/// A topic that carries something.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Carrier {
-    /// Its name.
     pub topic: String,
     /// Where in its messages each part stands; what is usual for its type is left out.
     pub paths: BTreeMap<MessagePart, String>,
-    /// The unit of lengths.
     pub length: LengthUnit,
-    /// The unit of angles.
     pub angle: AngleUnit,
-    /// The name or the number of the marker, among several.
     pub id: Option<String>,
-    /// The frame of the marker, if it is not the usual one.
     pub frame: Option<String>,
-    /// Where the mapping file says so.
     place: TextPosition,
-    /// Where it says each path.
     places: BTreeMap<MessagePart, TextPosition>,
 }
 
 impl Carrier {
-    /// A topic of a usual type.
-    #[must_use]
     pub fn usual(topic: &str) -> Self {
         Self {
             topic: topic.to_owned(),
@@ -105,6 +59,25 @@ impl Carrier {
             frame: None,
             place: TextPosition::default(),
             places: BTreeMap::new(),
+        }
+    }
+}
+
+/// Where a marker lies in the frame of odometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerPlace {
+    /// In metres.
+    pub position: [f64; 2],
+    /// The direction in which it points, in radians counter-clockwise from x; `None` if it has none.
+    pub heading: Option<f64>,
+}
+
+impl fmt::Display for MarkerPlace {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y] = self.position;
+        match self.heading {
+            Some(heading) => write!(out, "[{x:?}, {y:?}, {heading:?}]"),
+            None => write!(out, "[{x:?}, {y:?}]"),
         }
     }
 }
@@ -137,7 +110,6 @@ impl TopicMap {
     }
 
     /// The roles of a log's topics by their types, without ambiguous roles.
-    #[must_use]
     pub fn unambiguous(log: &Log) -> Self {
         let mut carriers = BTreeMap::new();
         for RoleGuess { role, topics } in guess(log.topics()) {
@@ -150,8 +122,6 @@ impl TopicMap {
         Self { carriers, assumed: None }
     }
 
-    /// The place of a marker that is assumed to have lain there.
-    #[must_use]
     pub fn assumed_marker(&self) -> Option<MarkerPlace> {
         self.assumed
     }
@@ -167,24 +137,18 @@ impl TopicMap {
         Self { assumed: self.assumed, ..whole }
     }
 
-    /// The carrier of a role, if there is one.
-    #[must_use]
     pub fn carrier(&self, role: Role) -> Option<&Carrier> {
         self.carriers.get(&role)
     }
 
-    /// Everything that is carried.
     pub fn carriers(&self) -> impl Iterator<Item = (Role, &Carrier)> {
         self.carriers.iter().map(|(role, carrier)| (*role, carrier))
     }
 
-    /// One thing, carried by a topic of a usual type.
-    #[must_use]
     pub fn of(role: Role, topic: &str) -> Self {
         Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]), assumed: None }
     }
 
-    /// The map of some of the roles.
     #[must_use]
     pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {
         let carrier = |role: &Role| Some((*role, self.carriers.get(role)?.clone()));
@@ -192,8 +156,6 @@ impl TopicMap {
         Self { carriers, assumed: None }
     }
 
-    /// Whether nothing is carried.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.carriers.is_empty()
     }
@@ -206,8 +168,6 @@ impl TopicMap {
         bound::bind(self, log.topics())
     }
 
-    /// The mapping file that reads as this.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
         for (role, carrier) in &self.carriers {
@@ -239,6 +199,39 @@ impl TopicMap {
         }
         text
     }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RoleGuess {
+    pub role: Role,
+    /// Which topics of the log; at least one, and none is better than the others.
+    pub topics: Vec<usize>,
+}
+
+/// For everything that could be carried, all topics with messages that could: those of the project's own
+/// types, also where they have come by way of ROS 1; and those of the types that are usual for it.
+///
+/// Topics of annotated images (`annotated` is a part of the name) are not a camera's. Odometry comes from
+/// transforms, or from the lines of a scanner, if there is no other; `/tf_static` does not move. Whether a tag
+/// or a pose is the marker only a mapping file knows.
+pub fn guess(topics: &[Topic]) -> Vec<RoleGuess> {
+    let could = |role: Role, topic: &Topic| {
+        let annotated = topic.name.split('/').any(|part| part == "annotated");
+        role != Role::Marker
+            && topic.messages > 0
+            && topic.definition.is_ok()
+            && role.usual(&topic.short_type()).is_some()
+            && !(role == Role::Image && annotated)
+            && !(role == Role::Odometry && topic.name.ends_with("tf_static"))
+    };
+    let guesses = Role::ALL.map(|role| {
+        let could = || topics.iter().enumerate().filter(|(_, topic)| could(role, topic));
+        let rank = |topic: &Topic| role.rank(&topic.short_type());
+        let best = could().map(|(_, topic)| rank(topic)).min();
+        let topics = could().filter(|(_, topic)| Some(rank(topic)) == best);
+        RoleGuess { role, topics: topics.map(|(index, _)| index).collect() }
+    });
+    guesses.into_iter().filter(|guess| !guess.topics.is_empty()).collect()
 }
 
 #[cfg(test)]

@@ -27,12 +27,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
     Ok(TopicMap { carriers, assumed })
 }
 
-/// Where a marker is assumed, if the table says so.
 fn assumed_marker(value: DocumentValue<'_>) -> Option<DocumentValue<'_>> {
     value.any_table().ok()?.get("at")
 }
 
-/// The place of a marker that is assumed.
 fn place<'d>(
     table: DocumentValue<'d>,
     at: DocumentValue<'d>,
@@ -69,12 +67,10 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
         }
     }
     if let Some(unit) = table.get("length") {
-        carrier.length =
-            unit.word(&[LengthUnit::Metres, LengthUnit::Inches].map(|it| (it.name(), it)))?;
+        carrier.length = unit.word(&LengthUnit::ALL.map(|it| (it.name(), it)))?;
     }
     if let Some(unit) = table.get("angle") {
-        carrier.angle =
-            unit.word(&[AngleUnit::Radians, AngleUnit::Degrees].map(|it| (it.name(), it)))?;
+        carrier.angle = unit.word(&AngleUnit::ALL.map(|it| (it.name(), it)))?;
     }
     if let Some(id) = table.get("id") {
         carrier.id = Some(match id.whole() {
@@ -93,7 +89,6 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
     }
 }
 
-/// A text that is not empty.
 fn text<'d>(value: DocumentValue<'d>, expected: &'static str) -> Result<&'d str, DocumentError> {
     match value.text() {
         Ok(text) if !text.is_empty() => Ok(text),

@@ -8,102 +8,78 @@ use crate::{
 
 /// Tags of the project AprilTag; their poses are transforms.
 pub(crate) const APRIL_TAGS: &str = "apriltag_msgs/AprilTagDetectionArray";
-/// Detections of objects, with poses.
 pub(crate) const DETECTIONS: &str = "vision_msgs/Detection3DArray";
-/// One pose.
 pub(crate) const POSE: &str = "geometry_msgs/PoseStamped";
-/// One pose.
 pub(crate) const POSE_WITH_COVARIANCE: &str = "geometry_msgs/PoseWithCovarianceStamped";
 const CARMEN_FRONT: &str = "carmen/FLASER";
 const CARMEN_REAR: &str = "carmen/RLASER";
 const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
 
-/// The role of a topic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Role {
-    /// Images of the robot's camera.
-    Image,
-    /// Scans of the robot's laser scanner.
-    Scan,
-    /// Odometry.
-    Odometry,
-    /// Commands to the wheels.
-    Motion,
-    /// Percepts.
-    Percept,
-    /// The door that it takes.
-    Door,
-    /// The head of a log of the project.
-    Run,
-    /// Scenes.
-    Scene,
-    /// Commands of Algorithm 2.
-    Command,
-    /// A step of Algorithm 1.
-    Hypothesis,
-    /// The map.
-    Map,
-    /// The end of a log of the project.
-    End,
-    /// Sightings of the marker, which is a fiducial.
-    Marker,
+macro_rules! words {
+    ($($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $value:ident = $word:literal,)* })*) => {$(
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum $name {
+            $($(#[$doc])* $value,)*
+        }
+
+        impl $name {
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$value),*];
+
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$value => $word,)*
+                }
+            }
+        }
+    )*};
 }
 
-/// A part of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum MessagePart {
-    /// To the front of where the robot began.
-    X,
-    /// To the left.
-    Y,
-    /// The direction in which it looks, counter-clockwise.
-    Heading,
-    /// The same, as a quaternion with x, y, z and w.
-    Quaternion,
-    /// The speed straight ahead.
-    Forward,
-    /// The speed of turning, counter-clockwise.
-    Turn,
-    /// The number of doors.
-    Degree,
-    /// The door along which the marker points; -1: no marker.
-    Marker,
-    /// A door.
-    Door,
-    /// How many moves were made, or which it is.
-    Move,
-}
+words! {
+    Role {
+        Image = "image",
+        Scan = "scan",
+        Odometry = "odometry",
+        Motion = "motion",
+        Percept = "percept",
+        Door = "door",
+        Run = "run",
+        Scene = "scene",
+        Command = "command",
+        Hypothesis = "hypothesis",
+        Map = "map",
+        End = "end",
+        Marker = "marker",
+    }
 
-/// A unit of length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LengthUnit {
-    /// Metres.
-    Metres,
-    /// Inches of 25.4 mm.
-    Inches,
-}
+    MessagePart {
+        X = "x",
+        Y = "y",
+        /// The direction in which it looks, counter-clockwise.
+        Heading = "heading",
+        Quaternion = "quaternion",
+        Forward = "forward",
+        /// The speed of turning, counter-clockwise.
+        Turn = "turn",
+        Degree = "degree",
+        /// The door along which the marker points; -1: no marker.
+        Marker = "marker",
+        Door = "door",
+        Move = "move",
+    }
 
-/// A unit of angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AngleUnit {
-    /// Radians.
-    Radians,
-    /// Degrees.
-    Degrees,
+    LengthUnit {
+        Metres = "metres",
+        Inches = "inches",
+    }
+
+    AngleUnit {
+        Radians = "radians",
+        Degrees = "degrees",
+    }
 }
 
 impl LengthUnit {
-    /// As mapping files call it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Metres => "metres",
-            Self::Inches => "inches",
-        }
-    }
-
-    /// How many metres it is.
-    #[must_use]
     pub fn in_metres(self) -> f64 {
         match self {
             Self::Metres => 1.0,
@@ -113,17 +89,6 @@ impl LengthUnit {
 }
 
 impl AngleUnit {
-    /// As mapping files call it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Radians => "radians",
-            Self::Degrees => "degrees",
-        }
-    }
-
-    /// How many radians it is.
-    #[must_use]
     pub fn in_radians(self) -> f64 {
         match self {
             Self::Radians => 1.0,
@@ -132,64 +97,7 @@ impl AngleUnit {
     }
 }
 
-impl MessagePart {
-    /// As mapping files call it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Heading => "heading",
-            Self::Quaternion => "quaternion",
-            Self::Forward => "forward",
-            Self::Turn => "turn",
-            Self::Degree => "degree",
-            Self::Marker => "marker",
-            Self::Door => "door",
-            Self::Move => "move",
-        }
-    }
-}
-
 impl Role {
-    /// All of them.
-    pub const ALL: [Self; 13] = [
-        Self::Image,
-        Self::Scan,
-        Self::Odometry,
-        Self::Motion,
-        Self::Percept,
-        Self::Door,
-        Self::Run,
-        Self::Scene,
-        Self::Command,
-        Self::Hypothesis,
-        Self::Map,
-        Self::End,
-        Self::Marker,
-    ];
-
-    /// As mapping files call it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Image => "image",
-            Self::Scan => "scan",
-            Self::Odometry => "odometry",
-            Self::Motion => "motion",
-            Self::Percept => "percept",
-            Self::Door => "door",
-            Self::Run => "run",
-            Self::Scene => "scene",
-            Self::Command => "command",
-            Self::Hypothesis => "hypothesis",
-            Self::Map => "map",
-            Self::End => "end",
-            Self::Marker => "marker",
-        }
-    }
-
-    /// Its parts.
     pub(super) fn parts(self) -> &'static [MessagePart] {
         match self {
             Self::Odometry => {
@@ -217,7 +125,6 @@ impl Role {
         }
     }
 
-    /// The paths of its parts in messages of a usual type.
     pub(super) fn usual(self, type_name: &str) -> Option<&'static [(MessagePart, &'static str)]> {
         if self.own() == Some(type_name) {
             return Some(&[]);

@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 use toposlam_logs::{decode::decode, reader::Log};
 
-use super::written::{Closed, Said, Way, bag, in_order, mcap_file, ways};
+use super::written::{
+    COMPRESSIONS, Closed, Said, Way, bag, crashed_bag, files, in_order, mcap_file,
+};
 
 /// Reads everything. Returns the error, if there is one.
 fn read(bytes: &[u8]) -> Result<Vec<u64>, String> {
@@ -24,9 +26,10 @@ fn find(bytes: &[u8], what: &[u8]) -> usize {
     bytes.windows(what.len()).position(|part| part == what).unwrap()
 }
 
-/// A bag with one compressed chunk whose bytes were changed.
-fn changed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> String {
-    change(&mut bytes);
+/// The error of a log that is changed from a place on.
+fn changed(mut bytes: Vec<u8>, place: &[u8], change: impl FnOnce(&mut [u8])) -> String {
+    let at = find(&bytes, place);
+    change(&mut bytes[at..]);
     read(&bytes).unwrap_err()
 }
 
@@ -49,97 +52,81 @@ fn other_files_are_refused() {
 
 #[test]
 fn damaged_chunks_are_reported() {
+    type Change = fn(&mut [u8]);
+    // The size of the chunk; behind it, in a bag, its length and its bytes.
     let all = in_order(9);
     let bag = |compression| bag(&[&all], compression, Closed::Yes);
-    let message = read(&bag("zip")).unwrap_err();
+    let unknown = read(&bag("zip")).unwrap_err();
     assert!(
-        message.ends_with("the compression \"zip\" is not known; known are none, bz2 and lz4"),
-        "{message}"
+        unknown.ends_with("the compression \"zip\" is not known; known are none, bz2 and lz4"),
+        "{unknown}"
     );
-    let size = |bytes: &[u8]| find(bytes, b"size=") + 5;
+    let growth = "claim a size of 4294967295; the limit is a factor of 1000";
     for compression in ["bz2", "lz4"] {
-        let message = changed(bag(compression), |bytes| {
-            let size = size(bytes);
-            bytes[size..size + 4].fill(255);
-        });
-        assert!(
-            message.contains("claim a size of 4294967295; the limit is a factor of 1000"),
-            "{message}"
-        );
-        let message = changed(bag(compression), |bytes| {
-            let size = size(bytes);
-            bytes[size] ^= 1;
-        });
-        assert!(
-            message.contains("the chunk has ") && message.contains(" bytes and claims "),
-            "{message}"
-        );
-        let message = changed(bag(compression), |bytes| {
-            let data = size(bytes) + 12;
-            bytes[data..data + 20].fill(9);
-        });
-        assert!(message.contains("the chunk cannot be decompressed: "), "{message}");
+        let cases: [(Change, &str); 3] = [
+            (|at| at[..4].fill(255), growth),
+            (|at| at[0] ^= 1, " bytes and claims "),
+            (|at| at[12..32].fill(9), "the chunk cannot be decompressed: "),
+        ];
+        for (change, expected) in cases {
+            let message = changed(bag(compression), b"size=", |at| change(&mut at[5..]));
+            assert!(message.contains(expected), "{message}");
+        }
     }
-    let message = changed(bag("none"), |bytes| {
-        let size = size(bytes);
-        bytes[size] ^= 1;
-    });
-    assert!(
-        message.ends_with("an uncompressed chunk has another length than its header states"),
-        "{message}"
-    );
+    let message = changed(bag("none"), b"size=", |at| at[5] ^= 1);
+    let expected = "an uncompressed chunk has another length than its header states";
+    assert!(message.ends_with(expected), "{message}");
 }
 
 #[test]
 fn damaged_mcap_files_are_reported() {
+    type Change = fn(&mut [u8]);
     let all = in_order(9);
-    let message = changed(mcap_file(&[&all], PLAIN), |bytes| {
-        let word = find(bytes, b"word\0");
-        bytes[word] = b'W';
-    });
-    assert!(message.ends_with("the checksum of the chunk is wrong"), "{message}");
-    let message = changed(mcap_file(&[&all], ZSTD), |bytes| {
-        let name = find(bytes, b"zstd");
-        bytes[name] = b'Z';
-    });
-    assert!(
-        message.ends_with("the compression \"Zstd\" is not known; known are lz4 and zstd"),
-        "{message}"
-    );
-    let message = changed(mcap_file(&[&all], ZSTD), |bytes| {
-        let size = find(bytes, b"zstd") - 16;
-        bytes[size..size + 8].fill(255);
-    });
-    assert!(message.contains("claim a size of 18446744073709551615"), "{message}");
-    let message = changed(mcap_file(&[&all], ZSTD), |bytes| {
-        let chunk = find(bytes, b"zstd") - 32;
-        bytes[chunk] += 1;
-    });
-    assert!(message.ends_with("a message has an earlier time than its chunk"), "{message}");
+    // The name of the compression is behind the times, the size and the checksum of the chunk.
+    let cases: [(Way, &[u8], usize, Change, &str); 4] = [
+        (PLAIN, b"word\0", 0, |at| at[0] = b'W', "the checksum of the chunk is wrong"),
+        (
+            ZSTD,
+            b"zstd",
+            0,
+            |at| at[0] = b'Z',
+            "the compression \"Zstd\" is not known; known are lz4 and zstd",
+        ),
+        (
+            ZSTD,
+            b"zstd",
+            16,
+            |at| at[..8].fill(255),
+            "claim a size of 18446744073709551615; the limit is a factor of 1000",
+        ),
+        (ZSTD, b"zstd", 32, |at| at[0] += 1, "a message has an earlier time than its chunk"),
+    ];
+    for (way, place, before, change, expected) in cases {
+        let mut bytes = mcap_file(&[&all], way);
+        let at = find(&bytes, place) - before;
+        change(&mut bytes[at..]);
+        let message = read(&bytes).unwrap_err();
+        assert!(message.ends_with(expected), "{message}");
+    }
 }
 
 #[test]
 fn messages_of_unknown_connections_are_reported() {
     let said: [Said; 2] = [(0, 1, 0), (1, 2, 1)];
-    let message = changed(bag(&[&said], "none", Closed::No), |bytes| {
-        let conn = b"conn=\x01\0\0\0";
-        let record = find(bytes, conn);
-        let message = record + 1 + find(&bytes[record + 1..], conn);
-        bytes[message + 5] = 7;
+    let conn = b"conn=\x01\0\0\0";
+    let message = changed(bag(&[&said], "none", Closed::No), conn, |record| {
+        let message = 1 + find(&record[1..], conn);
+        record[message + 5] = 7;
     });
     assert!(message.contains("a message of connection 7, which has no record"), "{message}");
 }
 
-/// Some bytes of a log are changed.
 fn damaged() -> impl Strategy<Value = Vec<u8>> {
     let all = in_order(8);
-    let mut logs: Vec<Vec<u8>> =
-        ways().into_iter().map(|way| mcap_file(&[&all[..5], &all[5..]], way)).collect();
-    for compression in ["none", "bz2", "lz4"] {
-        for closed in [Closed::Yes, Closed::No] {
-            logs.push(bag(&[&all[..5], &all[5..]], compression, closed));
-        }
-    }
+    let chunks: [&[Said]; 2] = [&all[..5], &all[5..]];
+    let crashed = COMPRESSIONS.map(|compression| crashed_bag(&chunks, compression));
+    let logs = files(&chunks).into_iter().chain(crashed);
+    let logs: Vec<_> = logs.map(|file| file.bytes).collect();
     let changes = proptest::collection::vec(
         (any::<prop::sample::Index>(), prop_oneof![Just(0), Just(255), any::<u8>()]),
         1..6,

@@ -1,11 +1,10 @@
 //! CARMEN logs: made lines, and the logs of real robots, which are not part of the repository.
 
 use std::{
-    env,
     f64::consts::{FRAC_PI_2, PI},
     fs::File,
     io::{Read, Write},
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::Arc,
 };
 
@@ -21,7 +20,8 @@ use toposlam_logs::{
 };
 use toposlam_vision::laser::scan::{Reading, Scan};
 
-/// The entries of a log by the types of its topics.
+use super::recorded_logs;
+
 fn entries(log: &Log) -> Vec<Entry> {
     let bound = TopicMap::from_log(log).unwrap().bind(log).unwrap();
     log.entries(&bound).map(Result::unwrap).collect()
@@ -78,9 +78,9 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
             log.topics().iter().map(|topic| (&*topic.name, topic.messages)).collect();
         assert_eq!(topics, [("ODOM", 2), ("FLASER", 1), ("RLASER", 1)]);
         let skipped = log.skipped().unwrap();
-        let unknown: Vec<_> = skipped.unknown().iter().collect();
+        let unknown: Vec<_> = skipped.unknown.iter().collect();
         assert_eq!(unknown, [(&"NEFF".to_owned(), &1), (&"SYNC".to_owned(), &1)]);
-        assert_eq!(skipped.off_clock(), 2);
+        assert_eq!(skipped.off_clock, 2);
         assert_eq!((log.start(), log.end()), (Some(10_500_000_000), Some(12_000_000_000)));
         // The front scanner is preferred.
         let mapping = TopicMap::from_log(&log).unwrap();
@@ -193,18 +193,8 @@ fn a_log_that_was_cut_is_read_up_to_its_last_whole_line() {
     assert!(error.starts_with("cannot be read: ") && !error.contains('\n'), "{error}");
 }
 
-/// The logs, if they exist; `TOPOSLAM_CARMEN_LOGS` names their folder.
-pub(crate) fn folder() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/carmen");
-    let folder = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);
-    let found = folder.join("aces.log.gz").is_file();
-    if !found {
-        eprintln!(
-            "skipped: there are no CARMEN logs in {}; TOPOSLAM_CARMEN_LOGS names a folder",
-            folder.display()
-        );
-    }
-    found.then_some(folder)
+fn folder() -> Option<PathBuf> {
+    recorded_logs("carmen", "TOPOSLAM_CARMEN_LOGS", "aces.log.gz")
 }
 
 /// The number of scans, of readings in each and of all odometry; of the lines off the clock, which are those
@@ -221,9 +211,9 @@ fn the_logs_of_real_robots_are_read_as_awk_reads_them() {
         let found = scans(&log);
         assert_eq!(found.len(), count, "{name}");
         let skipped = log.skipped().unwrap();
-        assert_eq!(skipped.unknown()["NEFF"], count as u64);
+        assert_eq!(skipped.unknown["NEFF"], count as u64);
         let messages = log.topics().iter().find(|topic| topic.name == "ODOM").unwrap().messages;
-        assert_eq!(messages + skipped.off_clock(), odometry, "{name}");
+        assert_eq!(messages + skipped.off_clock, odometry, "{name}");
         // By another way: the words of the lines.
         let mut text = String::new();
         GzDecoder::new(File::open(&path).unwrap()).read_to_string(&mut text).unwrap();

@@ -20,7 +20,6 @@ const POSE: &str = "===\nMSG: geometry_msgs/Pose\nPoint position\nQuaternion ori
     MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n===\nMSG: geometry_msgs/Quaternion\n\
     float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
 
-/// A quarter turn to the left.
 const LEFT: [f64; 4] = [0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2];
 
 /// A robot at (1, 2) that looks along y, with a camera half a metre ahead.
@@ -34,7 +33,6 @@ fn robot() -> Vec<Topic> {
     ]
 }
 
-/// The tags of a family in an image.
 fn tags(all: &[(&str, i32)]) -> Topic {
     let definition = "Header header\nAprilTagDetection[] detections\n===\nMSG: std_msgs/Header\n\
         uint32 seq\ntime stamp\nstring frame_id\n===\nMSG: apriltag_msgs/AprilTagDetection\n\
@@ -83,7 +81,6 @@ fn objects(classes: &[[&str; 2]]) -> Topic {
     )
 }
 
-/// A pose in a frame.
 fn pose(frame: &str, position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Topic {
     let definition: String = ["Header header\nPose pose\n", HEADER, POSE].concat();
     let [px, py, pz] = position;
@@ -91,7 +88,6 @@ fn pose(frame: &str, position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Topic {
     ("/tag", "geometry_msgs/PoseStamped", Box::leak(definition.into_boxed_str()), vec![message])
 }
 
-/// The sightings in a log by a mapping file, or the error.
 fn sightings(topics: &[Topic], mapping: &str) -> Result<Vec<FiducialSighting>, String> {
     let log = Log::of_bytes(log_of(topics)).unwrap();
     sightings_in(&log, mapping)

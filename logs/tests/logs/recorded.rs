@@ -1,25 +1,13 @@
 //! Bags that ROS recorded in a session of turtlesim. They are not part of the repository.
 
-use std::{
-    env, fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{env, fs, path::PathBuf, process::Command};
 
 use toposlam_logs::{decode::decode, reader::Log};
 
-/// The bags, if they exist; `TOPOSLAM_LOGS` names their folder.
+use super::recorded_logs;
+
 fn folder() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/logs");
-    let folder = env::var_os("TOPOSLAM_LOGS").map_or(beside, PathBuf::from);
-    let found = folder.join("example.bag").is_file();
-    if !found {
-        eprintln!(
-            "skipped: there are no recorded bags in {}; TOPOSLAM_LOGS names a folder",
-            folder.display()
-        );
-    }
-    found.then_some(folder)
+    recorded_logs("logs", "TOPOSLAM_LOGS", "example.bag")
 }
 
 fn topics(log: &Log) -> Vec<(String, String, u64)> {

@@ -96,7 +96,6 @@ fn percept() -> Topic {
     ("/toposlam/percept", "toposlam_msgs/Percept", DEFINITION, vec![message.concat()])
 }
 
-/// Topics of another project.
 fn junction() -> Topic {
     const DEFINITION: &str = "uint8 exits\nint8[] arrow\n";
     let messages = vec![vec![4, 1, 0, 0, 0, 2], vec![3, 1, 0, 0, 0, 255]];
@@ -109,7 +108,6 @@ fn place() -> Topic {
     ("/place", "lab_msgs/Place", DEFINITION, vec![message])
 }
 
-/// One topic of every kind.
 pub(crate) fn all() -> Vec<u8> {
     log_of(&[image(), odometry(), twist(), percept(), junction(), place()])
 }
@@ -210,31 +208,20 @@ fn ambiguous_topics_are_not_chosen() {
     );
 }
 
+/// A mapping file that does not fit the log of all topics, and how its error begins.
+const MISFITS: &str = r#"
+[run]\ntopic = "/r" | line 2, column 9: run.topic: the log has no topic "/r"; it has: /camera/image/compressed, /odom,
+[run]\ntopic = "/odom" | line 2, column 9: run.topic: messages of type "geometry_msgs/PoseStamped" do not carry run
+[door]\ntopic = "/junction" | line 2, column 9: door.topic: for messages of type "lab_msgs/Junction" the key `door` must give a path
+[door]\ntopic = "/junction"\ndoor = "arrow" | line 3, column 8: door.door: "arrow" does not lead to a number in a lab_msgs/Junction
+[odometry]\ntopic = "/odom"\nquaternion = "pose.position" | line 3, column 14: odometry.quaternion: "pose.position" does not lead to a quaternion in a geometry_msgs/PoseStamped"#;
+
 #[test]
 fn a_topic_map_that_does_not_fit_is_reported_with_its_place() {
     let log = Log::of_bytes(all()).unwrap();
-    for (mapping, message) in [
-        (
-            "[run]\ntopic = \"/r\"",
-            "line 2, column 9: run.topic: the log has no topic \"/r\"; it has: /camera/image/compressed, /odom,",
-        ),
-        (
-            "[run]\ntopic = \"/odom\"",
-            "line 2, column 9: run.topic: messages of type \"geometry_msgs/PoseStamped\" do not carry run",
-        ),
-        (
-            "[door]\ntopic = \"/junction\"",
-            "line 2, column 9: door.topic: for messages of type \"lab_msgs/Junction\" the key `door` must give a path",
-        ),
-        (
-            "[door]\ntopic = \"/junction\"\ndoor = \"arrow\"",
-            "line 3, column 8: door.door: \"arrow\" does not lead to a number in a lab_msgs/Junction",
-        ),
-        (
-            "[odometry]\ntopic = \"/odom\"\nquaternion = \"pose.position\"",
-            "line 3, column 14: odometry.quaternion: \"pose.position\" does not lead to a quaternion in a geometry_msgs/PoseStamped",
-        ),
-    ] {
+    for row in MISFITS.lines().skip(1) {
+        let (mapping, message) = row.split_once(" | ").unwrap();
+        let mapping = mapping.replace(r"\n", "\n");
         let mapping = TopicMap::read(mapping.as_bytes()).unwrap();
         let found = mapping.bind(&log).unwrap_err().to_string();
         assert!(found.starts_with(message), "{found}");

@@ -38,7 +38,6 @@ pub(super) fn written_by(script: &str, name: &str) -> Option<PathBuf> {
     Some(folder)
 }
 
-/// Times, ranges as bits, mounts and odometry.
 type Found = (Vec<(u64, Vec<u32>, [f64; 3])>, Vec<(u64, [f64; 3])>);
 
 fn read(log: &Log) -> Found {

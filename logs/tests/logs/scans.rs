@@ -52,7 +52,6 @@ pub(super) fn transforms(name: &'static str, all: &[Transform]) -> Topic {
 
 pub(super) const LEVEL: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// The frame with the scan of a log, or the error.
 fn read(topics: &[Topic]) -> Result<Frame, String> {
     let log = Log::of_bytes(log_of(topics)).unwrap();
     let mapping = TopicMap::from_log(&log).unwrap().only(&[Role::Scan]);
@@ -63,7 +62,6 @@ fn read(topics: &[Topic]) -> Result<Frame, String> {
     }
 }
 
-/// Bearings and readings.
 fn readings(topics: &[Topic]) -> Vec<(f64, Reading)> {
     read(topics).unwrap().scan.unwrap().readings().collect()
 }

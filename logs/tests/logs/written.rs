@@ -7,15 +7,13 @@ use std::{
 };
 
 use mcap::{Compression, WriteOptions, Writer, records::MessageHeader};
-use toposlam_logs::{RawMessage, reader::Log};
+use toposlam_logs::{Format, RawMessage, reader::Log, topic::Encoding};
 
 /// A message to write: its topic, its time, its number.
 pub(crate) type Said = (u32, u64, u32);
 
-/// The definition of the messages.
 pub(crate) const DEFINITION: &str = "uint32 number\nstring word\n";
 
-/// The body of a message in ROS 1 and in CDR.
 pub(crate) fn ros1_body(number: u32) -> Vec<u8> {
     let mut body = number.to_le_bytes().to_vec();
     body.extend(*b"\x04\0\0\0word");
@@ -62,16 +60,12 @@ fn connection(id: u32) -> Vec<u8> {
     record(&header, &body.concat())
 }
 
-/// The end of a bag.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Closed {
-    /// With its index.
     Yes,
-    /// The recorder crashed.
     No,
 }
 
-/// A bag with one chunk for each list of messages.
 pub(crate) fn bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> Vec<u8> {
     let mut ids: Vec<u32> = chunks.iter().flat_map(|said| said.iter().map(|said| said.0)).collect();
     ids.sort_unstable();
@@ -168,7 +162,6 @@ pub(crate) fn bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> Vec<
     bag
 }
 
-/// The options of an MCAP file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     pub(crate) ros1: bool,
@@ -177,7 +170,6 @@ pub(crate) struct Way {
     pub(crate) summary: bool,
 }
 
-/// All options.
 pub(crate) fn ways() -> Vec<Way> {
     let mut ways = Vec::new();
     for ros1 in [false, true] {
@@ -191,7 +183,41 @@ pub(crate) fn ways() -> Vec<Way> {
     ways
 }
 
-/// An MCAP file with one chunk for each list of messages.
+/// A file with one chunk for each list of messages.
+pub(crate) struct File {
+    pub(crate) name: String,
+    pub(crate) format: Format,
+    pub(crate) encoding: Encoding,
+    pub(crate) chunked: bool,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// The compressions of bags.
+pub(crate) const COMPRESSIONS: [&str; 3] = ["none", "bz2", "lz4"];
+
+fn named_bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> File {
+    let name = format!("bag, {compression}");
+    let bytes = bag(chunks, compression, closed);
+    File { name, format: Format::Bag, encoding: Encoding::Ros1, chunked: true, bytes }
+}
+
+pub(crate) fn crashed_bag(chunks: &[&[Said]], compression: &str) -> File {
+    named_bag(chunks, compression, Closed::No)
+}
+
+/// Whole files of every format, with all options.
+pub(crate) fn files(chunks: &[&[Said]]) -> Vec<File> {
+    let mcap = |way: Way| File {
+        name: format!("{way:?}"),
+        format: Format::Mcap,
+        encoding: if way.ros1 { Encoding::Ros1 } else { Encoding::Cdr },
+        chunked: way.chunked,
+        bytes: mcap_file(chunks, way),
+    };
+    let bags = COMPRESSIONS.map(|compression| named_bag(chunks, compression, Closed::Yes));
+    ways().into_iter().map(mcap).chain(bags).collect()
+}
+
 pub(crate) fn mcap_file(chunks: &[&[Said]], way: Way) -> Vec<u8> {
     let mut options = WriteOptions::new().compression(way.compression).use_chunks(way.chunked);
     if !way.summary {

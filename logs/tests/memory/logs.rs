@@ -20,7 +20,6 @@ use toposlam_logs::{
 
 use super::MEMORY;
 
-/// The peak of the allocated memory during a call.
 fn peak(run: impl FnOnce()) -> usize {
     let before = MEMORY.current_usage();
     MEMORY.reset_peak_usage();
@@ -140,7 +139,6 @@ fn seeds_hold() {
     }
 }
 
-/// Data that expands a lot when decompressed.
 fn zeros_hold() {
     for (compression, read) in [(mcap::Compression::Lz4, true), (mcap::Compression::Zstd, false)] {
         let options = mcap::WriteOptions::new().compression(Some(compression)).chunk_size(None);
@@ -159,7 +157,6 @@ fn zeros_hold() {
     }
 }
 
-/// A log of lines takes the same memory, whatever its length.
 fn lines_hold() {
     let line = format!("FLASER 180{} 1 2 3 1 2 3", " 12.5".repeat(180));
     for (lines, format) in [(9000, "log"), (18_000, "log"), (18_000, "gzip")] {

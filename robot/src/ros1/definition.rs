@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use toposlam_logs::message::{Message, TIME, TypeDefinition};
+use toposlam_logs::message::{Message, TIME, TypeDefinition, used_types};
 
 /// The type that begins with a sequence number in ROS 1.
 const HEADER: &str = "std_msgs/Header";
@@ -18,8 +18,11 @@ pub(super) fn type_name<M: Message>() -> String {
 /// The definition of a type, followed by those of the types that it uses.
 pub(super) fn definition<M: Message>() -> String {
     let mut text = fields(M::DEFINITION);
-    for TypeDefinition { name, text: used } in M::USES.iter().filter(|used| **used != TIME) {
-        let number = if *name == HEADER { "uint32 seq\n" } else { "" };
+    for TypeDefinition { name, text: used } in used_types(M::DEFINITION) {
+        if name == TIME.name {
+            continue;
+        }
+        let number = if name == HEADER { "uint32 seq\n" } else { "" };
         // Writing to a string cannot fail.
         let _ = write!(text, "{:=<80}\nMSG: {name}\n{number}{}", "", fields(used));
     }

@@ -5,39 +5,24 @@ use image::Rgb;
 use super::{BLUE, BODY, CENTRE_LINE, CLUSTERS, CYAN, GREEN, ORANGE, RED, WHITE, shade};
 use crate::{colour::PixelClass, ground_view::GroundView};
 
-/// The legend of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageLegend {
-    /// Each sign, and what it means.
     pub entries: Vec<(LegendSign, String)>,
     /// The length of a metre, in pixels; `None` if the picture has no uniform scale.
     pub metre: Option<f64>,
 }
 
-/// A sign of a legend.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LegendSign {
-    /// Areas, each of one colour.
     Areas(Vec<Rgb<u8>>),
-    /// A point.
     Dot(Rgb<u8>),
-    /// A circle.
     Ring(Rgb<u8>),
-    /// A thin line.
     Line(Rgb<u8>),
-    /// A thick line.
     Thick(Rgb<u8>),
-    /// A disc with an outline, and a line ahead.
-    Robot {
-        /// Its colour.
-        body: Rgb<u8>,
-        /// The colour of the outline and of the line.
-        outline: Rgb<u8>,
-    },
+    Robot { body: Rgb<u8>, outline: Rgb<u8> },
 }
 
 /// The legend of the picture of a step, by the step's name; empty for any other name.
-#[must_use]
 pub fn legend(stage: &str) -> StageLegend {
     use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
     let area = |class| Areas(vec![shade(class)]);

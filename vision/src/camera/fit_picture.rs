@@ -6,19 +6,15 @@ use nalgebra::{Point2, Vector2};
 use super::{Camera, OpticsModel, rim::Rim};
 use crate::{draw, geometry::unit};
 
-/// The rim and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
-/// The points of the rim.
 const YELLOW: Rgb<u8> = Rgb([255, 230, 0]);
 /// The floor at one, two and three metres.
 const BLUE: Rgb<u8> = Rgb([70, 150, 255]);
-/// The centre, and ahead.
 const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 
 /// An image with a calibration drawn over it: the centre and ahead in white, the rim and the horizon in
 /// green, the points of the rim in yellow, the floor at one, two and three metres in blue. What the
 /// camera's mask hides is reddish.
-#[must_use]
 pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     let mut picture = image.clone();
     if let Some(mask) = &camera.mask {
@@ -53,7 +49,6 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     picture
 }
 
-/// A closed curve, by angle.
 fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<Point2<f64>>, colour: Rgb<u8>) {
     const STEPS: u32 = 720;
     let angle = |step: u32| f64::from(step) * std::f64::consts::TAU / f64::from(STEPS);

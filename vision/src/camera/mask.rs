@@ -7,33 +7,23 @@ use image::{
 };
 use thiserror::Error;
 
-/// The pixels in which the floor can be seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     /// Its file, as the calibration file names it.
     pub file: String,
     size: [u32; 2],
-    /// Row by row.
     seen: Vec<bool>,
 }
 
-/// Why bytes are not a mask.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MaskError {
-    /// They are not a PNG image.
     #[error("this is not a PNG image: {0}")]
     NotPng(String),
-    /// The mask has another size than the camera's images.
     #[error(
         "the mask is {} by {} pixels, the camera's images are {} by {}",
         .found[0], .found[1], .expected[0], .expected[1]
     )]
-    Size {
-        /// Width and height of the mask.
-        found: [u32; 2],
-        /// Width and height of the camera's images.
-        expected: [u32; 2],
-    },
+    Size { found: [u32; 2], expected: [u32; 2] },
 }
 
 impl Mask {
@@ -58,14 +48,12 @@ impl Mask {
     ///
     /// # Panics
     /// Panics if their number is not that of an image of this size.
-    #[must_use]
     pub fn new(file: &str, size: [u32; 2], seen: Vec<bool>) -> Self {
         assert_eq!(seen.len(), size[0] as usize * size[1] as usize);
         Self { file: file.to_owned(), size, seen }
     }
 
     /// The mask as an image: white where the floor can be seen, black elsewhere.
-    #[must_use]
     pub fn to_image(&self) -> GrayImage {
         let [width, height] = self.size;
         GrayImage::from_fn(width, height, |u, v| [if self.sees([u, v]) { 255 } else { 0 }].into())
@@ -92,13 +80,11 @@ impl Mask {
     }
 
     /// Width and height, in pixels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// Whether the floor can be seen in a pixel; not outside of the image.
-    #[must_use]
     pub fn sees(&self, [u, v]: [u32; 2]) -> bool {
         let [width, height] = self.size;
         u < width && v < height && self.seen[v as usize * width as usize + u as usize]

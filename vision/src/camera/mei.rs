@@ -15,7 +15,6 @@ use super::{
     scaled_place, yaml,
 };
 
-/// A camera with a single viewpoint, in the unified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mei {
     /// The file with the calibration, as the calibration file names it.
@@ -23,16 +22,14 @@ pub struct Mei {
     /// The height of the viewpoint above the floor, in metres.
     pub viewpoint_height: f64,
     /// Width and height of the images in pixels, if the file gives them.
-    image: Option<[u32; 2]>,
+    pub(super) image: Option<[u32; 2]>,
     xi: f64,
-    /// k1 and k2.
     radial: [f64; 2],
-    /// p1 and p2.
     tangential: [f64; 2],
     /// The matrix from the plane to pixels.
     focal: [f64; 2],
     skew: f64,
-    centre: Point2<f64>,
+    pub(super) centre: Point2<f64>,
     /// The distance from the middle of the plane up to which the distortion can be inverted.
     reach: f64,
 }
@@ -103,7 +100,6 @@ impl Mei {
         .reaching()
     }
 
-    /// Finds how far the distortion can be inverted.
     fn reaching(mut self) -> Result<Self, OpticsFileError> {
         // The plane shows nothing farther out; 100 is half a degree below level if xi is 0.
         let end = if self.xi > 1.0 { 1.0 / (self.xi * self.xi - 1.0).sqrt() } else { 100.0_f64 };
@@ -121,17 +117,6 @@ impl Mei {
     /// The least scale of the distortion for a small piece of the plane.
     const LEAST_SLOPE: f64 = 0.02;
 
-    /// Width and height of the images in pixels, if the file gives them.
-    #[must_use]
-    pub fn image(&self) -> Option<[u32; 2]> {
-        self.image
-    }
-
-    pub(super) fn centre(&self) -> Point2<f64> {
-        self.centre
-    }
-
-    /// The same camera with an image that is scaled by a factor.
     pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
         Self {
             image: Some(image),
@@ -142,7 +127,6 @@ impl Mei {
         }
     }
 
-    /// The ray of a pixel, in the image's axes.
     pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
         let off = pixel - self.centre;
         let y = off.y / self.focal[1];
@@ -160,7 +144,6 @@ impl Mei {
         })
     }
 
-    /// The pixel that shows a point of the floor, in the image's axes.
     pub(super) fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
         let down = self.viewpoint_height;
         let far = Vector2::new(ground.coords.norm(), down).norm();
@@ -176,7 +159,6 @@ impl Mei {
         ))
     }
 
-    /// A point of the plane after distortion, and the derivative.
     fn distorted(&self, at: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
         let [x, y] = at.into();
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
@@ -198,7 +180,6 @@ impl Mei {
         )
     }
 
-    /// The point of the plane that is distorted to this one.
     fn undistorted(&self, distorted: Vector2<f64>) -> Option<Vector2<f64>> {
         let near = 1e-13 * (1.0 + distorted.norm());
         let lack = |at: Vector2<f64>| {

@@ -1,11 +1,8 @@
 //! Cameras: the point of the floor that a pixel shows. Section 3.
 //!
-//! Pixels are (u, v), u to the right and v down; pixel centres are integers. Floor coordinates have
-//! the robot's centre as origin, x ahead and y to the left, in metres; z is up.
-//!
-//! The axis of every kind of camera is vertical above the robot's centre, and the middle of the image
-//! shows what is straight below: its own lens, if the camera looks up into a mirror, or the floor, if it
-//! looks down. The direction only decides whether the image is mirrored ([`SeenFrom`]).
+//! Pixels are (u, v), u to the right and v down; pixel centres are integers. Floor coordinates have the robot's centre
+//! as origin, x ahead and y to the left, in metres; z is up. The axis of every kind of camera is vertical above the
+//! robot's centre, and the middle of the image shows what is straight below.
 
 pub mod calibration;
 mod fit_picture;
@@ -30,7 +27,6 @@ pub use ocam::OCam;
 pub use optics_file::OpticsFileError;
 pub use spherical::SphericalMirror;
 
-/// The side from which the camera looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeenFrom {
     /// It looks up into the mirror: with ahead up, the image's right is the robot's left.
@@ -39,14 +35,10 @@ pub enum SeenFrom {
     Above,
 }
 
-/// The optics of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OpticsModel {
-    /// A pinhole under a spherical mirror.
     SphericalMirror(SphericalMirror),
-    /// A single viewpoint, in OCamCalib's polynomial model.
     OCamCalib(OCam),
-    /// A single viewpoint, in the unified model of OpenCV's omnidir and camodocal.
     Mei(Mei),
 }
 
@@ -56,16 +48,13 @@ fn scaled_place(place: Point2<f64>, factor: f64) -> Point2<f64> {
     place.map(|at| (at + 0.5) * factor - 0.5)
 }
 
-/// A calibrated camera on the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Width and height of its images, in pixels.
     pub image: [u32; 2],
     /// The direction of ahead in the image, in radians counter-clockwise from u.
     pub ahead: f64,
-    /// Whether the image is mirrored.
     pub seen_from: SeenFrom,
-    /// Its optics.
     pub optics: OpticsModel,
     /// The pixels in which the floor can be seen, if they are known.
     pub mask: Option<Mask>,
@@ -76,13 +65,11 @@ pub struct Camera {
 pub struct ViewingRay {
     /// The point at which it leaves the mirror; the viewpoint of a camera with a single one.
     pub origin: Point3<f64>,
-    /// Its direction, of length one.
     pub direction: Vector3<f64>,
 }
 
 impl ViewingRay {
     /// The point at which it meets the floor; `None` if it does not go down.
-    #[must_use]
     pub fn floor(&self) -> Option<Point2<f64>> {
         let length = -self.origin.z / self.direction.z;
         (self.direction.z < 0.0).then(|| (self.origin + length * self.direction).xy())
@@ -115,7 +102,6 @@ impl Camera {
     pub const HIDDEN: f64 = 0.32;
 
     /// The SuperScout's camera: a spherical mirror seen from below, 1280 by 960 pixels.
-    #[must_use]
     pub fn superscout() -> Self {
         Self {
             image: [1280, 960],
@@ -149,17 +135,15 @@ impl Camera {
     }
 
     /// The pixel that looks straight down.
-    #[must_use]
     pub fn middle(&self) -> Point2<f64> {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.centre,
-            OpticsModel::OCamCalib(ocam) => ocam.centre(),
-            OpticsModel::Mei(mei) => mei.centre(),
+            OpticsModel::OCamCalib(ocam) => ocam.centre,
+            OpticsModel::Mei(mei) => mei.centre,
         }
     }
 
     /// The height of the pinhole or the single viewpoint above the floor, in metres.
-    #[must_use]
     pub fn height(&self) -> f64 {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.camera_height,
@@ -171,7 +155,6 @@ impl Camera {
     // paper: hardware.height
     /// The height from which the floor is seen, in metres: that of the mirror's middle, or of the single
     /// viewpoint.
-    #[must_use]
     pub fn eye_height(&self) -> f64 {
         match &self.optics {
             OpticsModel::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
@@ -180,7 +163,6 @@ impl Camera {
     }
 
     /// The ray along which a pixel looks; `None` outside of the mirror or of the calibration.
-    #[must_use]
     pub fn ray(&self, pixel: impl Into<Point2<f64>>) -> Option<ViewingRay> {
         let ViewingRay { origin, direction } = self.optics.ray(pixel.into())?;
         let robot_from_image = self.robot_from_image().to_homogeneous();
@@ -191,14 +173,12 @@ impl Camera {
     }
 
     /// The point of the floor that a pixel shows; `None` above the horizon and outside of the mirror.
-    #[must_use]
     pub fn pixel_to_ground(&self, pixel: impl Into<Point2<f64>>) -> Option<Point2<f64>> {
         self.optics.ray(pixel.into())?.floor().map(|ground| self.robot_from_image() * ground)
     }
 
     /// The pixel that shows a point of the floor, which may lie outside of the image; `None` if none
     /// does.
-    #[must_use]
     pub fn ground_to_pixel(&self, ground: impl Into<Point2<f64>>) -> Option<Point2<f64>> {
         let ground: Point2<f64> = ground.into();
         self.optics.pixel(self.robot_from_image().transpose() * ground)
@@ -206,7 +186,6 @@ impl Camera {
 
     /// The index of the image's pixel, row by row, that shows a point of the floor; `None` if none does, or something
     /// is in the way.
-    #[must_use]
     pub fn seen_pixel(&self, ground: Point2<f64>) -> Option<u32> {
         let [u, v] = self.ground_to_pixel(ground)?.map(f64::round).into();
         let [width, height] = self.image;
@@ -216,7 +195,6 @@ impl Camera {
     }
 
     /// Whether the floor can be seen in a pixel: neither body, strut nor rim is in the way.
-    #[must_use]
     pub fn sees(&self, pixel: [u32; 2]) -> bool {
         let inside = pixel[0] < self.image[0] && pixel[1] < self.image[1];
         inside

@@ -2,7 +2,6 @@
 
 use image::{GrayImage, ImageBuffer, Luma, Rgb};
 
-/// Red, green and blue.
 pub(super) type Colours = ImageBuffer<Rgb<f32>, Vec<f32>>;
 
 /// All pixels that are within a radius, in pixels, of a non-zero one.

@@ -20,20 +20,19 @@ use super::{
     scaled_place,
 };
 
-/// A camera with a single viewpoint, as OCamCalib calibrates it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OCam {
     /// The file with the calibration, as the calibration file names it.
     pub file: String,
     /// The height of the viewpoint above the floor, in metres.
     pub viewpoint_height: f64,
-    image: [u32; 2],
+    pub(super) image: [u32; 2],
     /// The polynomial: how far down a point of the plane looks, by its distance from the middle.
     /// Positive in the middle.
     down: Vec<f64>,
     /// Roughly its inverse: the distance from the middle by the angle above level.
     inverse: Vec<f64>,
-    centre: Point2<f64>,
+    pub(super) centre: Point2<f64>,
     /// c, d and e: rows and columns are `[[c, d], [e, 1]]` times (x, y).
     affine: [f64; 3],
     /// The distance from the middle up to which points look farther and farther out.
@@ -79,7 +78,6 @@ impl OCam {
         .reaching()
     }
 
-    /// Finds the range in which the polynomial is valid.
     fn reaching(mut self) -> Result<Self, OpticsFileError> {
         let constant = self.down.first().copied().unwrap_or_default();
         within("the size of the first coefficient", constant.abs(), [1.0, 1e6])?;
@@ -92,20 +90,11 @@ impl OCam {
         let edge = edge.into_iter().fold(0.0, f64::max);
         within("the polynomial at the edge", polynomial(&self.down, edge).0, [-1e9, 1e9])?;
         // The angle from straight down grows with rho for as long as f - rho f' is positive.
+        let growth = |(coefficient, power): (&f64, u32)| coefficient * (1.0 - f64::from(power));
         let growing: Vec<f64> = self.down.iter().zip(0_u32..).map(growth).collect();
         self.reach = first_change(&growing, [0.0, edge]).unwrap_or(edge);
         self.horizon = first_change(&self.down, [0.0, self.reach]).unwrap_or(self.reach);
         if self.horizon < 1.0 { Err(OpticsFileError::NoView) } else { Ok(self) }
-    }
-
-    /// Width and height of the images, in pixels.
-    #[must_use]
-    pub fn image(&self) -> [u32; 2] {
-        self.image
-    }
-
-    pub(super) fn centre(&self) -> Point2<f64> {
-        self.centre
     }
 
     /// The same camera with an image that is scaled by a factor: the plane's coordinates and f are
@@ -130,7 +119,6 @@ impl OCam {
         Vector2::new(scale * (c * column - e * row), -scale * (row - d * column))
     }
 
-    /// The ray of a pixel, in the image's axes.
     pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
         let across = self.plane(pixel);
         let rho = across.norm();
@@ -169,11 +157,6 @@ impl OCam {
     }
 }
 
-/// The coefficient of f - rho f', from that of f.
-fn growth((coefficient, power): (&f64, u32)) -> f64 {
-    coefficient * (1.0 - f64::from(power))
-}
-
 /// The lines of a file that are neither empty nor comments, each with its number.
 struct Lines<'a> {
     lines: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
@@ -187,7 +170,6 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The numbers of the next line.
     fn next(&mut self, what: &'static str) -> Result<(usize, Vec<f64>), OpticsFileError> {
         let (line, text) = self.lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
         let number = |word: &str| {

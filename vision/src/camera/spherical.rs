@@ -32,26 +32,22 @@ pub struct SphericalMirror {
 
 impl SphericalMirror {
     /// The radius of the mirror's rim in the image, in pixels.
-    #[must_use]
     pub fn rim(&self) -> f64 {
         self.focal * (self.mirror_radius / self.mirror_distance).asin().tan()
     }
 
     /// The focal length for which the rim has this radius in pixels.
-    #[must_use]
     pub fn focal_of_rim(rim: f64, mirror_radius: f64, mirror_distance: f64) -> f64 {
         rim / (mirror_radius / mirror_distance).asin().tan()
     }
 
     /// The radius of the horizon in the image, in pixels. It is always inside of the rim.
-    #[must_use]
     pub fn horizon(&self) -> f64 {
         self.radius_at(self.horizon_sine())
     }
 
     /// The distance from the axis of the floor that is seen this many pixels from the centre, in metres;
     /// `None` from the horizon on.
-    #[must_use]
     pub fn range(&self, radius: f64) -> Option<f64> {
         let pixel = self.centre + Vector2::new(radius, 0.0);
         self.ray(pixel)?.floor().map(|ground| ground.x)
@@ -59,17 +55,14 @@ impl SphericalMirror {
 
     /// The distance from the centre, in pixels, at which the floor at this distance from the axis is
     /// seen.
-    #[must_use]
     pub fn radius(&self, range: f64) -> Option<f64> {
         range.is_finite().then(|| self.radius_at(self.sine_of(range.abs())))
     }
 
-    /// The same camera with an image that is scaled by a factor.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         Self { centre: scaled_place(self.centre, factor), focal: factor * self.focal, ..*self }
     }
 
-    /// The ray of a pixel, in the image's axes.
     pub(super) fn ray(&self, pixel: Point2<f64>) -> Option<ViewingRay> {
         let off = Vector2::new(pixel.x - self.centre.x, self.centre.y - pixel.y);
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
@@ -99,7 +92,6 @@ impl SphericalMirror {
         })
     }
 
-    /// The pixel that shows a point of the floor, in the image's axes.
     pub(super) fn pixel(&self, ground: Point2<f64>) -> Option<Point2<f64>> {
         let range = ground.coords.norm();
         if range == 0.0 {
@@ -109,7 +101,6 @@ impl SphericalMirror {
         Some(self.centre + scale * Vector2::new(ground.x, -ground.y))
     }
 
-    /// The height of the sphere's centre above the floor.
     fn height(&self) -> f64 {
         self.camera_height + self.mirror_distance
     }

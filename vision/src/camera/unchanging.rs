@@ -1,11 +1,7 @@
-//! The pixels that never change in images from several places: the robot's body, struts, the lens, the
-//! rim.
+//! The pixels that never change in images from several places: the robot's body, struts, the lens, the rim.
 //!
-//! Brightness does not help: floor is as uniform as a body, and a body is brighter near a lamp. Edges
-//! do: those of the robot are in the same place in every image, those of the building are not. So the
-//! result is the edges that all images have, and the areas inside them in which nothing changes, with
-//! small pieces removed. A strut is a thin rod beside the axis, so it hides the same few bearings at
-//! every range. It may be as dark as the walls behind it, but not along all its length in most images.
+//! They are the edges that all images have, and the areas inside them in which nothing changes, without small
+//! pieces. A strut is a thin rod beside the axis, so it hides the same few bearings at every range.
 
 #![allow(clippy::cast_sign_loss, reason = "sizes are not negative")]
 
@@ -21,17 +17,14 @@ use super::{
 };
 use crate::geometry::angle;
 
-/// Why the pixels that never change cannot be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum UnchangingError {
-    /// Too few images.
     #[error(
         "{0} images are too few to find what never changes; take at least {least}, from different \
          places",
         least = UNCHANGING.fewest
     )]
     TooFew(usize),
-    /// The images are all the same.
     #[error(
         "almost nothing changes from image to image; take them from different places and in \
          different directions"
@@ -39,7 +32,6 @@ pub enum UnchangingError {
     Still,
 }
 
-/// The parameters.
 const UNCHANGING: UnchangingParams = UnchangingParams::DEFAULT;
 
 /// The mask of the pixels inside the rim that change: they can show floor or walls.
@@ -68,7 +60,6 @@ pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, Unchangi
     Ok(Mask::new(file, [width, height], seen.collect()))
 }
 
-/// The mirror in the image.
 struct Disc {
     centre: Point2<f64>,
     radius: f64,
@@ -82,7 +73,6 @@ impl Disc {
     }
 }
 
-/// The pixels that are white in the mask.
 fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     let (width, height) = (slopes[0].width, slopes[0].height);
     let changes = Changes::between(slopes);
@@ -121,9 +111,7 @@ fn binary(width: u32, height: u32, is: impl Fn(u32, u32) -> bool) -> GrayImage {
 struct Slopes {
     width: u32,
     height: u32,
-    /// For each channel to the right, and then down.
     rises: Vec<[f32; 6]>,
-    /// The size of slopes that are only noise.
     noise: Vec<f32>,
 }
 
@@ -174,7 +162,6 @@ impl Slopes {
     }
 }
 
-/// The mean of each square of pixels.
 fn shrunk(image: &RgbImage, factor: u32) -> Colours {
     let [width, height] = [image.width(), image.height()].map(|side| side.div_ceil(factor));
     Colours::from_fn(width, height, |u, v| {
@@ -213,7 +200,6 @@ fn noise(image: &Colours) -> f32 {
     (*median * 1.4826 / 20.0_f32.sqrt()).max(0.3)
 }
 
-/// The bearings that struts hide.
 struct Struts {
     hidden: Vec<bool>,
 }
@@ -265,11 +251,8 @@ impl Struts {
     }
 }
 
-/// Edges that stay and edges that move.
 struct Changes {
-    /// Edges that are the same in nearly all images.
     stay: GrayImage,
-    /// Edges in some images.
     moved: GrayImage,
 }
 
@@ -311,7 +294,6 @@ impl Changes {
     }
 }
 
-/// The length of a vector.
 fn size(vector: [f32; 6]) -> f32 {
     vector.iter().map(|part| part * part).sum::<f32>().sqrt()
 }

@@ -12,7 +12,6 @@ pub(super) struct Values {
 struct Value {
     key: &'static str,
     line: usize,
-    /// A word, or the words of a list.
     words: Vec<String>,
 }
 
@@ -22,7 +21,6 @@ enum Inside {
     List,
 }
 
-/// The greatest depth of a key.
 const DEPTH: usize = 2;
 
 /// Reads the values of known keys, each a word or a list of words. Aliases and tags are ignored.
@@ -61,7 +59,6 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// A word is a key, a value, or an item of a list.
     fn word(&mut self, word: &str, line: usize) -> Result<(), OpticsFileError> {
         if let Some(Inside::Mapping(key @ None)) = self.path.last_mut() {
             *key = Some(word.to_owned());

@@ -11,7 +11,6 @@ pub struct Confusion {
 }
 
 impl Confusion {
-    /// The classes that the classifier can give.
     pub const GIVEN: [PixelClass; 5] = [
         PixelClass::Floor,
         PixelClass::Stripe,
@@ -20,38 +19,37 @@ impl Confusion {
         PixelClass::Unknown,
     ];
 
+    /// The column of a class, which is also its row if it is one of [`PixelClass::LEARNED`].
+    fn place(class: PixelClass) -> Option<usize> {
+        Self::GIVEN.iter().position(|&given| given == class)
+    }
+
+    fn row(&self, class: PixelClass) -> Option<&[u64; 5]> {
+        self.pixels.get(Self::place(class)?)
+    }
+
     /// Counts pixels of a true class that the classifier gives another or the same class.
     pub fn count(&mut self, is: PixelClass, given: PixelClass, pixels: u64) {
-        let row = PixelClass::LEARNED.iter().position(|&class| class == is);
-        let column = Self::GIVEN.iter().position(|&class| class == given);
-        if let (Some(row), Some(column)) = (row, column) {
-            self.pixels[row][column] += pixels;
+        let (row, column) = (Self::place(is), Self::place(given));
+        if let (Some(row), Some(column)) = (row.and_then(|row| self.pixels.get_mut(row)), column) {
+            row[column] += pixels;
         }
     }
 
-    /// All pixels of a class.
-    #[must_use]
     pub fn of(&self, is: PixelClass) -> u64 {
-        let rows = PixelClass::LEARNED.iter().zip(&self.pixels).filter(|(class, _)| **class == is);
-        rows.flat_map(|(_, row)| row).sum()
+        self.row(is).map_or(0, |row| row.iter().sum())
     }
 
     /// The share of a class's pixels that is given this class; `None` without pixels.
-    #[must_use]
     pub fn recall(&self, class: PixelClass) -> Option<f64> {
-        share(self.right(class), self.of(class))
+        share(self.row(class)?[Self::place(class)?], self.of(class))
     }
 
     /// The share of the pixels given a class that is of this class; `None` without pixels.
-    #[must_use]
     pub fn precision(&self, class: PixelClass) -> Option<f64> {
-        let column = Self::GIVEN.iter().position(|&given| given == class)?;
-        share(self.right(class), self.pixels.iter().map(|row| row[column]).sum())
-    }
-
-    fn right(&self, class: PixelClass) -> u64 {
-        let place = PixelClass::LEARNED.iter().position(|&learned| learned == class);
-        place.map_or(0, |place| self.pixels[place][place])
+        let column = Self::place(class)?;
+        let right = self.row(class).map_or(0, |row| row[column]);
+        share(right, self.pixels.iter().map(|row| row[column]).sum())
     }
 }
 

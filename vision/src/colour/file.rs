@@ -11,46 +11,26 @@ use super::{
     ColourModel, PixelClass, Priors, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram,
 };
 
-/// The version of the files that are written and read.
 const VERSION: i64 = 1;
 const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
-/// The most pixels of a colour.
 const MOST_PIXELS: i64 = 1_000_000_000_000;
 
-/// Why bytes are not a colour file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{position}{kind}")]
 pub struct ColourFileError {
-    /// Where in the file.
     pub position: TextPosition,
-    /// What is wrong there.
     #[source]
     pub kind: ColourFileErrorKind,
 }
 
-/// What can be wrong at a place of a colour file.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ColourFileErrorKind {
-    /// A key or a value is not as it should be.
     #[error(transparent)]
     Document(DocumentErrorKind),
-    /// The file has another version.
     #[error("this is version {found} of colour files; only version {VERSION} can be read")]
-    Version {
-        /// The version.
-        found: i64,
-    },
-    /// Two rows are of the same bin.
+    Version { found: i64 },
     #[error("there are two rows with value {value}, chroma {chroma}, hue {hue}")]
-    BinTwice {
-        /// The bin's value.
-        value: u8,
-        /// Its chroma.
-        chroma: u8,
-        /// Its hue.
-        hue: u16,
-    },
-    /// A class that must have a colour has none.
+    BinTwice { value: u8, chroma: u8, hue: u16 },
     #[error("there is no colour; floor and stripe must have one")]
     NoColour,
 }
@@ -69,7 +49,6 @@ impl From<DocumentError> for ColourFileError {
 
 impl StripeKind {
     /// Its place in one word: floor or wall.
-    #[must_use]
     pub fn place(self) -> &'static str {
         match self {
             Self::OnFloor => "floor",
@@ -79,8 +58,6 @@ impl StripeKind {
 }
 
 impl ColourModel {
-    /// The model as a colour file.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         let Self { stripe, floor: [red, green, blue], priors, smoothing, .. } = self;
         let mut text = format!(

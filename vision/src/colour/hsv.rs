@@ -1,13 +1,8 @@
 //! HSV colours, in bins of about the same size.
 //!
-//! Instead of saturation this uses chroma, which is saturation times value: noise of the camera makes
-//! the saturation and the hue of dark colours meaningless, but their chroma stays small. Bins are eight
-//! of 256 levels wide in value and four in chroma, because a floor and a wall often have nearly the same
-//! chroma, and any value. The hues of one chroma lie on a ring around the greys. The `r`-th ring has
-//! `6 r` bins, so each is four levels of the middle channel long. Greys, in the middle, have one bin and
-//! no hue. So the bins of one value are a lattice of hexagons.
+//! Chroma is saturation times value: the saturation and the hue of dark colours are only noise. The hues of one chroma
+//! lie on a ring around the greys; the `r`-th ring has `6 r` bins. So the bins of one value are a lattice of hexagons.
 
-/// A bin of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Bin {
     /// The level of the brightest channel, in steps of [`VALUE_STEP`].
@@ -18,20 +13,13 @@ pub(super) struct Bin {
     pub(super) hue: u16,
 }
 
-/// Levels in a step of value.
 const VALUE_STEP: f64 = 8.0;
-/// Levels in a step of chroma.
 const CHROMA_STEP: f64 = 4.0;
-/// Bins along the value.
 pub(super) const VALUES: u8 = 32;
-/// Rings, with the greys.
 const CHROMAS: u8 = 64;
-/// Bins of the same value.
 pub(super) const PLANE: usize = ring_start(CHROMAS);
-/// All bins.
 pub(super) const BINS: usize = VALUES as usize * PLANE;
 
-/// The number of bins on the rings before this one.
 const fn ring_start(chroma: u8) -> usize {
     let chroma = chroma as usize;
     if chroma == 0 { 0 } else { 1 + 3 * chroma * (chroma - 1) }
@@ -60,7 +48,6 @@ impl Bin {
         Self { value, chroma, hue: hue % Self::hues(chroma) }
     }
 
-    /// The greatest chroma at a value.
     pub(super) fn most_chroma(value: u8) -> u8 {
         2 * value + 1
     }
@@ -75,7 +62,6 @@ impl Bin {
         ring_start(self.chroma) + usize::from(self.hue)
     }
 
-    /// Its index among all bins.
     pub(super) fn index(self) -> usize {
         usize::from(self.value) * PLANE + self.in_plane()
     }
@@ -109,20 +95,15 @@ impl Bin {
     }
 }
 
-/// The lattice of the bins of one value.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
-    /// The place of each bin.
     hexagons: Vec<[i32; 2]>,
-    /// The bin at each place.
     bins: Vec<Option<usize>>,
 }
 
-/// Hexagons along each axis.
 const ACROSS: usize = 2 * CHROMAS as usize - 1;
 
 impl Lattice {
-    /// The lattice.
     pub(super) fn new() -> Self {
         let chromas =
             (0..CHROMAS).flat_map(|chroma| (0..Bin::hues(chroma)).map(move |hue| (chroma, hue)));
@@ -137,13 +118,11 @@ impl Lattice {
         Self { hexagons, bins }
     }
 
-    /// The bin at an offset from another one.
     pub(super) fn beside(&self, bin: usize, [along, across]: [i32; 2]) -> Option<usize> {
         let [x, y] = self.hexagons[bin];
         self.bins[place([x + along, y + across])?]
     }
 
-    /// All offsets up to a distance in bins, each with its distance.
     pub(super) fn offsets(reach: i32) -> impl Iterator<Item = ([i32; 2], f64)> {
         let range = -reach..=reach;
         let pairs = range.clone().flat_map(move |x| range.clone().map(move |y| [x, y]));

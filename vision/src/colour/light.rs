@@ -16,12 +16,9 @@ pub struct FloorRing {
     pixels: Vec<usize>,
 }
 
-/// The parameters.
 const LIGHT: LightParams = LightParams::DEFAULT;
 
 impl FloorRing {
-    /// The ring in the images of a camera.
-    #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let samples = (0..LIGHT.ranges).flat_map(|nth| {
             let range = LIGHT.ring[0]
@@ -39,7 +36,6 @@ impl FloorRing {
     }
 
     /// The colours of the ring in an image of this camera; none in an image of another size.
-    #[must_use]
     pub fn colours(&self, image: &RgbImage) -> Vec<[u8; 3]> {
         if <[u32; 2]>::from(image.dimensions()) != self.size {
             return Vec::new();
@@ -49,19 +45,14 @@ impl FloorRing {
     }
 }
 
-/// Why a ring of samples does not give the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum LightError {
-    /// There are no samples.
     #[error("no floor beside the robot's body is seen")]
     Unseen,
-    /// Most samples have a channel at its greatest level.
     #[error("the floor beside the robot's body is overexposed")]
     BurntOut,
-    /// There is too little light.
     #[error("the floor beside the robot's body is too dark")]
     TooDark,
-    /// No colour is common to many samples.
     #[error("the floor beside the robot's body has no common colour")]
     Mixed,
 }
@@ -144,30 +135,26 @@ mod tests {
 
     const FLOOR: [u8; 3] = [104, 106, 110];
 
-    /// Samples of the floor and samples of another colour.
     fn ring(floor: usize, others: &[([u8; 3], usize)]) -> Vec<[u8; 3]> {
         let others = others.iter().flat_map(|&(colour, count)| vec![colour; count]);
         vec![FLOOR; floor].into_iter().chain(others).collect()
     }
 
-    fn is_floor(ring: &[[u8; 3]]) -> bool {
-        floor_colour(ring).is_ok_and(|found| {
-            found
-                .into_iter()
-                .zip(FLOOR)
-                .all(|(found, level)| (found - f64::from(level)).abs() < 1e-9)
-        })
-    }
-
     #[test]
     fn less_than_half_of_the_ring_moves_nothing() {
         let (wall, marker, lamp, tape) = ([206, 190, 158], [205, 35, 140], [255; 3], [240; 3]);
-        assert!(is_floor(&ring(100, &[])));
-        assert!(is_floor(&ring(60, &[(wall, 40)])));
-        assert!(is_floor(&ring(55, &[(wall, 25), (tape, 20)])));
-        assert!(is_floor(&ring(70, &[(marker, 30)])));
-        assert!(is_floor(&ring(60, &[(lamp, 40)])));
-        assert!(is_floor(&ring(60, &[(wall, 20), (marker, 10), (lamp, 10)])));
+        for (floor, others) in [
+            (100, vec![]),
+            (60, vec![(wall, 40)]),
+            (55, vec![(wall, 25), (tape, 20)]),
+            (70, vec![(marker, 30)]),
+            (60, vec![(lamp, 40)]),
+            (60, vec![(wall, 20), (marker, 10), (lamp, 10)]),
+        ] {
+            let found = floor_colour(&ring(floor, &others)).unwrap();
+            let mut off = found.iter().zip(FLOOR).map(|(level, exact)| level - f64::from(exact));
+            assert!(off.all(|off| off.abs() < 1e-9), "{others:?}: {found:?}");
+        }
     }
 
     #[test]

@@ -9,7 +9,6 @@
 mod confusion;
 mod file;
 mod hsv;
-mod labels;
 mod light;
 mod model;
 pub mod params;
@@ -23,7 +22,6 @@ pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
 pub use training::{ClassPixels, Example, ExampleError, Training, TrainingError, TrainingView};
 
-/// The class of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum PixelClass {
@@ -32,22 +30,16 @@ pub enum PixelClass {
     Unseen,
     /// A colour that the classifier never saw.
     Unknown,
-    /// Floor.
     Floor,
-    /// The boundary stripe between floor and wall.
     Stripe,
-    /// The marker.
     Marker,
     /// Anything else: walls, doors, posters.
     Other,
 }
 
 impl PixelClass {
-    /// The classes that are learned.
     pub const LEARNED: [Self; 4] = [Self::Floor, Self::Stripe, Self::Marker, Self::Other];
 
-    /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Unseen => "unseen",
@@ -57,5 +49,22 @@ impl PixelClass {
             Self::Marker => "marker",
             Self::Other => "other",
         }
+    }
+
+    /// The colour of a class in a label mask. Pixels to ignore are unseen.
+    pub fn label(self) -> [u8; 3] {
+        match self {
+            Self::Unseen | Self::Unknown => [255, 255, 255],
+            Self::Floor => [0, 255, 0],
+            Self::Stripe => [255, 0, 0],
+            Self::Marker => [0, 0, 255],
+            Self::Other => [0, 0, 0],
+        }
+    }
+
+    /// The class for a colour of a label mask, [`PixelClass::Unseen`] for pixels to ignore.
+    pub fn of_label(label: [u8; 3]) -> Option<Self> {
+        let classes = Self::LEARNED.into_iter().chain([Self::Unseen]);
+        classes.into_iter().find(|class| class.label() == label)
     }
 }

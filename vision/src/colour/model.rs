@@ -7,10 +7,8 @@ use super::{
     table::{self, CELLS},
 };
 
-/// The stripe between floor and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripe {
-    /// Its place.
     pub kind: StripeKind,
     /// Its width in metres: across the floor, or up the wall.
     pub width: f64,
@@ -21,7 +19,6 @@ impl Stripe {
     pub const WIDTHS: [f64; 2] = [0.005, 0.5];
 }
 
-/// The place of a stripe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StripeKind {
     /// A tape on the floor along the wall: its outer edge is the wall's foot.
@@ -33,13 +30,9 @@ pub enum StripeKind {
 /// The prior probability of each class. Only the ratios matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Priors {
-    /// Floor.
     pub floor: f64,
-    /// Stripe.
     pub stripe: f64,
-    /// Marker.
     pub marker: f64,
-    /// Anything else.
     pub other: f64,
 }
 
@@ -61,23 +54,18 @@ pub struct Smoothing {
     /// The spread of one colour in the same light, in steps of chroma: images are noisy, and the light
     /// is never equally white.
     pub colour: f64,
-    /// The relative spread of the light from place to place.
     pub light: f64,
 }
 
 /// The colours of a class: bins in order, each once, with their numbers of pixels.
 pub(super) type Histogram = Vec<(Bin, u64)>;
 
-/// A learned classifier of colours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourModel {
-    /// The stripe of the building.
     pub stripe: Stripe,
     /// The floor's colour in the light of the model: red, green and blue from 0 to 255.
     pub floor: [f64; 3],
-    /// The prior probability of each class.
     pub priors: Priors,
-    /// How far the learned colours stand for similar ones.
     pub smoothing: Smoothing,
     /// A colour is unknown if each class has a smaller share of it.
     pub unknown_below: f64,
@@ -89,13 +77,10 @@ impl ColourModel {
     /// The gain that brings an image to the light of this model. `ring` has the colours of its
     /// [`FloorRing`](super::FloorRing). `None` if they are too dark, overexposed, or without a common
     /// colour.
-    #[must_use]
     pub fn gain(&self, ring: &[[u8; 3]]) -> Option<Gain> {
         light::floor_colour(ring).ok().map(|floor| light::gain(floor, self.floor))
     }
 
-    /// The classes of all colours.
-    #[must_use]
     pub fn table(&self) -> ColourTable {
         let classes = self.classes();
         let cell = |cell| classes[Bin::of(table::centre(cell)).index()];
@@ -122,7 +107,6 @@ impl ColourModel {
 }
 
 impl Smoothing {
-    /// The share of each bin in each class.
     fn of(self, histograms: &[Histogram; 4]) -> [Vec<f64>; 4] {
         let lattice = Lattice::new();
         let near = self.near();

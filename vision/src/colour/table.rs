@@ -9,7 +9,6 @@ pub struct ColourTable {
     pub(crate) classes: Vec<PixelClass>,
 }
 
-/// The number of colours with six bits per channel.
 pub(super) const CELLS: usize = 1 << 18;
 
 /// The middle of the colours with 256 levels per channel that have this index.
@@ -28,7 +27,6 @@ fn light(level: f64) -> f64 {
     if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The level of a light.
 fn level(light: f64) -> f64 {
     let part =
         if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
@@ -36,7 +34,6 @@ fn level(light: f64) -> f64 {
 }
 
 impl Gain {
-    /// The gain that changes these levels to those.
     pub(super) fn between(from: [f64; 3], to: [f64; 3]) -> Self {
         Self(std::array::from_fn(|channel| light(to[channel]) / light(from[channel])))
     }
@@ -68,17 +65,13 @@ pub struct LitTable<'a> {
 }
 
 impl ColourTable {
-    /// The table for images that this gain brings to the common light.
-    #[must_use]
     pub fn lit(&self, gain: Gain) -> LitTable<'_> {
         LitTable { classes: &self.classes, offsets: gain.offsets() }
     }
 }
 
 impl LitTable<'_> {
-    /// The class of a colour.
     #[inline]
-    #[must_use]
     pub fn class(&self, colour: [u8; 3]) -> PixelClass {
         self.classes[index(&self.offsets, colour)]
     }

@@ -14,21 +14,16 @@ use super::{
 };
 use crate::camera::Camera;
 
-/// The parameters.
 const TRAINING: TrainingParams = TrainingParams::DEFAULT;
 
-/// The pixels of a camera that are learned from.
 #[derive(Clone, Debug)]
 pub struct TrainingView {
     camera: Camera,
-    /// Those that show the ground view, row by row.
     ground: Vec<usize>,
     ring: FloorRing,
 }
 
 impl TrainingView {
-    /// The pixels of this camera.
-    #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
@@ -44,48 +39,27 @@ impl TrainingView {
     }
 }
 
-/// Why an image and its labels cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ExampleError {
-    /// The image is not of this camera.
     #[error(
         "the image has {} x {} pixels; the calibration is for {} x {}",
         found[0], found[1], expected[0], expected[1]
     )]
-    ImageSize {
-        /// Width and height of the image.
-        found: [u32; 2],
-        /// Those of the calibration.
-        expected: [u32; 2],
-    },
-    /// The labels are not of this image.
+    ImageSize { found: [u32; 2], expected: [u32; 2] },
     #[error(
         "the labels have {} x {} pixels; their image has {} x {}",
         found[0], found[1], expected[0], expected[1]
     )]
-    LabelSize {
-        /// Width and height of the labels.
-        found: [u32; 2],
-        /// Those of the image.
-        expected: [u32; 2],
-    },
-    /// A label has an unknown colour.
+    LabelSize { found: [u32; 2], expected: [u32; 2] },
     #[error(
         "the label at pixel ({}, {}) has the colour ({}, {}, {}); there can be {}",
         pixel[0], pixel[1], colour[0], colour[1], colour[2], allowed()
     )]
-    LabelColour {
-        /// The pixel, u and v.
-        pixel: [u32; 2],
-        /// The colour.
-        colour: [u8; 3],
-    },
-    /// The light of the image is not known.
+    LabelColour { pixel: [u32; 2], colour: [u8; 3] },
     #[error(transparent)]
     Light(#[from] LightError),
 }
 
-/// The colours of label masks.
 fn allowed() -> String {
     let labels = PixelClass::LEARNED.map(|class| (class.name(), class.label()));
     let labels = labels.into_iter().chain([("ignore", PixelClass::Unseen.label())]);
@@ -93,12 +67,9 @@ fn allowed() -> String {
     shown.collect::<Vec<_>>().join(", ")
 }
 
-/// What is learned from an image and its labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Example {
-    /// The floor's colour in this light.
     floor: [f64; 3],
-    /// The colours of each class, in order.
     colours: Vec<Alike>,
 }
 
@@ -173,51 +144,29 @@ fn is_mixed(labels: &[[u8; 3]], width: usize, pixel: usize) -> bool {
     })
 }
 
-/// Why colours cannot be learned.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TrainingError {
-    /// There is no image.
     #[error("there is no image to learn from")]
     NoImage,
-    /// There is no pixel of a class.
     #[error("no pixel within {} m is labelled as {}", TRAINING.range, class.name())]
-    NoPixel {
-        /// The class.
-        class: PixelClass,
-    },
-    /// The images cannot be divided into this number of parts.
+    NoPixel { class: PixelClass },
     #[error(
         "{images} images cannot be divided into {folds} parts; the number of parts must be from 2 to {images}"
     )]
-    Folds {
-        /// The number of parts.
-        folds: usize,
-        /// The number of images.
-        images: usize,
-    },
-    /// Nothing can be learned from all parts but one.
+    Folds { folds: usize, images: usize },
     #[error("without part {fold} of the images {cause}")]
-    InFold {
-        /// The part, from 1.
-        fold: usize,
-        /// The reason.
-        cause: Box<TrainingError>,
-    },
-    /// The work was stopped.
+    InFold { fold: usize, cause: Box<TrainingError> },
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
 }
 
-/// The images and pixels of a class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassPixels {
-    /// The number of images.
     pub images: usize,
     /// The number of their pixels, within the range of sensing.
     pub pixels: u64,
 }
 
-/// The examples from which the colours of a building are learned.
 #[derive(Clone, Debug)]
 pub struct Training {
     stripe: Stripe,
@@ -226,8 +175,6 @@ pub struct Training {
 }
 
 impl Training {
-    /// A training without examples, for a building with this stripe.
-    #[must_use]
     pub fn new(stripe: Stripe) -> Self {
         Self { stripe, view: None, examples: Vec::new() }
     }
@@ -252,19 +199,14 @@ impl Training {
         Ok(())
     }
 
-    /// Adds an example.
     pub fn push(&mut self, example: Example) {
         self.examples.push(example);
     }
 
-    /// The number of images.
-    #[must_use]
     pub fn images(&self) -> usize {
         self.examples.len()
     }
 
-    /// The images and pixels of a class.
-    #[must_use]
     pub fn seen(&self, class: PixelClass) -> ClassPixels {
         let pixels = self.examples.iter().map(|example| {
             let of_class = example.colours.iter().filter(|alike| alike.class == class);
@@ -344,7 +286,6 @@ impl Training {
     }
 }
 
-/// The median of the floor's colours, rounded to a hundredth.
 fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
     if examples.is_empty() {
         return Err(TrainingError::NoImage);

@@ -1,54 +1,53 @@
 //! Databases of rosbag2, `.db3`. They are read if the feature `sqlite` is on.
+//!
+//! In memory a row is a head of 24 bytes (its number, its time, its topic and its length), and the message.
 
 #[cfg(feature = "sqlite")]
 mod sqlite;
 
-use std::{ops::Range, path::Path};
-
-use super::{FileStructure, Listener};
-use crate::{
-    error::{LogError, LogErrorKind},
-    source::Source,
-};
-
-/// An open database. Without the feature there is none.
-pub(crate) struct Database {
-    #[cfg(feature = "sqlite")]
-    tables: sqlite::Tables,
-    #[cfg(not(feature = "sqlite"))]
-    tables: std::convert::Infallible,
-}
-
 #[cfg(feature = "sqlite")]
-impl Database {
-    /// Opens a database. One that is compressed or has no path is kept in memory.
-    pub(crate) fn open(source: &Source, path: Option<&Path>) -> Result<Self, LogErrorKind> {
-        Ok(Self { tables: sqlite::Tables::open(source, path)? })
-    }
+pub(crate) use sqlite::Database;
 
-    /// Its sections.
-    pub(super) fn scan(&self, listener: &mut Listener<'_>) -> Result<FileStructure, LogError> {
-        self.tables.scan(listener)
-    }
+use super::{Record, u32_at, u64_at};
 
-    /// Rows with their heads.
-    pub(super) fn load(&self, range: Range<u64>) -> Result<Vec<u8>, LogErrorKind> {
-        self.tables.load(range)
-    }
-}
+/// Without the feature there is no open database.
+#[cfg(not(feature = "sqlite"))]
+pub(crate) enum Database {}
 
 #[cfg(not(feature = "sqlite"))]
 impl Database {
-    /// Returns an error.
-    pub(crate) fn open(_: &Source, _: Option<&Path>) -> Result<Self, LogErrorKind> {
-        Err(LogErrorKind::NoDatabases)
+    pub(crate) fn open(
+        _: &crate::source::Source,
+        _: Option<&std::path::Path>,
+    ) -> Result<Self, crate::error::LogErrorKind> {
+        Err(crate::error::LogErrorKind::NoDatabases)
     }
 
-    pub(super) fn scan(&self, _: &mut Listener<'_>) -> Result<FileStructure, LogError> {
-        match self.tables {}
+    pub(super) fn scan(
+        &self,
+        _: &mut super::Listener<'_>,
+    ) -> Result<super::FileStructure, crate::error::LogError> {
+        match *self {}
     }
 
-    pub(super) fn load(&self, _: Range<u64>) -> Result<Vec<u8>, LogErrorKind> {
-        match self.tables {}
+    pub(super) fn load(
+        &self,
+        _: std::ops::Range<u64>,
+    ) -> Result<Vec<u8>, crate::error::LogErrorKind> {
+        match *self {}
     }
+}
+
+const HEAD: usize = 24;
+
+/// The first row of some bytes with its number, and how long it is.
+pub(super) fn row(bytes: &[u8]) -> Option<(u64, Record<'_>, usize)> {
+    let end = HEAD + u32_at(bytes, 20)? as usize;
+    bytes.get(HEAD..end)?;
+    let record = Record::Message {
+        connection: u32_at(bytes, 16)?,
+        time: u64_at(bytes, 8)?,
+        bytes: HEAD..end,
+    };
+    Some((u64_at(bytes, 0)?, record, end))
 }

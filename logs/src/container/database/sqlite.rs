@@ -1,8 +1,7 @@
 //! Databases of rosbag2, `.db3`: SQLite with a table of topics, one of messages, and in newer files one of
 //! definitions.
 //!
-//! A section is a range of rows. In memory its rows stand one after the other, each behind a head: its
-//! number, its topic, its time and its length.
+//! A section is a range of rows.
 
 use std::{
     collections::BTreeMap,
@@ -13,27 +12,26 @@ use std::{
 
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
-use super::super::{FileStructure, Listener, Record, Section, rows::put_row};
+use super::{
+    super::{FileStructure, Listener, Section},
+    HEAD, Record,
+};
 use crate::{
     error::{LogError, LogErrorKind, OffsetUnit},
-    published_types,
+    message::published_schema,
     source::Source,
 };
 
 /// The largest size of a section, in bytes, unless it is one row.
 const SECTION: u64 = 1 << 20;
-/// The largest message, in bytes.
 const MOST_BYTES: i32 = 1 << 28;
 
-/// The tables of an open database.
-pub(super) struct Tables {
+pub(crate) struct Database {
     connection: Mutex<Connection>,
-    /// The connection of each topic by its number in the database.
     topics: BTreeMap<i64, u32>,
     list: Vec<StoredTopic>,
 }
 
-/// A row of the table of topics, with its definition.
 struct StoredTopic {
     name: String,
     type_name: String,
@@ -48,9 +46,9 @@ impl From<rusqlite::Error> for LogErrorKind {
     }
 }
 
-impl Tables {
+impl Database {
     /// Opens a database. One that is compressed or has no path is kept in memory.
-    pub(super) fn open(source: &Source, path: Option<&Path>) -> Result<Self, LogErrorKind> {
+    pub(crate) fn open(source: &Source, path: Option<&Path>) -> Result<Self, LogErrorKind> {
         let connection = if let Some(path) = path.filter(|_| source.compression.is_none()) {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
             Connection::open_with_flags(path, flags)?
@@ -73,8 +71,10 @@ impl Tables {
         Ok(Self { connection: Mutex::new(connection), topics, list })
     }
 
-    /// Its sections.
-    pub(super) fn scan(&self, listener: &mut Listener<'_>) -> Result<FileStructure, LogError> {
+    pub(in super::super) fn scan(
+        &self,
+        listener: &mut Listener<'_>,
+    ) -> Result<FileStructure, LogError> {
         for (topic, id) in self.list.iter().zip(0..) {
             listener(&Record::Connection {
                 id,
@@ -105,7 +105,7 @@ impl Tables {
             let topic = self.topic(row.get(1)?)?;
             let time = time(row.get(2)?)?;
             let length: Option<i64> = row.get(3)?;
-            let size = 24 + u64::try_from(length.unwrap_or_default()).unwrap_or_default();
+            let size = HEAD as u64 + u64::try_from(length.unwrap_or_default()).unwrap_or_default();
             if scan.loose.as_ref().is_some_and(|section| section.size + size > SECTION) {
                 scan.end_loose();
             }
@@ -117,8 +117,7 @@ impl Tables {
         Ok(())
     }
 
-    /// Rows with their heads.
-    pub(super) fn load(&self, range: Range<u64>) -> Result<Vec<u8>, LogErrorKind> {
+    pub(in super::super) fn load(&self, range: Range<u64>) -> Result<Vec<u8>, LogErrorKind> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
         let mut statement = connection.prepare(
             "SELECT id, topic_id, timestamp, data FROM messages WHERE id >= ?1 AND id < ?2 ORDER BY id",
@@ -131,7 +130,10 @@ impl Tables {
             let topic = self.topic(row.get(1)?)?;
             let time = time(row.get(2)?)?;
             let data = row.get_ref(3)?.as_bytes_or_null().map_err(rusqlite::Error::from)?;
-            put_row(&mut bytes, id, topic, time, data.unwrap_or_default());
+            let data = data.unwrap_or_default();
+            bytes.extend([id, time].map(u64::to_le_bytes).as_flattened());
+            bytes.extend([topic, data.len() as u32].map(u32::to_le_bytes).as_flattened());
+            bytes.extend(data);
         }
         Ok(bytes)
     }
@@ -182,7 +184,7 @@ fn topics(connection: &Connection) -> Result<Vec<(i64, StoredTopic)>, LogErrorKi
         let (name, type_name, encoding): (String, String, String) =
             (row.get(1)?, row.get(2)?, row.get(3)?);
         let of_file = defined.get(&type_name).filter(|(_, text)| !text.is_empty()).cloned();
-        let published = || Some(("ros2msg".to_owned(), published_types::definition(&type_name)?));
+        let published = || Some(("ros2msg".to_owned(), published_schema(&type_name)?));
         let (schema, definition) = of_file.or_else(published).unwrap_or_default();
         topics.push((row.get(0)?, StoredTopic { name, type_name, encoding, schema, definition }));
     }

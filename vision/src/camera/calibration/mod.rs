@@ -28,11 +28,66 @@
 //! image = [1280, 960]          # only needed if the file does not give it
 //! ```
 
-mod error;
 mod read;
 mod write;
 
+use std::io;
+
+use thiserror::Error;
+use toposlam_model::format::document::{
+    DocumentError, DocumentErrorKind, DocumentValue, TextPosition,
+};
+
 pub use super::optics_file::SIDES;
-pub use error::{CalibrationError, CalibrationErrorKind};
+use crate::camera::{MaskError, OpticsFileError};
 pub use read::{Files, read};
 pub use write::to_toml;
+
+#[derive(Debug, Error)]
+#[error("{position}{kind}")]
+pub struct CalibrationError {
+    pub position: TextPosition,
+    #[source]
+    pub kind: CalibrationErrorKind,
+}
+
+#[derive(Debug, Error)]
+pub enum CalibrationErrorKind {
+    #[error(transparent)]
+    Document(DocumentErrorKind),
+    #[error(
+        "{rim} pixels do not agree with focal, mirror_radius and mirror_distance, which give a rim of \
+         {expected:.1}; they must agree within 2 %"
+    )]
+    Rim { rim: f64, expected: f64 },
+    #[error(
+        "focal, mirror_radius and mirror_distance give a rim of {rim:.2} pixels; it must be between \
+         {low} and {high}"
+    )]
+    RimOutOfRange { rim: f64, low: f64, high: f64 },
+    #[error("{file}: cannot be read: {error}")]
+    Unreadable { file: String, error: io::Error },
+    #[error("{file}: {error}")]
+    Optics { file: String, error: OpticsFileError },
+    #[error(
+        "{} by {} pixels do not agree with the file, which is for images of {} by {}",
+        .given[0], .given[1], .found[0], .found[1]
+    )]
+    OtherImage { given: [u32; 2], found: [u32; 2] },
+    #[error("the file does not give the size of the images; the key `image` must")]
+    NoImage,
+    #[error("{file}: {error}")]
+    Mask { file: String, error: MaskError },
+}
+
+impl CalibrationErrorKind {
+    fn at(self, value: DocumentValue<'_>) -> CalibrationError {
+        CalibrationError { position: value.position(), kind: self }
+    }
+}
+
+impl From<DocumentError> for CalibrationError {
+    fn from(DocumentError { position, kind }: DocumentError) -> Self {
+        Self { position, kind: CalibrationErrorKind::Document(kind) }
+    }
+}

@@ -5,10 +5,7 @@ use std::{io, ops::RangeInclusive};
 use nalgebra::Point2;
 use toposlam_model::format::document::{Document, DocumentTable, DocumentValue};
 
-use super::{
-    super::optics_file::SIDES,
-    error::{CalibrationError, CalibrationErrorKind},
-};
+use super::{CalibrationError, CalibrationErrorKind, SIDES};
 use crate::camera::{
     Camera, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
 };
@@ -16,7 +13,6 @@ use crate::camera::{
 /// Reads the files that a calibration names, by their names in it.
 pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
-/// The keys of every camera.
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
 
 const FOCAL: RangeInclusive<f64> = 1.0..=1e6;
@@ -53,11 +49,11 @@ pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationEr
         Kind::SphericalMirror => spherical_mirror(value)?,
         Kind::OCamCalib => single_viewpoint(value, files, |file, bytes, height| {
             let ocam = OCam::read(file, bytes, height)?;
-            Ok((Some(ocam.image()), OpticsModel::OCamCalib(ocam)))
+            Ok((Some(ocam.image), OpticsModel::OCamCalib(ocam)))
         })?,
         Kind::Mei => single_viewpoint(value, files, |file, bytes, height| {
             let mei = Mei::read(file, bytes, height)?;
-            Ok((mei.image(), OpticsModel::Mei(mei)))
+            Ok((mei.image, OpticsModel::Mei(mei)))
         })?,
     };
     let ahead = table.need("ahead")?.number_in("an angle in degrees", ANGLE)?.to_radians();
@@ -109,7 +105,6 @@ fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel),
     Ok((image, OpticsModel::SphericalMirror(mirror)))
 }
 
-/// A camera that another tool has calibrated, by its own file.
 fn single_viewpoint(
     value: DocumentValue<'_>,
     files: &mut Files<'_>,
@@ -141,7 +136,6 @@ fn read_mask(
         .map_err(|error| CalibrationErrorKind::Mask { file: shown(name), error }.at(value))
 }
 
-/// The name of a file, and its bytes.
 fn open<'d>(
     value: DocumentValue<'d>,
     files: &mut Files<'_>,
@@ -152,7 +146,6 @@ fn open<'d>(
     Ok((name, bytes))
 }
 
-/// The name of a file, in one line.
 fn shown(name: &str) -> String {
     name.escape_debug().to_string()
 }

@@ -6,8 +6,6 @@ use toml::Value;
 
 use crate::camera::{Camera, Mei, OCam, OpticsModel, SeenFrom};
 
-/// The calibration file of a camera. It names the files that the camera was read from.
-#[must_use]
 pub fn to_toml(camera: &Camera) -> String {
     let mut text = String::from("[camera]\n");
     let mut line = |key: &str, value: String, comment: &str| {
@@ -19,11 +17,16 @@ pub fn to_toml(camera: &Camera) -> String {
             writeln!(text, "{entry:<28} # {comment}")
         };
     };
+    let kind = match &camera.optics {
+        OpticsModel::SphericalMirror(_) => "spherical-mirror",
+        OpticsModel::OCamCalib(_) => "ocamcalib",
+        OpticsModel::Mei(_) => "mei",
+    };
+    line("kind", quoted(kind), "");
     let [width, height] = camera.image;
+    line("image", format!("[{width}, {height}]"), "pixels");
     match &camera.optics {
         OpticsModel::SphericalMirror(mirror) => {
-            line("kind", quoted("spherical-mirror"), "");
-            line("image", format!("[{width}, {height}]"), "pixels");
             let [u, v] = mirror.centre.into();
             let centre = format!("[{}, {}]", number(u), number(v));
             line("centre", centre, "of the mirror in the image, u to the right, v down");
@@ -33,21 +36,11 @@ pub fn to_toml(camera: &Camera) -> String {
             line("mirror_distance", distance, "sphere's centre above the pinhole");
             let height = number(mirror.camera_height);
             line("camera_height", height, "pinhole above the floor");
-            line(
-                "rim",
-                number((100.0 * mirror.rim()).round() / 100.0),
-                "pixels; follows from the others",
-            );
+            let rim = number((100.0 * mirror.rim()).round() / 100.0);
+            line("rim", rim, "pixels; follows from the others");
         }
-        OpticsModel::OCamCalib(OCam { file, viewpoint_height, .. }) => {
-            line("kind", quoted("ocamcalib"), "");
-            line("image", format!("[{width}, {height}]"), "pixels");
-            line("file", quoted(file), "");
-            line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
-        }
-        OpticsModel::Mei(Mei { file, viewpoint_height, .. }) => {
-            line("kind", quoted("mei"), "");
-            line("image", format!("[{width}, {height}]"), "pixels");
+        OpticsModel::OCamCalib(OCam { file, viewpoint_height, .. })
+        | OpticsModel::Mei(Mei { file, viewpoint_height, .. }) => {
             line("file", quoted(file), "");
             line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
         }

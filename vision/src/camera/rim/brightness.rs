@@ -37,7 +37,6 @@ impl Brightness {
         Ok(Self { width, height, pixels })
     }
 
-    /// The mean of each square of pixels.
     pub(super) fn shrunk(&self, factor: usize) -> Self {
         let (width, height) = (self.width / factor, self.height / factor);
         let mean = |u: usize, v: usize| {

@@ -4,7 +4,6 @@ use nalgebra::{Point2, Vector3, distance};
 
 use crate::{camera::scaled_place, least_squares::NormalEquations};
 
-/// A circle in an image, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Circle {
     pub(super) centre: Point2<f64>,

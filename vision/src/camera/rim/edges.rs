@@ -13,22 +13,17 @@ pub(super) const BEARINGS: usize = 1440;
 /// The places of an arc over which brightness is averaged, along the circle, in units.
 const ARC: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
 
-/// A steep edge near a circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CircleEdge {
     pub(super) at: Point2<f64>,
-    /// How much brighter it is inside of the circle than outside.
     pub(super) fall: f64,
 }
 
-/// The edges near a circle.
 pub(super) struct CircleEdges {
     pub(super) edges: Vec<CircleEdge>,
-    /// The number of bearings on which the circle is in the image.
     pub(super) visible: usize,
 }
 
-/// The length in pixels that an edge of a circle is measured by.
 pub(super) fn unit(circle: &Circle) -> f64 {
     (circle.radius / RIM.unit_radius).max(1.0)
 }
@@ -89,7 +84,6 @@ impl CircleEdges {
         Self { edges, visible }
     }
 
-    /// The places of the edges.
     pub(super) fn places(&self) -> Vec<Point2<f64>> {
         self.edges.iter().map(|edge| edge.at).collect()
     }

@@ -1,20 +1,8 @@
 //! The mirror's rim in images: a circle with an edge all along it.
 //!
-//! The scene in the mirror changes from image to image, the rim does not. So the images are averaged,
-//! which leaves little of the scene but its mean brightness. In one image alone, things just inside of
-//! the rim may be as dark as what is outside, or darker; so the edge may be of either sign, and on some
-//! bearings there is none.
-//!
-//! The `search` collects circles with many edges along them. Each is fitted to the steepest edges near
-//! it, ignoring outliers. The rim is the circle with its steepest edges on the most bearings, and on most
-//! of those in the image. If a dark ring is around the mirror, both of its borders are such circles, and
-//! the rim is the inner one.
-//!
-//! The result is checked, as no circle is better than a wrong one. The rim must be seen on enough bearings,
-//! also if it is the inner border of a ring: dark furniture just inside of the rim has a border, too. No
-//! other circle may be seen on about as many bearings, also none that shares an arc with this one. And
-//! the circle must stay the same if any part of what is seen of it is left out. If the image's border
-//! crops the rim, arcs are enough.
+//! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a dark ring around
+//! the mirror, the rim is the inner border. No circle is better than a wrong one: the rim must be seen on enough
+//! bearings, no other circle may be seen about as well, and it must stay the same if any part of it is left out.
 
 mod brightness;
 mod circle;
@@ -34,7 +22,6 @@ use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 use super::params::RimParams;
 use crate::geometry;
 
-/// A mirror's rim in images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
     /// Its centre, in pixels.
@@ -45,63 +32,37 @@ pub struct Rim {
     pub seen: f64,
     /// The root mean square distance of its points from the circle, in pixels.
     pub spread: f64,
-    /// The points at which it was seen.
     pub places: Vec<Point2<f64>>,
 }
 
-/// Why there is no rim.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RimError {
-    /// There is no image.
     #[error("there is no image")]
     NoImage,
-    /// The images differ in size.
     #[error(
         "image {number} is {} by {} pixels, the first is {} by {}",
         .found[0], .found[1], .expected[0], .expected[1]
     )]
-    Sizes {
-        /// The number of the image, from 1.
-        number: usize,
-        /// Its width and height.
-        found: [u32; 2],
-        /// Width and height of the first.
-        expected: [u32; 2],
-    },
-    /// The images are too small for a mirror.
+    Sizes { number: usize, found: [u32; 2], expected: [u32; 2] },
     #[error("the images are {} by {} pixels, too few to find a mirror", .0[0], .0[1])]
     TooSmall([u32; 2]),
-    /// No circle has an edge along enough of it.
     #[error(
         "no mirror is seen in the images: no circle has an edge along enough of its circumference"
     )]
     NoRim,
-    /// Two different circles are seen about as well.
     #[error(
         "the rim is not certain: a circle of radius {:.0} around {:.0}, {:.0} is seen about as well as \
          one of radius {:.0} around {:.0}, {:.0}",
         .other[2], .other[0], .other[1], .best[2], .best[0], .best[1]
     )]
-    Ambiguous {
-        /// Centre and radius of the circle that is seen best.
-        best: [f64; 3],
-        /// Centre and radius of the other.
-        other: [f64; 3],
-    },
-    /// The arcs that are seen do not determine the circle.
+    Ambiguous { best: [f64; 3], other: [f64; 3] },
     #[error(
         "the rim is not certain: an edge is seen along {:.0} % of a circle of radius {:.0}, which does \
          not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * RIM.certain
     )]
-    Uncertain {
-        /// The radius, in pixels.
-        radius: f64,
-        /// The share of the full circle on which an edge is seen.
-        seen: f64,
-    },
+    Uncertain { radius: f64, seen: f64 },
 }
 
-/// The parameters.
 const RIM: RimParams = RimParams::DEFAULT;
 
 /// The rim in images of one camera.
@@ -171,12 +132,10 @@ pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<R
     Ok(CircleFit::of(circle, seen.collect()).rim())
 }
 
-/// A circle with the edges on it.
 #[derive(Clone, Debug)]
 struct CircleFit {
     circle: Circle,
     edges: Vec<CircleEdge>,
-    /// The share of the full circle that is seen.
     seen: f64,
     /// The share of the full circle that is in the image.
     visible: f64,
@@ -193,7 +152,6 @@ impl CircleFit {
         Self::fitted(image, circle, RIM.every)
     }
 
-    /// The circle through the edges near a circle.
     fn exact(image: &Brightness, circle: Circle) -> Self {
         Self::fitted(image, circle, 1)
     }

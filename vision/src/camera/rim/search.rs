@@ -16,7 +16,6 @@ const BEARINGS: usize = 240;
 static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> =
     LazyLock::new(|| std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64)));
 
-/// The circles of an image that may be a mirror's rim.
 pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
     let mut factor = image.width.max(image.height).div_ceil(RIM.coarse);
     let mut slopes = Slopes::of(&image.shrunk(factor));
@@ -38,7 +37,6 @@ pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
     circles
 }
 
-/// The differences of brightness of an image.
 struct Slopes {
     width: usize,
     height: usize,
@@ -46,10 +44,8 @@ struct Slopes {
     falls: Vec<[f32; 2]>,
 }
 
-/// A circle with its score.
 struct Scored {
     score: f32,
-    /// Centre and radius.
     at: [usize; 3],
 }
 
@@ -154,7 +150,6 @@ impl Slopes {
         }
     }
 
-    /// The share of a circle inside of the image.
     fn share_inside(&self, [u, v]: [usize; 2], radius: usize) -> f32 {
         let radius = radius as f32;
         let hidden = |distance: usize| {
@@ -186,7 +181,6 @@ impl Slopes {
         best.1
     }
 
-    /// How many edges there are along a circle.
     fn score(&self, circle: &Circle) -> f64 {
         let (mut sum, mut visible) = (0.0, 0_u32);
         for out in DIRECTIONS.iter() {

@@ -1,11 +1,11 @@
-//! Images as ROS publishes them: `sensor_msgs/CompressedImage`, and `Image` without compression.
+//! Images and scans as ROS publishes them: `CompressedImage`, `Image` and `LaserScan` of `sensor_msgs`.
 
 use image::RgbImage;
+use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
-use super::value::Value;
+use super::{transforms::Mount, value::Value};
 use crate::record::CameraImage;
 
-/// The image in a message, or why it has none.
 pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     let data = message.at("data").and_then(|data| data.bytes());
     let data = data.ok_or("it has no bytes `data`")?;
@@ -13,10 +13,8 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
         return Ok(CameraImage::encoded(data));
     };
     let number = |name| {
-        let found = message.at(name).and_then(|value| value.u64());
-        found
-            .and_then(|number| u32::try_from(number).ok())
-            .ok_or(format!("it has no number `{name}`"))
+        let found = message.at(name).and_then(|value| u32::try_from(value.u64()?).ok());
+        found.ok_or_else(|| format!("it has no number `{name}`"))
     };
     let [width, height, step] = [number("width")?, number("height")?, number("step")?];
     let (bytes, order): (u32, [usize; 3]) = match &*encoding {
@@ -51,4 +49,21 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     all.extend(colours);
     let made = RgbImage::from_raw(width, height, all);
     Ok(CameraImage::raw(made.ok_or("its size does not go with its pixels")?))
+}
+
+pub(super) fn scan_of(message: &Value<'_>, mount: &Mount) -> Result<Scan, String> {
+    let sense = if mount.is_upside_down { -1.0 } else { 1.0 };
+    let geometry = ScanGeometry {
+        angle_min: sense * message.number_at("angle_min")?,
+        angle_increment: sense * message.number_at("angle_increment")?,
+        range_min: message.number_at("range_min")?,
+        range_max: message.number_at("range_max")?,
+    };
+    let ranges = match message.at("ranges") {
+        Some(Value::Numbers(ranges)) => ranges.iter().map(|range| range.f64()).collect(),
+        _ => None,
+    };
+    let ranges: Vec<f64> = ranges.ok_or("it has no list of numbers `ranges`")?;
+    let ranges = ranges.into_iter().map(|range| range as f32).collect();
+    Scan::new(geometry, ranges, mount.robot_from_scanner).map_err(|error| error.to_string())
 }
