@@ -97,7 +97,9 @@ fn dependencies(folder: &str) -> BTreeMap<String, BTreeSet<String>> {
         modules.entry(top.clone()).or_default().extend(others);
     }
     let known: BTreeSet<_> = modules.keys().cloned().collect();
-    modules.values_mut().for_each(|names| names.retain(|name| known.contains(name)));
+    for names in modules.values_mut() {
+        names.retain(|name| known.contains(name));
+    }
     modules
 }
 
@@ -110,7 +112,9 @@ fn no_modules_of_a_crate_depend_on_each_other() {
             left.iter().find(|(_, below)| below.is_empty()).map(|(name, _)| name.clone())
         {
             left.remove(&name);
-            left.values_mut().for_each(|below| below.retain(|other| *other != name));
+            for below in left.values_mut() {
+                below.retain(|other| *other != name);
+            }
         }
         assert!(left.is_empty(), "{folder}: circles of imports: {left:?}");
     }

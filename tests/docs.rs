@@ -41,13 +41,10 @@ fn the_documents_show_what_the_commands_print() {
                 .iter()
                 .any(|o| commands.contains(o));
             if kind == "sh" && (expected.is_some() || writes) {
-                let shown = commands.lines().map(|command| run(command, &folder)).last().unwrap();
+                let shown: Vec<_> = commands.lines().map(|command| run(command, &folder)).collect();
+                let shown = shown.last().unwrap();
                 if let Some((_, expected)) = expected {
-                    assert_eq!(
-                        without_bytes(expected),
-                        without_bytes(&shown),
-                        "{page}: {commands}"
-                    );
+                    assert_eq!(without_bytes(expected), without_bytes(shown), "{page}: {commands}");
                 }
             }
         }

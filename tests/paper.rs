@@ -86,7 +86,7 @@ enum CitationKind {
 /// The citations in a file: id, kind, and line. A citation is a comment of its own or at the end of a line:
 /// `// paper: id`, or several ids separated by commas; in a Coq file, `(* paper: id *)`.
 fn citations<'a>(file: &str, text: &'a str) -> Vec<(&'a str, CitationKind, usize)> {
-    let in_coq = file.ends_with(".v");
+    let in_coq = Path::new(file).extension().is_some_and(|extension| extension == "v");
     let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
     let mut kind = if tested || in_coq { CitationKind::Test } else { CitationKind::Code };
     let mut found = Vec::new();

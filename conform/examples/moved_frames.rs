@@ -25,7 +25,7 @@ use toposlam_vision::{
     geometry::{self, direction, distance},
     laser::{params::LaserParams, scan::Scan},
     params,
-    visits::Visits,
+    visits::{self, Visits},
 };
 
 /// Turns of the frame in degrees, each with a shift along both axes in metres.
@@ -130,7 +130,7 @@ fn derived<'a>(
     let all = visits.len();
     visits.retain(|visit| visit.doubt.is_none());
     let undecided = all - visits.len();
-    let percepts = visits.iter().map(|visit| visit.percept());
+    let percepts = visits.iter().map(visits::Visit::percept);
     (percepts.map(|seen| (seen.degree.into(), seen.door.map(u64::from))).collect(), undecided)
 }
 

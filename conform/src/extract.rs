@@ -253,7 +253,9 @@ fn measured_drift(log: &Log, bound: &BoundTopicMap, params: &LaserParams) -> Opt
             }
             _ => return,
         };
-        placed.iter().for_each(|placed| meter.see(&placed.scan, &placed.odometry));
+        for placed in placed {
+            meter.see(&placed.scan, &placed.odometry);
+        }
     };
     let mut clock = MessageClock::default();
     for entry in log.entries(bound).map_while(Result::ok).filter(is_timed) {
@@ -374,7 +376,9 @@ impl<W: Watch> Extraction<'_, W> {
                 self.run.scans += 1;
                 self.run.field_of_view = self.run.field_of_view.max(scan.field_of_view());
                 let placed = self.placing.scan(stamp, PlacedScan { source, scan, odometry });
-                placed.iter().for_each(|placed| self.see(placed));
+                if let Some(placed) = &placed {
+                    self.see(placed);
+                }
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));

@@ -186,6 +186,7 @@ mod tests {
     const NONE: Option<Sighting> = Some(Sighting::Nothing);
     const LIES: Option<Sighting> = Some(Sighting::Lying(1));
 
+    #[expect(clippy::unnecessary_wraps, reason = "a percept may have none")]
     fn along(door: u32) -> Option<Sighting> {
         Some(Sighting::Pointing(Door(door)))
     }

@@ -182,7 +182,9 @@ mod tests {
     /// These times with other ones in the place of some.
     fn with(range: std::ops::Range<u64>, others: &[(usize, u64)]) -> Vec<u64> {
         let mut times = times(range);
-        others.iter().for_each(|&(index, other)| times[index] = other);
+        for &(index, other) in others {
+            times[index] = other;
+        }
         times
     }
 

@@ -177,7 +177,7 @@ impl RunReport {
         let mut moves = grouped(self.moves.into());
         if let RobotReport::Simulated { explore_moves, .. } = self.robot {
             let expected = grouped(explore_moves.into());
-            moves += &format!(" ({expected} in the plan's embedded graph)");
+            moves.extend([" (", &expected, " in the plan's embedded graph)"]);
         }
         row(out, "moves", &moves)?;
         if let Some(certificate) = &self.certificate {

@@ -1,7 +1,5 @@
 //! The figures of sensing with a camera, their targets, and what views that are not right have in common.
 
-use std::collections::BTreeMap;
-
 use toposlam_model::{driving::scene::Place, percept::Sighting};
 
 use super::{
@@ -42,7 +40,7 @@ pub fn figures(views: &[JudgedView], visits: &[JudgedVisit], calibration: Calibr
     }
     for judged in views.iter().filter(|judged| judged.counts()) {
         if let Some(class) = judged.class() {
-            let said = figures.confusion.entry(class).or_insert_with(BTreeMap::new);
+            let said = figures.confusion.entry(class).or_default();
             *said.entry(SceneClass::from_scene(&judged.scene)).or_insert(0) += 1;
         }
     }
@@ -297,7 +295,7 @@ mod tests {
         let said = &figures.confusion[&SceneClass::Hallway];
         assert_eq!((said[&SceneClass::Hallway], said[&SceneClass::Unknown]), (2, 1));
         // Views past the turning point or between places are not in the confusion matrix.
-        assert_eq!(figures.confusion.values().flat_map(BTreeMap::values).sum::<usize>(), 6);
+        assert_eq!(figures.confusion.values().flat_map(|said| said.values()).sum::<usize>(), 6);
     }
 
     #[test]

@@ -9,7 +9,7 @@ pub struct Squares {
     per_metre: f32,
     columns: usize,
     /// Row by row.
-    squares: Vec<Vec<u32>>,
+    rectangles: Vec<Vec<u32>>,
 }
 
 /// The least corner of all floors, and the size of their bounding box.
@@ -46,7 +46,7 @@ impl Squares {
             }
         }
         let least = least.map(|at| at as f32);
-        Self { least, per_metre: (1.0 / side) as f32, columns, squares }
+        Self { least, per_metre: (1.0 / side) as f32, columns, rectangles: squares }
     }
 
     /// The numbers of all rectangles that contain a place, and perhaps of others.
@@ -56,7 +56,7 @@ impl Squares {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
         });
         let square = (column < self.columns).then(|| row * self.columns + column);
-        square.and_then(|square| self.squares.get(square)).map_or(&[], Vec::as_slice)
+        square.and_then(|square| self.rectangles.get(square)).map_or(&[], Vec::as_slice)
     }
 }
 

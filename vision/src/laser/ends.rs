@@ -19,7 +19,7 @@ pub enum WayEnd {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
     pub cell: usize,
-    pub end: WayEnd,
+    pub kind: WayEnd,
     /// The width of the gap behind it, in metres.
     pub gap: f64,
     /// How much farther from the robot than the cell the way is known, in metres.
@@ -87,7 +87,7 @@ pub(super) fn ends(
         let farthest = gap.iter().map(|&at| lengths[at]).max().unwrap_or_default();
         ends.push(End {
             cell,
-            end: WayEnd::Open,
+            kind: WayEnd::Open,
             // The cells of the gap are two rows, and end half a way before its sides.
             gap: params.map.min_width + gap.len() as f64 / 2.0 * grid.cell,
             beyond: metres(farthest - lengths[cell]),
@@ -101,7 +101,7 @@ pub(super) fn ends(
             let near = (params.arm.border_near / grid.cell).floor() * grid.cell + 1e-9;
             let goes_on = grid.cells_near(grid.point(cell), near).any(|at| borders[at]);
             let end = if goes_on { WayEnd::Unclear } else { WayEnd::Closed };
-            ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
+            ends.push(End { cell, kind: end, gap: params.map.min_width, beyond: 0.0 });
         }
     }
     ends
@@ -113,7 +113,9 @@ fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -
     let all = (0..grid.cells.len()).filter(|&at| clearances.is_unknown_border(grid, at));
     for border in grid.groups(&all.collect::<Vec<_>>()) {
         let is_long = border.len() as f64 * grid.cell >= params.arm.border;
-        border.into_iter().for_each(|at| borders[at] = is_long);
+        for at in border {
+            borders[at] = is_long;
+        }
     }
     borders
 }

@@ -88,7 +88,7 @@ impl WayGraph {
         let dead_end = |(number, node): (usize, &WayNode)| {
             let [way] = self.at(number)[..] else { return None };
             let way = self.ways[way].clone().from_node(number);
-            if node.end?.end != WayEnd::Closed || way.length < params.min_way {
+            if node.end?.kind != WayEnd::Closed || way.length < params.min_way {
                 return None;
             }
             let gate = node.clearance + arm.direction;

@@ -137,8 +137,12 @@ fn rays<'g>(mut canvas: Canvas<'g>, view: &PlaceView, scan: &Scan) -> Canvas<'g>
     let map_from_robot = from_robot(&view.robot);
     let hits: Vec<Point2<f64>> = scan.hits().map(|hit| map_from_robot * hit).collect();
     let scanner = map_from_robot * scan.scanner();
-    hits.iter().for_each(|&hit| canvas.line(scanner, hit, REACH));
-    hits.iter().for_each(|&hit| canvas.dot(hit, 1, WHITE));
+    for &hit in &hits {
+        canvas.line(scanner, hit, REACH);
+    }
+    for &hit in &hits {
+        canvas.dot(hit, 1, WHITE);
+    }
     canvas
 }
 
@@ -148,7 +152,7 @@ fn ways<'g>(mut canvas: Canvas<'g>, map: &LocalMap) -> Canvas<'g> {
         canvas.dot(map.grid.point(at), 1, CYAN);
     }
     for end in &skeleton.ends {
-        let colour = if end.end == WayEnd::Closed { RED } else { ORANGE };
+        let colour = if end.kind == WayEnd::Closed { RED } else { ORANGE };
         canvas.ring(map.grid.point(end.cell), 6, colour);
     }
     canvas

@@ -239,7 +239,7 @@ impl WayGraph {
         degrees[node] = 1;
         let cell = judge.grid.index(self.nodes[node].point).unwrap_or_default();
         self.nodes[node].end =
-            Some(End { cell, end: WayEnd::Closed, gap: 0.0, beyond: length / 2.0 });
+            Some(End { cell, kind: WayEnd::Closed, gap: 0.0, beyond: length / 2.0 });
         true
     }
 
@@ -262,7 +262,7 @@ impl WayGraph {
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
         let known = way.length + end.beyond;
         let is_behind = way.length >= meet.clearance + params.min_behind;
-        let is_long = match end.end {
+        let is_long = match end.kind {
             WayEnd::Closed => known + leaf.clearance >= params.min_arm,
             WayEnd::Open | WayEnd::Unclear => is_behind && known >= params.min_arm,
         };
@@ -279,7 +279,7 @@ impl WayGraph {
         else {
             return ArmStatus::Certain;
         };
-        if end.end == WayEnd::Closed {
+        if end.kind == WayEnd::Closed {
             return ArmStatus::None;
         }
         let mut widths: Vec<f64> = way
@@ -309,7 +309,7 @@ impl WayGraph {
         if is_arm {
             let UnseenBorder { hidden, aside } = judge.unseen_border(leaf.point);
             // What is seen to end may go on around a corner.
-            let likely = if end.end == WayEnd::Open { hidden + aside } else { hidden };
+            let likely = if end.kind == WayEnd::Open { hidden + aside } else { hidden };
             if likely >= params.border {
                 return ArmStatus::Likely;
             }

@@ -121,9 +121,9 @@ impl Estimate {
 }
 
 impl<S: Copy + Default> MappedRule<S> {
-    pub(super) fn new(params: LaserParams) -> Self {
+    pub(super) fn new(params: &LaserParams) -> Self {
         Self {
-            params,
+            params: *params,
             junctions: TrackedPlaces::new(params.visit),
             possible_junctions: TrackedPlaces::new(params.visit),
             dead_ends: TrackedPlaces::new(params.visit),

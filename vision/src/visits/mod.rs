@@ -43,7 +43,7 @@ pub struct Visits<P, S> {
 
 #[derive(Clone, Debug)]
 enum VisitRule<S> {
-    Approach(ApproachRule<S>),
+    Approach(Box<ApproachRule<S>>),
     Mapped(Box<MappedRule<S>>),
 }
 
@@ -51,7 +51,7 @@ impl<S: Copy + Default> Visits<LaserSensor, S> {
     /// The visits of a robot with a laser scanner.
     #[must_use]
     pub fn by_laser(params: LaserParams) -> Self {
-        let rule = VisitRule::Mapped(Box::new(MappedRule::new(params)));
+        let rule = VisitRule::Mapped(Box::new(MappedRule::new(&params)));
         Self { sensor: LaserSensor::new(params), rule, log: VisitLog::default() }
     }
 }
@@ -60,7 +60,7 @@ impl<S: Copy + Default> Visits<SceneSensor, S> {
     /// The visits of a robot with a camera; if it is `marked`, it puts its marker down at its start.
     #[must_use]
     pub fn by_camera(marked: bool) -> Self {
-        let rule = VisitRule::Approach(ApproachRule::new(marked));
+        let rule = VisitRule::Approach(Box::new(ApproachRule::new(marked)));
         Self { sensor: SceneSensor, rule, log: VisitLog::default() }
     }
 }

@@ -74,11 +74,7 @@ impl MeasurementEnd {
     }
 
     /// The verdict in words: if it holds, if it is violated, and if it is not shown.
-    pub(super) fn verdict<'t>(
-        self,
-        outcome: Outcome,
-        [holds, violated, not_shown]: [&'t str; 3],
-    ) -> &'t str {
+    pub(super) fn verdict(self, outcome: Outcome, [holds, violated, not_shown]: [&str; 3]) -> &str {
         match (outcome, self) {
             (Outcome::Holds, _) => holds,
             (Outcome::Violated, _) => violated,
@@ -147,11 +143,13 @@ impl EvaluationReport {
         let mut rows: Vec<_> = rows.into_iter().collect();
         for column in 0..COLUMNS {
             if let Some(head) = heads[column].strip_prefix('>') {
-                heads[column] = head.to_owned();
-                let mut cells: Vec<_> =
-                    [&mut heads].into_iter().chain(&mut rows).map(|row| &mut row[column]).collect();
-                let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
-                cells.iter_mut().for_each(|cell| **cell = format!("{cell:>width$}"));
+                let head = head.to_owned();
+                heads[column] = head;
+                let cells = || [&heads].into_iter().chain(&rows).map(|row| &row[column]);
+                let width = cells().map(|cell| cell.chars().count()).max().unwrap_or(0);
+                for row in [&mut heads].into_iter().chain(&mut rows) {
+                    row[column] = format!("{:>width$}", row[column]);
+                }
             }
         }
         Ok(print_rows(&mut self.text, heads.each_ref().map(String::as_str), &rows)?)
@@ -327,7 +325,10 @@ fn errors_row(errors: &Errors) -> [String; 7] {
         errors.quantile(part).map_or_else(|| "-".to_owned(), |error| format!("{error:.2}"))
     });
     let limits = errors.limits.iter().map(|(part, limit)| {
-        let name = QUANTILES.iter().find(|(known, _)| known == part).map_or("", |known| known.1);
+        let name = QUANTILES
+            .iter()
+            .find(|(known, _)| known.total_cmp(part).is_eq())
+            .map_or("", |known| known.1);
         let limit = format!("{limit} {}", errors.unit.short);
         format!("{} {}", unbroken(name), unbroken(&limit))
     });

@@ -54,6 +54,7 @@ pub fn figures(
 }
 
 fn of_walks(walks: &[JudgedWalk], visits: &[WalkVisit]) -> Vec<Rate> {
+    type Kind = (&'static str, fn(LaserVerdict) -> bool, Option<f64>);
     let sum = |part: fn(&JudgedWalk) -> usize| walks.iter().map(part).sum();
     let rate = |of, what, seen, cases| Rate { of, what, seen, cases, limit: None };
     let views: usize = sum(|walk| walk.junction_views.all());
@@ -63,7 +64,7 @@ fn of_walks(walks: &[JudgedWalk], visits: &[WalkVisit]) -> Vec<Rate> {
         rate("junction", "arms wrong", sum(|walk| walk.junction_views.wrong), views),
         rate("hallway", "called junction", sum(|walk| walk.corridor_views.wrong), corridor_views),
     ];
-    let kinds: [(&str, fn(LaserVerdict) -> bool, Option<f64>); 5] = [
+    let kinds: [Kind; 5] = [
         ("wrong", |found| found.verdict() == SampleVerdict::Wrong, Some(WRONG)),
         ("missed", |found| found == LaserVerdict::Missed, None),
         ("degree wrong", |found| found == LaserVerdict::WrongDegree, None),
@@ -89,7 +90,8 @@ fn of_walks(walks: &[JudgedWalk], visits: &[WalkVisit]) -> Vec<Rate> {
 }
 
 fn groups(visits: &[WalkVisit]) -> Vec<Group> {
-    let properties: [(&str, fn(&WalkVisit) -> String); 7] = [
+    type Property = (&'static str, fn(&WalkVisit) -> String);
+    let properties: [Property; 7] = [
         ("scanner", |(walk, _)| format!("{} degrees", walk.field_of_view)),
         ("doors", |(_, visit)| visit.degree.to_string()),
         ("junction", |(_, visit)| {

@@ -58,7 +58,7 @@ impl WalkSampler {
         let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
         driver.at = [0, 1].map(|axis| start[axis] + share * off[axis]);
         let mut robot =
-            LaserRobot::new(&world, &smoothed, scanner, self.sensing, driver, facing, watch);
+            LaserRobot::new(&world, &smoothed, scanner, &self.sensing, driver, facing, watch);
         let begun = robot.drive((-off[1]).atan2(-off[0]));
         if begun == Err(ScanFailure::Stopped) {
             return None;
