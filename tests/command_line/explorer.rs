@@ -92,15 +92,9 @@ fn the_examples_map_every_start_with_up_to_4_edges() {
     assert!(lines.iter().skip(1).all(|line| line["failure"]["cause"] == "gave-up"), "{lines:?}");
 }
 
-/// The page shows the examples as they are.
 #[test]
-fn the_page_of_the_protocol_shows_its_examples() {
+fn the_page_of_the_protocol_describes_each_cause() {
     let page = read("docs/protocol.md");
-    for (language, file) in [("python", "protocol/explorer.py"), ("c", "protocol/hallway.c")] {
-        let block = format!("```{language}\n{}```\n", read(&format!("docs/{file}")));
-        assert!(page.contains(&block), "{file} is not in docs/protocol.md");
-    }
-    // Each cause is described.
     let schema: Value = serde_json::from_str(&read("docs/schema/check.json")).unwrap();
     let causes = schema["$defs"]["unmapped"]["properties"]["cause"]["enum"].as_array().unwrap();
     for cause in causes {
