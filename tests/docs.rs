@@ -37,9 +37,10 @@ fn the_documents_show_what_the_commands_print() {
         let mut blocks = blocks(&page_text).into_iter().peekable();
         while let Some((kind, commands)) = blocks.next() {
             let expected = blocks.next_if(|(kind, _)| *kind == "text");
-            let writes = ["--log shape-6.mcap", "--log laser.mcap", "--stages steps"]
-                .iter()
-                .any(|o| commands.contains(o));
+            let writes =
+                ["--log shape-6.mcap", "--log laser.mcap", "--out colours.toml", "--stages steps"]
+                    .iter()
+                    .any(|o| commands.contains(o));
             if kind == "sh" && (expected.is_some() || writes) {
                 let shown: Vec<_> = commands.lines().map(|command| run(command, &folder)).collect();
                 let shown = shown.last().unwrap();

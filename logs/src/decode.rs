@@ -74,10 +74,10 @@ pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'
 }
 
 /// An error and its offset.
-pub(super) type Failure = (usize, DecodeErrorKind);
+pub(super) type DecodeFailure = (usize, DecodeErrorKind);
 
 /// The error of a field of the message; of none if the name is empty.
-pub(super) fn in_field(field: &str) -> impl Fn(Failure) -> DecodeError {
+pub(super) fn in_field(field: &str) -> impl Fn(DecodeFailure) -> DecodeError {
     move |(offset, cause)| DecodeError { offset, field: field.to_owned(), cause }
 }
 
@@ -90,7 +90,7 @@ struct Decoder<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    fn encapsulation(&mut self) -> Result<(), Failure> {
+    fn encapsulation(&mut self) -> Result<(), DecodeFailure> {
         let head = self.take(4)?;
         let kind = head.iter().take(2).fold(0, |kind, byte| kind << 8 | u16::from(*byte));
         self.order = match kind {
@@ -106,14 +106,14 @@ impl<'a> Decoder<'a> {
         self.bytes.len() - self.next
     }
 
-    fn take(&mut self, bytes: usize) -> Result<&'a [u8], Failure> {
+    fn take(&mut self, bytes: usize) -> Result<&'a [u8], DecodeFailure> {
         self.need(bytes as u64)?;
         let taken = self.bytes.get(self.next..self.next + bytes).unwrap_or_default();
         self.next += bytes;
         Ok(taken)
     }
 
-    fn need(&self, needed: u64) -> Result<(), Failure> {
+    fn need(&self, needed: u64) -> Result<(), DecodeFailure> {
         let left = self.left();
         if needed > left as u64 {
             Err((self.next, DecodeErrorKind::Short { needed, left }))
@@ -122,7 +122,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn align(&mut self, size: usize) -> Result<(), Failure> {
+    fn align(&mut self, size: usize) -> Result<(), DecodeFailure> {
         if self.definition.dialect() == Dialect::Ros2 {
             let beyond = (self.next - self.origin) % size.max(1);
             if beyond > 0 {
@@ -132,19 +132,19 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    fn number(&mut self, kind: FieldType, size: usize) -> Result<Value<'a>, Failure> {
+    fn number(&mut self, kind: FieldType, size: usize) -> Result<Value<'a>, DecodeFailure> {
         self.align(size)?;
         Ok(number(kind, self.order, self.take(size)?))
     }
 
-    fn length(&mut self) -> Result<u32, Failure> {
+    fn length(&mut self) -> Result<u32, DecodeFailure> {
         match self.number(FieldType::Unsigned(4), 4)? {
             Value::Unsigned(length) => Ok(length as u32),
             _ => Ok(0),
         }
     }
 
-    fn field(&mut self, field: &'a Field) -> Result<Value<'a>, Failure> {
+    fn field(&mut self, field: &'a Field) -> Result<Value<'a>, DecodeFailure> {
         let start = self.next;
         match field.count {
             Count::One => self.one(field.kind),
@@ -163,7 +163,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn list(&mut self, kind: FieldType, many: u32) -> Result<Value<'a>, Failure> {
+    fn list(&mut self, kind: FieldType, many: u32) -> Result<Value<'a>, DecodeFailure> {
         let needed = u64::from(many).saturating_mul(self.definition.least(kind) as u64);
         self.need(needed)?;
         match kind {
@@ -185,7 +185,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn one(&mut self, kind: FieldType) -> Result<Value<'a>, Failure> {
+    fn one(&mut self, kind: FieldType) -> Result<Value<'a>, DecodeFailure> {
         match kind {
             FieldType::Bool => self.number(kind, 1),
             FieldType::Int(size) | FieldType::Unsigned(size) | FieldType::Float(size) => {
@@ -215,7 +215,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn text(&mut self) -> Result<Value<'a>, Failure> {
+    fn text(&mut self) -> Result<Value<'a>, DecodeFailure> {
         let length = self.length()?;
         let bytes = self.take(length as usize)?;
         // In CDR the length counts a zero byte at the end.

@@ -1,15 +1,15 @@
 //! Reads the project's messages by the names of their fields, from ROS 1 or ROS 2; fields may have other
 //! widths, and there may be more of them.
 
-use super::{messages::Stamp, value::Value};
+use super::{stamp::Stamp, value::Value};
 
-pub(super) trait Field: Sized {
+pub(super) trait FieldValue: Sized {
     fn of(value: &Value<'_>) -> Option<Self>;
 }
 
 macro_rules! fields {
     ($($type:ty: $value:ident => $read:expr;)*) => {$(
-        impl Field for $type {
+        impl FieldValue for $type {
             fn of($value: &Value<'_>) -> Option<Self> {
                 $read
             }
@@ -27,7 +27,7 @@ fields! {
     i32: value => value.i64()?.try_into().ok();
 }
 
-impl<T: Field> Field for Vec<T> {
+impl<T: FieldValue> FieldValue for Vec<T> {
     fn of(value: &Value<'_>) -> Option<Self> {
         match value {
             Value::Numbers(numbers) => numbers.iter().map(|value| T::of(&value)).collect(),
@@ -37,7 +37,7 @@ impl<T: Field> Field for Vec<T> {
     }
 }
 
-impl<T: Field, const MANY: usize> Field for [T; MANY] {
+impl<T: FieldValue, const MANY: usize> FieldValue for [T; MANY] {
     fn of(value: &Value<'_>) -> Option<Self> {
         Vec::of(value)?.try_into().ok()
     }
@@ -45,7 +45,7 @@ impl<T: Field, const MANY: usize> Field for [T; MANY] {
 
 impl Value<'_> {
     /// The field of a message with this name.
-    pub(super) fn field<T: Field>(&self, name: &str) -> Option<T> {
+    pub(super) fn field<T: FieldValue>(&self, name: &str) -> Option<T> {
         let Value::Struct(made, values) = self else { return None };
         let (index, _) = made.field(name)?;
         T::of(values.get(index)?)

@@ -26,6 +26,7 @@ pub mod rosbag2;
 mod sensor_data;
 mod skipped_lines;
 mod source;
+pub mod stamp;
 pub mod standard;
 pub mod topic;
 pub mod topic_map;

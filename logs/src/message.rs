@@ -34,7 +34,7 @@ macro_rules! published {
 }
 
 /// The types that carry a role, those that they use, and whole numbers.
-const PUBLISHED: &[TypeDefinition] = &published! {
+pub(super) const PUBLISHED: &[TypeDefinition] = &published! {
     "builtin_interfaces" => "Time";
     "geometry_msgs" => "Point", "Pose", "Pose2D", "PoseStamped", "PoseWithCovariance",
         "PoseWithCovarianceStamped", "Quaternion", "Transform", "TransformStamped", "Twist",
@@ -45,7 +45,7 @@ const PUBLISHED: &[TypeDefinition] = &published! {
     "tf2_msgs" => "TFMessage";
 };
 
-fn published(name: &str) -> Option<TypeDefinition> {
+pub(super) fn published(name: &str) -> Option<TypeDefinition> {
     PUBLISHED.iter().find(|published| published.name == name).copied()
 }
 
@@ -74,36 +74,4 @@ pub fn schema(definition: &str) -> String {
         let _ = write!(text, "{:=<80}\nMSG: {name}\n{used}", "");
     }
     text
-}
-
-/// The schema of a published type or one of the project, for logs that do not define their messages: databases of
-/// rosbag2 before ROS 2 Iron.
-#[cfg(feature = "sqlite")]
-pub(super) fn published_schema(type_name: &str) -> Option<String> {
-    use super::{definition::short_name, messages::OWN};
-    let name = short_name(type_name);
-    let own = OWN.iter().find(|(own, _)| short_name(own) == name);
-    let text = own.map(|(_, text)| *text).or_else(|| Some(published(&name)?.text));
-    text.map(schema)
-}
-
-#[cfg(all(test, feature = "sqlite"))]
-mod tests {
-    use super::*;
-    use crate::{
-        definition::{Definition, Dialect},
-        messages::OWN,
-    };
-
-    #[test]
-    fn every_type_is_defined_with_those_that_it_uses() {
-        let own = OWN.iter().map(|(name, _)| *name);
-        for name in PUBLISHED.iter().map(|published| published.name).chain(own) {
-            let text = published_schema(name).unwrap();
-            Definition::read(Dialect::Ros2, name, &text).unwrap();
-        }
-        assert_eq!(published_schema("lab_msgs/msg/Junction"), None);
-        let scan = published_schema("sensor_msgs/msg/LaserScan").unwrap();
-        assert_eq!(scan.matches("MSG: builtin_interfaces/Time").count(), 1);
-    }
 }

@@ -1,30 +1,10 @@
 //! The messages of the project. `robot/msgs/toposlam_msgs` defines each of them and documents its fields;
 //! the fields here have the same order.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+pub use super::stamp::Stamp;
 use super::{from_value::FromValue, message::Message, value::Value};
-
-/// A time, in seconds and nanoseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Stamp {
-    /// Whole seconds.
-    pub sec: i32,
-    pub nanosec: u32,
-}
-
-impl Stamp {
-    pub fn of(nanoseconds: u64) -> Self {
-        const SECOND: u64 = 1_000_000_000;
-        let sec = i32::try_from(nanoseconds / SECOND).unwrap_or(i32::MAX);
-        Self { sec, nanosec: (nanoseconds % SECOND) as u32 }
-    }
-
-    /// The time in nanoseconds; 0 before the beginning of time.
-    pub fn nanoseconds(self) -> u64 {
-        u64::try_from(self.sec).unwrap_or(0) * 1_000_000_000 + u64::from(self.nanosec)
-    }
-}
 
 pub trait ProjectMessage: Message {
     const TOPIC: &'static str;
@@ -134,5 +114,40 @@ own! {
         moves: u32,
         ending: String,
         cause: String,
+    }
+}
+
+/// The schema of a published type or one of the project, for logs that do not define their messages: databases of
+/// rosbag2 before ROS 2 Iron.
+#[cfg(feature = "sqlite")]
+pub(super) fn published_schema(type_name: &str) -> Option<String> {
+    use super::{
+        definition::short_name,
+        message::{published, schema},
+    };
+    let name = short_name(type_name);
+    let own = OWN.iter().find(|(own, _)| short_name(own) == name);
+    let text = own.map(|(_, text)| *text).or_else(|| Some(published(&name)?.text));
+    text.map(schema)
+}
+
+#[cfg(all(test, feature = "sqlite"))]
+mod tests {
+    use super::*;
+    use crate::{
+        definition::{Definition, Dialect},
+        message::PUBLISHED,
+    };
+
+    #[test]
+    fn every_type_is_defined_with_those_that_it_uses() {
+        let own = OWN.iter().map(|(name, _)| *name);
+        for name in PUBLISHED.iter().map(|published| published.name).chain(own) {
+            let text = published_schema(name).unwrap();
+            Definition::read(Dialect::Ros2, name, &text).unwrap();
+        }
+        assert_eq!(published_schema("lab_msgs/msg/Junction"), None);
+        let scan = published_schema("sensor_msgs/msg/LaserScan").unwrap();
+        assert_eq!(scan.matches("MSG: builtin_interfaces/Time").count(), 1);
     }
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{
     definition::{FieldType, Struct},
-    messages::Stamp,
+    stamp::Stamp,
     standard::Quaternion,
 };
 

@@ -41,7 +41,7 @@ const OTHERS: [(&str, &str); 11] = [
     ("counterexample", "--out-dir --html --junit --sarif --atlas --hosts"),
     ("proofs", "--junit --sarif"),
     ("simulate", "--calibration --colours --scanner"),
-    ("drive", "--log --map --calibration --colours --plan"),
+    ("drive", "--log --map --calibration --colours"),
     ("draw", "--calibration"),
     ("camera calibrate", "--initial"),
     ("camera train", "--images --labels --calibration"),

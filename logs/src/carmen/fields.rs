@@ -1,7 +1,7 @@
 //! The fields of a line, by the definition of its message.
 
 use crate::{
-    decode::{DecodeError, DecodeErrorKind, Failure, in_field},
+    decode::{DecodeError, DecodeErrorKind, DecodeFailure, in_field},
     definition::{Count, Definition, Field, FieldType},
     value::Value,
 };
@@ -59,7 +59,7 @@ impl<'a> Words<'a> {
         rest
     }
 
-    fn value(&mut self, field: &Field) -> Result<Value<'a>, Failure> {
+    fn value(&mut self, field: &Field) -> Result<Value<'a>, DecodeFailure> {
         let (start, word) = self.next().ok_or((self.line.len(), DecodeErrorKind::NoWord))?;
         if field.kind == FieldType::Text {
             return Ok(Value::Text(word));
@@ -77,7 +77,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    fn list(&mut self, field: &Field) -> Result<Value<'a>, Failure> {
+    fn list(&mut self, field: &Field) -> Result<Value<'a>, DecodeFailure> {
         let count = Field { name: String::new(), kind: FieldType::Unsigned(4), count: Count::One };
         let many = self.value(&count)?;
         let mut values = Vec::new();

@@ -12,10 +12,13 @@ use super::{Record, u32_at, u64_at};
 
 /// Without the feature there is no open database.
 #[cfg(not(feature = "sqlite"))]
-pub(crate) enum Database {}
+pub(crate) enum AbsentDatabase {}
 
 #[cfg(not(feature = "sqlite"))]
-impl Database {
+pub(crate) use AbsentDatabase as Database;
+
+#[cfg(not(feature = "sqlite"))]
+impl AbsentDatabase {
     pub(crate) fn open(
         _: &crate::source::Source,
         _: Option<&std::path::Path>,

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     error::{LogError, LogErrorKind, OffsetUnit},
-    message::published_schema,
+    messages::published_schema,
     source::Source,
 };
 
