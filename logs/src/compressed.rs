@@ -9,7 +9,10 @@ use std::{
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
-use super::source::Storage;
+/// Where the bytes of a log are.
+pub trait Storage: Read + Seek + Send {}
+
+impl<S: Read + Seek + Send> Storage for S {}
 
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];

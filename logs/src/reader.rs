@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
 
 use super::{
-    compressed::FileCompression,
+    compressed::{FileCompression, Storage},
     container::{
         self, BAG_MAGIC, Database, Format, LogFile, MCAP_MAGIC, PlacedRecord, Record, Section,
         TEXT_HEAD, TextState,
@@ -11,7 +11,7 @@ use super::{
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
     rosbag2::{self, BagFile},
     skipped_lines::SkippedLines,
-    source::{Source, Storage},
+    source::Source,
     topic::{Topic, Topics},
 };
 

@@ -9,8 +9,8 @@ use std::{
 use saphyr_parser::{Event, Parser};
 
 use super::{
+    compressed::Storage,
     error::{LogError, LogErrorKind},
-    source::Storage,
 };
 
 pub const METADATA: &str = "metadata.yaml";

@@ -6,11 +6,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use super::compressed::{Decompressed, FileCompression};
-
-pub trait Storage: Read + Seek + Send {}
-
-impl<S: Read + Seek + Send> Storage for S {}
+use super::compressed::{Decompressed, FileCompression, Storage};
 
 /// A file with random access, perhaps compressed.
 pub(super) struct Source {

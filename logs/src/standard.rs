@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use toposlam_model::driving::odometry;
 use toposlam_vision::laser::scan::{Scan, ScanGeometry};
 
-use super::{message::Message, messages::Stamp};
+use super::{message::Message, stamp::Stamp};
 
 pub const ODOM: &str = "odom";
 pub const BASE: &str = "base_link";
