@@ -146,7 +146,7 @@ impl FoldedTrail {
     }
 
     /// Identifies two darts, computes something, and undoes the identification. Vertices with
-    /// [numbers](Self::set_numbers) are distinct.
+    /// numbers are distinct.
     ///
     /// # Errors
     /// Returns an error if no world of any size has them as one dart.

@@ -14,10 +14,10 @@ pub enum MappingMethod {
     /// By an algorithm. It gives up at a contradiction, or if it gets lost.
     By {
         algorithm: MappingAlgorithm,
-        /// The number of [audits](super::audit) of the complete map.
+        /// The number of audits of the complete map.
         audits: u32,
     },
-    /// By the folding explorer. It audits its map, and [recovers](map_with_recovery).
+    /// By the folding explorer. It audits its map, and recovers.
     Recovering(RecoveryConfig),
 }
 
