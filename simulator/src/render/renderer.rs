@@ -90,25 +90,29 @@ impl<'a> Shot<'a> {
     /// The light of the image: one ray per pixel, and more rays where its neighbours show other surfaces.
     fn light(&self) -> Light {
         let [width, height] = self.rig.image().map(|length| length as usize);
-        let places = || (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
-        let seen = places().zip(&self.rig.rays).map(|((u, v), ray)| {
-            let (surface, light) = self.seen(ray, [u as f32, v as f32], 1.0);
-            (surface.number(), light)
-        });
-        let seen: Vec<_> = seen.collect();
+        let mut seen = Vec::with_capacity(width * height);
+        for (v, rays) in self.rig.rays.chunks(width.max(1)).enumerate() {
+            for (u, ray) in rays.iter().enumerate() {
+                let (surface, light) = self.seen(ray, [u as f32, v as f32], 1.0);
+                seen.push((surface.number(), light));
+            }
+        }
         let some =
             (0..height).step_by(16).flat_map(|v| (0..width).step_by(16).map(move |u| (u, v)));
         let mean = mean(some.map(|(u, v)| seen[v * width + u].1));
-        let pixels = places().flat_map(|(u, v)| {
-            let surface = |u: usize, v: usize| seen[v * width + u].0;
-            let (here, light) = seen[v * width + u];
-            let other = (here ^ surface(u, v.saturating_sub(1)))
-                | (here ^ surface(u, (v + 1).min(height - 1)))
-                | (here ^ surface(u.saturating_sub(1), v))
-                | (here ^ surface((u + 1).min(width - 1), v));
-            if other == 0 { light } else { self.finely(u, v) }
-        });
-        Light { pixels: pixels.collect(), mean }
+        let surface = |u: usize, v: usize| seen[v * width + u].0;
+        let mut pixels = Vec::with_capacity(3 * width * height);
+        for v in 0..height {
+            for u in 0..width {
+                let (here, light) = seen[v * width + u];
+                let other = (here ^ surface(u, v.saturating_sub(1)))
+                    | (here ^ surface(u, (v + 1).min(height - 1)))
+                    | (here ^ surface(u.saturating_sub(1), v))
+                    | (here ^ surface((u + 1).min(width - 1), v));
+                pixels.extend(if other == 0 { light } else { self.finely(u, v) });
+            }
+        }
+        Light { pixels, mean }
     }
 
     /// The surface that a ray through a place in the image meets, and its light; for a pixel of
