@@ -12,7 +12,7 @@ use std::{
 
 use crate::{printed, repository};
 
-/// The first of these programs that is installed. Without one, tells that a script was skipped.
+/// The first of these programs that is installed. Without one, a message names the script that is skipped.
 fn program(names: &[&str], script: &str, install: &str) -> Option<PathBuf> {
     let folders: Vec<_> = env::split_paths(&env::var_os("PATH")?).collect();
     let places = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));

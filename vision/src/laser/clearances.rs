@@ -19,11 +19,9 @@ pub struct Clearances {
 
 impl Clearances {
     pub(super) fn new(grid: &Grid) -> Self {
-        let distances =
-            |is_site: fn(Cell) -> bool| squared_distances(grid.columns, &grid.cells, is_site);
         Self {
-            wall: distances(|cell| cell == Cell::Occupied),
-            border: distances(|cell| cell != Cell::Free),
+            wall: squared_distances(grid.columns, &grid.cells, |cell| cell == Cell::Occupied),
+            border: squared_distances(grid.columns, &grid.cells, |cell| cell != Cell::Free),
         }
     }
 
@@ -67,7 +65,7 @@ impl Clearances {
 
 /// For each free cell of a rectangle with this many columns, the squared distance, in cells, to the nearest one of the
 /// sites. It is at least the square of the longer side if there is none. The numbers of the other cells mean nothing.
-fn squared_distances(columns: usize, cells: &[Cell], is_site: fn(Cell) -> bool) -> Vec<u32> {
+fn squared_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bool) -> Vec<u32> {
     let distances = column_distances(columns, cells, is_site);
     let mut squared = vec![0; cells.len()];
     let mut envelope = Vec::with_capacity(columns);
@@ -87,7 +85,7 @@ fn squared_distances(columns: usize, cells: &[Cell], is_site: fn(Cell) -> bool) 
 }
 
 /// The distance to the nearest site in the same column.
-fn column_distances(columns: usize, cells: &[Cell], is_site: fn(Cell) -> bool) -> Vec<i32> {
+fn column_distances(columns: usize, cells: &[Cell], is_site: impl Fn(Cell) -> bool) -> Vec<i32> {
     let far = (columns + cells.len() / columns.max(1)) as i32;
     let mut distances: Vec<i32> =
         cells.iter().map(|&cell| if is_site(cell) { 0 } else { far }).collect();

@@ -155,24 +155,57 @@ impl Grid {
         }
     }
 
-    /// The cells of groups that are not free and smaller than this many cells along both axes. What reaches the border of
-    /// the map may be larger.
+    /// The cells of groups that are not free and smaller than this many cells along both axes.
     fn small_obstacles(&self, limit: usize) -> Vec<usize> {
+        let is_free = |at: usize| self.cells[at] == Cell::Free;
         let column_row = |at: usize| [at % self.columns, at / self.columns];
-        let last = [self.columns - 1, self.rows() - 1];
-        let inner = |&at: &usize| {
-            let place = column_row(at);
-            (0..2).all(|axis| (1..last[axis]).contains(&place[axis]))
-        };
-        let is_taken = |&at: &usize| self.cells[at] != Cell::Free;
-        let taken: Vec<usize> = (0..self.cells.len()).filter(is_taken).filter(inner).collect();
-        let is_small = |group: &Vec<usize>| {
-            (0..2).all(|axis| {
-                let places = || group.iter().map(|&at| column_row(at)[axis]);
-                let (low, high) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
-                low > 1 && high + 1 < last[axis] && high - low < limit
-            })
-        };
-        self.groups(&taken).into_iter().filter(is_small).flatten().collect()
+        let border = [self.columns - 1, self.rows() - 1];
+        let is_border =
+            |place: [usize; 2]| (0..2).any(|axis| place[axis] == 0 || place[axis] == border[axis]);
+        // The number of the group, from 1; a large group is left before all of its cells are seen.
+        let mut group = vec![0_u32; self.cells.len()];
+        let mut large = vec![true];
+        let mut small = Vec::new();
+        let mut members = Vec::new();
+        // The first cell of a row of a group has a free one before it.
+        for start in (1..self.cells.len()).filter(|&at| !is_free(at) && is_free(at - 1)) {
+            if group[start] > 0 {
+                continue;
+            }
+            let number = large.len() as u32;
+            group[start] = number;
+            members.clear();
+            members.push(start);
+            let (mut low, mut high) = (column_row(start), column_row(start));
+            let mut next = 0;
+            let is_large = loop {
+                let Some(&at) = members.get(next) else { break false };
+                next += 1;
+                let place = column_row(at);
+                low = [0, 1].map(|axis| low[axis].min(place[axis]));
+                high = [0, 1].map(|axis| high[axis].max(place[axis]));
+                if is_border(place) || (0..2).any(|axis| high[axis] - low[axis] >= limit) {
+                    break true;
+                }
+                let near = self.neighbours(at);
+                let is_of_large = |&near: &usize| {
+                    group[near] > 0 && group[near] != number && large[group[near] as usize]
+                };
+                if near.iter().any(|near| !is_free(*near) && is_of_large(near)) {
+                    break true;
+                }
+                for near in near {
+                    if !is_free(near) && group[near] != number {
+                        group[near] = number;
+                        members.push(near);
+                    }
+                }
+            };
+            large.push(is_large);
+            if !is_large {
+                small.extend_from_slice(&members);
+            }
+        }
+        small
     }
 }

@@ -73,8 +73,9 @@ fn thin(cells: &mut [bool], ways: &[usize], clearances: &Clearances, ends: &[End
 
 /// Whether the removal of a cell changes no topology: Yokoi's connectivity number of its eight neighbours is one.
 fn is_simple(cells: &[bool], at: usize, grid: &Grid) -> bool {
-    let around = grid.neighbours(at).map(|near| cells[near]);
-    let begins_group =
-        |&direct: &usize| !around[direct] && (around[(direct + 1) % 8] || around[(direct + 2) % 8]);
-    [1, 3, 5, 7].iter().filter(|direct| begins_group(direct)).count() == 1
+    let near = grid.neighbours(at).into_iter().enumerate();
+    let around = near.fold(0_u8, |around, (number, near)| around | u8::from(cells[near]) << number);
+    // The neighbours beside it, which are those with odd numbers, that are not in the set and before one that is.
+    let begin_group = !around & (around.rotate_right(1) | around.rotate_right(2)) & 0b1010_1010;
+    begin_group.count_ones() == 1
 }
