@@ -115,11 +115,17 @@ fn the_exit_code_without_a_reader() {
         ("proofs --json", 0, ""),
         ("draw worlds/building-25.toml", 0, ""),
         ("explore worlds/building-25.toml --full", 0, ""),
+        ("explore worlds/building-25.toml --json", 0, ""),
         ("compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none", 0, ""),
         ("info fuzz/corpus/mcap/of-a-run", 0, ""),
         ("explore worlds/shape-6.toml --max-darts 3", 3, ""),
         ("check --json --edges 1..=5", 3, ""),
         ("check --json --edges 1..=5 --worst worst.toml", 0, "worst.toml"),
+        (
+            "proofs --run the_way_back --junit proofs.xml --sarif proofs.sarif",
+            0,
+            "proofs.xml proofs.sarif",
+        ),
         ("compare worlds/cycle-3.toml worlds/cycle-4.toml --html page.html", 0, "page.html"),
         ("explore worlds/shape-8.toml --map map.toml", 0, "map.toml"),
         (

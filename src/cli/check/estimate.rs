@@ -39,7 +39,7 @@ const STANDARD_DEVIATIONS: f64 = 1.96;
 #[derive(clap::Args, Debug)]
 pub(super) struct EstimateOptions {
     /// Do not check: predict starts, moves and time by random probes, with 95 % confidence intervals
-    #[arg(long, conflicts_with_all = ["choices", "from", "shard", "worst", "journal", "junit", "sarif", "keep_going"])]
+    #[arg(long, conflicts_with_all = ["choices", "from", "shard", "worst", "failed", "journal", "junit", "sarif", "keep_going"])]
     pub(super) estimate: bool,
 
     /// With --estimate: number of probes [default: 10000]
