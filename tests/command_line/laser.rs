@@ -40,6 +40,16 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     assert_ne!(output.status.code(), Some(2), "{output:?}");
 }
 
+/// A robot leaves a junction by an arm that its scans show coarsely. That is no fault of the robot.
+#[test]
+fn a_log_of_scans_does_not_accuse_a_robot_that_mapped_its_plan() {
+    let scratch = Scratch::new("laser_not_accused");
+    for seed in [0, 1] {
+        scratch.out(&format!("simulate {PLAN} --sensor laser --seed {seed} --log run.mcap"), 0);
+        scratch.out(&format!("conform run.mcap {LASER}"), 0);
+    }
+}
+
 /// The recorder of an MCAP file, a database of rosbag2 or a ROS 1 bag has a clock.
 #[test]
 fn messages_off_the_clock_are_skipped_and_counted() {

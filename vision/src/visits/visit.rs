@@ -96,14 +96,17 @@ impl<S> VisitLog<S> {
     }
 }
 
+/// With more arms that are only possible, nothing is known of a visit: each doubles the number of its alternatives.
+const MOST_POSSIBLE_ARMS: usize = 8;
+
 impl<S> Visit<S> {
     /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known.
     #[must_use]
     pub fn alternatives(&self) -> Vec<Option<VisitPercept>> {
-        if self.arms.is_empty() {
+        let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
+        if self.arms.is_empty() || possible > MOST_POSSIBLE_ARMS {
             return Vec::new();
         }
-        let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
         let alternative = |chosen: u32| {
             let mut next = 0;
             let is_there = |arm: &&PlaceArm| match arm.certainty {
@@ -118,7 +121,7 @@ impl<S> Visit<S> {
                 self.arms.iter().filter(is_there).map(|arm| arm.direction).collect();
             (arms.len() >= self.least_degree).then(|| self.percept_with(&arms))
         };
-        let mut all: Vec<_> = (0..1 << possible.min(8)).map(alternative).collect();
+        let mut all: Vec<_> = (0..1 << possible).map(alternative).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -192,6 +195,12 @@ mod tests {
         assert_eq!(visit(1).alternatives(), [percept(2, 1), percept(3, 2)]);
         let mut unknown = visit(3);
         unknown.arms.clear();
+        assert_eq!(unknown.alternatives(), []);
+        // No alternative is left out: with too many possible arms there is none at all.
+        let arm = PlaceArm { direction: 1.0, certainty: Certainty::Possible };
+        unknown.arms = vec![arm; MOST_POSSIBLE_ARMS];
+        assert!(!unknown.alternatives().is_empty());
+        unknown.arms.push(arm);
         assert_eq!(unknown.alternatives(), []);
     }
 
