@@ -77,5 +77,5 @@ fn is_simple(cells: &[bool], at: usize, grid: &Grid) -> bool {
     let around = near.fold(0_u8, |around, (number, near)| around | u8::from(cells[near]) << number);
     // The neighbours beside it, which are those with odd numbers, that are not in the set and before one that is.
     let begin_group = !around & (around.rotate_right(1) | around.rotate_right(2)) & 0b1010_1010;
-    begin_group.count_ones() == 1
+    begin_group.is_power_of_two()
 }
