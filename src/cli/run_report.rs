@@ -135,9 +135,6 @@ pub(super) enum RobotReport {
     Live { ending: &'static str, vertices: usize, edges: usize, seconds: f64 },
 }
 
-/// A shorter computation is not printed, in seconds: without images there is almost nothing to compute.
-const LEAST_PRINTED: f64 = 0.01;
-
 impl RunReport {
     pub(super) fn new(
         run: &RobotRun,
@@ -208,7 +205,8 @@ impl RunReport {
             RobotReport::Live { .. } => row(out, "robot time", &minutes)?,
             RobotReport::Simulated { compute_seconds, .. } => {
                 row(out, "simulated time", &minutes)?;
-                if run.error.is_none() && compute_seconds >= LEAST_PRINTED {
+                // From scenes there is almost nothing to compute.
+                if run.error.is_none() && run.frame_kind != "scenes" {
                     let ratio = grouped((run.seconds / compute_seconds).round() as u128);
                     let text = format!("{compute_seconds:.2} s off-line, {ratio} times real time");
                     row(out, "computation", &text)?;
