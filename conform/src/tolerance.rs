@@ -143,7 +143,7 @@ impl<'q> Tolerance<'q> {
             expected_after(departure)
         };
         let bound = self.config.dart_bound;
-        let _ = match_amended(algorithm, &trace, self.amended.claim(), bound, &mut amend);
+        let _ = match_amended(algorithm, &trace, self.amended.claim(), bound, Some(&mut amend));
         self.tolerated.extend(tolerated);
     }
 }

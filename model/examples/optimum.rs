@@ -13,13 +13,12 @@
 use std::{
     collections::{BTreeMap, HashMap, VecDeque},
     error::Error,
-    ops::ControlFlow,
 };
 
 use toposlam_model::{
     check::{Check, RunChoices, Shard},
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    enumerate::{Class, Each, Enumeration},
     folding::FoldedTrail,
     mapping::MappingAlgorithm,
     marker::{Directional, Marker},
@@ -46,7 +45,7 @@ struct PossibleStart {
 }
 
 impl PossibleStart {
-    fn new(graph: &EmbeddedGraph) -> Self {
+    fn new(graph: EmbeddedGraph) -> Self {
         let mut distance = vec![u64::MAX; graph.vertex_count()];
         distance[0] = 0;
         let mut queue = VecDeque::from([graph.vertex(FACING)]);
@@ -60,7 +59,7 @@ impl PossibleStart {
             }
         }
         let cycles = graph.edge_count() + 1 - graph.vertex_count();
-        Self { graph: graph.clone(), distance, cycles }
+        Self { graph, distance, cycles }
     }
 
     fn percept(&self, pose: Dart) -> Percept {
@@ -104,12 +103,8 @@ impl OptimumSearch {
     /// # Errors
     /// Returns an error if they cannot be enumerated.
     pub(crate) fn new(class: Class, edges: usize) -> Result<Self, Box<dyn Error>> {
-        let mut starts = Vec::new();
-        let mut visit = |found: EnumeratedGraph| {
-            starts.push(PossibleStart::new(found.graph));
-            ControlFlow::Continue(())
-        };
-        let _: ControlFlow<()> = Enumeration::new(Each::Start, class, edges)?.for_each(&mut visit);
+        let graphs = Enumeration::new(Each::Start, class, edges)?.graphs();
+        let starts = graphs.into_iter().map(PossibleStart::new).collect();
         Ok(Self { starts, known: HashMap::new() })
     }
 

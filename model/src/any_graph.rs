@@ -1,12 +1,12 @@
 //! Embedded graphs for property tests: an edge at a time, between any two corners.
 
-use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use proptest::{collection::vec, prelude::*};
 
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Each, Enumeration},
+    embedded_graph::EmbeddedGraph,
+    enumerate::{Each, Enumeration, Watch},
     marker::Marker,
     percept::{Door, Percept},
     world::{GraphWorld, World},
@@ -50,27 +50,42 @@ fn grown(class: Class, edges: &[(u16, bool, u16)]) -> EmbeddedGraph {
 
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
-    let mut starts = Vec::new();
-    let all = Enumeration::new(Each::Start, class, edges).unwrap();
-    let _: ControlFlow<()> = all.for_each(&mut |found| {
-        starts.push(found.graph.clone());
-        ControlFlow::Continue(())
-    });
-    starts
+    Enumeration::new(Each::Start, class, edges).unwrap().graphs()
 }
 
-/// A walk of a robot: what it perceives, the doors that it takes, and its poses. Doors are counted modulo the degree.
+/// Stops what it watches at the question with this number, from 1.
+pub(crate) struct QuestionLimit {
+    pub at: u64,
+    asked: AtomicU64,
+}
+
+impl QuestionLimit {
+    pub(crate) fn new(at: u64) -> Self {
+        Self { at, asked: AtomicU64::new(0) }
+    }
+
+    pub(crate) fn asked(&self) -> u64 {
+        self.asked.load(Ordering::Relaxed)
+    }
+}
+
+impl Watch for QuestionLimit {
+    fn stop(&self) -> bool {
+        self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
+    }
+}
+
+/// A walk of a robot: what it perceives, and the doors that it takes. Doors are counted modulo the degree.
 pub(crate) fn walk<M: Marker>(
     mut world: GraphWorld<'_, M>,
     turns: impl IntoIterator<Item = u32>,
-) -> (Vec<Percept>, Vec<Door>, Vec<Dart>) {
-    let (mut percepts, mut doors, mut poses) = (vec![world.sensed()], vec![], vec![world.pose()]);
+) -> (Vec<Percept>, Vec<Door>) {
+    let (mut percepts, mut doors) = (vec![world.sensed()], vec![]);
     for turn in turns {
         let door = Door(turn % world.sensed().degree);
         world.traverse(door).unwrap();
         doors.push(door);
         percepts.push(world.sensed());
-        poses.push(world.pose());
     }
-    (percepts, doors, poses)
+    (percepts, doors)
 }

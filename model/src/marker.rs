@@ -117,7 +117,6 @@ fn ends(graph: &EmbeddedGraph, dart: Dart) -> [Dart; 2] {
 }
 
 impl MarkerKind {
-    /// Its name and the sentence about it.
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
             NoMarker => {

@@ -118,7 +118,6 @@ pub enum WalkEvent {
 
 impl WalkEvent {
     /// The event with this index among all events of the walk, counted from 0.
-    #[must_use]
     pub fn at(index: usize) -> Self {
         let moves = index / 2;
         if index.is_multiple_of(2) { Self::Percept(moves) } else { Self::Door(moves) }

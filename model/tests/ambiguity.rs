@@ -1,9 +1,6 @@
 //! Worlds that a marker does not distinguish: the witnesses, and the search.
 
-use std::{
-    ops::ControlFlow,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use toposlam_model::{
     ambiguity::{
@@ -128,8 +125,7 @@ fn corridors_and_planar_worlds() {
 fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(EmbeddedGraph, Dart)> {
     let mut placed: Vec<(EmbeddedGraph, Dart)> = Vec::new();
     for edges in 1..=edges {
-        let _ = Enumeration::new(Each::World, class, edges).unwrap().for_each(&mut |found| {
-            let graph = found.graph;
+        for graph in &Enumeration::new(Each::World, class, edges).unwrap().graphs() {
             let automorphisms: Vec<_> = graph
                 .darts()
                 .map(|to| Bijection::of_starts((graph, Dart(0)), (graph, to)))
@@ -144,8 +140,7 @@ fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(Embedd
                     placed.push((graph.clone(), facing));
                 }
             }
-            ControlFlow::Continue(())
-        });
+        }
     }
     placed
 }

@@ -12,19 +12,11 @@ use toposlam_model::{
     world::{MarkerCarrier, RefusedAction, World},
 };
 
+use crate::{marked, plain};
+
 type Error = MappingError<RefusedAction>;
 
 const BOUND: usize = 60;
-
-/// A percept without a marker.
-pub(crate) fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
-}
-
-/// A percept with a directional marker that points along a door.
-pub(crate) fn marked(degree: u32, door: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
-}
 
 fn lying(degree: u32) -> Percept {
     Percept { degree, sighting: Sighting::Lying(1) }
@@ -214,10 +206,9 @@ fn a_trail_that_contradicts_itself_is_an_error_with_the_visits() {
 
 /// Of a cycle: out to v1 and v2 and over the next edge, where the marker is dropped, for this may be
 /// v0; back to v2, to v1, to v0.
-const CYCLE: [Percept; 7] = {
-    const TWO: Percept = Percept { degree: 2, sighting: Sighting::Nothing };
-    [Percept { degree: 2, sighting: Sighting::Lying(1) }, TWO, TWO, TWO, TWO, TWO, TWO]
-};
+fn cycle() -> [Percept; 7] {
+    [lying(2), plain(2), plain(2), plain(2), plain(2), plain(2), plain(2)]
+}
 
 // paper: movable.place, movable.new
 #[test]
@@ -233,13 +224,13 @@ fn a_known_place_that_changed_or_a_marker_that_is_gone_is_a_contradiction() {
         (6, (0, 0), [plain(1), lying(3)]),
     ] {
         for perceived in wrong {
-            let percepts = [&CYCLE[..moves], &[perceived]].concat();
+            let percepts = [&cycle()[..moves], &[perceived]].concat();
             assert_eq!(movable(&percepts), known_place(place, plain(2), perceived));
         }
     }
     // Where the marker was left.
     for perceived in [plain(2), lying(3)] {
-        let percepts = [&CYCLE[..], &[plain(2), plain(2), perceived]].concat();
+        let percepts = [&cycle()[..], &[plain(2), plain(2), perceived]].concat();
         let expected = Contradiction::WayBack { expected: lying(2), perceived };
         assert_eq!(movable(&percepts), expected.into());
     }
@@ -247,17 +238,15 @@ fn a_known_place_that_changed_or_a_marker_that_is_gone_is_a_contradiction() {
 
 /// Out to v1 and v2 and over the next edge to a place that looks like v0, and is; then the marker is
 /// carried to v2, and the robot is back at v0, with two darts to try.
-const BACK_LINK: [Percept; 11] = {
-    const TWO: Percept = Percept { degree: 2, sighting: Sighting::Nothing };
-    const THREE: Percept = Percept { degree: 3, sighting: Sighting::Nothing };
-    const HERE: Percept = Percept { degree: 3, sighting: Sighting::Lying(1) };
-    [HERE, TWO, TWO, THREE, TWO, TWO, HERE, TWO, TWO, TWO, THREE]
-};
+fn back_link() -> [Percept; 11] {
+    let (two, three, here) = (plain(2), plain(3), lying(3));
+    [here, two, two, three, two, two, here, two, two, two, three]
+}
 
 // paper: movable.back-link
 #[test]
 fn a_back_link_that_is_not_there_is_a_contradiction() {
-    let with = |more: &[Percept]| movable(&[&BACK_LINK[..], more].concat());
+    let with = |more: &[Percept]| movable(&[&back_link()[..], more].concat());
     let expected = Contradiction::NoBackLink { vertex: Vertex(0), marked: Vertex(2) };
     let error = with(&[plain(1), plain(3), plain(1), plain(3)]);
     assert_eq!(error, expected.into());

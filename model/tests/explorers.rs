@@ -11,7 +11,7 @@ use depth_first::DepthFirst;
 use own_marker::Beacon;
 use toposlam_model::{
     ambiguity::AmbiguitySearch,
-    check::{Check, RunChoices, Shard, SharedPrefixCheck, Tally},
+    check::{Shard, SharedPrefixCheck, Tally},
     embedded_graph::Dart,
     enumerate::Class,
     mapping::{
@@ -22,18 +22,15 @@ use toposlam_model::{
     world::RefusedAction,
 };
 
-fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
-    let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
-    sweep.run(new, RunChoices::Default, &())
-}
+use crate::checked;
 
 #[test]
 fn a_depth_first_explorer_maps_every_start_right() {
     for (edges, starts) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {
-        let tally = sweep(edges, DepthFirst::default);
+        let tally = checked(Class::Multigraph, edges, DepthFirst::default);
         assert_eq!(tally.failure, None);
         assert_eq!((tally.starts, tally.mapped), (starts, starts));
-        let algorithm = sweep(edges, Algorithm1Run::default);
+        let algorithm = checked(Class::Multigraph, edges, Algorithm1Run::default);
         assert_eq!(tally.worlds, algorithm.worlds);
         assert!(tally.moves_total >= algorithm.moves_total, "it is wasteful");
         // It runs in steps, so its runs share their beginnings.
@@ -123,7 +120,8 @@ impl Explorer for BrokenExplorer {
 /// The first flaw of a broken explorer, and the number of edges.
 fn first_flaw(broken: Broken) -> (usize, Flaw, Option<u64>) {
     let failed = (1..=5).find_map(|edges| {
-        let tally = sweep(edges, || BrokenExplorer(broken, DepthFirst::default()));
+        let new = || BrokenExplorer(broken, DepthFirst::default());
+        let tally = checked(Class::Multigraph, edges, new);
         assert_eq!(tally.failed() > 0, tally.failure.is_some());
         tally.failure.map(|failed| (edges, failed.flaw, failed.moves))
     });

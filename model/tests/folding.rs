@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use toposlam_model::{
-    check::{Check, RunChoices, Shard, every_way, first_false_step, judge_start},
+    check::{every_way, first_false_step, judge_start},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     folding::certificate_length,
@@ -12,7 +12,7 @@ use toposlam_model::{
     world::{GraphWorld, RefusedAction, World},
 };
 
-use crate::starts;
+use crate::{checked, starts};
 
 /// A number of edges, the starts, their moves, and the most moves of one.
 type Moves = (usize, u64, u64, u64);
@@ -27,8 +27,7 @@ const MOVES: [(Class, &[Moves]); 3] = [
 fn the_folding_explorer_maps_every_start_in_few_moves() {
     for (class, sizes) in MOVES {
         for &(edges, starts, total, most) in sizes {
-            let check = Check::new(class, edges, Shard::WHOLE).unwrap();
-            let tally = check.run(FoldingRun::default, RunChoices::Default, &());
+            let tally = checked(class, edges, FoldingRun::default);
             assert_eq!(tally.failure, None, "{class} {edges}");
             assert_eq!((tally.starts, tally.mapped), (starts, starts), "{class} {edges}");
             assert_eq!((tally.moves_total, tally.moves_max()), (total, most), "{class} {edges}");
@@ -38,8 +37,7 @@ fn the_folding_explorer_maps_every_start_in_few_moves() {
 
 #[test]
 fn strict_tests_map_every_start_in_more_moves() {
-    let check = Check::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
-    let strict = check.run(FoldingRun::strict, RunChoices::Default, &());
+    let strict = checked(Class::Multigraph, 5, FoldingRun::strict);
     assert_eq!((strict.failure, strict.mapped), (None, 8162));
     assert!(strict.moves_total > 63858);
 }

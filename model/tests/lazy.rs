@@ -10,10 +10,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        Check, EnumeratedStart, FinishedUnits, PartTally, RunChoices, Shard, SharedPrefixCheck,
-        Tally,
-    },
+    check::{EnumeratedStart, FinishedUnits, PartTally, Shard, SharedPrefixCheck, Tally},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
     mapping::{
@@ -21,16 +18,13 @@ use toposlam_model::{
         MappingAlgorithm, MappingError, MovableMarkerRun, ObservedWorld,
     },
     marker::{DirectedEdge, Directional, Marker, MarkerKind, TwoIdentical},
-    percept::Door,
+    percept::{Door, Sighting},
 };
+
+use crate::checked;
 
 fn lazy<E: Explorer + Default>(class: Class, edges: usize) -> Tally {
     SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap().run(E::default, &())
-}
-
-fn one_by_one<E: Explorer>(class: Class, edges: usize, new: impl Fn() -> E + Sync) -> Tally {
-    let sweep = Check::new(class, edges, Shard::WHOLE).unwrap();
-    sweep.run(new, RunChoices::Default, &())
 }
 
 /// All counts but the moves that were made.
@@ -50,7 +44,7 @@ fn the_tree_has_a_leaf_for_each_start() {
 
 fn compare<E: Explorer + Default>(class: Class, edges: usize) -> Tally {
     let lazily = counts(lazy::<E>(class, edges));
-    assert_eq!(lazily, one_by_one(class, edges, E::default), "{class} {edges}");
+    assert_eq!(lazily, checked(class, edges, E::default), "{class} {edges}");
     lazily
 }
 
@@ -100,7 +94,7 @@ impl<M: Marker + Clone> Explorer for Walker<M> {
     fn step<W: ObservedWorld>(&mut self, (): (), world: &mut W) -> Mapped<W> {
         let percept = world.percept().map_err(MappingError::World)?;
         // The sighting decides, too.
-        let marked = percept.sighting != toposlam_model::percept::Sighting::Nothing;
+        let marked = percept.sighting != Sighting::Nothing;
         let door = Door((1 + u32::from(marked)) % percept.degree);
         world.traverse(door).map_err(MappingError::World)?;
         self.moves += 1;
@@ -126,7 +120,7 @@ fn compare_walkers<M: Marker + Clone>(marker: &M) {
             let new = || walker.clone();
             let lazily = SharedPrefixCheck::new(class, edges, Shard::WHOLE).unwrap().run(new, &());
             let lazily = counts(lazily);
-            assert_eq!(lazily, one_by_one(class, edges, new), "{class} {edges} {most}");
+            assert_eq!(lazily, checked(class, edges, new), "{class} {edges} {most}");
             // At most the one start that it guesses.
             assert!(lazily.mapped <= 1 && lazily.starts > 0);
         }

@@ -2,21 +2,32 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::ops::ControlFlow;
-
 use toposlam_model::{
+    check::{Check, RunChoices, Shard, Tally},
     embedded_graph::EmbeddedGraph,
     enumerate::{Class, Each, Enumeration},
+    mapping::Explorer,
+    percept::{Door, Percept, Sighting},
 };
 
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
-    let mut starts = Vec::new();
-    let _ = Enumeration::new(Each::Start, class, edges).unwrap().for_each(&mut |found| {
-        starts.push(found.graph.clone());
-        ControlFlow::Continue(())
-    });
-    starts
+    Enumeration::new(Each::Start, class, edges).unwrap().graphs()
+}
+
+/// The check of explorers with their default choices.
+fn checked<E: Explorer>(class: Class, edges: usize, new: impl Fn() -> E + Sync) -> Tally {
+    Check::new(class, edges, Shard::WHOLE).unwrap().run(new, RunChoices::Default, &())
+}
+
+/// A percept without a marker.
+fn plain(degree: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Nothing }
+}
+
+/// A percept with a directional marker that points along a door.
+fn marked(degree: u32, door: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
 }
 
 mod ambiguity;

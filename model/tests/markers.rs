@@ -1,7 +1,5 @@
 //! What each kind of marker adds to a percept, and what a robot can do with it.
 
-use std::ops::ControlFlow;
-
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
@@ -68,24 +66,21 @@ fn each_marker_is_noticed_where_it_lies() {
 fn the_first_facing_dart_alike_stands_for_the_place() {
     let mut count = 0;
     for edges in 1..=4 {
-        let worlds = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
-        let _ = worlds.for_each(&mut |found| {
-            let graph = found.graph;
+        for graph in Enumeration::new(Each::World, Class::Multigraph, edges).unwrap().graphs() {
             count += 1;
             for marker in MARKERS {
                 let shown = |facing| {
-                    let sightings = graph.darts().map(|pose| marker.sighting(graph, facing, pose));
+                    let sightings = graph.darts().map(|pose| marker.sighting(&graph, facing, pose));
                     sightings.collect::<Vec<_>>()
                 };
                 for facing in graph.darts() {
                     let alike = graph.darts().find(|&other| shown(other) == shown(facing));
-                    assert_eq!(Some(marker.first_alike(graph, facing)), alike, "{marker:?}");
-                    let starts = marker.starts(graph, facing);
+                    assert_eq!(Some(marker.first_alike(&graph, facing)), alike, "{marker:?}");
+                    let starts = marker.starts(&graph, facing);
                     assert!(starts.contains(&facing) && starts.is_sorted(), "{marker:?}");
                 }
             }
-            ControlFlow::Continue(())
-        });
+        }
     }
     assert_eq!(count, 2 + 5 + 20 + 107, "all worlds with 1 to 4 edges");
 }

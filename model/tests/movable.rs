@@ -3,7 +3,7 @@
 
 use toposlam_model::{
     ambiguity::Comparison,
-    check::{Check, RunChoices, Shard, judge},
+    check::judge,
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::{Candidate, code, isomorphism},
@@ -12,7 +12,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use crate::starts;
+use crate::{checked, starts};
 
 /// The starts, the sum of the moves, and the most moves: by `tests/oracle/movable_marker.py` of the workspace.
 // paper: movable.place, movable.new, movable.known, movable.back-link
@@ -30,8 +30,7 @@ fn every_start_of_every_small_simple_world_is_mapped_right() {
         (Class::Corridor, 10, (61_455, 2_348_793, 104)),
         (Class::Planar, 8, (15_485, 371_598, 66)),
     ] {
-        let check = Check::new(class, edges, Shard::WHOLE).unwrap();
-        let tally = check.run(MovableMarkerRun::default, RunChoices::Default, &());
+        let tally = checked(class, edges, MovableMarkerRun::default);
         assert_eq!((tally.failure.as_ref(), tally.mapped), (None, tally.starts), "{class} {edges}");
         assert_eq!((tally.starts, tally.moves_total, tally.moves_max()), row, "{class} {edges}");
     }

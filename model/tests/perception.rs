@@ -7,10 +7,7 @@ use toposlam_model::{
     world::{GraphWorld, RefusedAction, World},
 };
 
-use crate::{
-    contradictions::{marked, plain},
-    markers::junction,
-};
+use crate::{marked, markers::junction, plain};
 
 /// The percepts along a door sequence, the first at the start.
 fn percepts(graph: &EmbeddedGraph, facing: Dart, doors: &[u32]) -> Vec<Percept> {

@@ -10,6 +10,8 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
+use crate::plain;
+
 /// What happens in a run, but for the moves, each with the moves made by then.
 fn story<E: Explorer + Default>(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent)> {
     let mut story = Vec::new();
@@ -22,10 +24,6 @@ fn story<E: Explorer + Default>(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent
     let mut world = GraphWorld::with_marker(graph, run.marker(), Dart(0));
     explore(&mut run, &mut Observed::new(&mut world, &mut listen)).unwrap();
     story
-}
-
-fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
 }
 
 fn started(degree: u32, sighting: Sighting) -> MappingEvent {

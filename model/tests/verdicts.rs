@@ -1,7 +1,7 @@
 //! The judge names each flaw.
 
 use toposlam_model::{
-    check::{Check, RunChoices, Shard, Tally, judge},
+    check::{Tally, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::{Candidate, code},
@@ -9,6 +9,8 @@ use toposlam_model::{
     percept::Door,
     world::{GraphWorld, World},
 };
+
+use crate::checked;
 
 fn theta(far: [&'static str; 3]) -> EmbeddedGraph {
     EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
@@ -55,7 +57,7 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
 
 #[test]
 fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
-    let graph = EmbeddedGraph::from_edge_lists(&[("u", vec!["a"]), ("v", vec!["a"])]).unwrap();
+    let graph = EmbeddedGraph::chain(1);
     let map = |bound| {
         let mut world = GraphWorld::new(&graph, Dart(0));
         explore(&mut Algorithm1Run::new(bound), &mut world)
@@ -70,8 +72,7 @@ fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
 fn the_tally_keeps_the_extremes_of_small_worlds() {
     let new = |degree: u32| u32::MAX - degree;
     for (edges, most) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
-        let sweep = Check::new(Class::Multigraph, edges, Shard::WHOLE);
-        let tally = sweep.unwrap().run(Algorithm1Run::default, RunChoices::Default, &());
+        let tally = checked(Class::Multigraph, edges, Algorithm1Run::default);
         assert_eq!(tally.most_moves_per_vertex, Some(most));
         if edges == 3 {
             let worst = tally.worst.clone().unwrap();

@@ -83,7 +83,6 @@ impl AmbiguityCandidate {
     }
 
     /// The candidate of these bytes; `None` if they are not those of one.
-    #[must_use]
     pub fn from_bytes(bytes: Box<[u8]>) -> Option<Self> {
         let candidate = Self(bytes);
         let (_, world) = candidate.parts()?;
@@ -107,7 +106,6 @@ impl AmbiguityCandidate {
         Some(PlacedWorld { graph, code: StartCode::of_words(words) })
     }
 
-    /// The quotient and the world.
     fn parts(&self) -> Option<(&[u8], &[u8])> {
         let (length, rest) = self.0.split_first_chunk::<LENGTH>()?;
         rest.split_at_checked(u32::from_be_bytes(*length) as usize)

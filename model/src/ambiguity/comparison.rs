@@ -27,7 +27,6 @@ pub struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     /// Compares two graphs. The facing darts place the marker in each.
-    #[must_use]
     pub fn new(
         marker: &'a dyn Marker,
         (one, facing): (&'a EmbeddedGraph, Dart),
@@ -295,10 +294,8 @@ impl<'c, 'a> Pairs<'c, 'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::{AtomicU64, Ordering};
-
     use super::*;
-    use crate::marker::named;
+    use crate::{any_graph::QuestionLimit, marker::named};
 
     /// A cycle of junctions, to each of which both ends of a long way are joined; these are of one
     /// length, but for that at the last junction.
@@ -366,18 +363,6 @@ mod tests {
         }
     }
 
-    /// Stops at a question of this number, from 1.
-    struct QuestionLimit {
-        at: u64,
-        asked: AtomicU64,
-    }
-
-    impl Watch for QuestionLimit {
-        fn stop(&self) -> bool {
-            self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
-        }
-    }
-
     type Search = fn(&Comparison, &dyn Watch) -> bool;
 
     #[test]
@@ -391,9 +376,9 @@ mod tests {
         ];
         for is_stopped in searches {
             let questions = |at, ends| {
-                let limit = QuestionLimit { at, asked: AtomicU64::new(0) };
+                let limit = QuestionLimit::new(at);
                 assert_eq!(is_stopped(&comparison(), &limit), ends);
-                limit.asked.into_inner()
+                limit.asked()
             };
             let all = questions(u64::MAX, false);
             assert!(all > 0);

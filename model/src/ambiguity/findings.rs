@@ -85,7 +85,6 @@ pub enum KeptPairs {
 /// Why a search has no findings.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 pub enum Unfinished {
-    /// It was interrupted: it is not complete.
     #[error("the search was interrupted")]
     Interrupted,
     /// Two worlds have the same quotient, but no relation that can be verified. This is a bug in the

@@ -295,27 +295,19 @@ impl<'g, E: Explorer> Search<'g, '_, E> {
 mod tests {
     use super::*;
     use crate::{
-        any_graph::starts,
+        any_graph::{QuestionLimit, starts},
         check::smallest_failure::delegate_to_run,
         enumerate::Class,
         mapping::{Algorithm1Run, InvalidStep, Mapped, MappingChoice, MappingError, ObservedWorld},
         marker::MarkerKind,
     };
 
-    struct Stopped;
-
-    impl Watch for Stopped {
-        fn stop(&self) -> bool {
-            true
-        }
-    }
-
     #[test]
     fn the_limit_that_was_reached_is_named() {
         for (budget, watch, limit) in [
             (1000, &() as &dyn Watch, None),
             (9, &(), Some(ChoicesLimit::States(9))),
-            (1000, &Stopped, Some(ChoicesLimit::Interrupted)),
+            (1000, &QuestionLimit::new(1), Some(ChoicesLimit::Interrupted)),
         ] {
             let cycle = EmbeddedGraph::cycle(5);
             let ways = every_way(Algorithm1Run::default(), &cycle, Dart(0), budget, watch).unwrap();

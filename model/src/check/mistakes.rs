@@ -375,7 +375,10 @@ impl MistakenRuns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mapping::{MappingAlgorithm, RecoveryConfig};
+    use crate::{
+        any_graph::QuestionLimit,
+        mapping::{MappingAlgorithm, RecoveryConfig},
+    };
 
     fn tally(edges: usize, method: MappingMethod) -> MistakeTally {
         MistakeCheck::new(Class::Multigraph, edges, method).unwrap().run(&())
@@ -407,18 +410,10 @@ mod tests {
         }
     }
 
-    struct Stopped;
-
-    impl Watch for Stopped {
-        fn stop(&self) -> bool {
-            true
-        }
-    }
-
     #[test]
     fn a_check_that_is_stopped_begins_no_start() {
         let check = MistakeCheck::new(Class::Multigraph, 5, MappingAlgorithm::Algorithm1.into());
-        let tally = check.unwrap().run(&Stopped);
+        let tally = check.unwrap().run(&QuestionLimit::new(1));
         assert_eq!(tally, MistakeTally { interrupted: true, ..MistakeTally::default() });
     }
 }

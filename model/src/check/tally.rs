@@ -22,7 +22,6 @@ pub struct EnumeratedStart {
 }
 
 impl EnumeratedStart {
-    #[must_use]
     pub fn new(graph: &EmbeddedGraph, facing: Dart) -> Self {
         let least = canonical(graph);
         let orbit = least.orbit[facing.at()];

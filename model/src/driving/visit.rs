@@ -96,7 +96,6 @@ impl JunctionShape {
 impl JunctionEstimate {
     /// The visit of a robot that knows the junction at which it stands, and whether the marker lies
     /// there.
-    #[must_use]
     pub fn decided(form: JunctionShape, sighting: Sighting) -> Self {
         let marker = match sighting {
             Sighting::Pointing(door) => Some(Glimpse { off: 0.0, along_entry: door == Door::BACK }),
@@ -108,7 +107,6 @@ impl JunctionEstimate {
     }
 
     /// The visit of a robot that has put down the marker where it stands, along its entry door.
-    #[must_use]
     pub fn at_marker() -> Self {
         let marker = Some(Glimpse { off: 0.0, along_entry: true });
         Self { marker, looked: true, ..Self::default() }

@@ -139,7 +139,6 @@ impl EmbeddedGraph {
     }
 
     /// A chain of this number of edges, at least one. Dart 0 is at one of its ends.
-    #[must_use]
     pub fn chain(edges: usize) -> Self {
         let edges = edges.max(1);
         let degrees: Vec<u32> = (0..=edges).map(|at| 1 + u32::from(at % edges > 0)).collect();
@@ -147,7 +146,6 @@ impl EmbeddedGraph {
     }
 
     /// A cycle of this number of edges, at least one.
-    #[must_use]
     pub fn cycle(edges: usize) -> Self {
         let edges = edges.max(1);
         let darts = 2 * edges as u32;

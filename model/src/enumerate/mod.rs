@@ -99,6 +99,16 @@ impl Enumeration {
         let mut whole = Draft::empty(self.each, self.class, self.edges);
         whole.grow_to(self.edges, &mut |draft| draft.show(visit))
     }
+
+    /// All graphs, in order, in memory.
+    pub fn graphs(&self) -> Vec<EmbeddedGraph> {
+        let mut graphs = Vec::new();
+        let _: ControlFlow<()> = self.for_each(&mut |found| {
+            graphs.push(found.graph.clone());
+            ControlFlow::Continue(())
+        });
+        graphs
+    }
 }
 
 fn check_size(edges: usize) -> Result<(), SizeError> {

@@ -207,7 +207,7 @@ mod tests {
                 let doors = certificate(&graph, Dart(0));
                 assert_eq!(doors.len(), certificate_length(&graph, Dart(0)));
                 let world = GraphWorld::new(&graph, Dart(0));
-                let (percepts, doors, _) = walk(world, doors.iter().map(|door| door.0));
+                let (percepts, doors) = walk(world, doors.iter().map(|door| door.0));
                 assert!(fold(&percepts, &doors).unwrap().is_complete(), "{graph:?}");
             }
         }

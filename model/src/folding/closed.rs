@@ -6,7 +6,6 @@ use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 /// A folded trail as a world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClosedTrail {
-    /// The world.
     pub graph: EmbeddedGraph,
     /// The dart along which the marker points, or a dart of the vertex at which an undirected one lies, if it was
     /// seen.

@@ -22,10 +22,8 @@ pub const MAX_DARTS: usize = 1 << 25;
 /// Why a trail cannot be continued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TrailError {
-    /// No world of any size explains the walk.
     #[error(transparent)]
     Contradiction(#[from] ContradictionReason),
-    /// The trail would have more than [`MAX_DARTS`] darts.
     #[error("the junctions on the walk have more than {} doors together", grouped(MAX_DARTS as u128))]
     TooManyDarts,
 }

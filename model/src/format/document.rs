@@ -30,7 +30,6 @@ pub struct TextPosition {
 
 impl TextPosition {
     /// The place of a byte. A run of bytes that are not UTF-8 counts as one character.
-    #[must_use]
     pub fn at_byte(text: &[u8], byte: usize) -> Self {
         let before = String::from_utf8_lossy(&text[..byte.min(text.len())]);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

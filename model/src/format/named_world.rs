@@ -52,7 +52,6 @@ pub enum StartError {
 impl NamedWorld {
     /// A world with generated names: vertices `v0`, `v1`, ... in their order, and edges `e0`, `e1`, ...
     /// in the order of their lower darts. Edges have names exactly if the graph is not simple.
-    #[must_use]
     pub fn numbered(name: &str, about: &str, graph: EmbeddedGraph, start: Option<Dart>) -> Self {
         let edge_names = || graph.edge_numbers().iter().map(|edge| format!("e{edge}")).collect();
         let edge_names = (!graph.is_simple()).then(edge_names);
@@ -72,7 +71,6 @@ impl NamedWorld {
     /// The world of a start, [`numbered`](Self::numbered) in the order of discovery by a robot that
     /// follows the darts of each vertex clockwise from the one by which it first came. The facing dart
     /// becomes dart 0.
-    #[must_use]
     pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, facing: Dart) -> Self {
         Self::numbered(name, about, as_discovered(graph, facing), Some(Dart(0)))
     }

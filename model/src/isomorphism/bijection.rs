@@ -9,14 +9,12 @@ pub struct Bijection(Vec<Dart>);
 impl Bijection {
     /// The given images, in the order of the darts' numbers. Whether they are an isomorphism is for
     /// [`verify`](Self::verify) to check.
-    #[must_use]
     pub fn claimed(images: Vec<Dart>) -> Self {
         Self(images)
     }
 
     /// The only candidate for an isomorphism of two starts: it maps facing to facing and keeps
     /// `clockwise` and `opposite`. [`verify`](Self::verify) checks whether it is one. Linear time.
-    #[must_use]
     pub fn of_starts(from: (&EmbeddedGraph, Dart), to: (&EmbeddedGraph, Dart)) -> Self {
         let mut candidate = Candidate::default();
         candidate.of_starts(from, to);

@@ -30,8 +30,7 @@ pub struct Canonical {
 pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut best = Numbering::new(graph);
     let mut rival = Numbering::new(graph);
-    let mut code = vec![best.begin(graph, Dart(0))];
-    code.extend(std::iter::from_fn(|| best.next_word(graph)));
+    let mut code: Vec<u32> = best.words(graph, Dart(0)).collect();
     let mut orbits = UnionFind::<u32>::new(graph.dart_count());
     let mut tried = vec![false; graph.dart_count()];
     tried[0] = true;

@@ -64,10 +64,7 @@ fn new_vertex(degree: u32) -> u32 {
 /// The code of a start. Linear time.
 // paper: world.unlabelled
 pub fn code(graph: &EmbeddedGraph, facing: Dart) -> StartCode {
-    let mut numbering = Numbering::new(graph);
-    let mut words = vec![numbering.begin(graph, facing)];
-    words.extend(std::iter::from_fn(|| numbering.next_word(graph)));
-    StartCode(words)
+    StartCode(Numbering::new(graph).words(graph, facing).collect())
 }
 
 /// The same embedded graph with its darts numbered as a robot meets them from a start, the facing
@@ -79,8 +76,7 @@ pub fn as_discovered(graph: &EmbeddedGraph, facing: Dart) -> EmbeddedGraph {
 /// The darts in the order in which a robot meets them from a start, the facing dart first.
 pub fn discovery_order(graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
     let mut numbering = Numbering::new(graph);
-    numbering.begin(graph, facing);
-    while numbering.next_word(graph).is_some() {}
+    numbering.words(graph, facing).for_each(drop);
     numbering.order
 }
 
@@ -105,6 +101,16 @@ impl Numbering {
             current: 0,
             done: 0,
         }
+    }
+
+    /// The words of the code of a start, each made when it is taken.
+    pub(super) fn words(
+        &mut self,
+        graph: &EmbeddedGraph,
+        facing: Dart,
+    ) -> impl Iterator<Item = u32> {
+        let first = self.begin(graph, facing);
+        std::iter::once(first).chain(std::iter::from_fn(|| self.next_word(graph)))
     }
 
     /// Starts again, and returns the first word.

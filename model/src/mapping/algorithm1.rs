@@ -29,7 +29,7 @@ pub enum MappingChoice {
 }
 
 /// The state of a run of Algorithm 1: the robot's walk, and the hypotheses about its place.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Algorithm1Run {
     walk: MapWalk,
     current: CurrentVertex,
@@ -52,6 +52,12 @@ struct CurrentVertex {
     /// The door, counted from the reference dart, by which it really came in. It differs from
     /// [`Door::BACK`] after a rejected hypothesis.
     entry: Door,
+}
+
+impl Default for CurrentVertex {
+    fn default() -> Self {
+        Self { percept: NO_PERCEPT, entry: Door::BACK }
+    }
 }
 
 /// Algorithm 1. The default choices are the nearest edge and the nearest hypothesis.
@@ -79,7 +85,7 @@ impl Explorer for Algorithm1Run {
     // paper: alg1.1, alg1.2, alg1.3
     fn begin<W: ObservedWorld>(&mut self, world: &mut W) -> Mapped<W> {
         self.walk.clear();
-        self.set_percept(NO_PERCEPT);
+        self.current = CurrentVertex::default();
         self.hypotheses.clear();
         self.trail.clear();
         self.to_marker.clear();
@@ -157,18 +163,6 @@ impl Explorer for Algorithm1Run {
 }
 
 impl Algorithm1Run {
-    /// A state ready for a run that may come to know at most `bound` darts.
-    #[must_use]
-    pub fn new(bound: usize) -> Self {
-        Self {
-            walk: MapWalk::new(bound),
-            current: CurrentVertex { percept: NO_PERCEPT, entry: Door::BACK },
-            hypotheses: Vec::new(),
-            trail: Vec::new(),
-            to_marker: BreadthFirstTree::default(),
-        }
-    }
-
     /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would
     /// have come in, from the farthest from the marker to the nearest.
     pub fn hypotheses(&self) -> &[Dart] {

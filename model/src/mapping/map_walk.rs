@@ -123,6 +123,12 @@ clone_in_place!(MapWalk { bound, moves, map, robot, edge, arrival; scratch from_
 
 pub(super) const NO_PERCEPT: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
+impl Default for MapWalk {
+    fn default() -> Self {
+        Self::new(DEFAULT_DART_BOUND)
+    }
+}
+
 impl MapWalk {
     pub(super) fn new(bound: usize) -> Self {
         Self {
@@ -360,12 +366,6 @@ impl MapWalk {
 /// What the states of all runs have: the walk, as parts of it and by itself.
 macro_rules! has_walk {
     ($run:ident) => {
-        impl Default for $run {
-            fn default() -> Self {
-                Self::new($crate::mapping::DEFAULT_DART_BOUND)
-            }
-        }
-
         impl From<$run> for $crate::mapping::MapWalk {
             fn from(run: $run) -> Self {
                 run.walk
@@ -373,6 +373,11 @@ macro_rules! has_walk {
         }
 
         impl $run {
+            /// A state ready for a run that may come to know at most `bound` darts.
+            pub fn new(bound: usize) -> Self {
+                Self { walk: $crate::mapping::MapWalk::new(bound), ..Self::default() }
+            }
+
             /// The robot's walk: its map, its pose in the map and its moves.
             #[inline]
             pub fn walk(&self) -> &$crate::mapping::MapWalk {

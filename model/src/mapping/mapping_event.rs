@@ -64,21 +64,32 @@ impl MappingEvent {
 pub enum MovableEvent {
     /// The robot is at the unknown end of an edge and carries the marker. This number of known vertices may be the
     /// place.
-    Arrived { edge: Dart, percept: Percept, candidates: usize },
-    /// The robot dropped the marker.
+    Arrived {
+        edge: Dart,
+        percept: Percept,
+        candidates: usize,
+    },
     Dropped,
-    /// The robot picked the marker up.
     PickedUp,
     /// Place validation: the marker is not at this candidate, where the robot is.
-    NotAt { vertex: Vertex },
+    NotAt {
+        vertex: Vertex,
+    },
     /// Place validation: the marker lies at a known vertex, where the robot is.
-    Found { vertex: Vertex },
+    Found {
+        vertex: Vertex,
+    },
     /// Place validation: the marker is at no known vertex.
     NotFound,
     /// Back-link validation: the marker is not behind this unexplored dart, and the robot is back.
-    NotBehind { dart: Dart, percept: Percept },
+    NotBehind {
+        dart: Dart,
+        percept: Percept,
+    },
     /// Back-link validation: the marker is behind this unexplored dart, and the robot is there.
-    Behind { dart: Dart },
+    Behind {
+        dart: Dart,
+    },
 }
 
 /// An event that only runs of the folding explorer have. A hypothesis is that the place behind `edge` is entered by a
@@ -124,7 +135,6 @@ pub struct MapDart {
 }
 
 impl MapDart {
-    #[must_use]
     pub fn new(map: &PartialMap, dart: Dart) -> Self {
         Self { vertex: map.vertex(dart).0, index: map.index(dart) }
     }

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The state of a run with a movable marker: the robot's walk, and the candidates.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct MovableMarkerRun {
     walk: MapWalk,
     /// The known vertices that the unknown end may be and that were not searched yet. The next one is
@@ -146,17 +146,6 @@ fn carrier<W: World>(
 }
 
 impl MovableMarkerRun {
-    /// A state for a run with at most `bound` known darts.
-    #[must_use]
-    pub fn new(bound: usize) -> Self {
-        Self {
-            walk: MapWalk::new(bound),
-            candidates: Vec::new(),
-            is_candidate: Vec::new(),
-            back_links: Vec::new(),
-        }
-    }
-
     /// Place validation: which known vertex is the unknown end of the edge? There the robot and the marker then are.
     /// If it is a new place, the robot is there and carries the marker.
     // paper: movable.place, movable.new, movable.known

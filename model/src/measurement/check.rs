@@ -27,7 +27,6 @@ const ESTIMATED_FROM: usize = 8;
 impl MeasurementCheck {
     /// Compares the measurements of a walk. If most deviations are greater than the noise explains, the noise is
     /// larger: it is multiplied so that it explains their median.
-    #[must_use]
     pub fn new(visits: &[MeasuredVisit], noise: &MeasurementNoise) -> Self {
         let noise = &widened(visits, noise);
         let mut edges: BTreeMap<Dart, EdgeMeasurements> = BTreeMap::new();

@@ -23,14 +23,16 @@ pub struct MeasuredVisit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContradictoryMeasurement {
     /// The hallway has another length than before, in metres.
-    Length { before: f64, now: f64 },
+    Length {
+        before: f64,
+        now: f64,
+    },
     /// The hallway turns otherwise than before, in radians counter-clockwise.
     Turn {
         /// By the measurement before it, seen in the direction of this one.
         before: f64,
         now: f64,
     },
-    /// The junction has another shape than before.
     Shape,
     /// The turns of a closed walk are this number of quarter turns too many, from 1 to 3.
     ClosedTurns {

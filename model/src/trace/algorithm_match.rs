@@ -19,7 +19,6 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct AlgorithmMatch {
     pub algorithm: MappingAlgorithm,
-    /// The choices that it takes.
     pub choices: MatchedChoices,
     pub reached: MatchEnd,
     /// Its map, the robot's pose in the map and its moves at that point.
@@ -49,7 +48,7 @@ pub fn match_algorithm(
     claim: TraceClaim,
     bound: usize,
 ) -> AlgorithmMatch {
-    matched(algorithm, trace, claim, bound, None)
+    match_amended(algorithm, trace, claim, bound, None)
 }
 
 /// A percept in place of one that contradicts the map; `None` if it is not replaced.
@@ -58,16 +57,6 @@ pub type Amendment<'a> = &'a mut dyn FnMut(&Departure) -> Option<Percept>;
 /// Matches a trace with an algorithm. At a contradiction, `amend` may replace the percept; the match then
 /// goes on.
 pub fn match_amended(
-    algorithm: MappingAlgorithm,
-    trace: &Trace,
-    claim: TraceClaim,
-    bound: usize,
-    amend: Amendment,
-) -> AlgorithmMatch {
-    matched(algorithm, trace, claim, bound, Some(amend))
-}
-
-fn matched(
     algorithm: MappingAlgorithm,
     trace: &Trace,
     claim: TraceClaim,

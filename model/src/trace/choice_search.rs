@@ -25,7 +25,6 @@ pub enum TraceClaim {
 struct Way {
     exploration: Algorithm1Run,
     moves: usize,
-    /// The choices made so far.
     script: Vec<MappingChoice>,
 }
 

@@ -29,7 +29,6 @@ pub enum AlgorithmCase {
 }
 
 impl AlgorithmCase {
-    /// Every case.
     pub const ALL: [Self; 7] = [
         Self::NewVertex,
         Self::Confirmed,
@@ -66,12 +65,10 @@ pub struct AlgorithmCoverage {
 }
 
 impl AlgorithmCoverage {
-    /// How often a case happened.
     pub fn count(&self, case: AlgorithmCase) -> u64 {
         self.counts.get(&case).copied().unwrap_or(0)
     }
 
-    /// Adds the counts of another run.
     pub fn include(&mut self, other: &Self) {
         for (&case, count) in &other.counts {
             *self.counts.entry(case).or_default() += count;

@@ -17,7 +17,6 @@ pub struct Poses {
     pub alone: Vec<Option<State>>,
     /// The states after the last event that fits.
     pub states: Vec<State>,
-    /// The first event that fits no state.
     pub misfit: Option<Misfit>,
 }
 
@@ -34,9 +33,7 @@ pub struct Misfit {
 /// Why an event does not fit a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MisfitReason {
-    /// Another percept is expected.
     Percept { expected: Percept },
-    /// There is no such door.
     NoSuchDoor { degree: u32 },
 }
 

@@ -34,7 +34,6 @@ pub struct Departure {
 /// What an algorithm does instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AllowedStep {
-    /// The door that it takes, if any.
     pub door: Option<Door>,
     pub purpose: StepPurpose,
 }
@@ -52,12 +51,17 @@ impl fmt::Display for AllowedStep {
 /// Why a run along a trace ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunStop {
-    /// The trace has no further event.
     EndOfTrace,
     /// The run has something else than this event.
-    Departure { event: WalkEvent, allowed: AllowedStep },
+    Departure {
+        event: WalkEvent,
+        allowed: AllowedStep,
+    },
     /// What the run would do after this event is not known.
-    Bound { event: WalkEvent, bound: usize },
+    Bound {
+        event: WalkEvent,
+        bound: usize,
+    },
 }
 
 impl RunStop {

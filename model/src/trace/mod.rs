@@ -42,29 +42,23 @@ pub struct Trace {
 pub struct TraceEvent {
     /// The number of the recorded event that it came from, counted from 0.
     pub id: usize,
-    /// What happened.
     pub kind: TraceEventKind,
 }
 
 /// What a robot perceived or did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceEventKind {
-    /// It perceived this at a vertex.
     Percept(Percept),
-    /// It left by this door.
     Door(Door),
 }
 
 /// Events that do not alternate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TraceOrderError {
-    /// There is no event.
     #[error("there is no event")]
     Empty,
-    /// A percept follows a percept.
     #[error("a percept follows a percept: no door was taken in between")]
     NoDoor { event: usize },
-    /// A door follows a door, or is the first event.
     #[error("a door follows a door: nothing was perceived in between")]
     NoPercept { event: usize },
 }
@@ -150,7 +144,6 @@ impl Trace {
         self.ids.len()
     }
 
-    /// The events in order.
     pub fn events(&self) -> impl Iterator<Item = TraceEvent> + '_ {
         (0..self.len()).map(|index| self.event(index))
     }
@@ -160,7 +153,6 @@ impl Trace {
         &self.percepts
     }
 
-    /// The doors that were taken.
     pub fn doors(&self) -> &[Door] {
         &self.doors
     }
@@ -252,7 +244,7 @@ pub(crate) mod tests {
         world: GraphWorld<'_, M>,
         turns: impl IntoIterator<Item = u32>,
     ) -> Trace {
-        let (percepts, doors, _) = walk(world, turns);
+        let (percepts, doors) = walk(world, turns);
         let ids = (0..percepts.len() + doors.len()).collect();
         Trace { percepts, doors, ids, relocations: Vec::new() }
     }
@@ -262,12 +254,10 @@ pub(crate) mod tests {
         recorded(GraphWorld::new(graph, facing), doors.iter().map(|door| door.0))
     }
 
-    /// A run of Algorithm 1.
     pub(crate) fn explored(graph: &EmbeddedGraph, facing: Dart) -> Trace {
         explored_by(MappingAlgorithm::Algorithm1, graph, facing)
     }
 
-    /// A run of an algorithm.
     pub(crate) fn explored_by(
         algorithm: MappingAlgorithm,
         graph: &EmbeddedGraph,
@@ -278,7 +268,6 @@ pub(crate) mod tests {
         })
     }
 
-    /// What is perceived in a run.
     pub(crate) fn doors_of(
         graph: &EmbeddedGraph,
         facing: Dart,
@@ -292,7 +281,6 @@ pub(crate) mod tests {
 
     pub(crate) type Recorded<'a, 'g> = Observed<'a, GraphWorld<'g>, Doors>;
 
-    /// The doors of a run.
     #[derive(Default)]
     pub(crate) struct Doors(Vec<Door>);
 

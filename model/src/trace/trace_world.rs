@@ -21,24 +21,16 @@ pub struct TraceWorld<'t> {
 /// Why a recorded world cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TraceWorldError {
-    /// Another door was taken.
     #[error("door {} was taken then, not door {}", recorded.0, asked.0)]
-    Door {
-        recorded: Door,
-        /// The door that the algorithm takes.
-        asked: Door,
-    },
-    /// The trace has no further event.
+    Door { recorded: Door, asked: Door },
     #[error("the trace ends here")]
     End,
-    /// The robot got lost on the way to the next vertex.
     #[error("the robot got lost")]
     Lost,
 }
 
 impl<'t> TraceWorld<'t> {
     /// The world of a trace, with the robot where it is after some moves.
-    #[must_use]
     pub fn after(trace: &'t Trace, moves: usize) -> Self {
         Self { trace, moves, is_lost: false }
     }

@@ -85,7 +85,6 @@ pub struct GraphWorld<'g, M = MarkerKind> {
 impl<'g> GraphWorld<'g> {
     /// The world of a start: the directional marker lies at the start vertex and points along the
     /// facing dart, which is one of the graph's, and the robot's entry dart.
-    #[must_use]
     pub fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
         Self::with_marker(graph, Directional, facing)
     }
@@ -94,7 +93,6 @@ impl<'g> GraphWorld<'g> {
 impl<'g, M: Marker> GraphWorld<'g, M> {
     /// The world of a start with any marker, placed by the facing dart, which is one of the graph's,
     /// and the robot's entry dart.
-    #[must_use]
     pub fn with_marker(graph: &'g EmbeddedGraph, marker: M, facing: Dart) -> Self {
         let placed = Some(marker.first_alike(graph, facing));
         Self { graph, marker, state: State { pose: facing, placed }, moves: 0, bound: u64::MAX }

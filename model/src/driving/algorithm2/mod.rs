@@ -103,7 +103,6 @@ enum Seen {
 
 impl<'a> PathExecution<'a> {
     // paper: drive.path
-    #[must_use]
     pub fn new(queue: &'a [Door], from: &Standing) -> Self {
         let visit = JunctionEstimate::decided(from.form, from.percept.sighting);
         Self::at_junction(queue, visit, from.entry)
@@ -111,14 +110,12 @@ impl<'a> PathExecution<'a> {
 
     /// The empty path at the start of a run. It identifies the junction at whose turning point the
     /// robot stands, with its back to the facing door and the marker along it.
-    #[must_use]
     pub fn at_start(odometry: &Odometry) -> Self {
         Self::at_junction(&[], JunctionEstimate::at_marker(), odometry.whither(PI))
     }
 
     /// The empty path of a robot that does not know where it is. It goes on in a direction, given in the frame
     /// of odometry, and identifies the next junction.
-    #[must_use]
     pub fn onwards_to_junction(direction: f64) -> Self {
         let reckoning = DeadReckoning::on_the_way(direction, ON_THE_WAY);
         let visit = JunctionEstimate::default();
@@ -127,7 +124,6 @@ impl<'a> PathExecution<'a> {
 
     /// The same of a robot that turns its back to a junction to which it could not come: it lies this far behind, in
     /// metres, and is not the next one.
-    #[must_use]
     pub fn onwards_from_junction(direction: f64, behind: f64) -> Self {
         Self {
             state: PathState::Leaving,

@@ -75,7 +75,7 @@ struct Pending {
 /// The state of a run of the folding explorer. Memory is reused from run to run.
 ///
 /// It is a plain value. To try every choice, clone it together with the world between two steps.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct FoldingRun {
     /// Whether it only makes strict tests.
     strict: bool,
@@ -116,29 +116,8 @@ clone_in_place!(FoldingRun {
 has_walk!(FoldingRun);
 
 impl FoldingRun {
-    /// A state ready for a run whose map may have at most `bound` darts.
-    #[must_use]
-    pub fn new(bound: usize) -> Self {
-        Self {
-            strict: false,
-            walk: MapWalk::new(bound),
-            trail: FoldedTrail::default(),
-            in_trail: Vec::new(),
-            unexplored: Vec::new(),
-            open: Vec::new(),
-            pending: Vec::new(),
-            hypotheses: Hypotheses::default(),
-            to_marker: BreadthFirstTree::default(),
-            to_marker_is_current: false,
-            from_robot: Ways::default(),
-            tests: Vec::new(),
-            way: Vec::new(),
-        }
-    }
-
     /// An exploration that only makes strict tests: from the place itself, along the whole way to the
     /// marker, as Algorithm 1 does. It needs more moves.
-    #[must_use]
     pub fn strict() -> Self {
         Self { strict: true, ..Self::default() }
     }

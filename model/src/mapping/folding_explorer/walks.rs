@@ -33,7 +33,6 @@ pub(super) fn sees_marker(percept: &Percept) -> bool {
 impl EarlierWalk {
     /// A walk that begins with a percept; after each door there is another percept. `is_blocked`: whether the robot
     /// turned round at an obstacle.
-    #[must_use]
     pub fn new(
         first: Percept,
         moves: impl IntoIterator<Item = (Door, Percept)>,

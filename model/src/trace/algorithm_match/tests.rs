@@ -217,7 +217,7 @@ fn all_contradictions_are_amended_in_one_match() {
             amended.push(departure.event.id / 2);
             expected(departure)
         };
-        let followed = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut amend);
+        let followed = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut amend));
         assert_eq!((&followed.reached, &amended), (&MatchEnd::Mapped, &wrong));
         let map = followed.run.map().complete().unwrap();
         assert_eq!(code(map, FACING), code(graph, Dart(0)));
@@ -228,7 +228,7 @@ fn all_contradictions_are_amended_in_one_match() {
             let mut once = |departure: &Departure| {
                 expected(departure).filter(|_| departure.event.id == 2 * first)
             };
-            let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut once);
+            let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut once));
             let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
             assert_eq!(departure.event.id, 2 * second);
         }
@@ -239,7 +239,8 @@ fn all_contradictions_are_amended_in_one_match() {
                 asked += 1;
                 Some(Percept { degree: 9, sighting: Sighting::Nothing })
             };
-            let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut wrongly);
+            let stopped =
+                match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut wrongly));
             let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
             assert_eq!((departure.event.id, asked), (2 * first, 1));
         }
