@@ -1,4 +1,4 @@
-//! Benchmark of sensing with a laser scanner: `cargo bench -p toposlam-robot --bench laser`. All run on one
+//! Benchmark of sensing with a laser scanner: `cargo bench -p toposlam-simulator --bench laser`. All run on one
 //! thread, on the scans of a random walk.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]

@@ -2,7 +2,7 @@
 //! common stages, from an image of 1280 x 960 pixels to pieces of wall in a ground view of 800 x
 //! 800.
 //!
-//! `cargo bench -p toposlam-robot --bench opencv` needs Python with
+//! `cargo bench -p toposlam-simulator --bench opencv` needs Python with
 //! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Without them it prints a
 //! message and measures nothing.
 
@@ -20,7 +20,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{counts::grouped, driving::pose::Pose};
 use toposlam_simulator::{
-    Building, BuildingLook, Effects, Rig, label_mask, labels, learned, render,
+    Building, BuildingLook, Effects, Rig, label_mask, labels, learned, plan_named, render,
     view_sampler::ViewSampler,
 };
 use toposlam_vision::{
@@ -46,7 +46,7 @@ fn main() {
     let views = ViewSampler::from_looks([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
-    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
+    let building = Building::new(&plan_named("shape-8").unwrap(), look, None, &effects, 7);
     let pose = Pose { position: [-0.1, 3.6], heading: 1.7 };
     let image = render(&rig, &building, pose, &effects, 7);
     image.save(folder.join("image.png")).unwrap();

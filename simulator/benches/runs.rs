@@ -1,4 +1,4 @@
-//! Benchmark of whole runs: `cargo bench -p toposlam-robot --bench runs`.
+//! Benchmark of whole runs: `cargo bench -p toposlam-simulator --bench runs`.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -7,102 +7,71 @@ use std::sync::Arc;
 use divan::Bencher;
 use toposlam_logs::record::NoSensor;
 use toposlam_model::{
-    embedded_graph::Dart,
     floor_plan::FloorPlan,
     mapping::MappingAlgorithm::{self, Algorithm1, Folding},
 };
 use toposlam_robot::{recording::Recording, run_settings::RunSettings};
 use toposlam_simulator::{
-    BuildingLook, Effects, LOOKS, LearnedSensors, SimulationConfig, plans,
+    BuildingLook, Effects, LOOKS, LearnedSensors, SimulationConfig, plan_named,
     random_plan::random_plan_with,
-    run::{Run, RunOutcome, offline, run},
+    run::{RunOutcome, offline, run},
     starts_of,
 };
 use toposlam_vision::camera::Camera;
-
-const LARGE: [u32; 2] = [1280, 960];
-const DARTS: usize = 1000;
 
 fn main() {
     divan::main();
 }
 
-/// A random plan with this number of junctions, and a start in it.
-fn random(junctions: usize) -> (Arc<FloorPlan>, Dart) {
-    let plan = Arc::new(random_plan_with(1, junctions).unwrap());
+fn config(plan: Arc<FloorPlan>) -> SimulationConfig {
     let facing = starts_of(&plan)[0];
-    (plan, facing)
+    SimulationConfig::at_start(plan, facing, 1)
 }
 
-fn shape_6() -> (Arc<FloorPlan>, Dart) {
-    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
-    let facing = starts_of(&plan)[0];
-    (plan, facing)
-}
-
-#[track_caller]
-fn right(run: &Run) {
-    assert_eq!(run.outcome(), RunOutcome::Right);
+fn settings(algorithm: MappingAlgorithm) -> RunSettings {
+    RunSettings::new(algorithm, 1000)
 }
 
 /// A whole run without images.
 #[divan::bench(consts = [25, 100], args = [Algorithm1, Folding], sample_count = 10)]
 fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: MappingAlgorithm) {
-    let (plan, facing) = random(JUNCTIONS);
+    let config = config(Arc::new(random_plan_with(1, JUNCTIONS).unwrap()));
+    let (plan, settings) = (&config.plan, settings(algorithm));
     bencher.bench(|| {
-        let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-        right(&run(&plan, facing, robot, NoSensor, (), &RunSettings::new(algorithm, DARTS)));
+        let run = run(plan, config.marker, config.by_scene(), NoSensor, (), &settings);
+        assert_eq!(run.outcome(), RunOutcome::Right);
     });
 }
 
-/// Shape 6 with rendered images of 1280 x 960.
-#[divan::bench(sample_count = 2)]
-fn shape_6_with_images(bencher: Bencher) {
-    let (plan, facing) = shape_6();
-    let (sensors, look) = sensors();
-    bencher.bench(|| {
-        let robot = SimulationConfig::at_start(plan.clone(), facing, 1).with_images(
-            sensors.rig(),
-            look,
-            &Effects::plain(),
-        );
-        right(&run(
-            &plan,
-            facing,
-            robot,
-            sensors.sensor(look),
-            (),
-            &RunSettings::new(Algorithm1, DARTS),
-        ));
-    });
-}
-
-/// The same images off-line: decoding, sensing and both algorithms.
-#[divan::bench(sample_count = 10)]
-fn shape_6_off_line(bencher: Bencher) {
-    let (plan, facing) = shape_6();
-    let (sensors, look) = sensors();
-    let effects = Effects { jpeg_loss: 10.0, ..Effects::plain() };
-    let robot = SimulationConfig::at_start(plan.clone(), facing, 1).with_images(
-        sensors.rig(),
-        look,
-        &effects,
-    );
-    let mut recording = Recording::default();
-    right(&run(
-        &plan,
-        facing,
-        robot,
-        sensors.sensor(look),
-        &mut recording,
-        &RunSettings::new(Algorithm1, DARTS),
-    ));
-    bencher.with_inputs(|| sensors.sensor(look)).bench_local_values(|sensor| {
-        offline(&recording, sensor, (), &RunSettings::new(Algorithm1, DARTS)).unwrap()
-    });
+/// Maps shape 6 by rendered images of 1280 x 960.
+fn recorded(sensors: &LearnedSensors, look: &'static BuildingLook, effects: &Effects) -> Recording {
+    let config = config(plan_named("shape-6").unwrap());
+    let robot = config.with_images(sensors.rig(), look, effects);
+    let (sensor, mut recording) = (sensors.sensor(look), Recording::default());
+    let (plan, settings) = (&config.plan, settings(Algorithm1));
+    let run = run(plan, config.marker, robot, sensor, &mut recording, &settings);
+    assert_eq!(run.outcome(), RunOutcome::Right);
+    recording
 }
 
 fn sensors() -> (LearnedSensors, &'static BuildingLook) {
-    let look = &LOOKS[0];
-    (LearnedSensors::new(&Camera::superscout().sized(LARGE), &[look], &()).unwrap(), look)
+    let (camera, look) = (Camera::superscout().sized([1280, 960]), &LOOKS[0]);
+    (LearnedSensors::new(&camera, &[look], &()).unwrap(), look)
+}
+
+#[divan::bench(sample_count = 2)]
+fn shape_6_with_images(bencher: Bencher) {
+    let (sensors, look) = sensors();
+    bencher.bench(|| recorded(&sensors, look, &Effects::plain()));
+}
+
+/// The same images off-line: decoding, sensing and the algorithm.
+#[divan::bench(sample_count = 10)]
+fn shape_6_off_line(bencher: Bencher) {
+    let (sensors, look) = sensors();
+    let recording = recorded(&sensors, look, &Effects { jpeg_loss: 10.0, ..Effects::plain() });
+    let settings = settings(Algorithm1);
+    bencher
+        .with_inputs(|| sensors.sensor(look))
+        .bench_local_values(|sensor| offline(&recording, sensor, (), &settings).unwrap());
 }

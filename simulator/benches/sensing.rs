@@ -1,4 +1,4 @@
-//! Benchmark of sensing and of each stage: `cargo bench -p toposlam-robot --bench sensing`. All run
+//! Benchmark of sensing and of each stage: `cargo bench -p toposlam-simulator --bench sensing`. All run
 //! on one thread, without decoding.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
@@ -9,20 +9,20 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::pose::Pose;
 use toposlam_simulator::{
-    Building, BuildingLook, Effects, Rig, learned, render, view_sampler::ViewSampler,
+    Building, BuildingLook, Effects, Rig, learned, plan_named, render, view_sampler::ViewSampler,
 };
 use toposlam_vision::{
     boundary::{Bearings, Boundary},
     camera::Camera,
     cluster::clusters,
-    colour::{ColourModel, FloorRing},
+    colour::{ColourModel, ColourTable, FloorRing, Gain},
     corner::corners,
     ground_view::{GroundView, Unwrapping},
     hallway::hallway,
     junction::junction,
     line::lines,
     marker::marker,
-    params::{BoundaryParams, MarkerParams, SensingParams},
+    params::SensingParams,
     sensing::Sensor,
     wall::{WallFrame, WallSegment},
 };
@@ -31,128 +31,119 @@ fn main() {
     divan::main();
 }
 
-/// Names and poses of places in the floor plan shape-8.
-const PLACES: [(&str, Pose); 3] = [
-    ("hallway", Pose { position: [0.1, 2.1], heading: 1.5 }),
-    ("corner", Pose { position: [0.1, 7.6], heading: 1.4 }),
-    ("tee", Pose { position: [-0.1, 3.6], heading: 1.7 }),
+/// In the floor plan shape-8: in a hallway, at a corner, at a T.
+const POSES: [Pose; 3] = [
+    Pose { position: [0.1, 2.1], heading: 1.5 },
+    Pose { position: [0.1, 7.6], heading: 1.4 },
+    Pose { position: [-0.1, 3.6], heading: 1.7 },
 ];
 
-/// What is built once, and images with all effects, by image width.
+/// An image with all effects, and what the stages make of it.
 struct Case {
     camera: Camera,
     colours: ColourModel,
-    images: [RgbImage; 3],
+    image: RgbImage,
+    ring: FloorRing,
+    table: ColourTable,
+    gain: Gain,
+    view: GroundView,
+    bearings: Bearings,
+    boundary: Boundary,
+    params: SensingParams,
 }
 
-fn case(width: u32) -> Case {
-    let camera = Camera::superscout().sized([width, width * 3 / 4]);
-    let rig = Rig::new(&camera);
-    let look = BuildingLook::named("laboratory").unwrap();
-    let views = ViewSampler::from_looks([look], camera.image, 7).unwrap();
-    let colours = learned(&views, look, &camera, &rig, &()).unwrap();
-    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
-    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
-    let images = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));
-    Case { camera, colours, images }
+impl Case {
+    fn new(width: u32, place: usize) -> Self {
+        let camera = Camera::superscout().sized([width, width * 3 / 4]);
+        let rig = Rig::new(&camera);
+        let look = BuildingLook::named("laboratory").unwrap();
+        let views = ViewSampler::from_looks([look], camera.image, 7).unwrap();
+        let colours = learned(&views, look, &camera, &rig, &()).unwrap();
+        let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
+        let building = Building::new(&plan_named("shape-8").unwrap(), look, None, &effects, 7);
+        let image = render(&rig, &building, POSES[place], &effects, 7);
+        let params = SensingParams::default();
+        let (ring, table) = (FloorRing::new(&camera), colours.table());
+        let gain = colours.gain(&ring.colours(&image)).unwrap();
+        let mut view = GroundView::unseen();
+        Unwrapping::new(&camera).view(&image, &table.lit(gain), &mut view);
+        let bearings = Bearings::new(colours.stripe, camera.eye_height(), &params.boundary);
+        let boundary = bearings.look(&view);
+        Self { camera, colours, image, ring, table, gain, view, bearings, boundary, params }
+    }
+
+    fn walls(&self) -> Option<(WallFrame, Vec<WallSegment>)> {
+        let params = &self.params;
+        let lines = lines(&clusters(&self.boundary, &params.cluster), &params.line);
+        let frame = WallFrame::of(&lines, &params.wall)?;
+        let walls = frame.walls(&lines, &params.wall);
+        Some((frame, walls))
+    }
 }
 
 /// The whole of sensing, from the decoded image to the scene.
 #[divan::bench(args = [640, 1280], consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
 fn whole<const PLACE: usize>(bencher: Bencher, width: u32) {
-    let case = case(width);
+    let case = Case::new(width, PLACE);
     let mut sensor = Sensor::new(&case.camera, &case.colours);
-    bencher.bench_local(|| sensor.sense(&case.images[PLACE]).unwrap());
+    bencher.bench_local(|| sensor.sense(&case.image).unwrap());
 }
 
 /// The light of an image, and its table.
 #[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
 fn step_1_light(bencher: Bencher, width: u32) {
-    let case = case(width);
-    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
+    let case = Case::new(width, 0);
     bencher.bench_local(|| {
-        let gain = case.colours.gain(&ring.colours(&case.images[0])).unwrap();
-        table.lit(gain).class([100; 3])
+        let gain = case.colours.gain(&case.ring.colours(&case.image)).unwrap();
+        case.table.lit(gain).class([100; 3])
     });
 }
 
 /// The ground view with classified colours.
 #[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
 fn step_2_ground_view(bencher: Bencher, width: u32) {
-    let case = case(width);
-    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
-    let unwrapping = Unwrapping::new(&case.camera);
-    let gain = case.colours.gain(&ring.colours(&case.images[0])).unwrap();
-    let lit = table.lit(gain);
+    let case = Case::new(width, 0);
+    let (unwrapping, lit) = (Unwrapping::new(&case.camera), case.table.lit(case.gain));
     let mut view = GroundView::unseen();
-    bencher.bench_local(|| unwrapping.view(&case.images[0], &lit, &mut view));
-}
-
-/// A ground view for the following stages.
-fn view(case: &Case, place: usize) -> GroundView {
-    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
-    let gain = case.colours.gain(&ring.colours(&case.images[place])).unwrap();
-    let mut view = GroundView::unseen();
-    Unwrapping::new(&case.camera).view(&case.images[place], &table.lit(gain), &mut view);
-    view
-}
-
-fn bearings(case: &Case) -> Bearings {
-    Bearings::new(case.colours.stripe, case.camera.eye_height(), &BoundaryParams::default())
+    bencher.bench_local(|| unwrapping.view(&case.image, &lit, &mut view));
 }
 
 /// The boundary points.
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_3_boundary(bencher: Bencher) {
-    let case = case(1280);
-    let (view, bearings) = (view(&case, 2), bearings(&case));
-    bencher.bench_local(|| bearings.look(&view));
-}
-
-fn walls(boundary: &Boundary, params: &SensingParams) -> Option<(WallFrame, Vec<WallSegment>)> {
-    let lines = lines(&clusters(boundary, &params.cluster), &params.line);
-    let frame = WallFrame::of(&lines, &params.wall)?;
-    let walls = frame.walls(&lines, &params.wall);
-    Some((frame, walls))
+    let case = Case::new(1280, 2);
+    bencher.bench_local(|| case.bearings.look(&case.view));
 }
 
 /// Clusters, their lines and the walls.
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_4_walls(bencher: Bencher) {
-    let case = case(1280);
-    let boundary = bearings(&case).look(&view(&case, 2));
-    let params = SensingParams::default();
-    bencher.bench_local(|| walls(&boundary, &params));
+    let case = Case::new(1280, 2);
+    bencher.bench_local(|| case.walls());
 }
 
 /// Finds a hallway.
 #[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
 fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
-    let case = case(1280);
-    let boundary = bearings(&case).look(&view(&case, PLACE));
-    let params = SensingParams::default();
-    let (frame, walls) = walls(&boundary, &params).unwrap();
-    bencher.bench_local(|| hallway(&walls, &boundary, &frame, &params));
+    let case = Case::new(1280, PLACE);
+    let (frame, walls) = case.walls().unwrap();
+    bencher.bench_local(|| hallway(&walls, &case.boundary, &frame, &case.params));
 }
 
 /// Finds corners and the junction.
 #[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
 fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
-    let case = case(1280);
-    let boundary = bearings(&case).look(&view(&case, PLACE));
-    let params = SensingParams::default();
-    let (frame, walls) = walls(&boundary, &params).unwrap();
+    let case = Case::new(1280, PLACE);
+    let (frame, walls) = case.walls().unwrap();
     bencher.bench_local(|| {
-        junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
+        let corners = corners(&walls, &case.params.corner);
+        junction(&corners, &walls, &case.boundary, &frame, &case.params)
     });
 }
 
 /// The marker.
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_7_marker(bencher: Bencher) {
-    let case = case(1280);
-    let view = view(&case, 1);
-    let boundary = bearings(&case).look(&view);
-    let params = MarkerParams::default();
-    bencher.bench_local(|| marker(&view, &boundary, None, &params));
+    let case = Case::new(1280, 1);
+    bencher.bench_local(|| marker(&case.view, &case.boundary, None, &case.params.marker));
 }

@@ -27,7 +27,7 @@ use toposlam_vision::geometry::unit;
 
 use crate::{
     render::{Building, Effects, Rig, StreamPurpose, exposed, file, stream},
-    truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
+    truth::{HallwayTruth, JunctionTruth, Truth, true_marker},
 };
 
 /// The camera of a simulated robot.
@@ -219,7 +219,7 @@ impl SceneCamera {
     fn marker(&self, pose: Pose, truth: &Truth, chance: &mut Chance) -> Option<MarkerView> {
         let vertex = self.plan.graph().vertex(self.marker);
         let near = truth.junctions().iter().any(|near| near.vertex == vertex);
-        let marker = MarkerTruth::from_plan(&self.plan, self.marker, pose);
+        let marker = true_marker(&self.plan, self.marker, pose);
         let [x, y] = marker.position;
         (near && MARKER_SEEN.contains(&x.hypot(y)) && !chance.happens(MISSED)).then(|| MarkerView {
             position: [x + chance.off(PLACE), y + chance.off(PLACE)],
@@ -307,18 +307,19 @@ mod tests {
     use toposlam_vision::camera;
 
     use super::*;
-    use crate::{LOOKS, evaluation::judged_view::SceneClass, plans, start_pose, starts_of};
+    use crate::{LOOKS, evaluation::judged_view::SceneClass, plan_named, start_pose, starts_of};
 
-    fn shape_6() -> Arc<FloorPlan> {
-        plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap().1
+    /// Shape 6, its first start, and the pose there: at an L whose other door is to the left.
+    fn at_start() -> (Arc<FloorPlan>, Dart, Pose) {
+        let plan = plan_named("shape-6").unwrap();
+        let facing = starts_of(&plan)[0];
+        let pose = start_pose(&plan, facing);
+        (plan, facing, pose)
     }
 
     #[test]
     fn scenes_are_wrong_as_often_as_measured() {
-        let plan = shape_6();
-        let facing = starts_of(&plan)[0];
-        // The start is an L whose other door is to the left.
-        let pose = start_pose(&plan, facing);
+        let (plan, facing, pose) = at_start();
         let junction = JunctionTruth::from_plan(&plan, plan.graph().vertex(facing), pose);
         let right = SceneClass::Junction(junction.form.unwrap());
         let count = |noise: f64| {
@@ -363,9 +364,7 @@ mod tests {
 
     #[test]
     fn after_an_overexposed_image_the_next_is_exposed_less() {
-        let plan = shape_6();
-        let facing = starts_of(&plan)[0];
-        let pose = start_pose(&plan, facing);
+        let (plan, _, pose) = at_start();
         let rig = Arc::new(Rig::new(&camera::Camera::superscout().sized([320, 240])));
         let burnt = |exposure: f64, frames: u64| {
             let effects = Effects { exposure, ..Effects::plain() };

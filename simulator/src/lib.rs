@@ -14,7 +14,6 @@
 
 mod cameras;
 mod config;
-mod equipment;
 pub mod evaluation;
 mod faults;
 pub mod ground_truth_monitor;
@@ -43,13 +42,12 @@ pub use crate::render::{
     KNOBS, Knob, KnobError, LOOKS, RayPath, Rig, RigErrors, label_mask, labels, render,
 };
 pub use config::{IMAGE_TIME, SimulationConfig, start_pose, starts_of};
-pub use equipment::RobotEquipment;
 pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
 pub use learned_sensors::{LearnedSensors, LearningError, learned};
 pub use motion::{MotionNoise, SimulatedBase};
-pub use plans::{NamedPlan, plans};
+pub use plans::{NamedPlan, plan_named, plans};
 pub use scanner::{
     ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
-    ScannerParams, WallSurface,
+    ScannerParams, Segment, WallSurface,
 };
-pub use simulated_robot::SimulatedRobot;
+pub use simulated_robot::{RobotEquipment, SimulatedRobot};

@@ -187,22 +187,6 @@ mod tests {
         [middle.map(|place| place - 0.15), middle.map(|place| place + 0.15)]
     }
 
-    /// Whether no way leads from one end of an edge to the other but the edge itself.
-    fn is_bridge(graph: &EmbeddedGraph, edge: Dart) -> bool {
-        let mut near = vec![false; graph.vertex_count()];
-        near[graph.vertex(edge).at()] = true;
-        for _ in 0..graph.vertex_count() {
-            for (dart, opposite) in graph.edges().filter(|&(dart, _)| dart != edge) {
-                let ends = [dart, opposite].map(|dart| graph.vertex(dart).at());
-                let either = ends.iter().any(|&end| near[end]);
-                for end in ends {
-                    near[end] |= either;
-                }
-            }
-        }
-        !near[graph.vertex(graph.opposite(edge)).at()]
-    }
-
     #[test]
     fn a_robot_is_cut_off_beyond_a_bridge_and_nowhere_else() {
         let mut bridges = 0;
@@ -210,7 +194,7 @@ mod tests {
             let graph = plan.graph();
             for (dart, opposite) in graph.edges() {
                 let obstacle = obstacle_in(&plan, dart);
-                let is_bridge = is_bridge(graph, dart);
+                let is_bridge = graph.cut(&[dart], dart).1[opposite.at()].is_none();
                 bridges += usize::from(is_bridge);
                 for [marker, robot] in [[dart, opposite], [opposite, dart]] {
                     for (robot, expected) in [(robot, is_bridge), (marker, false)] {

@@ -28,6 +28,11 @@ pub fn plans() -> Result<Vec<NamedPlan>, WorldFileError> {
     Ok(plans)
 }
 
+/// The floor plan of `worlds/` with this name.
+pub fn plan_named(name: &str) -> Option<Arc<FloorPlan>> {
+    plans().ok()?.into_iter().find(|(known, _)| known == name).map(|(_, plan)| plan)
+}
+
 #[cfg(test)]
 mod tests {
     use std::{fs, path::Path};
@@ -38,13 +43,11 @@ mod tests {
     fn all_floor_plans_of_worlds_are_included() {
         let worlds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds");
         let files = fs::read_dir(worlds).unwrap().map(|entry| entry.unwrap().path());
-        let files = files.filter(|path| path.extension().is_some_and(|ending| ending == "toml"));
-        let is_plan = |path: &std::path::PathBuf| {
-            world_file::read(&fs::read(path).unwrap()).unwrap().plan.is_some()
-        };
-        let stem =
-            |path: std::path::PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
-        let mut names: Vec<_> = files.filter(is_plan).map(stem).collect();
+        let mut names: Vec<_> = files
+            .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+            .filter(|path| world_file::read(&fs::read(path).unwrap()).unwrap().plan.is_some())
+            .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+            .collect();
         names.sort();
         let known: Vec<_> = plans().unwrap().into_iter().map(|(name, _)| name).collect();
         assert_eq!(known, names);

@@ -4,6 +4,8 @@
 //! run of hallways is moved aside a little. The lines of the grid are far enough apart to keep
 //! junctions at least two hallway widths apart, so that every plan is valid.
 
+use std::iter;
+
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::floor_plan::{Direction, FloorPlan, FloorPlanError};
@@ -41,19 +43,17 @@ fn drawn(
     let width = chance.random_range(WIDTHS[0]..WIDTHS[1]);
     let aside = if chance.random() { ASIDE } else { 0.0 };
     let pieces = grown(&mut chance);
-    let lines = pieces.size.map(|count| {
+    let lines = pieces.size.map(|count| -> Vec<f64> {
         let mut at = 0.0;
-        let lines: Vec<f64> = (0..count)
-            .map(|_| {
-                at += 2.0 * width + 2.0 * aside + chance.random_range(SPARE[0]..SPARE[1]);
-                at
-            })
-            .collect();
-        lines
+        let next = |_| {
+            at += 2.0 * width + 2.0 * aside + chance.random_range(SPARE[0]..SPARE[1]);
+            at
+        };
+        (0..count).map(next).collect()
     });
     let nodes = pieces.junctions();
     // For each axis, a grid of the offsets across it. A straight run has one offset.
-    let mut moved = [vec![None; pieces.nodes()], vec![None; pieces.nodes()]];
+    let mut moved = [0, 1].map(|_| vec![None; pieces.doors.len()]);
     let mut positions = Vec::new();
     for &node in &nodes {
         let position = [0, 1].map(|axis| {
@@ -76,8 +76,8 @@ fn drawn(
 struct Pieces {
     /// The number of lines across x and across y.
     size: [usize; 2],
-    /// For each node, whether a piece leads to the next node along x, and along y.
-    onwards: Vec<[bool; 2]>,
+    /// For each node, whether a piece leads in each direction.
+    doors: Vec<[bool; 4]>,
 }
 
 impl Pieces {
@@ -112,16 +112,19 @@ impl Pieces {
         tries: usize,
         done: impl Fn(&Self) -> bool,
     ) -> Self {
-        let mut pieces = Self { size, onwards: vec![[false; 2]; size[0] * size[1]] };
+        let mut pieces = Self { size, doors: vec![[false; 4]; size[0] * size[1]] };
         let mut reached = vec![size.map(|count| chance.random_range(0..count))];
         for _ in 0..tries {
             let Some(&from) = reached.choose(chance) else { break };
-            let Some(direction) = Direction::ALL.choose(chance) else { break };
-            let Some(to) = pieces.neighbour(from, *direction) else { continue };
-            if pieces.has(from, *direction) || pieces.degree(from) == 3 || pieces.degree(to) == 3 {
+            let Some(&direction) = Direction::ALL.choose(chance) else { break };
+            let Some(to) = pieces.neighbour(from, direction) else { continue };
+            if pieces.has(from, direction) || pieces.degree(from) == 3 || pieces.degree(to) == 3 {
                 continue;
             }
-            pieces.set(from, *direction);
+            for (node, direction) in [(from, direction), (to, direction.reversed())] {
+                let number = pieces.number(node);
+                pieces.doors[number][direction as usize] = true;
+            }
             if !reached.contains(&to) {
                 reached.push(to);
             }
@@ -132,16 +135,12 @@ impl Pieces {
         pieces
     }
 
-    fn nodes(&self) -> usize {
-        self.size[0] * self.size[1]
-    }
-
     fn number(&self, [x, y]: Node) -> usize {
         y * self.size[0] + x
     }
 
     fn count(&self) -> usize {
-        self.onwards.iter().flatten().filter(|&&there| there).count()
+        self.doors.iter().flatten().filter(|&&there| there).count() / 2
     }
 
     fn neighbour(&self, [x, y]: Node, direction: Direction) -> Option<Node> {
@@ -154,74 +153,47 @@ impl Pieces {
         (node[0] < self.size[0] && node[1] < self.size[1]).then_some(node)
     }
 
-    /// The node before a piece, and the axis of the piece.
-    fn piece(&self, node: Node, direction: Direction) -> Option<(usize, usize)> {
-        let neighbour = self.neighbour(node, direction)?;
-        let axis = usize::from(matches!(direction, Direction::North | Direction::South));
-        let before = matches!(direction, Direction::North | Direction::East);
-        Some((self.number(if before { node } else { neighbour }), axis))
+    /// The neighbour to which a piece leads in a direction.
+    fn next(&self, node: Node, direction: Direction) -> Option<Node> {
+        self.neighbour(node, direction).filter(|_| self.has(node, direction))
     }
 
     fn has(&self, node: Node, direction: Direction) -> bool {
-        self.piece(node, direction).is_some_and(|(before, axis)| self.onwards[before][axis])
-    }
-
-    fn set(&mut self, node: Node, direction: Direction) {
-        if let Some((before, axis)) = self.piece(node, direction) {
-            self.onwards[before][axis] = true;
-        }
+        self.doors[self.number(node)][direction as usize]
     }
 
     fn degree(&self, node: Node) -> usize {
-        Direction::ALL.iter().filter(|&&direction| self.has(node, direction)).count()
+        self.doors[self.number(node)].iter().filter(|&&door| door).count()
     }
 
     /// Whether hallways end at a node: there are some, and they do not just pass through it.
     fn is_junction(&self, node: Node) -> bool {
-        let straight = Direction::ALL
-            .iter()
-            .any(|&direction| self.has(node, direction) && self.has(node, direction.reversed()));
-        match self.degree(node) {
-            0 => false,
-            2 => !straight,
-            _ => true,
-        }
+        let [north, east, south, west] = self.doors[self.number(node)];
+        north != south || east != west || north && east
     }
 
     fn junctions(&self) -> Vec<Node> {
-        let nodes = (0..self.nodes()).map(|number| [number % self.size[0], number / self.size[0]]);
+        let [columns, rows] = self.size;
+        let nodes = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
         nodes.filter(|&node| self.is_junction(node)).collect()
     }
 
     /// The first node of the straight run of pieces through a node along an axis. It is the node
     /// itself if no piece leads to it.
-    fn run(&self, mut node: Node, axis: usize) -> Node {
+    fn run(&self, node: Node, axis: usize) -> Node {
         let back = [Direction::West, Direction::South][axis];
-        while self.has(node, back)
-            && let Some(before) = self.neighbour(node, back)
-        {
-            node = before;
-        }
-        node
+        iter::successors(Some(node), |&node| self.next(node, back)).last().unwrap_or(node)
     }
 
     /// The junctions at both ends of each hallway.
     fn hallways(&self) -> Vec<[Node; 2]> {
         let mut hallways = Vec::new();
         for from in self.junctions() {
-            for direction in [Direction::East, Direction::North] {
-                let mut to = from;
-                while self.has(to, direction)
-                    && let Some(next) = self.neighbour(to, direction)
-                {
-                    to = next;
-                    if self.is_junction(to) {
-                        break;
-                    }
-                }
-                if to != from {
-                    hallways.push([from, to]);
-                }
+            for onwards in [Direction::East, Direction::North] {
+                let first = self.next(from, onwards);
+                let mut nodes = iter::successors(first, |&node| self.next(node, onwards));
+                let to = nodes.find(|&node| self.is_junction(node));
+                hallways.extend(to.map(|to| [from, to]));
             }
         }
         hallways

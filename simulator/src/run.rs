@@ -91,10 +91,6 @@ impl<E: Display> RobotOutcome<E> {
 }
 
 impl Run<'_> {
-    pub fn blocked(&self) -> &[Dart] {
-        self.mapped.as_ref().map_or(&[], |mapped| &mapped.blocked)
-    }
-
     pub fn divergence(&self) -> Option<TruthDivergence> {
         self.monitor.divergence()
     }
@@ -224,10 +220,16 @@ mod tests {
             run_sampler::{JudgedRun, RunSampler},
             sampling::sample,
         },
-        plans, starts_of,
+        plan_named, plans, starts_of,
     };
 
     const DARTS: usize = 200;
+
+    /// A run of a robot that has scenes without images.
+    fn by_scene(config: &SimulationConfig, method: impl Into<MappingMethod>) -> Run<'_> {
+        let settings = RunSettings::new(method, DARTS);
+        run(&config.plan, config.marker, config.by_scene(), NoSensor, (), &settings)
+    }
 
     // paper: validation.traverse
     // paper: validation.motion
@@ -239,8 +241,7 @@ mod tests {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
                 for algorithm in MappingAlgorithm::with_fixed_marker() {
                     let config = SimulationConfig::at_start(plan.clone(), facing, seed as u64);
-                    let settings = RunSettings::new(algorithm, DARTS);
-                    let run = run(&plan, facing, config.by_scene(), NoSensor, (), &settings);
+                    let run = by_scene(&config, algorithm);
                     let what = format!("{name} from {facing:?} by {algorithm}");
                     assert_eq!(run.outcome(), RunOutcome::Right, "{what}");
                     assert!(run.isomorphic() && run.pose_true());
@@ -252,7 +253,7 @@ mod tests {
     }
 
     fn in_shape_6(seed: u64) -> SimulationConfig {
-        let (_, plan) = plans().unwrap().swap_remove(2);
+        let plan = plan_named("shape-6").unwrap();
         let facing = starts_of(&plan)[0];
         SimulationConfig::at_start(plan, facing, seed)
     }
@@ -278,7 +279,6 @@ mod tests {
     #[test]
     fn a_lost_robot_reports_the_reason() {
         let right = RunOutcome::Right.to_string();
-        let settings = RunSettings::new(MappingAlgorithm::Algorithm1, DARTS);
         for (fault, why) in [
             ("lights-out@20", "7 images in a row do not show where the robot is"),
             ("blocked@20", "3 commands in a row were not carried out"),
@@ -289,8 +289,7 @@ mod tests {
             ("corrupt@20", &*right),
         ] {
             let config = SimulationConfig { faults: vec![fault.parse().unwrap()], ..in_shape_6(5) };
-            let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
-            let outcome = run(plan, marker, robot, NoSensor, (), &settings).outcome();
+            let outcome = by_scene(&config, MappingAlgorithm::Algorithm1).outcome();
             let text = outcome.to_string();
             assert!(text.contains(why), "{fault}: {text}");
             let gave_up = text.starts_with("the robot gave up: on move ");
@@ -337,7 +336,6 @@ mod tests {
     /// Wherever the obstacle stands, in a hallway or before a junction, and also if the lights go out there.
     #[test]
     fn a_robot_that_gives_up_before_an_obstacle_has_no_other_way() {
-        let settings = RunSettings::new(recovering(), DARTS);
         let (mut right, mut gave_up) = (0, 0);
         for frame in 2..=100 {
             let mut config = in_shape_6(frame);
@@ -345,8 +343,7 @@ mod tests {
             if frame.is_multiple_of(2) {
                 config.faults.push(RobotFault::at(FaultKind::LightsOut, frame + 3));
             }
-            let (plan, marker, robot) = (&config.plan, config.marker, config.by_scene());
-            let run = run(plan, marker, robot, NoSensor, (), &settings);
+            let run = by_scene(&config, recovering());
             match run.outcome() {
                 RunOutcome::Right => right += 1,
                 RunOutcome::GaveUp(error) => {

@@ -9,6 +9,12 @@ pub enum SampleVerdict {
     Wrong,
 }
 
+impl SampleVerdict {
+    pub fn right_if(is_right: bool) -> Self {
+        if is_right { Self::Right } else { Self::Wrong }
+    }
+}
+
 /// The numbers of samples with each verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleTally {

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use rand::{RngExt, seq::IndexedRandom};
-use toposlam_logs::record::Frame;
+use rand::{RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_logs::record::{Frame, RobotSensor};
 use toposlam_model::{
     driving::pose::Pose,
     floor_plan::{Direction, FloorPlan, Rectangle},
@@ -17,6 +18,7 @@ use super::{
     cameras::{FrameLight, RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
     config::SimulationConfig,
     faults::{FaultKind, RobotFault},
+    learned_sensors::LearnedSensors,
     motion::SimulatedBase,
     scanner::{CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams},
 };
@@ -77,6 +79,38 @@ impl SimulationConfig {
     fn scene_camera(&self) -> SceneCamera {
         let &Self { ref plan, marker, noise, seed, .. } = self;
         SceneCamera { plan: plan.clone(), marker, noise, seed }
+    }
+}
+
+/// The sensors of a simulated robot.
+#[derive(Debug)]
+pub enum RobotEquipment {
+    Scenes,
+    /// A camera whose images are rendered, in buildings of several looks.
+    Images(LearnedSensors),
+    /// A laser scanner, and a detector of the marker.
+    Laser(ScannerParams),
+}
+
+impl RobotEquipment {
+    pub(super) fn robot(
+        &self,
+        config: &SimulationConfig,
+        number: u64,
+    ) -> (SimulatedRobot, Option<RobotSensor>) {
+        match self {
+            Self::Scenes => (config.by_scene(), None),
+            Self::Images(sensors) => {
+                let look = sensors.look(number);
+                let mut chance = Xoshiro256PlusPlus::seed_from_u64(config.seed);
+                let robot = config.with_images(sensors.rig(), look, &Effects::drawn(&mut chance));
+                (robot, Some(RobotSensor::Camera(Box::new(sensors.sensor(look)))))
+            }
+            Self::Laser(params) => {
+                let sensor = RobotSensor::Laser(Box::default());
+                (config.by_laser(params), Some(sensor))
+            }
+        }
     }
 }
 
@@ -233,8 +267,7 @@ fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
     let [x, y] = direction.vector();
     let middle = [pose.position[0] + AHEAD * x, pose.position[1] + AHEAD * y];
     let half = [x, y].map(|along| if along == 0.0 { plan.hallway_width() } else { DEEP / 2.0 });
-    let corner = |side: f64| [0, 1].map(|axis| middle[axis] + side * half[axis]);
-    Rectangle { least: corner(-1.0), greatest: corner(1.0) }
+    Rectangle::centred(middle, half)
 }
 
 /// A random pose in a hallway, along it.

@@ -177,10 +177,9 @@ mod tests {
                         let is_along = ends[0][axis] != ends[1][axis];
                         if is_along { 0.15 } else { plan.hallway_width() / 2.0 - passage }
                     });
-                    let corner = |side: f64| [0, 1].map(|axis| middle[axis] + side * half[axis]);
                     let mut surroundings = Surroundings::new(&plan);
                     assert!(surroundings.may_lead(ends[0], ends[1]), "{name}");
-                    surroundings.put(Rectangle { least: corner(-1.0), greatest: corner(1.0) });
+                    surroundings.put(Rectangle::centred(middle, half));
                     let may_lead = surroundings.may_lead(ends[0], ends[1]);
                     assert_eq!(may_lead, is_passable || !is_bridge, "{name} {dart:?}");
                     // A robot in the obstacle cannot move.

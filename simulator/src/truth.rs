@@ -10,7 +10,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use toposlam_model::{
     driving::{
         pose::Pose,
-        scene::{undirected, wrapped},
+        scene::{MarkerView, undirected, wrapped},
         visit::JunctionShape,
     },
     embedded_graph::{Dart, Vertex},
@@ -53,21 +53,6 @@ pub struct JunctionTruth {
     /// The directions of the doors, clockwise from the one behind the robot if there is one.
     pub doors: Vec<f64>,
     pub turning_point: [f64; 2],
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MarkerTruth {
-    pub position: [f64; 2],
-    /// The direction of its longer side, in (-pi/2, pi/2].
-    pub axis: f64,
-    /// The direction of the door that it points along.
-    pub points: f64,
-    /// The number of that door, clockwise from the door behind the robot; `None` if there is no door
-    /// behind it.
-    pub door: Option<Door>,
-    /// The distance to its turning point along the entry centre line, positive ahead; `None` if there is
-    /// no door behind the robot.
-    pub distance: Option<f64>,
 }
 
 impl Truth {
@@ -130,10 +115,7 @@ struct Stretch {
 impl Stretch {
     fn new(plan: &FloorPlan, hallway: Hallway, position: [f64; 2]) -> Self {
         let [from, to] = [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position);
-        let leads = |dart: &Dart| plan.graph().vertex(plan.graph().opposite(*dart)) == hallway.to;
-        // Two junctions have at most one hallway between them.
-        let dart = plan.graph().darts_of(hallway.from).find(leads);
-        let direction = dart.map_or(Direction::North, |dart| plan.direction(dart));
+        let direction = Direction::between(from, to).unwrap_or(Direction::North);
         let onwards = Vector2::from(direction.vector());
         let from_first = Point2::from(position) - Point2::from(from);
         Self {
@@ -170,18 +152,20 @@ impl Stretch {
 impl JunctionTruth {
     pub fn from_plan(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
         let junction = plan.junction(vertex);
-        let mut directions: Vec<_> =
-            plan.graph().darts_of(vertex).map(|dart| plan.direction(dart)).collect();
-        let relative_angle = |&direction: &Direction| wrapped(angle(direction) - pose.heading);
-        let is_behind = |door: &Direction| wrapped(relative_angle(door) - PI).abs() <= FRAC_PI_4;
-        let behind = directions.iter().position(is_behind);
-        directions.rotate_left(behind.unwrap_or(0));
+        let mut darts: Vec<_> = plan.graph().darts_of(vertex).collect();
+        let relative_angle = |&dart: &Dart| wrapped(angle(plan.direction(dart)) - pose.heading);
+        let is_behind = |dart: &Dart| wrapped(relative_angle(dart) - PI).abs() <= FRAC_PI_4;
+        let behind = darts.iter().position(is_behind);
+        darts.rotate_left(behind.unwrap_or(0));
+        let plan_from_robot = Isometry2::new(pose.position.into(), pose.heading);
         Self {
             vertex,
             kind: junction.kind,
-            form: behind.map(|_| form(&directions)),
-            doors: directions.iter().map(relative_angle).collect(),
-            turning_point: relative(junction.position, pose),
+            form: behind.map(|_| plan.shape(darts[0])),
+            doors: darts.iter().map(relative_angle).collect(),
+            turning_point: plan_from_robot
+                .inverse_transform_point(&junction.position.into())
+                .into(),
         }
     }
 
@@ -193,31 +177,18 @@ impl JunctionTruth {
     }
 }
 
-impl MarkerTruth {
-    /// A marker relative to a robot's pose. It lies on the turning point of the dart's vertex, along the
-    /// dart.
-    pub fn from_plan(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
-        let junction = JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose);
-        let points = wrapped(angle(plan.direction(dart)) - pose.heading);
-        let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
-        let door = junction.doors.iter().position(is_it);
-        Self {
-            position: junction.turning_point,
-            axis: undirected(points),
-            points,
-            door: junction.form.and(door).map(|door| Door(door as u32)),
-            distance: junction.distance(),
-        }
+/// A marker as a robot at a pose sees it. It lies on the turning point of the dart's vertex, along the dart. Its door is
+/// known if there is a door behind the robot.
+pub fn true_marker(plan: &FloorPlan, dart: Dart, pose: Pose) -> MarkerView {
+    let junction = JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose);
+    let points = wrapped(angle(plan.direction(dart)) - pose.heading);
+    let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
+    let door = junction.doors.iter().position(is_it);
+    MarkerView {
+        position: junction.turning_point,
+        axis: undirected(points),
+        door: junction.form.and(door).map(|door| Door(door as u32)),
     }
-}
-
-/// What a junction looks like from the first of its doors, which stand clockwise.
-fn form(doors: &[Direction]) -> JunctionShape {
-    let mut form = [false; 4];
-    for &door in doors {
-        form[(door as usize + 4 - doors[0] as usize) % 4] = true;
-    }
-    JunctionShape(form)
 }
 
 /// A direction, in radians counter-clockwise from east.
@@ -230,34 +201,20 @@ pub fn angle(direction: Direction) -> f64 {
     }
 }
 
-/// A position of the plan in the robot's frame: x ahead, y to the left.
-fn relative(position: [f64; 2], pose: Pose) -> [f64; 2] {
-    let plan_from_robot = Isometry2::new(pose.position.into(), pose.heading);
-    plan_from_robot.inverse_transform_point(&position.into()).into()
-}
-
 #[cfg(test)]
 mod tests {
-    use toposlam_model::format::world_file;
-
     use super::*;
-    use crate::evaluation::judged_view::SceneClass;
+    use crate::{evaluation::judged_view::SceneClass, plan_named};
 
-    /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
-    fn shape_6() -> FloorPlan {
-        let text = include_bytes!("../../worlds/shape-6.toml");
-        world_file::read(text).unwrap().plan.unwrap()
-    }
-
+    /// In shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
     fn at(x: f64, y: f64, degrees: f64) -> Truth {
-        Truth::at(&shape_6(), Pose { position: [x, y], heading: degrees.to_radians() }).unwrap()
+        let pose = Pose { position: [x, y], heading: degrees.to_radians() };
+        Truth::at(&plan_named("shape-6").unwrap(), pose).unwrap()
     }
 
-    fn junction(truth: Truth) -> JunctionTruth {
-        match truth {
-            Truth::Junction(junction) => junction,
-            other => panic!("{other:?}"),
-        }
+    fn junction_at(x: f64, y: f64, degrees: f64) -> JunctionTruth {
+        let Truth::Junction(junction) = at(x, y, degrees) else { panic!("{x} {y}") };
+        junction
     }
 
     #[track_caller]
@@ -271,7 +228,7 @@ mod tests {
     #[test]
     fn off_the_floor_nothing_is_true() {
         let pose = Pose { position: [2.0, 2.0], heading: 0.0 };
-        assert_eq!(Truth::at(&shape_6(), pose), None);
+        assert_eq!(Truth::at(&plan_named("shape-6").unwrap(), pose), None);
     }
 
     #[test]
@@ -326,7 +283,7 @@ mod tests {
             (0.0, 4.4, 270.0, vec![behind, left, ahead], "t-stem-left"),
         ];
         for (x, y, heading, doors, name) in cases {
-            let junction = junction(at(x, y, heading));
+            let junction = junction_at(x, y, heading);
             let found: Vec<_> = junction.doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             let expected: Vec<_> = doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             close(&found, &expected);
@@ -338,7 +295,7 @@ mod tests {
 
     #[test]
     fn the_turning_point_is_behind_once_it_is_passed() {
-        let junction = junction(at(-0.3, 4.1, 170.0));
+        let junction = junction_at(-0.3, 4.1, 170.0);
         close(&[junction.distance().unwrap()], &[-0.3]);
         let turned = 10_f64.to_radians();
         // It is a little to the left, and the robot looks a little to the right.
@@ -349,22 +306,22 @@ mod tests {
 
     #[test]
     fn a_robot_that_has_turned_has_no_door_behind_it() {
-        let junction = junction(at(0.3, 8.0, 0.0));
+        let junction = junction_at(0.3, 8.0, 0.0);
         assert_eq!((junction.form, junction.distance()), (None, None));
         assert_eq!(junction.kind, JunctionKind::L);
     }
 
     #[test]
     fn a_marker_points_along_a_door() {
-        let plan = shape_6();
+        let plan = plan_named("shape-6").unwrap();
         let corner = Vertex(1);
         // Doors of the corner, clockwise from north: east, south. The robot comes from the east.
         let pose = Pose { position: [0.5, 8.0], heading: PI };
         for (dart, door, axis) in [(0, 0, 0.0), (1, 1, FRAC_PI_2)] {
             let dart = plan.graph().dart(corner, dart).unwrap();
-            let marker = MarkerTruth::from_plan(&plan, dart, pose);
+            let marker = true_marker(&plan, dart, pose);
             assert_eq!(marker.door, Some(Door(door)));
-            close(&[marker.axis.abs(), marker.distance.unwrap()], &[axis, 0.5]);
+            close(&[marker.axis.abs()], &[axis]);
             close(&marker.position, &[0.5, 0.0]);
         }
     }

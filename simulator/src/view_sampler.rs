@@ -7,10 +7,7 @@ use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    driving::{
-        pose::Pose,
-        visit::{JUNCTION_SHAPES, JunctionShape},
-    },
+    driving::{pose::Pose, scene::MarkerView, visit::JUNCTION_SHAPES},
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     format::world_file::WorldFileError,
@@ -24,7 +21,7 @@ use super::{
 };
 use crate::{
     Building, BuildingLook, EffectSettings, Effects, Rig, render,
-    truth::{JunctionTruth, MarkerTruth, Truth, angle},
+    truth::{Truth, angle, true_marker},
 };
 
 /// Views of a junction lie from this distance before its turning point to this distance behind it,
@@ -75,8 +72,8 @@ impl RenderedView {
     }
 
     /// The marker's true place, relative to the robot.
-    pub fn marker(&self) -> Option<MarkerTruth> {
-        self.marker.map(|dart| MarkerTruth::from_plan(&self.plan, dart, self.pose))
+    pub fn marker(&self) -> Option<MarkerView> {
+        self.marker.map(|dart| true_marker(&self.plan, dart, self.pose))
     }
 
     pub fn building(&self) -> Building {
@@ -150,11 +147,6 @@ impl ViewSampler {
             effects: WhichEffects::Default,
             settings: EffectSettings::default(),
         })
-    }
-
-    /// The floor plan with this name. Random plans are not found.
-    pub fn plan(&self, name: &str) -> Option<&FloorPlan> {
-        self.plans.iter().find(|(other, _)| other == name).map(|(_, plan)| &**plan)
     }
 
     /// The view with this number.
@@ -292,18 +284,11 @@ fn stream(seed: u64, purpose: ViewPurpose, number: u64) -> Xoshiro256PlusPlus {
 /// An entry door of a junction. Its shape is drawn first, among the shapes in the plan, so that
 /// rare shapes are not rare.
 fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
-    let entries = JUNCTION_SHAPES.map(|(form, _)| {
-        let entries = plan.graph().darts().filter(|&dart| form_from(plan, dart) == Some(form));
-        entries.collect::<Vec<_>>()
+    let entries = JUNCTION_SHAPES.map(|(shape, _)| {
+        plan.graph().darts().filter(|&dart| plan.shape(dart) == shape).collect::<Vec<_>>()
     });
     let there: Vec<_> = entries.iter().filter(|entries| !entries.is_empty()).collect();
     there.choose(chance)?.choose(chance).copied()
-}
-
-/// The shape of a dart's junction as seen by a robot that enters by the dart.
-fn form_from(plan: &FloorPlan, dart: Dart) -> Option<JunctionShape> {
-    let pose = before_junction(plan, dart, 0.0, 0.0, 0.0);
-    JunctionTruth::from_plan(plan, plan.graph().vertex(dart), pose).form
 }
 
 /// The greatest distance from the middle of the hallway, in metres.
@@ -336,13 +321,7 @@ fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64
     if back {
         std::mem::swap(&mut from, &mut to);
     }
-    let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
-    let direction = match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
-        (true, true, _) => Direction::East,
-        (true, false, _) => Direction::West,
-        (false, _, true) => Direction::North,
-        (false, _, false) => Direction::South,
-    };
+    let direction = Direction::between(from, to).unwrap_or(Direction::South);
     along(from, direction, left.min(length(at)), aside, turned)
 }
 

@@ -1,9 +1,7 @@
-//! Junctions from laser scans, in plans of corridors: what a scanner measures is computed here, by another way
-//! than sensing uses it.
+//! Junctions from laser scans, in plans of corridors and in logs of real buildings.
 
 use std::{
     env,
-    f64::consts::PI,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -17,15 +15,16 @@ use toposlam_logs::{
     topic_map::TopicMap,
 };
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::wrapped},
+    driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     percept::Door,
 };
+use toposlam_simulator::{Corridor, CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams};
 use toposlam_vision::{
     geometry::{self, moved},
     laser::{
         drift::{DriftMeter, ROUNDS},
         params::LaserParams,
-        scan::{Scan, ScanGeometry},
+        scan::Scan,
     },
     visits::Visits,
 };
@@ -35,75 +34,27 @@ type MarkedVisit = (u64, Option<u64>);
 /// A scan, and the odometry at its time.
 type PlacedScan = (Arc<Scan>, Odometry);
 
-/// A straight corridor: the ends of its middle line, and its width.
-pub(crate) type Corridor = ([f64; 2], [f64; 2], f64);
-
-/// The range at which a ray leaves the union of the corridors.
-pub(crate) fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64 {
-    let mut pieces: Vec<(f64, f64)> = corridors
-        .iter()
-        .filter_map(|&(one, other, width)| {
-            // In the corridor's frame; it reaches half of its width beyond its ends.
-            let along = Vector2::from(other) - Vector2::from(one);
-            let (length, unit) = (along.norm(), along.normalize());
-            let framed = |vector: Vector2<f64>| [unit.dot(&vector), unit.perp(&vector)];
-            let place = framed(Vector2::from(from) - Vector2::from(one));
-            let ray = framed(geometry::unit(bearing));
-            let half = width / 2.0;
-            let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
-            for (place, ray, [low, high]) in
-                [(place[0], ray[0], [-half, length + half]), (place[1], ray[1], [-half, half])]
-            {
-                if ray.abs() < 1e-12 {
-                    if place < low || place > high {
-                        return None;
-                    }
-                    continue;
-                }
-                let ends = [(low - place) / ray, (high - place) / ray];
-                enters = enters.max(ends[0].min(ends[1]));
-                leaves = leaves.min(ends[0].max(ends[1]));
-            }
-            (leaves > enters.max(0.0)).then_some((enters, leaves))
-        })
-        .collect();
-    pieces.sort_by(|one, other| one.0.total_cmp(&other.0));
-    pieces.iter().fold(
-        0.0,
-        |reached, &(enters, leaves)| {
-            if enters <= reached + 1e-9 { leaves.max(reached) } else { reached }
-        },
-    )
+/// Corridors, each with the ends of its middle line and its width.
+fn plan(corridors: &[([f64; 2], [f64; 2], f64)]) -> CorridorPlan {
+    let corridor = |&(from, to, width): &([f64; 2], [f64; 2], f64)| Corridor {
+        ends: [from.into(), to.into()],
+        width,
+    };
+    CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() }
 }
 
-/// A scan that covers so many degrees, one from reading to reading.
-fn scan(corridors: &[Corridor], at: &Odometry, degrees: u32) -> Scan {
-    let first = -f64::from(degrees).to_radians() / 2.0;
-    let ranges = (0..=degrees).map(|degree| {
-        range(corridors, at.position, at.heading + first + f64::from(degree).to_radians())
-    });
-    let geometry = ScanGeometry {
-        angle_min: first,
-        angle_increment: PI / 180.0,
-        range_min: 0.0,
-        range_max: 80.0,
-    };
-    Scan::new(geometry, ranges.map(|range| range as f32).collect(), Isometry2::identity()).unwrap()
+/// A scanner in corridors without anything else. It covers so many degrees, one from reading to reading.
+fn scanner(degrees: u32, plan: &CorridorPlan) -> LaserScanner {
+    let field_of_view = f64::from(degrees);
+    let params =
+        ScannerParams { field_of_view, least_range: 0.0, range: 80.0, ..ScannerParams::PLAIN };
+    LaserScanner::new(Arc::new(ScannedBuilding::new(plan, &params, 1)), &params, 1)
 }
 
 /// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
 /// there; its odometry drifts by so many radians a metre.
-fn events(corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> RunEvents {
-    events_with(&LaserParams::default(), corridors, way, drift)
-}
-
-fn events_with(
-    params: &LaserParams,
-    corridors: &[Corridor],
-    way: &[[f64; 2]],
-    drift: f64,
-) -> RunEvents {
-    events_of(&drive(180, corridors, way, drift), params)
+fn events(plan: &CorridorPlan, way: &[[f64; 2]], drift: f64) -> RunEvents {
+    events_of(&drive(180, plan, way, drift), &LaserParams::default())
 }
 
 fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
@@ -116,7 +67,8 @@ fn events_of(scans: &[PlacedScan], params: &LaserParams) -> RunEvents {
 }
 
 /// The scans of that robot, and its odometry.
-fn drive(degrees: u32, corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> Vec<PlacedScan> {
+fn drive(degrees: u32, plan: &CorridorPlan, way: &[[f64; 2]], drift: f64) -> Vec<PlacedScan> {
+    let scanner = scanner(degrees, plan);
     let mut scans = Vec::new();
     let (mut believed, mut driven) = (Vector2::from(way[0]), 0.0);
     let mut last = None;
@@ -129,14 +81,14 @@ fn drive(degrees: u32, corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> 
         let steps = (length / 0.5).ceil();
         let driving = (1..=steps as u32).map(|step| (f64::from(step) / steps, 0.0));
         for (share, to_turn) in turned.chain(driving) {
-            let position = (from + share * (to - from)).into();
-            let heading = ahead - to_turn;
+            let pose =
+                Pose { position: (from + share * (to - from)).into(), heading: ahead - to_turn };
             if share > 0.0 {
                 driven += length / steps;
                 believed += length / steps * geometry::unit(ahead + drift * driven);
             }
-            let scan = scan(corridors, &Odometry { position, heading }, degrees);
-            let heading = heading + drift * driven;
+            let scan = scanner.scan(pose, 1, 0.0).unwrap();
+            let heading = pose.heading + drift * driven;
             scans.push((Arc::new(scan), Odometry { position: believed.into(), heading }));
         }
         last = Some(ahead);
@@ -160,13 +112,27 @@ pub(crate) fn visits(events: &RunEvents) -> Vec<(Option<u32>, Option<u32>)> {
 }
 
 /// Two T junctions whose stems meet a long corridor from opposite sides, 14 m apart, and a crossing.
-fn comb() -> Vec<Corridor> {
-    vec![
+fn comb() -> CorridorPlan {
+    plan(&[
         ([0.0, 0.0], [60.0, 0.0], 2.0),
         ([14.0, 0.0], [14.0, 15.0], 2.0),
         ([28.0, -15.0], [28.0, 0.0], 2.0),
         ([44.0, -15.0], [44.0, 15.0], 2.0),
-    ]
+    ])
+}
+
+/// Parameters with which the bends and the dead ends of corridors are vertices.
+fn with_corners() -> LaserParams {
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    params
+}
+
+/// Parameters with which scans are matched.
+fn matched(rounds: usize) -> LaserParams {
+    let mut params = LaserParams::default();
+    params.matching.rounds = rounds;
+    params
 }
 
 #[test]
@@ -179,10 +145,9 @@ fn each_junction_on_the_way_is_visited_once() {
         assert_eq!(visits(&events), expected, "drift of {drift} degrees in 10 m");
     }
     // Scan matching corrects more.
-    let mut params = LaserParams::default();
-    params.matching.rounds = 8;
     for drift in [0.0_f64, 10.0, -10.0, 20.0, -20.0] {
-        let events = events_with(&params, &comb(), &way, drift.to_radians() / 10.0);
+        let scans = drive(180, &comb(), &way, drift.to_radians() / 10.0);
+        let events = events_of(&scans, &matched(8));
         assert_eq!(visits(&events), expected, "matched, drift of {drift} degrees in 10 m");
     }
     // Out by the stem on the left, which is the second door clockwise from the way back.
@@ -207,8 +172,8 @@ fn the_arms_of_a_junction_can_have_any_angle() {
     let at =
         |metres: f64, degrees: f64| <[f64; 2]>::from(metres * geometry::unit(degrees.to_radians()));
     let arm = |degrees| ([0.0, 0.0], at(15.0, degrees), 2.0);
-    let visits = |arms: &[Corridor], degrees| {
-        visits(&events(arms, &[[-12.0, 0.0], [0.0, 0.0], at(12.0, degrees)], 0.0))
+    let visits = |arms: &[_], degrees| {
+        visits(&events(&plan(arms), &[[-12.0, 0.0], [0.0, 0.0], at(12.0, degrees)], 0.0))
     };
     let fork = [arm(180.0), arm(60.0), arm(-60.0)];
     assert_eq!(visits(&fork, 60.0), [(Some(3), Some(1))]);
@@ -218,13 +183,13 @@ fn the_arms_of_a_junction_can_have_any_angle() {
 }
 
 /// A corridor along x, and others that leave it at the same place, at these angles to its direction.
-fn branches(degrees: &[f64]) -> Vec<Corridor> {
+fn branches(degrees: &[f64]) -> CorridorPlan {
     let branch = |degrees: &f64| {
         let (sine, cosine) = degrees.to_radians().sin_cos();
         ([22.0, 0.0], [22.0 + 15.0 * cosine, 15.0 * sine], 2.0)
     };
     let corridor = ([0.0, 0.0], [44.0, 0.0], 2.0);
-    std::iter::once(corridor).chain(degrees.iter().map(branch)).collect()
+    plan(&std::iter::once(corridor).chain(degrees.iter().map(branch)).collect::<Vec<_>>())
 }
 
 #[test]
@@ -277,14 +242,14 @@ fn alcoves_rooms_and_bends_are_no_junctions() {
     let niche = ([12.0, 0.0], [12.0, 2.0], 1.6);
     let room = [([22.0, 0.0], [22.0, 2.0], 0.9), ([18.0, 4.5], [26.0, 4.5], 6.0)];
     let alcove = ([36.0, 0.0], [36.0, 7.0], 2.0);
-    let plan = [corridor, niche, room[0], room[1], alcove];
-    assert_eq!(visits(&events(&plan, &[[3.0, 0.0], [47.0, 0.0]], 0.0)), []);
+    let rooms = plan(&[corridor, niche, room[0], room[1], alcove]);
+    assert_eq!(visits(&events(&rooms, &[[3.0, 0.0], [47.0, 0.0]], 0.0)), []);
     // A corridor that turns by 45 degrees, and by 90.
-    let bends = [
+    let bends = plan(&[
         ([0.0, 0.0], [15.0, 0.0], 2.0),
         ([15.0, 0.0], [25.0, 10.0], 2.0),
         ([25.0, 10.0], [15.0, 20.0], 2.0),
-    ];
+    ]);
     let way = [[2.0, 0.0], [15.0, 0.0], [25.0, 10.0], [17.0, 18.0]];
     assert_eq!(visits(&events(&bends, &way, 0.0)), []);
 }
@@ -302,30 +267,31 @@ fn a_robot_that_turns_back_between_junctions_enters_the_same_one_again() {
 
 #[test]
 fn a_robot_that_turns_back_at_the_end_of_a_corridor_was_at_a_dead_end() {
-    let plan = [([0.0, 0.0], [30.0, 0.0], 2.0), ([14.0, -14.0], [14.0, 0.0], 2.0)];
+    let plan = plan(&[([0.0, 0.0], [30.0, 0.0], 2.0), ([14.0, -14.0], [14.0, 0.0], 2.0)]);
     // Past the stem on the right to the end of the corridor, and back into the stem.
     let way = [[2.0, 0.0], [28.0, 0.0], [14.0, 0.0], [14.0, -10.0]];
-    let mut params = LaserParams::default();
-    params.corner.corners = true;
-    let events = events_with(&params, &plan, &way, 0.0);
+    let events = events_of(&drive(180, &plan, &way, 0.0), &with_corners());
     assert_eq!(visits(&events), [(Some(3), Some(1)), (Some(1), Some(0)), (Some(3), Some(1))]);
 }
 
 #[test]
 fn sharp_bends_are_vertices_if_corners_are() {
-    let mut params = LaserParams::default();
-    params.corner.corners = true;
     // Two right angles, then a bend by 45 degrees.
-    let plan = [
+    let plan = plan(&[
         ([0.0, 0.0], [20.0, 0.0], 2.0),
         ([20.0, 0.0], [20.0, 16.0], 2.0),
         ([20.0, 16.0], [36.0, 16.0], 2.0),
         ([36.0, 16.0], [50.0, 30.0], 2.0),
-    ];
-    let way = [[2.0, 0.0], [20.0, 0.0], [20.0, 16.0], [36.0, 16.0], [46.0, 26.0]];
+    ]);
+    let scans = drive(
+        180,
+        &plan,
+        &[[2.0, 0.0], [20.0, 0.0], [20.0, 16.0], [36.0, 16.0], [46.0, 26.0]],
+        0.0,
+    );
     let corner = (Some(2), Some(1));
-    assert_eq!(visits(&events_with(&params, &plan, &way, 0.0)), [corner, corner]);
-    assert_eq!(visits(&events(&plan, &way, 0.0)), []);
+    assert_eq!(visits(&events_of(&scans, &with_corners())), [corner, corner]);
+    assert_eq!(visits(&events_of(&scans, &LaserParams::default())), []);
 }
 
 /// The folder of CARMEN logs, if it exists; `TOPOSLAM_CARMEN_LOGS` names it.
@@ -339,7 +305,7 @@ fn carmen_folder() -> Option<PathBuf> {
     found.then_some(folder)
 }
 
-/// The visits of junctions in a log of a real building, as they were marked by hand, and the scans of the log,
+/// The visits of vertices in a log of a real building, as they were marked by hand, and the scans of the log,
 /// each with its odometry.
 fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<PlacedScan>)> {
     let folder = carmen_folder()?;
@@ -377,12 +343,20 @@ fn are_as_marked(name: &str, marked: &[MarkedVisit], events: &RunEvents) {
 }
 
 #[test]
-fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
-    for (name, count) in [("aces", 12), ("seattle", 3)] {
+fn the_vertices_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
+    for (name, junctions, corners) in [("aces", 12, 16), ("seattle", 3, 12)] {
         let Some((mut marked, scans)) = recorded(name) else { return };
-        marked.retain(|visit| visit.0 >= 3);
-        assert_eq!(marked.len(), count);
-        are_as_marked(name, &marked, &events_of(&scans, &LaserParams::default()));
+        assert_eq!(marked.len(), corners);
+        let mut at_junctions = marked.clone();
+        at_junctions.retain(|visit| visit.0 >= 3);
+        assert_eq!(at_junctions.len(), junctions);
+        are_as_marked(name, &at_junctions, &events_of(&scans, &LaserParams::default()));
+        if name == "seattle" {
+            // The log begins in a dead end, and ends before the robot has passed the last corner.
+            marked.remove(0);
+            marked.pop();
+        }
+        are_as_marked(name, &marked, &events_of(&scans, &with_corners()));
     }
 }
 
@@ -424,8 +398,6 @@ fn the_drift_of_the_heading_is_measured_by_the_walls() {
 #[test]
 fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts() {
     let limit = LaserParams::default().matching.max_drift.to_degrees();
-    let mut matched = LaserParams::default();
-    matched.matching.rounds = ROUNDS;
     for name in ["aces", "seattle"] {
         let Some((mut marked, scans)) = recorded(name) else { return };
         marked.retain(|visit| visit.0 >= 3);
@@ -434,7 +406,11 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
             let measured = measured_drift(&scans);
             assert_eq!(measured > limit, drift != 0.0, "{name}: {measured} for {drift}");
             if drift != 0.0 {
-                are_as_marked(&format!("{name}, {drift}"), &marked, &events_of(&scans, &matched));
+                are_as_marked(
+                    &format!("{name}, {drift}"),
+                    &marked,
+                    &events_of(&scans, &matched(ROUNDS)),
+                );
             }
         }
     }
@@ -442,11 +418,9 @@ fn the_junctions_of_two_real_buildings_are_visited_alike_if_the_heading_drifts()
 
 #[test]
 fn the_frame_of_odometry_does_not_matter() {
-    let mut matched = LaserParams::default();
-    matched.matching.rounds = ROUNDS;
     for name in ["aces", "seattle"] {
         let Some((_, scans)) = recorded(name) else { return };
-        for params in [LaserParams::default(), matched] {
+        for params in [LaserParams::default(), matched(ROUNDS)] {
             let visits_from = |turn: f64, shift| {
                 let motion = Isometry2::new(Vector2::from(shift), turn.to_radians());
                 let placed = scans.iter().map(|(scan, at)| (scan.clone(), moved(&motion, at)));
@@ -457,21 +431,5 @@ fn the_frame_of_odometry_does_not_matter() {
                 assert_eq!(visits_from(turn, shift), expected, "{name}, turned by {turn}");
             }
         }
-    }
-}
-
-#[test]
-fn the_corners_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
-    let mut params = LaserParams::default();
-    params.corner.corners = true;
-    for (name, count) in [("aces", 16), ("seattle", 12)] {
-        let Some((mut marked, scans)) = recorded(name) else { return };
-        assert_eq!(marked.len(), count);
-        if name == "seattle" {
-            // The log begins in a dead end, and ends before the robot has passed the last corner.
-            marked.remove(0);
-            marked.pop();
-        }
-        are_as_marked(name, &marked, &events_of(&scans, &params));
     }
 }

@@ -21,29 +21,26 @@ use toposlam_robot::{
     run_settings::RunSettings,
 };
 use toposlam_simulator::{
-    FaultKind, RobotFault, SimulatedRobot, SimulationConfig, plans,
+    FaultKind, RobotFault, SimulatedRobot, SimulationConfig,
     run::{Run, run},
-    starts_of,
 };
 use toposlam_vision::camera::Camera;
 
-/// A run on shape 6, perhaps with a fault, and its log.
-fn logged(fault: Option<RobotFault>, check: impl Fn(&Run)) -> Vec<u8> {
-    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
-    let facing = starts_of(&plan)[0];
-    let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
-    (setting.keeps_track, setting.faults) = (true, fault.into_iter().collect());
-    let mut log = Vec::new();
-    let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
-    let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
-    let (robot, algorithm) = (setting.by_scene(), MappingAlgorithm::Algorithm1);
-    check(&run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200)));
-    recorder.finish().unwrap();
-    log
+use crate::recorded::{in_plan, recorded};
+
+/// A run on shape 6, perhaps with a fault; the topic, the time and the body of each message of its log.
+fn logged(fault: Option<RobotFault>, check: impl Fn(&Run)) -> Vec<Message> {
+    let faults = fault.into_iter().collect();
+    let config = SimulationConfig { faults, ..in_plan("shape-6", 5) };
+    let settings = RunSettings::new(MappingAlgorithm::Algorithm1, 200);
+    let (run, log) = recorded(&config, config.by_scene(), NoSensor, &settings);
+    check(&run);
+    messages(&log)
 }
 
-/// Topic, time and body of each message.
-fn messages(log: &[u8]) -> Vec<(String, u64, Vec<u8>)> {
+type Message = (String, u64, Vec<u8>);
+
+fn messages(log: &[u8]) -> Vec<Message> {
     let messages = MessageStream::new(log).unwrap().map(Result::unwrap);
     messages.map(|m| (m.channel.topic.clone(), m.log_time, m.data.to_vec())).collect()
 }
@@ -55,10 +52,10 @@ fn number(body: &[u8], at: usize) -> f64 {
 #[test]
 fn a_log_has_the_run_from_head_to_end_in_the_order_of_time() {
     let images = std::cell::Cell::new(0);
-    let log = messages(&logged(None, |run| {
+    let log = logged(None, |run| {
         assert_eq!((run.mapping.moves(), run.explore_moves), (8, 8));
         images.set(run.frames as usize);
-    }));
+    });
     let count = |topic: &str| log.iter().filter(|(found, ..)| found == topic).count();
     assert_eq!((&*log[0].0, &*log[log.len() - 1].0), ("/toposlam/run", "/toposlam/end"));
     assert!(log.is_sorted_by_key(|(_, time, _)| *time));
@@ -74,7 +71,7 @@ fn a_log_has_the_run_from_head_to_end_in_the_order_of_time() {
 
 #[test]
 fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_image_is_taken() {
-    let log = messages(&logged(None, |_| {}));
+    let log = logged(None, |_| {});
     // The body of a twist: x ahead first, the turn about z last.
     let mut standing = true;
     let mut stops = 0;
@@ -96,7 +93,7 @@ fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_image_is_taken() {
 #[test]
 fn the_end_of_a_log_has_the_reason_why_the_robot_gave_up() {
     let blocked = RobotFault::at(FaultKind::Blocked, 20);
-    let log = messages(&logged(Some(blocked), |run| assert!(run.error.is_some())));
+    let log = logged(Some(blocked), |run| assert!(run.error.is_some()));
     let (topic, _, body) = &log[log.len() - 1];
     let text = String::from_utf8_lossy(body);
     assert!(topic == "/toposlam/end" && text.contains("gave-up\0"), "{text}");
@@ -158,9 +155,7 @@ impl Pixels {
 
 #[test]
 fn a_frame_is_decoded_once_for_sensing_the_log_and_the_page() {
-    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
-    let facing = starts_of(&plan)[0];
-    let robot = WithImages(SimulationConfig::at_start(plan, facing, 5).by_scene());
+    let robot = WithImages(in_plan("shape-6", 5).by_scene());
     let camera = Some(Camera::superscout().sized([64, 48]));
     let mut log = Vec::new();
     let mut recorder = Recorder::new(&mut log, &messages::Run::default(), camera).unwrap();
@@ -192,13 +187,11 @@ fn a_full_disk_stops_the_run() {
             Ok(())
         }
     }
-    let (_, plan) = plans().unwrap().swap_remove(2);
-    let facing = starts_of(&plan)[0];
-    let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
-    setting.keeps_track = true;
+    let config = in_plan("shape-6", 5);
     let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
-    let (robot, algorithm) = (setting.by_scene(), MappingAlgorithm::Algorithm1);
-    let run = run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
+    let (robot, settings) =
+        (config.by_scene(), RunSettings::new(MappingAlgorithm::Algorithm1, 200));
+    let run = run(&config.plan, config.marker, robot, NoSensor, &mut recorder, &settings);
     assert!(recorder.stop());
     let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
     assert_eq!(run.error, stopped);

@@ -1,43 +1,34 @@
 //! Recorded runs, mapped again off-line.
 
 use toposlam_logs::{
-    messages::Run,
     reader::Log,
     record::NoSensor,
-    recorder::Recorder,
     topic_map::{Role, TopicMap},
 };
-use toposlam_model::mapping::{MapWalk, MappingAlgorithm, MappingError};
+use toposlam_model::mapping::{
+    MapWalk,
+    MappingAlgorithm::{self, Algorithm1, Folding},
+    MappingError,
+};
 use toposlam_robot::{
     replay::{Agreement, ReplayError, replay},
     run_settings::RunSettings,
 };
-use toposlam_simulator::{SimulationConfig, plans, run::run, starts_of};
 
-fn recorded(seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
-    recorded_in("shape-6", seed, algorithm)
-}
+use crate::recorded::{in_plan, recorded};
 
-fn recorded_in(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
-    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == world).unwrap();
-    let facing = starts_of(&plan)[0];
-    let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
-    setting.keeps_track = true;
-    let mut log = Vec::new();
-    let mut recorder = Recorder::new(&mut log, &Run::default(), None).unwrap();
-    let robot = setting.by_scene();
-    let run = run(&plan, facing, robot, NoSensor, &mut recorder, &RunSettings::new(algorithm, 200));
-    recorder.finish().unwrap();
+fn logged(world: &str, seed: u64, algorithm: MappingAlgorithm) -> (Log, MapWalk) {
+    let config = in_plan(world, seed);
+    let settings = RunSettings::new(algorithm, 200);
+    let (run, log) = recorded(&config, config.by_scene(), NoSensor, &settings);
     (Log::of_bytes(log).unwrap(), run.mapping)
 }
 
 // paper: exp.off-line
 #[test]
 fn a_replay_reproduces_the_map_and_all_results() {
-    for seed in 0..4 {
-        let algorithm =
-            [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding][seed as usize % 2];
-        let (log, mapping) = recorded(seed, algorithm);
+    for (seed, algorithm) in (0..).zip([Algorithm1, Folding, Algorithm1, Folding]) {
+        let (log, mapping) = logged("shape-6", seed, algorithm);
         let topics = TopicMap::unambiguous(&log);
         let replay = replay(&log, &topics, None, &RunSettings::new(algorithm, 200)).unwrap();
         let to = replay.comparison;
@@ -53,29 +44,22 @@ fn a_replay_reproduces_the_map_and_all_results() {
 
 #[test]
 fn another_algorithm_than_the_recorded_one_takes_another_door() {
-    let [algorithm1, folding] = [MappingAlgorithm::Algorithm1, MappingAlgorithm::Folding];
-    let (log, _) = recorded_in("building-12", 0, algorithm1);
-    let replay =
-        replay(&log, &TopicMap::unambiguous(&log), None, &RunSettings::new(folding, 200)).unwrap();
+    let (log, _) = logged("building-12", 0, Algorithm1);
+    let topics = TopicMap::unambiguous(&log);
+    let replay = replay(&log, &topics, None, &RunSettings::new(Folding, 200)).unwrap();
     assert_eq!(replay.comparison.difference.unwrap().what, "door");
 }
 
 #[test]
-fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
-    let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
-    let mapping = TopicMap::unambiguous(&log);
-    let replay =
-        replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 4)).unwrap();
-    assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
-    let to = replay.comparison;
+fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one_nor_is_a_log_without_commands() {
+    let (log, _) = logged("shape-6", 0, Algorithm1);
+    let topics = TopicMap::unambiguous(&log);
+    let bounded = replay(&log, &topics, None, &RunSettings::new(Algorithm1, 4)).unwrap();
+    assert!(matches!(bounded.error, Some(MappingError::Bound { .. })));
+    let to = bounded.comparison;
     assert!(!to.doors.is_whole());
     assert_eq!((to.map, to.difference), (None, None));
-}
-
-#[test]
-fn a_log_without_commands_is_not_replayed() {
-    let (log, _) = recorded(0, MappingAlgorithm::Algorithm1);
-    let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-    let replay = replay(&log, &mapping, None, &RunSettings::new(MappingAlgorithm::Algorithm1, 200));
-    assert!(matches!(replay, Err(ReplayError::Nothing)));
+    let topics = topics.only(&[Role::Scene, Role::Odometry]);
+    let without = replay(&log, &topics, None, &RunSettings::new(Algorithm1, 200));
+    assert!(matches!(without, Err(ReplayError::Nothing)));
 }

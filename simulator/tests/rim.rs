@@ -1,22 +1,15 @@
 //! The mirror's rim in single rendered images, against the renderer's truth.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use image::{GrayImage, imageops};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
-use toposlam_model::{driving::pose::Pose, floor_plan::FloorPlan, format::world_file};
-use toposlam_simulator::{Building, Effects, LOOKS, Rig, render};
+use toposlam_model::driving::pose::Pose;
+use toposlam_simulator::{Building, Effects, LOOKS, Rig, plan_named, render};
 use toposlam_vision::camera::{
     Camera, OpticsModel,
     rim::{self, RimError},
 };
-
-fn plan() -> FloorPlan {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../worlds/shape-8.toml");
-    world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
-}
 
 /// A rendered image, and the true centre and radius of its rim.
 struct Rendered {
@@ -34,7 +27,7 @@ fn rendered(seed: u64, size: [u32; 2], settings: &[(&str, f64)]) -> Rendered {
     }
     let camera = effects.camera(&Camera::superscout().sized(size)).unwrap();
     let OpticsModel::SphericalMirror(mirror) = camera.optics else { panic!() };
-    let plan = plan();
+    let plan = plan_named("shape-8").unwrap();
     let pose = Pose {
         position: [rng.random_range(-0.3..=0.3), rng.random_range(0.3..=7.7)],
         heading: rng.random_range(-3.0..=3.0),
@@ -152,4 +145,15 @@ fn an_image_without_a_rim_has_none() {
             );
         }
     }
+}
+
+#[test]
+fn with_a_dark_rim_less_than_half_of_the_visible_rim_is_brighter_inside_than_outside() {
+    let brighter = |dark: f64| {
+        let settings = [&CROPPED[..], &[("holder", 0.0), ("dark-rim", dark)]].concat();
+        let images = (0..6).map(|seed| rendered(seed, [1280, 960], &settings).brighter());
+        images.sum::<f64>() / 6.0
+    };
+    let [without, with] = [0.0, 0.65].map(brighter);
+    assert!(without > 0.9 && (0.15..0.5).contains(&with), "{without} {with}");
 }

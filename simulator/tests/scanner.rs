@@ -1,22 +1,15 @@
 //! A simulated robot with a laser scanner: what it measures, how it drives by it, and its logs.
 
-use std::{
-    f64::consts::PI,
-    fs::{self, File},
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{f64::consts::PI, fs, path::Path, sync::Arc};
 
 use toposlam_conform::{Evidence, ExtractConfig, extract};
 use toposlam_logs::{
-    messages,
     reader::Log,
     record::{FrameSensor, NoSensor, RobotSensor},
-    recorder::Recorder,
     topic_map::TopicMap,
 };
 use toposlam_model::{
-    driving::{odometry::Odometry, pose::Pose},
+    driving::{odometry::Odometry, pose::Pose, scene::Place},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     format::world_file,
@@ -24,47 +17,16 @@ use toposlam_model::{
 };
 use toposlam_robot::{recording::Recording, run_settings::RunSettings};
 use toposlam_simulator::{
-    Corridor, CorridorPlan, LaserScanner, NamedPlan, RobotEquipment, ScannedBuilding,
-    ScannerParams, SimulatedRobot, SimulationConfig,
+    NamedPlan, RobotEquipment, ScannerParams, SimulatedRobot, SimulationConfig,
     evaluation::{run_sampler::RunSampler, sampling::sample, traversals::TraversalSampler},
     plans,
     random_plan::random_plan,
     run::{RunOutcome, offline, run},
     sample_verdict::SampleVerdict,
 };
-use toposlam_vision::laser::{scan::Reading, scene::ScanPlaceSensor};
+use toposlam_vision::laser::scene::ScanPlaceSensor;
 
-use crate::laser;
-
-#[test]
-fn the_simulated_scanner_measures_what_another_ray_caster_computes() {
-    let corridors = [
-        ([-20.0, 1.0], [20.0, 1.0], 2.0),
-        ([3.0, 1.0], [14.0, 19.0], 1.7),
-        ([-9.0, 1.0], [-4.0, -16.0], 2.4),
-        ([14.0, 19.0], [-6.0, 23.0], 2.0),
-    ];
-    let corridor = |&(from, to, width): &laser::Corridor| Corridor { ends: [from, to], width };
-    let plan =
-        CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() };
-    let params = ScannerParams { range: 80.0, ..ScannerParams::PLAIN };
-    let building = Arc::new(ScannedBuilding::new(&plan, &params, 1));
-    let scanner = LaserScanner::new(building, &params, 1);
-    for (number, [x, y]) in
-        [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]].into_iter().enumerate()
-    {
-        let heading = 0.7 * number as f64;
-        let scan = scanner.scan(Pose { position: [x, y], heading }, 1, 0.0).unwrap();
-        let mut count = 0;
-        for (bearing, reading) in scan.readings() {
-            let expected = laser::range(&corridors, [x, y], heading + bearing);
-            let Reading::Hit(range) = reading else { panic!("{reading:?}, {expected}") };
-            // A ray that passes a corner by a hair is right on either side of it.
-            count += usize::from((range - expected).abs() > 1e-3);
-        }
-        assert!(count <= 1, "{count} of 360 rays from {x}, {y}");
-    }
-}
+use crate::{laser, recorded::recorded};
 
 /// The verdicts on traversals by laser in these plans.
 fn traversals(plans: Vec<NamedPlan>, seed: u64, params: ScannerParams) -> Vec<SampleVerdict> {
@@ -141,34 +103,21 @@ fn long_8() -> Arc<FloorPlan> {
 }
 
 /// The log of a run through the plan.
-fn logged(
-    name: &str,
-    robot: impl Fn(&SimulationConfig) -> SimulatedRobot,
-    sensor: impl FrameSensor,
-) -> PathBuf {
-    let plan = long_8();
-    let facing = Dart(0);
-    let mut config = SimulationConfig::at_start(plan.clone(), facing, 2);
+fn logged(robot: impl Fn(&SimulationConfig) -> SimulatedRobot, sensor: impl FrameSensor) -> Log {
+    let mut config = SimulationConfig::at_start(long_8(), Dart(0), 2);
     // The heading drifts by up to about 1.5 degrees in 10 m.
     (config.keeps_track, config.noise) = (true, 0.1);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let file = File::create(&path).unwrap();
-    let head = messages::Run { world: "long-8".to_owned(), ..messages::Run::default() };
-    let mut recorder = Recorder::new(file, &head, None).unwrap();
-    let algorithm = MappingAlgorithm::Algorithm1;
-    let settings = RunSettings::new(algorithm, 200);
-    let run = run(&plan, facing, robot(&config), sensor, &mut recorder, &settings);
+    let settings = RunSettings::new(MappingAlgorithm::Algorithm1, 200);
+    let (run, log) = recorded(&config, robot(&config), sensor, &settings);
     assert_eq!(run.outcome(), RunOutcome::Right);
-    recorder.finish().unwrap();
-    path
+    Log::of_bytes(log).unwrap()
 }
 
 /// The degree of each junction with at least three doors, and the door taken.
-fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
-    let log = Log::open(log).unwrap();
-    let mapping = TopicMap::from_log(&log).unwrap();
+fn visits_in(log: &Log, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
+    let mapping = TopicMap::from_log(log).unwrap();
     let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
-    let run = extract(&log, &mapping, &config, &()).unwrap();
+    let run = extract(log, &mapping, &config, &()).unwrap();
     assert!(run.scans > 0 || evidence != Evidence::Laser);
     let visits = laser::visits(&run.events).into_iter();
     visits
@@ -177,7 +126,7 @@ fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
 }
 
 /// Checks that the evidence in a log shows the visits that the log records.
-fn shows(log: &Path, evidence: &[Evidence]) {
+fn shows(log: &Log, evidence: &[Evidence]) {
     let recorded = visits_in(log, Evidence::Recorded);
     assert!(recorded.len() >= 4, "{recorded:?}");
     for &evidence in evidence {
@@ -190,11 +139,11 @@ fn the_scans_of_a_run_show_the_visits_that_it_records() {
     // Among furniture and people some visits are missed: `evaluate laser` measures how many.
     let sensor = RobotSensor::Laser(Box::default());
     let robot = |config: &SimulationConfig| config.by_laser(&ScannerParams::PLAIN);
-    shows(&logged("laser-plain.mcap", robot, sensor), &[Evidence::Laser]);
+    shows(&logged(robot, sensor), &[Evidence::Laser]);
     let params = ScannerParams::default();
     let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
     let both = [Evidence::Scenes, Evidence::Laser];
-    shows(&logged("camera-and-laser.mcap", robot, NoSensor), &both);
+    shows(&logged(robot, NoSensor), &both);
 }
 
 #[test]
@@ -202,14 +151,13 @@ fn the_scans_of_a_run_show_the_visits_that_it_records() {
 fn the_scans_of_a_look_around_show_the_visits_that_a_run_records() {
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let robot = |config: &SimulationConfig| config.by_laser(&params);
-    let log = logged("laser-180.mcap", robot, RobotSensor::Laser(Box::default()));
+    let log = logged(robot, RobotSensor::Laser(Box::default()));
     shows(&log, &[Evidence::Laser]);
 }
 
 /// A scanner that does not see behind remembers what it saw on its way.
 #[test]
 fn a_scanner_of_180_degrees_knows_the_door_by_which_it_came() {
-    use toposlam_model::driving::scene::Place;
     let plan = long_8();
     let params = ScannerParams { field_of_view: 180.0, ..ScannerParams::PLAIN };
     let config = SimulationConfig::at_start(plan.clone(), Dart(0), 1);

@@ -11,11 +11,18 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    fn around(one: [f64; 2], other: [f64; 2]) -> Self {
+    /// The least rectangle with both positions.
+    pub fn around(one: [f64; 2], other: [f64; 2]) -> Self {
         Self {
             least: [one[0].min(other[0]), one[1].min(other[1])],
             greatest: [one[0].max(other[0]), one[1].max(other[1])],
         }
+    }
+
+    /// The rectangle with this middle, and half of its extent along each axis.
+    pub fn centred(middle: [f64; 2], half: [f64; 2]) -> Self {
+        let corner = |side: f64| [0, 1].map(|axis| middle[axis] + side * half[axis]);
+        Self { least: corner(-1.0), greatest: corner(1.0) }
     }
 
     #[must_use]

@@ -52,7 +52,7 @@ impl Direction {
     }
 
     /// The direction from one position to another; `None` if it is not along an axis.
-    fn between(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
+    pub fn between(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
         let [x, y] = [to[0] - from[0], to[1] - from[1]];
         match (x.abs() <= TOLERANCE, y.abs() <= TOLERANCE) {
             (true, false) if y > 0.0 => Some(Self::North),

@@ -12,7 +12,7 @@ use toposlam_model::{
 
 use super::verdict::{MarkerVerdict, PlaceVerdict};
 use crate::{
-    truth::{MarkerTruth, Truth},
+    truth::{JunctionTruth, Truth},
     view_sampler::RenderedView,
 };
 
@@ -81,13 +81,12 @@ impl JudgedView {
         }
     }
 
-    /// The marker, if it should be seen: the robot is approaching its L and near enough.
-    pub fn marker_ahead(&self) -> Option<MarkerTruth> {
-        let marker = self.view.marker()?;
-        let vertex = self.view.plan.graph().vertex(self.view.marker?);
-        let is_here = self.truth.junctions().iter().any(|junction| junction.vertex == vertex);
-        let is_near = marker.distance.is_some_and(|distance| (0.2..=0.8).contains(&distance));
-        (is_here && is_near).then_some(marker)
+    /// Whether the marker should be seen: the robot is approaching its L and near enough.
+    pub fn is_marker_ahead(&self) -> bool {
+        let marked = self.view.marker.map(|dart| self.view.plan.graph().vertex(dart));
+        let here = self.truth.junctions().iter().find(|junction| Some(junction.vertex) == marked);
+        let distance = here.and_then(JunctionTruth::distance);
+        distance.is_some_and(|distance| (0.2..=0.8).contains(&distance))
     }
 
     /// Whether a marker is reported where there is none, or with a wrong door.

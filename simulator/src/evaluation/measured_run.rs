@@ -10,14 +10,12 @@ use toposlam_model::{
     mapping::MappingAlgorithm,
     measurement::{MeasuredVisit, MeasurementCheck, MeasurementContradiction, MeasurementNoise},
 };
-use toposlam_robot::{
-    measured_hallway::log_noise, run_settings::RunSettings, superscout::MEASUREMENT_NOISE,
-};
+use toposlam_robot::{measured_hallway::log_noise, superscout::MEASUREMENT_NOISE};
 
 use super::run_sampler::{RobotCase, RunSampler, dart_bound};
 use crate::{
     RobotEquipment,
-    run::{RunOutcome, explored, run},
+    run::{RunOutcome, explored},
 };
 
 /// The changes of a length that are to be found, in metres.
@@ -70,12 +68,8 @@ impl RunSampler {
         watch: &dyn Watch,
     ) -> Option<MeasuredRun> {
         let case = self.case(number)?;
-        let (plan, marker) = (case.config.plan.clone(), case.config.marker);
-        let (robot, sensor) = equipment.robot(&case.config, number);
         let mut recorder = Recorder::default();
-        let observer = (&mut recorder, StoppedBy(watch));
-        let settings = RunSettings::new(ALGORITHM, dart_bound(&plan));
-        let run = run(&plan, marker, robot, sensor, observer, &settings);
+        let run = case.run(equipment, ALGORITHM, (&mut recorder, StoppedBy(watch)));
         if run.outcome() != RunOutcome::Right {
             return None;
         }

@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_logs::record::StoppedBy;
+use toposlam_logs::record::{RunObserver, StoppedBy};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
@@ -14,7 +14,7 @@ use toposlam_robot::{explorer::ExplorerError, run_settings::RunSettings};
 
 use crate::{
     FAULTS, FaultKind, NamedPlan, RobotEquipment, RobotFault, SimulationConfig,
-    run::{RunOutcome, WayToMarker, explored, run},
+    run::{Run, RunOutcome, WayToMarker, explored, run},
     starts_of,
 };
 
@@ -39,6 +39,20 @@ pub struct RobotCase {
     pub plan_name: String,
     /// The robot and its surroundings.
     pub config: SimulationConfig,
+}
+
+impl RobotCase {
+    /// Makes the run of the robot.
+    pub(super) fn run(
+        &self,
+        equipment: &RobotEquipment,
+        method: impl Into<MappingMethod>,
+        observer: impl RunObserver,
+    ) -> Run<'_> {
+        let SimulationConfig { plan, marker, .. } = &self.config;
+        let (robot, sensor) = equipment.robot(&self.config, self.number);
+        run(plan, *marker, robot, sensor, observer, &RunSettings::new(method, dart_bound(plan)))
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -134,23 +148,21 @@ impl RunSampler {
         watch: &dyn Watch,
     ) -> Option<JudgedRun> {
         let case = self.case(number)?;
-        let SimulationConfig { plan, marker, .. } = case.config.clone();
-        let (robot, sensor) = equipment.robot(&case.config, number);
-        let settings = RunSettings::new(self.method, dart_bound(&plan));
-        let run = run(&plan, marker, robot, sensor, StoppedBy(watch), &settings);
+        let run = case.run(equipment, self.method, StoppedBy(watch));
         let ending = run.outcome();
         if let RunOutcome::GaveUp(MappingError::World(ExplorerError::Stopped { .. })) = ending {
             return None;
         }
+        let SimulationConfig { plan, marker, .. } = &case.config;
         Some(JudgedRun {
-            case,
             ending,
             way_to_marker: run.way_to_marker,
             moves: [run.moves, run.explore_moves],
-            certificate_moves: certificate_length(plan.graph(), marker) as u64,
+            certificate_moves: certificate_length(plan.graph(), *marker) as u64,
             mapped: run.mapped,
             seconds: run.seconds,
             frames: run.frames,
+            case,
         })
     }
 }

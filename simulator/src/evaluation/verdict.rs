@@ -4,9 +4,7 @@ use std::{f64::consts::FRAC_PI_4, fmt};
 
 use nalgebra::Point2;
 use toposlam_model::{
-    driving::scene::{
-        CentreLine, HallwayView, JunctionView, MarkerView, Place, Scene, undirected, wrapped,
-    },
+    driving::scene::{CentreLine, JunctionView, MarkerView, Place, Scene, undirected, wrapped},
     floor_plan::JunctionKind,
 };
 use toposlam_vision::{
@@ -16,7 +14,7 @@ use toposlam_vision::{
 
 use crate::{
     sample_verdict::SampleVerdict,
-    truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
+    truth::{JunctionTruth, Truth},
 };
 
 /// The verdict on a scene's place.
@@ -48,21 +46,16 @@ impl PlaceVerdict {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HallwayErrors {
-    /// Error of the direction, in radians.
-    pub heading: f64,
-    /// Errors of the distances to the left and the right wall, in metres.
-    pub sides: [f64; 2],
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct JunctionErrors {
-    /// For each centre line, clockwise from the entry door: its distance from the true turning
-    /// point in metres, and the error of its direction in radians.
-    pub lines: Vec<(f64, f64)>,
-    /// Error of the turning point, in metres.
-    pub turning_point: f64,
+/// What a recognized hallway or junction can be wrong by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaceError {
+    HallwayDirection,
+    /// The distance to the wall on one side.
+    HallwaySide,
+    /// The distance of a centre line from the true turning point.
+    CentreLinePlace,
+    CentreLineDirection,
+    TurningPoint,
 }
 
 /// The verdict on a scene's marker.
@@ -132,30 +125,37 @@ fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
     None
 }
 
-pub fn hallway_errors(truth: &HallwayTruth, view: &HallwayView) -> HallwayErrors {
-    // The view may have the opposite direction.
-    let turned = (truth.heading - view.heading).cos() < 0.0;
-    let [left, right] = if turned { [truth.right, truth.left] } else { [truth.left, truth.right] };
-    HallwayErrors {
-        heading: undirected(view.heading - truth.heading).abs(),
-        sides: [(view.left - left).abs(), (view.right - right).abs()],
+/// The errors of a place that is recognized as what it is, in metres or radians.
+pub fn place_errors(truth: &Truth, place: &Place) -> Vec<(PlaceError, f64)> {
+    match (truth, place) {
+        (Truth::Hallway(truth), Place::Hallway(view)) => {
+            // The view may have the opposite direction.
+            let turned = (truth.heading - view.heading).cos() < 0.0;
+            let [left, right] =
+                if turned { [truth.right, truth.left] } else { [truth.left, truth.right] };
+            vec![
+                (PlaceError::HallwayDirection, undirected(view.heading - truth.heading).abs()),
+                (PlaceError::HallwaySide, (view.left - left).abs()),
+                (PlaceError::HallwaySide, (view.right - right).abs()),
+            ]
+        }
+        (Truth::Junction(truth), Place::Junction(view)) => {
+            let Some(doors) = same_doors(truth, view) else { return Vec::new() };
+            let point = Point2::from(truth.turning_point);
+            let lines = doors.iter().zip(&view.doors).flat_map(|(door, line)| {
+                let off = unit(line.direction).perp(&(point - Point2::from(line.through))).abs();
+                let turned = wrapped(line.direction - door).abs();
+                [(PlaceError::CentreLinePlace, off), (PlaceError::CentreLineDirection, turned)]
+            });
+            let off = distance(point, view.turning_point);
+            lines.chain([(PlaceError::TurningPoint, off)]).collect()
+        }
+        _ => Vec::new(),
     }
 }
 
-/// The errors of a junction in a scene; `None` if the doors are not its doors.
-pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<JunctionErrors> {
-    let doors = same_doors(truth, view)?;
-    let point = Point2::from(truth.turning_point);
-    let lines = doors.iter().zip(&view.doors).map(|(door, line)| {
-        let off = unit(line.direction).perp(&(point - Point2::from(line.through))).abs();
-        (off, wrapped(line.direction - door).abs())
-    });
-    let turning_point = distance(point, view.turning_point);
-    Some(JunctionErrors { lines: lines.collect(), turning_point })
-}
-
 /// The verdict on a scene's marker, given the true marker, if there is one.
-pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> MarkerVerdict {
+pub fn judge_marker(truth: Option<&MarkerView>, seen: Option<&MarkerView>) -> MarkerVerdict {
     match (truth, seen) {
         (_, None) => MarkerVerdict::NotSeen,
         (Some(truth), Some(seen)) if is_on(truth, seen.position) => {
@@ -165,7 +165,7 @@ pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> M
     }
 }
 
-fn is_on(marker: &MarkerTruth, position: [f64; 2]) -> bool {
+fn is_on(marker: &MarkerView, position: [f64; 2]) -> bool {
     let (axis, off) = (unit(marker.axis), Point2::from(position) - Point2::from(marker.position));
     axis.dot(&off).abs() <= MARKER_LENGTH / 2.0 + MARKER_OFF
         && axis.perp(&off).abs() <= MARKER_WIDTH / 2.0 + MARKER_OFF
@@ -185,12 +185,12 @@ impl fmt::Display for PlaceVerdict {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use toposlam_model::{
         driving::{
-            scene::{HallwayStatus, Reason},
+            scene::{HallwayStatus, HallwayView, Reason},
             visit::JunctionShape,
         },
         embedded_graph::Vertex,
@@ -198,135 +198,132 @@ mod tests {
     };
 
     use super::*;
+    use crate::truth::HallwayTruth;
 
-    const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.1, left: 0.9, right: 0.7 };
+    pub(in crate::evaluation) const HALLWAY: HallwayTruth =
+        HallwayTruth { heading: 0.1, left: 0.9, right: 0.7 };
+    pub(in crate::evaluation) const L: JunctionShape = JunctionShape([true, true, false, false]);
 
-    /// The shape does not matter here.
-    const ENTERED: Option<JunctionShape> = Some(JunctionShape([true; 4]));
-
-    fn junction(doors: &[f64], form: Option<JunctionShape>) -> JunctionTruth {
+    /// A junction with these doors, so far ahead.
+    pub(in crate::evaluation) fn junction(
+        doors: &[f64],
+        form: Option<JunctionShape>,
+        ahead: f64,
+    ) -> JunctionTruth {
         JunctionTruth {
             vertex: Vertex(0),
             kind: [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T][doors.len() - 1],
             form,
             doors: doors.to_vec(),
-            turning_point: [0.4, 0.0],
+            turning_point: [ahead, 0.0],
         }
     }
 
-    fn scene(place: Place) -> Scene {
-        Scene { place, marker: None }
+    pub(in crate::evaluation) fn in_hallway(heading: f64, left: f64, right: f64) -> Place {
+        let status = HallwayStatus::Clear;
+        Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 })
     }
 
-    fn hallway(heading: f64, left: f64, right: f64) -> HallwayView {
-        HallwayView { heading, left, right, status: HallwayStatus::Clear, confidence: 1.0 }
-    }
-
-    fn view(doors: &[f64]) -> JunctionView {
-        let turning_point = [0.4, 0.0];
+    fn view(doors: &[f64], turning_point: [f64; 2]) -> JunctionView {
         let line = |&direction: &f64| CentreLine { through: turning_point, direction };
         JunctionView { doors: doors.iter().map(line).collect(), turning_point, confidence: 1.0 }
     }
 
-    fn says(truth: &Truth, doors: &[f64]) -> PlaceVerdict {
-        judge(truth, &scene(Place::Junction(view(doors))))
+    pub(in crate::evaluation) fn at_junction(doors: &[f64], turning_point: [f64; 2]) -> Place {
+        Place::Junction(view(doors, turning_point))
     }
 
     #[test]
     fn the_verdict_depends_on_kind_and_entry_and_on_where_the_robot_is() {
-        let entered = Truth::Junction(junction(&[PI, FRAC_PI_2], ENTERED));
+        let near = junction(&[PI, FRAC_PI_2], Some(L), 0.4);
+        let entered = Truth::Junction(near.clone());
         // After a turn any door may be the entry.
-        let turned = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
-        let near = junction(&[PI, FRAC_PI_2], ENTERED);
+        let turned = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None, 0.4));
         let between = Truth::Between(HALLWAY, vec![near.clone()]);
-        let two = Truth::Between(HALLWAY, vec![near, junction(&[PI], ENTERED)]);
-        let hallway_truth = Truth::Hallway(HALLWAY);
-        for (truth, doors, verdict) in [
-            (&entered, &[PI - 0.3, FRAC_PI_2 + 0.2][..], PlaceVerdict::Right),
-            (&entered, &[-PI + 0.3, FRAC_PI_2], PlaceVerdict::Right),
-            (&entered, &[FRAC_PI_2, PI], PlaceVerdict::WrongEntry),
-            (&entered, &[PI, -FRAC_PI_2], PlaceVerdict::WrongEntry),
-            (&entered, &[PI], PlaceVerdict::WrongKind),
-            (&entered, &[PI, FRAC_PI_2, 0.0], PlaceVerdict::WrongKind),
-            (&turned, &[FRAC_PI_2, 0.0], PlaceVerdict::Right),
-            (&turned, &[0.0, FRAC_PI_2], PlaceVerdict::Right),
-            (&turned, &[0.0, -FRAC_PI_2], PlaceVerdict::WrongEntry),
-            (&turned, &[0.0], PlaceVerdict::WrongKind),
-            (&between, &[PI, FRAC_PI_2], PlaceVerdict::Right),
-            (&between, &[PI, -FRAC_PI_2], PlaceVerdict::WrongEntry),
-            (&between, &[PI], PlaceVerdict::WrongKind),
-            (&two, &[PI], PlaceVerdict::Right),
-            (&hallway_truth, &[PI], PlaceVerdict::JunctionForHallway),
+        let two = Truth::Between(HALLWAY, vec![near, junction(&[PI], Some(L), 0.4)]);
+        let hallway = Truth::Hallway(HALLWAY);
+        let scene = |doors: &[f64]| at_junction(doors, [0.4, 0.0]);
+        for (truth, place, verdict) in [
+            (&entered, scene(&[PI - 0.3, FRAC_PI_2 + 0.2]), PlaceVerdict::Right),
+            (&entered, scene(&[-PI + 0.3, FRAC_PI_2]), PlaceVerdict::Right),
+            (&entered, scene(&[FRAC_PI_2, PI]), PlaceVerdict::WrongEntry),
+            (&entered, scene(&[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry),
+            (&entered, scene(&[PI]), PlaceVerdict::WrongKind),
+            (&entered, scene(&[PI, FRAC_PI_2, 0.0]), PlaceVerdict::WrongKind),
+            (&turned, scene(&[FRAC_PI_2, 0.0]), PlaceVerdict::Right),
+            (&turned, scene(&[0.0, FRAC_PI_2]), PlaceVerdict::Right),
+            (&turned, scene(&[0.0, -FRAC_PI_2]), PlaceVerdict::WrongEntry),
+            (&turned, scene(&[0.0]), PlaceVerdict::WrongKind),
+            (&between, scene(&[PI, FRAC_PI_2]), PlaceVerdict::Right),
+            (&between, scene(&[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry),
+            (&between, scene(&[PI]), PlaceVerdict::WrongKind),
+            (&two, scene(&[PI]), PlaceVerdict::Right),
+            (&hallway, scene(&[PI]), PlaceVerdict::JunctionForHallway),
+            (&entered, in_hallway(0.5, 0.1, 0.1), PlaceVerdict::HallwayForJunction),
+            (&between, in_hallway(0.5, 0.1, 0.1), PlaceVerdict::Right),
+            (&hallway, in_hallway(0.5, 0.1, 0.1), PlaceVerdict::Right),
+            (&entered, Place::Unknown(Reason::FewWalls), PlaceVerdict::Unknown),
         ] {
-            assert_eq!(says(truth, doors), verdict, "{truth:?} {doors:?}");
+            let scene = Scene { place, marker: None };
+            assert_eq!(judge(truth, &scene), verdict, "{truth:?} {scene:?}");
         }
-        for (truth, verdict) in [
-            (&entered, PlaceVerdict::HallwayForJunction),
-            (&between, PlaceVerdict::Right),
-            (&hallway_truth, PlaceVerdict::Right),
-        ] {
-            let place = Place::Hallway(hallway(0.5, 0.1, 0.1));
-            assert_eq!(judge(truth, &scene(place)), verdict, "{truth:?}");
+    }
+
+    #[track_caller]
+    fn close(found: &[(PlaceError, f64)], expected: &[(PlaceError, f64)]) {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (one, other) in found.iter().zip(expected) {
+            assert!(one.0 == other.0 && (one.1 - other.1).abs() < 1e-12, "{one:?} {other:?}");
         }
-        let unknown = Place::Unknown(Reason::FewWalls);
-        assert_eq!(judge(&entered, &scene(unknown)), PlaceVerdict::Unknown);
     }
 
     #[test]
-    fn a_hallway_has_errors_of_direction_and_sides() {
-        let errors = hallway_errors(&HALLWAY, &hallway(0.15, 0.92, 0.71));
-        assert!((errors.heading - 0.05).abs() < 1e-12);
-        assert!((errors.sides[0] - 0.02).abs() < 1e-12 && (errors.sides[1] - 0.01).abs() < 1e-12);
+    fn a_hallway_has_errors_of_direction_and_sides_and_a_junction_of_centre_lines() {
+        use PlaceError::{
+            CentreLineDirection, CentreLinePlace, HallwayDirection, HallwaySide, TurningPoint,
+        };
+        let errors = place_errors(&Truth::Hallway(HALLWAY), &in_hallway(0.15, 0.92, 0.71));
+        close(&errors, &[(HallwayDirection, 0.05), (HallwaySide, 0.02), (HallwaySide, 0.01)]);
         // Across the hallway, both of its directions are equally near to ahead.
-        let across = HallwayTruth { heading: FRAC_PI_2 - 0.01, ..HALLWAY };
-        let errors = hallway_errors(&across, &hallway(-FRAC_PI_2 + 0.01, 0.7, 0.9));
-        assert!((errors.heading - 0.02).abs() < 1e-12, "{errors:?}");
-        assert!(errors.sides.iter().all(|&side| side < 1e-12), "{errors:?}");
-    }
+        let across = Truth::Hallway(HallwayTruth { heading: FRAC_PI_2 - 0.01, ..HALLWAY });
+        let errors = place_errors(&across, &in_hallway(-FRAC_PI_2 + 0.01, 0.7, 0.9));
+        close(&errors, &[(HallwayDirection, 0.02), (HallwaySide, 0.0), (HallwaySide, 0.0)]);
 
-    #[test]
-    fn a_junction_has_errors_of_centre_lines() {
-        let truth = junction(&[PI, FRAC_PI_2], ENTERED);
-        let mut seen = view(&[PI - 0.02, FRAC_PI_2]);
-        seen.turning_point = [0.43, 0.04];
+        let truth = Truth::Junction(junction(&[PI, FRAC_PI_2], Some(L), 0.4));
+        let mut seen = view(&[PI - 0.02, FRAC_PI_2], [0.43, 0.04]);
         seen.doors[0].through = [0.4, 0.04];
         seen.doors[1].through = [0.43, 7.0];
-        let errors = junction_errors(&truth, &seen).unwrap();
-        assert!((errors.turning_point - 0.05).abs() < 1e-12);
-        assert!((errors.lines[0].0 - 0.04 * 0.02_f64.cos()).abs() < 1e-12);
-        assert!((errors.lines[0].1 - 0.02).abs() < 1e-12);
-        assert!((errors.lines[1].0 - 0.03).abs() < 1e-12 && errors.lines[1].1 < 1e-12);
-        assert_eq!(junction_errors(&truth, &view(&[PI])), None);
+        let expected = [
+            (CentreLinePlace, 0.04 * 0.02_f64.cos()),
+            (CentreLineDirection, 0.02),
+            (CentreLinePlace, 0.03),
+            (CentreLineDirection, 0.0),
+            (TurningPoint, 0.05),
+        ];
+        close(&place_errors(&truth, &Place::Junction(seen)), &expected);
+        assert_eq!(place_errors(&truth, &at_junction(&[PI], [0.4, 0.0])), []);
     }
 
     #[test]
     fn a_marker_is_seen_only_where_it_is() {
-        let truth = MarkerTruth {
-            position: [0.5, 0.0],
-            axis: 0.0,
-            points: PI,
-            door: Some(Door(0)),
-            distance: Some(0.5),
-        };
         let at = |x, y, door: Option<u32>| MarkerView {
             position: [x, y],
             axis: 0.0,
             door: door.map(Door),
         };
-        let phantom = MarkerVerdict::Phantom;
-        for (x, y, door, verdict) in [
-            (0.5, 0.0, Some(0), MarkerVerdict::Seen(Some(true))),
-            (0.9, 0.2, Some(1), MarkerVerdict::Seen(Some(false))),
-            (0.9, 0.2, None, MarkerVerdict::Seen(None)),
-            (1.0, 0.0, None, phantom),
-            (0.5, 0.3, None, phantom),
+        let (there, unknown) = (Some(at(0.5, 0.0, Some(0))), Some(at(0.5, 0.0, None)));
+        for (truth, seen, verdict) in [
+            (there, Some(at(0.5, 0.0, Some(0))), MarkerVerdict::Seen(Some(true))),
+            (there, Some(at(0.9, 0.2, Some(1))), MarkerVerdict::Seen(Some(false))),
+            (there, Some(at(0.9, 0.2, None)), MarkerVerdict::Seen(None)),
+            (there, Some(at(1.0, 0.0, None)), MarkerVerdict::Phantom),
+            (there, Some(at(0.5, 0.3, None)), MarkerVerdict::Phantom),
+            (None, unknown, MarkerVerdict::Phantom),
+            (there, None, MarkerVerdict::NotSeen),
+            (unknown, Some(at(0.5, 0.0, Some(1))), MarkerVerdict::Seen(None)),
         ] {
-            assert_eq!(judge_marker(Some(&truth), Some(&at(x, y, door))), verdict, "{x} {y}");
+            let found = judge_marker(truth.as_ref(), seen.as_ref());
+            assert_eq!(found, verdict, "{truth:?} {seen:?}");
         }
-        assert_eq!(judge_marker(None, Some(&at(0.5, 0.0, None))), phantom);
-        assert_eq!(judge_marker(Some(&truth), None), MarkerVerdict::NotSeen);
-        let truth = MarkerTruth { door: None, ..truth };
-        let seen = judge_marker(Some(&truth), Some(&at(0.5, 0.0, Some(1))));
-        assert_eq!(seen, MarkerVerdict::Seen(None));
     }
 }

@@ -1,12 +1,12 @@
 //! The figures of sensing with a camera, their targets, and what views that are not right have in common.
 
-use toposlam_model::{driving::scene::Place, percept::Sighting};
+use toposlam_model::percept::Sighting;
 
 use super::{
     judge::Calibration,
     judged_view::{JudgedView, JudgedVisit, SceneClass, Zone},
-    report::{CENTIMETRES, DEGREES, ErrorSample, Errors, Figures, Group, Rate, halved, labelled},
-    verdict::{MarkerVerdict, PlaceVerdict, hallway_errors, junction_errors},
+    report::{CENTIMETRES, DEGREES, Errors, Figures, Group, Rate, halved, labelled},
+    verdict::{MarkerVerdict, PlaceError, PlaceVerdict, place_errors},
 };
 use crate::truth::Truth;
 
@@ -74,14 +74,14 @@ fn markers(views: &[JudgedView]) -> Vec<Rate> {
     let of = "marker";
     vec![
         Rate::counted(of, "missed, 0.2 to 0.8 m before it", None, views, |judged| {
-            judged.marker_ahead().map(|_| judged.marker == MarkerVerdict::NotSeen)
+            judged.is_marker_ahead().then_some(judged.marker == MarkerVerdict::NotSeen)
         }),
         Rate::counted(of, "seen where it is not", Some(0.0), views, |judged| {
             Some(judged.marker == MarkerVerdict::Phantom)
         }),
         Rate::counted(of, "door wrong, 0.2 to 0.8 m before it", None, views, |judged| {
             let MarkerVerdict::Seen(Some(right)) = judged.marker else { return None };
-            judged.marker_ahead().map(|_| !right)
+            judged.is_marker_ahead().then_some(!right)
         }),
     ]
 }
@@ -116,36 +116,22 @@ fn of_visits(visits: &[JudgedVisit]) -> Vec<Rate> {
 
 /// The errors of hallways and junctions that were recognized as such.
 fn errors(views: &[JudgedView]) -> Vec<Errors> {
-    let hallways = views.iter().filter_map(|judged| match (&judged.truth, &judged.scene.place) {
-        (Truth::Hallway(truth), Place::Hallway(view)) => Some(hallway_errors(truth, view)),
-        _ => None,
-    });
-    let hallways: Vec<_> = hallways.collect();
-    let junctions = views.iter().filter(|judged| judged.zone() == Zone::Before);
-    let junctions = junctions.filter_map(|judged| match (&judged.truth, &judged.scene.place) {
-        (Truth::Junction(truth), Place::Junction(view)) => junction_errors(truth, view),
-        _ => None,
-    });
-    let junctions: Vec<_> = junctions.collect();
-    let lines = || junctions.iter().flat_map(|errors| &errors.lines);
-    let headings: ErrorSample = hallways.iter().map(|errors| errors.heading).collect();
-    let sides = hallways.iter().flat_map(|errors| errors.sides).collect();
-    let places = lines().map(|&(off, _)| off).collect();
-    let directions = lines().map(|&(_, turned)| turned).collect();
-    let points = junctions.iter().map(|errors| errors.turning_point).collect();
+    use PlaceError::{
+        CentreLineDirection, CentreLinePlace, HallwayDirection, HallwaySide, TurningPoint,
+    };
+    let counting = views.iter().filter(|judged| judged.counts());
+    let found = counting.flat_map(|judged| place_errors(&judged.truth, &judged.scene.place));
+    let found: Vec<_> = found.collect();
     [
-        ("hallway", "direction", DEGREES, headings, &[(0.5, 0.5), (0.99, 4.0)][..]),
-        ("hallway", "distance to a side", CENTIMETRES, sides, &[(0.5, 2.0)]),
-        ("junction", "place of a centre line", CENTIMETRES, places, &[(0.95, 5.0)]),
-        ("junction", "direction of a centre line", DEGREES, directions, &[(0.95, 3.0)]),
-        ("junction", "turning point", CENTIMETRES, points, &[]),
+        (HallwayDirection, "hallway", "direction", DEGREES, &[(0.5, 0.5), (0.99, 4.0)][..]),
+        (HallwaySide, "hallway", "distance to a side", CENTIMETRES, &[(0.5, 2.0)]),
+        (CentreLinePlace, "junction", "place of a centre line", CENTIMETRES, &[(0.95, 5.0)]),
+        (CentreLineDirection, "junction", "direction of a centre line", DEGREES, &[(0.95, 3.0)]),
+        (TurningPoint, "junction", "turning point", CENTIMETRES, &[]),
     ]
-    .map(|(of, what, unit, sample, limits)| Errors {
-        of,
-        what,
-        unit,
-        sample,
-        limits: limits.to_vec(),
+    .map(|(kind, of, what, unit, limits)| {
+        let sample = found.iter().filter(|(other, _)| *other == kind).map(|&(_, error)| error);
+        Errors { of, what, unit, sample: sample.collect(), limits: limits.to_vec() }
     })
     .into()
 }
@@ -198,25 +184,24 @@ mod tests {
 
     use toposlam_model::{
         driving::{
-            scene::{CentreLine, HallwayStatus, HallwayView, JunctionView, Reason, Scene},
+            scene::{Place, Reason, Scene},
             visit::JunctionShape,
         },
-        embedded_graph::Vertex,
-        floor_plan::JunctionKind,
         percept::{Door, Percept},
     };
 
     use super::*;
     use crate::{
         LOOKS,
-        evaluation::{report::TargetStatus, verdict},
-        truth::{HallwayTruth, JunctionTruth},
-        view_sampler::ViewSampler,
-        view_sampler::{RenderedView, WhichEffects},
+        evaluation::{
+            report::TargetStatus,
+            verdict::{
+                self,
+                tests::{HALLWAY, L, at_junction, in_hallway, junction},
+            },
+        },
+        view_sampler::{RenderedView, ViewSampler, WhichEffects},
     };
-
-    const L: JunctionShape = JunctionShape([true, true, false, false]);
-    const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.0, left: 0.8, right: 0.8 };
 
     fn judged(truth: &Truth, place: Place) -> JudgedView {
         let views = ViewSampler::from_looks(&LOOKS, [640, 480], 0).unwrap();
@@ -228,25 +213,16 @@ mod tests {
     }
 
     fn corner(before: f64) -> Truth {
-        Truth::Junction(JunctionTruth {
-            vertex: Vertex(0),
-            kind: JunctionKind::L,
-            form: Some(L),
-            doors: vec![PI, FRAC_PI_2],
-            turning_point: [before, 0.0],
-        })
+        Truth::Junction(junction(&[PI, FRAC_PI_2], Some(L), before))
     }
 
-    fn in_hallway(heading: f64) -> Place {
-        let status = HallwayStatus::Clear;
-        Place::Hallway(HallwayView { heading, left: 0.81, right: 0.79, status, confidence: 1.0 })
+    /// A hallway that is seen nearly as it is.
+    fn seen_hallway(off: f64) -> Place {
+        in_hallway(HALLWAY.heading + off, HALLWAY.left + 0.01, HALLWAY.right - 0.01)
     }
 
-    fn at_junction(doors: &[f64]) -> Place {
-        let turning_point = [0.3, 0.01];
-        let line = |&direction| CentreLine { through: turning_point, direction };
-        let doors = doors.iter().map(line).collect();
-        Place::Junction(JunctionView { doors, turning_point, confidence: 1.0 })
+    fn seen(doors: &[f64]) -> Place {
+        at_junction(doors, [0.3, 0.01])
     }
 
     fn rate(figures: &Figures, of: &str, what: &str) -> Rate {
@@ -257,16 +233,16 @@ mod tests {
     #[test]
     fn views_are_counted_in_their_zones() {
         let hallway = Truth::Hallway(HALLWAY);
-        let (l, unknown) = (at_junction(&[PI, FRAC_PI_2]), Place::Unknown(Reason::FewWalls));
+        let (l, unknown) = (seen(&[PI, FRAC_PI_2]), Place::Unknown(Reason::FewWalls));
         let views = [
-            judged(&hallway, in_hallway(0.01)),
-            judged(&hallway, in_hallway(-0.02)),
+            judged(&hallway, seen_hallway(0.01)),
+            judged(&hallway, seen_hallway(-0.02)),
             judged(&hallway, unknown.clone()),
-            judged(&hallway, at_junction(&[PI])),
+            judged(&hallway, seen(&[PI])),
             judged(&corner(0.3), l.clone()),
-            judged(&corner(0.3), at_junction(&[PI])),
+            judged(&corner(0.3), seen(&[PI])),
             judged(&corner(-0.2), unknown),
-            judged(&Truth::Between(HALLWAY, Vec::new()), in_hallway(0.0)),
+            judged(&Truth::Between(HALLWAY, Vec::new()), seen_hallway(0.0)),
         ];
         let figures = figures(&views, &[], Calibration::Right);
         for (of, what, counts) in [
@@ -334,8 +310,8 @@ mod tests {
     #[test]
     fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
         assert_eq!(figures(&[], &[], Calibration::Right).status(), TargetStatus::NotShown);
-        let hallway = judged(&Truth::Hallway(HALLWAY), in_hallway(0.0));
-        let junction = judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2]));
+        let hallway = judged(&Truth::Hallway(HALLWAY), seen_hallway(0.0));
+        let junction = judged(&corner(0.3), seen(&[PI, FRAC_PI_2]));
         for (hallways, junctions, status) in [
             // None of 11 cases failed: the rate is at most 23.8 %, and the target is 0.5 %.
             (11, 20, TargetStatus::NotShown),

@@ -181,10 +181,6 @@ impl Building {
         }
     }
 
-    pub fn look(&self) -> &BuildingLook {
-        &self.look
-    }
-
     pub fn walls(&self) -> &[BuildingWall] {
         &self.walls
     }
@@ -235,7 +231,7 @@ impl Building {
     pub(crate) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
         match part {
             WallPart::Bare => self.colours.wall,
-            WallPart::Baseboard => self.scuffed(along, height),
+            WallPart::Baseboard => self.scuffed([along, height]),
             WallPart::Leaf => self.colours.door,
             WallPart::Frame => self.colours.frame,
             WallPart::Poster(number) => match self.things[number as usize] {
@@ -270,7 +266,8 @@ impl Building {
         self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
-    pub(crate) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
+    /// The colour of the stripe at a place on it.
+    pub(crate) fn scuffed(&self, [x, y]: [f32; 2]) -> [f32; 3] {
         if self.scuffs == 0.0 {
             return self.colours.stripe;
         }
@@ -281,10 +278,6 @@ impl Building {
             self.colours.stripe[c] * (1.0 - share)
                 + share * 0.5 * (self.colours.floor[c] + self.colours.wall[c])
         })
-    }
-
-    pub(crate) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
-        self.scuffed(place[0], place[1])
     }
 }
 
@@ -362,11 +355,8 @@ fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
 fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
     let position = plan.junction(plan.graph().vertex(dart)).position;
     let along = plan.direction(dart).vector();
-    let half = [0, 1].map(|axis| if along[axis] == 0.0 { MARKER[1] } else { MARKER[0] } / 2.0);
-    Rectangle {
-        least: [0, 1].map(|axis| position[axis] - half[axis]),
-        greatest: [0, 1].map(|axis| position[axis] + half[axis]),
-    }
+    let half = along.map(|along| if along == 0.0 { MARKER[1] } else { MARKER[0] } / 2.0);
+    Rectangle::centred(position, half)
 }
 
 /// Height of the ceiling, in metres.

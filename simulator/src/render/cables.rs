@@ -79,10 +79,8 @@ fn cable(floor: &Rectangle, rng: &mut impl Rng, pieces: &mut Vec<CablePiece>) {
 
 impl CablePiece {
     fn around(&self) -> Rectangle {
-        let ends = [self.from, self.to].map(|end| end.map(f64::from));
-        let [least, greatest] =
-            [f64::min, f64::max].map(|pick| [0, 1].map(|axis| pick(ends[0][axis], ends[1][axis])));
-        Rectangle { least, greatest }.widened(f64::from(self.half))
+        let [from, to] = [self.from, self.to].map(|end| end.map(f64::from));
+        Rectangle::around(from, to).widened(self.half.into())
     }
 
     #[inline]

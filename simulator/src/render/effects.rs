@@ -186,50 +186,41 @@ impl Effects {
 
     /// Sets an effect.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), KnobError> {
-        let Some((knob, place)) = KNOBS.iter().zip(self.values()).find(|(k, _)| k.name == name)
-        else {
-            return Err(KnobError::Unknown { name: name.to_owned() });
-        };
-        if !knob.allowed.contains(&value) {
-            let (&least, &greatest) = (knob.allowed.start(), knob.allowed.end());
-            return Err(KnobError::OutOfRange { name: knob.name, value, least, greatest });
-        }
-        *place = value;
+        *self.values()[knob_index(name, value)?] = value;
         Ok(())
     }
 }
 
-/// Values of some effects.
+/// The index among the [`KNOBS`] of the one that may have this value.
+fn knob_index(name: &str, value: f64) -> Result<usize, KnobError> {
+    let index = KNOBS.iter().position(|knob| knob.name == name);
+    let index = index.ok_or_else(|| KnobError::Unknown { name: name.to_owned() })?;
+    let Knob { name, allowed, .. } = &KNOBS[index];
+    if allowed.contains(&value) {
+        Ok(index)
+    } else {
+        let (&least, &greatest) = (allowed.start(), allowed.end());
+        Err(KnobError::OutOfRange { name, value, least, greatest })
+    }
+}
+
+/// Values of some effects, each with the index of its knob.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct EffectSettings(Vec<(&'static Knob, f64)>);
+pub struct EffectSettings(Vec<(usize, f64)>);
 
 impl EffectSettings {
     /// Settings by the names of effects.
     pub fn new<'n>(settings: impl IntoIterator<Item = (&'n str, f64)>) -> Result<Self, KnobError> {
-        let mut effects = Effects::plain();
-        let settings = settings.into_iter().map(|(name, value)| {
-            effects.set(name, value)?;
-            let knob = KNOBS.iter().find(|knob| knob.name == name);
-            Ok((knob, value))
-        });
-        let settings: Vec<_> = settings.collect::<Result<_, KnobError>>()?;
-        Ok(Self(settings.into_iter().filter_map(|(knob, value)| Some((knob?, value))).collect()))
+        let setting = |(name, value)| Ok((knob_index(name, value)?, value));
+        settings.into_iter().map(setting).collect::<Result<_, _>>().map(Self)
     }
 
     /// These effects with the settings.
     pub fn applied(&self, mut effects: Effects) -> Effects {
-        for (place, knob) in effects.values().into_iter().zip(KNOBS) {
-            let set = self.0.iter().rev().find(|(other, _)| other.name == knob.name);
-            if let Some(&(_, value)) = set {
-                *place = value;
-            }
+        for &(index, value) in &self.0 {
+            *effects.values()[index] = value;
         }
         effects
-    }
-
-    /// The settings, in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        self.0.iter().map(|(knob, value)| (knob.name, *value))
     }
 }
 

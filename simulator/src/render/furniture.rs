@@ -237,7 +237,7 @@ impl<'a> BlocksAround<'a> {
             length,
             face: 6 * number + face,
             colour: self.blocks[number as usize].colour.map(|channel| channel * shade),
-            place: [0, 1].map(|axis| ray.origin[axis] + length * ray.direction[axis]),
+            place: ray.place(length),
         })
     }
 }

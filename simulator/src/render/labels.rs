@@ -10,15 +10,13 @@ use crate::render::{
     optics::RayPath,
     renderer::Shot,
     rig::{PixelRay, Rig},
-    sight_lines::SightLines,
     surfaces::Surface,
 };
 
 /// The class of the middle of each pixel, row by row: [`PixelClass::Unseen`] on the robot, its
 /// struts and outside the mirror, and never [`PixelClass::Unknown`].
 pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<PixelClass> {
-    let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
-    let shot = Shot::new(rig, building, &lines, pose, effects);
+    let shot = Shot::new(rig, building, pose, effects);
     let [width, height] = rig.image();
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
     let class = |((u, v), ray): ((u32, u32), &PixelRay)| match shot

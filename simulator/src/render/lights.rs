@@ -37,14 +37,6 @@ struct Spot {
 /// The spot ends at this multiple of its half extent.
 const FADED: f64 = 2.5;
 
-impl Spot {
-    fn reach(&self) -> Rectangle {
-        let edge =
-            |side: f64| [0, 1].map(|axis| self.middle[axis] + side * FADED * self.half[axis]);
-        Rectangle { least: edge(-1.0), greatest: edge(1.0) }
-    }
-}
-
 pub(crate) struct Lights {
     pub(crate) lamps: Vec<Lamp>,
     spots: Vec<Spot>,
@@ -119,7 +111,9 @@ impl Lights {
             .collect();
         let floors: Vec<_> = plan.floor().collect();
         let reaches = Squares::new(&floors, 1.0, &reaches);
-        let spotted: Vec<_> = spots.iter().map(Spot::reach).collect();
+        let reach =
+            |spot: &Spot| Rectangle::centred(spot.middle, spot.half.map(|half| FADED * half));
+        let spotted: Vec<_> = spots.iter().map(reach).collect();
         let spotted = Squares::new(&floors, 1.0, &spotted);
         Self { lamps, spots, spotted, falloff: effects.lamp_falloff, walls_near, reaches }
     }

@@ -43,9 +43,7 @@ pub fn exposed(
     effects: &Effects,
     seed: u64,
 ) -> RgbImage {
-    let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
-    let shot = Shot::new(rig, building, &lines, pose, effects);
-    expose(shot.light(), rig, effects, seed)
+    expose(Shot::new(rig, building, pose, effects).light(), rig, effects, seed)
 }
 
 pub(crate) struct Shot<'a> {
@@ -61,13 +59,7 @@ pub(crate) struct Shot<'a> {
 }
 
 impl<'a> Shot<'a> {
-    pub(crate) fn new(
-        rig: &'a Rig,
-        building: &'a Building,
-        lines: &'a SightLines,
-        pose: Pose,
-        effects: &Effects,
-    ) -> Self {
+    pub(crate) fn new(rig: &'a Rig, building: &'a Building, pose: Pose, effects: &Effects) -> Self {
         let position = pose.position.map(|coordinate| coordinate as f32);
         let (sine, cosine) = pose.heading.sin_cos();
         let turns = (pose.heading / std::f64::consts::TAU).rem_euclid(1.0);
@@ -75,7 +67,7 @@ impl<'a> Shot<'a> {
             rig,
             view: BuildingView {
                 building,
-                lines,
+                lines: SightLines::from(pose.position, rig.off_axis, building.walls()),
                 blocks: BlocksAround::new(pose.position, rig.off_axis, &building.furniture),
             },
             body: Body::new(rig.optics.height, rig.image()[0], effects),

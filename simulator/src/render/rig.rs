@@ -35,6 +35,14 @@ pub(crate) struct WorldRay {
     pub(crate) turn: u16,
 }
 
+impl WorldRay {
+    /// Where it is at this length, seen from above.
+    #[inline]
+    pub(crate) fn place(&self, length: f32) -> [f32; 2] {
+        [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis])
+    }
+}
+
 impl From<CameraRay> for PixelRay {
     fn from(ray: CameraRay) -> Self {
         Self {

@@ -79,7 +79,7 @@ pub(crate) type Footprint = [f32; 2];
 /// A building, and the sight lines and the furniture from one place in it.
 pub(crate) struct BuildingView<'a> {
     pub(crate) building: &'a Building,
-    pub(crate) lines: &'a SightLines,
+    pub(crate) lines: SightLines,
     pub(crate) blocks: BlocksAround<'a>,
 }
 
@@ -115,7 +115,7 @@ impl BuildingView<'_> {
             }
             _ if direction[2] == 0.0 => RayEnd::Nothing,
             _ => {
-                let place = [0, 1].map(|axis| origin[axis] + length * direction[axis]);
+                let place = ray.place(length);
                 if direction[2] < 0.0 { RayEnd::Floor { place } } else { RayEnd::Ceiling { place } }
             }
         }
@@ -151,7 +151,7 @@ impl BuildingView<'_> {
                 let mut colour = match surface {
                     Surface::Cable => self.building.cables.at(place).unwrap_or_default(),
                     Surface::Marker => self.building.colours.marker,
-                    Surface::Tape => self.building.tape_colour(place),
+                    Surface::Tape => self.building.scuffed(place),
                     _ => self.floor_colour(place, ray, footprint),
                 };
                 let light = self.building.light.on_floor(place);
@@ -252,13 +252,11 @@ impl BuildingView<'_> {
         ray: &WorldRay,
         wall: Option<(f32, u32, f32)>,
     ) -> Option<[f32; 3]> {
-        let [x, y, height] = ray.origin;
-        let length = -height / ray.direction[2];
-        let reflected = WorldRay {
-            origin: [x + length * ray.direction[0], y + length * ray.direction[1], 0.0],
-            direction: [ray.direction[0], ray.direction[1], -ray.direction[2]],
-            turn: ray.turn,
-        };
+        let [along, left, down] = ray.direction;
+        let length = -ray.origin[2] / down;
+        let [x, y] = ray.place(length);
+        let (origin, direction) = ([x, y, 0.0], [along, left, -down]);
+        let reflected = WorldRay { origin, direction, turn: ray.turn };
         let wall = wall.map(|(before, number, along)| (before - length, number, along));
         self.furniture(&reflected, wall).map(|block| self.block_light(&block))
     }
@@ -279,10 +277,7 @@ impl BuildingView<'_> {
             (None, Some((length, wall, along))) if length < up => {
                 self.on_wall(wall, along, length * down - ray.origin[2]).1
             }
-            (None, _) => {
-                let place = [0, 1].map(|axis| ray.origin[axis] + up * ray.direction[axis]);
-                self.on_ceiling(place, 0.1 + 0.6 * (1.0 - gloss).max(0.0)).1
-            }
+            (None, _) => self.on_ceiling(ray.place(up), 0.1 + 0.6 * (1.0 - gloss).max(0.0)).1,
         };
         for (channel, mirrored) in colour.iter_mut().zip(mirrored) {
             *channel += share * mirrored;

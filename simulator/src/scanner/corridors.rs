@@ -1,9 +1,10 @@
 //! Plans of corridors at any angle and of any width, with round lobbies.
 
+use nalgebra::{Point2, Vector2};
 use toposlam_model::floor_plan::FloorPlan;
-use toposlam_vision::geometry::direction;
+use toposlam_vision::geometry::{direction, unit};
 
-use super::polygon::{ConvexPolygon, length};
+use super::polygon::{ConvexPolygon, Segment, length};
 
 /// The corridors of a building. A floor plan is one in which they run along the axes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,7 +16,7 @@ pub struct CorridorPlan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corridor {
     /// The ends of its middle line, in metres; its floor goes on for half of its width behind them.
-    pub ends: [[f64; 2]; 2],
+    pub ends: Segment,
     /// From wall to wall, in metres.
     pub width: f64,
 }
@@ -23,7 +24,7 @@ pub struct Corridor {
 /// A round lobby, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobby {
-    pub middle: [f64; 2],
+    pub middle: Point2<f64>,
     pub radius: f64,
 }
 
@@ -36,10 +37,9 @@ impl Corridor {
     }
 
     /// The point at a distance from its first end, and to the left of its middle line, in metres.
-    pub fn point(&self, along: f64, left: f64) -> [f64; 2] {
-        let (sine, cosine) = self.direction().sin_cos();
-        let [x, y] = self.ends[0];
-        [x + along * cosine - left * sine, y + along * sine + left * cosine]
+    pub fn point(&self, along: f64, left: f64) -> Point2<f64> {
+        let onwards = unit(self.direction());
+        self.ends[0] + along * onwards + left * Vector2::new(-onwards.y, onwards.x)
     }
 
     /// The direction from its first end to the other, in radians.
@@ -65,7 +65,7 @@ impl CorridorPlan {
 impl From<&FloorPlan> for CorridorPlan {
     fn from(plan: &FloorPlan) -> Self {
         let corridors = plan.hallways().iter().map(|hallway| Corridor {
-            ends: [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position),
+            ends: [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position.into()),
             width: plan.hallway_width(),
         });
         Self { corridors: corridors.collect(), lobbies: Vec::new() }

@@ -8,7 +8,7 @@ mod scanned_building;
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use nalgebra::Vector2;
+use nalgebra::{Isometry2, Point2};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use toposlam_model::driving::{pose::Pose, scene::wrapped};
@@ -21,7 +21,7 @@ use crate::render::{StreamPurpose, stream};
 
 pub use corridors::{Corridor, CorridorPlan, Lobby};
 pub use params::ScannerParams;
-pub use polygon::ConvexPolygon;
+pub use polygon::{ConvexPolygon, Segment};
 pub use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
 
 /// A laser scanner in a building, in the robot's centre.
@@ -81,7 +81,7 @@ impl LaserScanner {
             range_min: params.least_range,
             range_max: params.range,
         };
-        Scan::new(geometry, ranges.collect(), nalgebra::Isometry2::identity())
+        Scan::new(geometry, ranges.collect(), Isometry2::identity())
     }
 
     /// What each of a number of rays meets, from an angle on, counter-clockwise.
@@ -97,7 +97,7 @@ impl LaserScanner {
         let rays: Vec<_> = (0..count).map(|index| unit(first + index as f64 * step)).collect();
         let mut nearest: Vec<Option<Met>> = vec![None; count];
         for ScannedWall { ends, surface } in self.building.surfaces(time) {
-            let [one, other] = ends.map(|end| Vector2::from(end) - Vector2::from(position));
+            let [one, other] = ends.map(|end| end - Point2::from(position));
             let wall = other - one;
             let [from, to] = [one, other].map(angle);
             let turn = wrapped(to - from);
@@ -140,14 +140,17 @@ impl Met {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
+    use std::f64::consts::PI;
 
     use toposlam_vision::laser::scan::Reading;
 
     use super::*;
 
     fn plan(corridors: &[([[f64; 2]; 2], f64)]) -> CorridorPlan {
-        let corridor = |&(ends, width)| Corridor { ends, width };
+        let corridor = |&(ends, width): &([[f64; 2]; 2], f64)| Corridor {
+            ends: ends.map(Point2::from),
+            width,
+        };
         CorridorPlan { corridors: corridors.iter().map(corridor).collect(), lobbies: Vec::new() }
     }
 
@@ -167,42 +170,33 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_those_of_the_walls_at_any_angle_and_width() {
-        let along = Pose { position: [5.0, 0.25], heading: 0.0 };
-        // Bearings are those of the robot.
-        let turned = Pose { heading: FRAC_PI_2, ..along };
-        let (sine, cosine) = FRAC_PI_3.sin_cos();
-        let aslant = [[0.0, 0.0], [15.0 * cosine, 15.0 * sine]];
-        let bent = plan(&[([[-15.0, 0.0], [0.0, 0.0]], 2.0), (aslant, 1.6)]);
-        let middle = Pose { position: [6.0 * cosine, 6.0 * sine], heading: FRAC_PI_3 };
-        let lobby = Lobby { middle: [10.0, 0.0], radius: 2.5 };
-        let round = CorridorPlan { lobbies: vec![lobby], ..straight() };
-        let inside = Pose { position: [10.0, 0.0], heading: 0.0 };
-        for (plan, pose, degrees, expected) in [
-            (&straight(), along, 0.0, 16.0),
-            (&straight(), along, 180.0, 6.0),
-            (&straight(), along, 90.0, 0.75),
-            (&straight(), along, -90.0, 1.25),
-            (&straight(), along, 60.0, 0.75 / FRAC_PI_3.sin()),
-            (&straight(), along, -150.0, 2.5),
-            (&straight(), turned, 0.0, 0.75),
-            (&straight(), turned, -90.0, 16.0),
-            (&bent, middle, 0.0, 9.0 + 0.8),
-            (&bent, middle, 90.0, 0.8),
-            // Back along the corridor: the far wall of the other one is 1 m below its middle.
-            (&bent, middle, 180.0, 6.0 + 1.0 / sine),
-            (&round, inside, 0.0, 11.0),
-        ] {
-            let scan = scanner(plan, ScannerParams::PLAIN).scan(pose, 1, 0.0).unwrap();
-            let found = reading(&scan, degrees);
-            let is_it = matches!(found, Reading::Hit(range) if (range - expected).abs() < 1e-4);
-            assert!(is_it, "{pose:?} {degrees}: {found:?} {expected}");
-        }
-        let scan = scanner(&round, ScannerParams::PLAIN).scan(inside, 1, 0.0).unwrap();
-        for degrees in [40.0, 90.0, 135.0, -90.0] {
-            let found = reading(&scan, degrees);
-            let is_round = matches!(found, Reading::Hit(range) if (range - 2.5).abs() < 0.005);
-            assert!(is_round, "{degrees}: {found:?}");
+    fn a_range_is_the_distance_at_which_the_ray_leaves_the_floor() {
+        let corridors = [
+            ([[-20.0, 1.0], [20.0, 1.0]], 2.0),
+            ([[3.0, 1.0], [14.0, 19.0]], 1.7),
+            ([[-9.0, 1.0], [-4.0, -16.0]], 2.4),
+            ([[14.0, 19.0], [-6.0, 23.0]], 2.0),
+        ];
+        let lobbies = vec![Lobby { middle: Point2::new(-15.0, 1.0), radius: 2.5 }];
+        let plan = CorridorPlan { lobbies, ..plan(&corridors) };
+        let params = ScannerParams { range: 80.0, ..ScannerParams::PLAIN };
+        let (floor, scanner) = (plan.floor(), scanner(&plan, params));
+        for position in [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]] {
+            let heading = 0.1 * position[0];
+            let scan = scanner.scan(Pose { position, heading }, 1, 0.0).unwrap();
+            let mut wrong = 0;
+            for (bearing, reading) in scan.readings() {
+                let Reading::Hit(range) = reading else { panic!("{bearing}: {reading:?}") };
+                let is_floor = |length: f64| {
+                    let point = Point2::from(position) + length * unit(heading + bearing);
+                    floor.iter().any(|piece| piece.holds(point))
+                };
+                let steps = (0_u32..).map(|step| 0.05 * f64::from(step));
+                let is_free = steps.take_while(|&length| length < range - 1e-3).all(is_floor);
+                // A ray that passes a corner by a hair is right on either side of it.
+                wrong += usize::from(!is_free || is_floor(range + 1e-3));
+            }
+            assert!(wrong <= 1, "{wrong} of 360 rays from {position:?}");
         }
     }
 

@@ -2,18 +2,18 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Point2, Vector2};
-use toposlam_vision::geometry::{angle, unit};
+use nalgebra::{Point2, Vector2, center};
+use toposlam_vision::geometry::{direction, unit};
 
 /// A convex polygon, in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvexPolygon {
     /// Counter-clockwise.
-    corners: Vec<[f64; 2]>,
+    corners: Vec<Point2<f64>>,
 }
 
-/// A straight line between two points.
-pub(super) type Segment = [[f64; 2]; 2];
+/// The ends of a straight line.
+pub type Segment = [Point2<f64>; 2];
 
 /// What is nearer to the border than this is on it, in metres.
 const TOLERANCE: f64 = 1e-6;
@@ -22,42 +22,40 @@ const SHORTEST: f64 = 1e-3;
 
 impl ConvexPolygon {
     /// The rectangle around a straight line, with this width across it, and longer by `beyond` at both ends.
-    pub fn along([from, to]: [[f64; 2]; 2], width: f64, beyond: f64) -> Self {
-        let off = Point2::from(to) - Point2::from(from);
-        let middle = [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]));
-        Self::rectangle(middle, [length([from, to]) / 2.0 + beyond, width / 2.0], angle(off))
+    pub fn along([from, to]: Segment, width: f64, beyond: f64) -> Self {
+        let half = [length([from, to]) / 2.0 + beyond, width / 2.0];
+        Self::rectangle(center(&from, &to), half, direction(from, to))
     }
 
     /// A rectangle with this middle and these half sides, its first side in this direction.
-    pub fn rectangle(middle: [f64; 2], half: [f64; 2], direction: f64) -> Self {
+    pub fn rectangle(middle: Point2<f64>, half: [f64; 2], direction: f64) -> Self {
         let ahead = unit(direction);
         let left = Vector2::new(-ahead.y, ahead.x);
-        let corner = |[x, y]: [f64; 2]| {
-            (Vector2::from(middle) + x * half[0] * ahead + y * half[1] * left).into()
-        };
+        let corner = |[x, y]: [f64; 2]| middle + x * half[0] * ahead + y * half[1] * left;
         let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         Self { corners: signs.map(corner).to_vec() }
     }
 
     /// A regular polygon with so many corners on a circle.
-    pub fn round(middle: [f64; 2], radius: f64, corners: u32) -> Self {
+    pub fn round(middle: Point2<f64>, radius: f64, corners: u32) -> Self {
         let direction = |number: u32| TAU * f64::from(number) / f64::from(corners);
-        let corner = |number| (Vector2::from(middle) + radius * unit(direction(number))).into();
+        let corner = |number| middle + radius * unit(direction(number));
         Self { corners: (0..corners).map(corner).collect() }
     }
 
-    pub fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    pub fn sides(&self) -> impl Iterator<Item = Segment> + '_ {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(&from, &to)| [from, to])
     }
 
     /// Whether a point is inside, and not on the border.
-    pub fn holds(&self, point: [f64; 2]) -> bool {
+    pub fn holds(&self, point: impl Into<Point2<f64>>) -> bool {
+        let point = point.into();
         self.sides().all(|side| depth(side, point) > TOLERANCE)
     }
 
     /// Where a straight line is inside, as shares of its length.
-    pub fn inside(&self, [from, to]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    pub fn inside(&self, [from, to]: Segment) -> Option<[f64; 2]> {
         let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
         for side in self.sides() {
             let [begin, end] = [from, to].map(|point| depth(side, point) - TOLERANCE);
@@ -85,9 +83,8 @@ impl ConvexPolygon {
 }
 
 /// How far a point is to the left of a side, in metres.
-fn depth([from, to]: Segment, point: [f64; 2]) -> f64 {
-    let [off, side] = [point, to].map(|end| Point2::from(end) - Point2::from(from));
-    side.perp(&off) / length([from, to])
+fn depth([from, to]: Segment, point: Point2<f64>) -> f64 {
+    (to - from).perp(&(point - from)) / length([from, to])
 }
 
 /// The border of the union of polygons: the pieces of their sides that are inside no other one, each with the
@@ -113,12 +110,12 @@ pub(super) fn border(polygons: &[ConvexPolygon]) -> Vec<(usize, Segment)> {
 
 /// A part of a segment, given as shares of its length.
 pub(super) fn part([from, to]: Segment, begin: f64, end: f64) -> Segment {
-    [begin, end].map(|share| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+    [begin, end].map(|share| from + share * (to - from))
 }
 
 /// The length of a segment, in metres.
 pub(super) fn length([from, to]: Segment) -> f64 {
-    (to[0] - from[0]).hypot(to[1] - from[1])
+    (to.x - from.x).hypot(to.y - from.y)
 }
 
 #[cfg(test)]
@@ -137,22 +134,23 @@ mod tests {
 
     #[test]
     fn the_border_of_a_crossing_has_no_walls_across_its_corridors() {
-        let along = ConvexPolygon::along([[-5.0, 0.0], [5.0, 0.0]], 2.0, 0.0);
-        let across = ConvexPolygon::along([[0.0, -5.0], [0.0, 5.0]], 2.0, 0.0);
+        let along = ConvexPolygon::along([Point2::new(-5.0, 0.0), Point2::new(5.0, 0.0)], 2.0, 0.0);
+        let across =
+            ConvexPolygon::along([Point2::new(0.0, -5.0), Point2::new(0.0, 5.0)], 2.0, 0.0);
         let border = border(&[along, across]);
         // Four ends of 2 m, and eight walls of 4 m.
         assert!((total(&border) - 40.0).abs() < 1e-3, "{}", total(&border));
-        let in_crossing = |point: &[f64; 2]| point.iter().all(|part| part.abs() < 0.99);
+        let in_crossing = |point: &Point2<f64>| point.coords.amax() < 0.99;
         assert!(!border.iter().flatten().any(in_crossing));
     }
 
     #[test]
     fn corridors_that_go_on_straight_have_no_wall_between_them() {
-        let first = ConvexPolygon::along([[0.0, 0.0], [5.0, 0.0]], 2.0, 1.0);
-        let second = ConvexPolygon::along([[5.0, 0.0], [9.0, 0.0]], 1.6, 0.8);
+        let first = ConvexPolygon::along([Point2::new(0.0, 0.0), Point2::new(5.0, 0.0)], 2.0, 1.0);
+        let second = ConvexPolygon::along([Point2::new(5.0, 0.0), Point2::new(9.0, 0.0)], 1.6, 0.8);
         let border = border(&[first, second]);
-        let across = |segment: &&Segment| (segment[0][0] - segment[1][0]).abs() < 1e-9;
-        let planes: Vec<f64> = border.iter().filter(across).map(|wall| wall[0][0]).collect();
+        let across = |segment: &&Segment| (segment[0].x - segment[1].x).abs() < 1e-9;
+        let planes: Vec<f64> = border.iter().filter(across).map(|wall| wall[0].x).collect();
         // Both ends, and two shoulders of 0.2 m where the second corridor begins.
         assert_eq!(planes.len(), 4, "{border:?}");
         let shoulders = border.iter().filter(across).filter(|wall| length(**wall) < 0.3);
@@ -161,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_round_polygon_has_nearly_the_border_of_its_circle() {
-        let lobby = ConvexPolygon::round([1.0, 2.0], 2.0, 64);
+        let lobby = ConvexPolygon::round(Point2::new(1.0, 2.0), 2.0, 64);
         let around = total(&lobby.sides().collect::<Vec<_>>());
         assert!((around - 4.0 * PI).abs() < 0.02, "{around}");
         assert!(lobby.holds([2.9, 2.0]) && !lobby.holds([3.1, 2.0]));
@@ -169,19 +167,24 @@ mod tests {
 
     #[test]
     fn polygons_that_touch_do_not_meet() {
-        let square = |x: f64| ConvexPolygon::rectangle([x, 0.0], [1.0, 1.0], 0.0);
+        let square = |x: f64| ConvexPolygon::rectangle(Point2::new(x, 0.0), [1.0, 1.0], 0.0);
         assert!(square(0.0).meets(&square(1.9)));
         assert!(!square(0.0).meets(&square(2.0)));
-        let turned = ConvexPolygon::rectangle([2.2, 0.0], [1.0, 1.0], PI / 4.0);
+        let turned = ConvexPolygon::rectangle(Point2::new(2.2, 0.0), [1.0, 1.0], PI / 4.0);
         assert!(square(0.0).meets(&turned), "its corner is at 2.2 - 1.41");
     }
 
     #[test]
     fn a_line_is_inside_between_its_crossings() {
-        let square = ConvexPolygon::rectangle([0.0, 0.0], [1.0, 1.0], 0.0);
-        let [enters, leaves] = square.inside([[-2.0, 0.0], [2.0, 0.0]]).unwrap();
+        let square = ConvexPolygon::rectangle(Point2::origin(), [1.0, 1.0], 0.0);
+        let [enters, leaves] =
+            square.inside([Point2::new(-2.0, 0.0), Point2::new(2.0, 0.0)]).unwrap();
         assert!((enters - 0.25).abs() < 1e-5 && (leaves - 0.75).abs() < 1e-5);
-        assert_eq!(square.inside([[-2.0, 1.0], [2.0, 1.0]]), None, "along a side");
-        assert_eq!(square.inside([[2.0, 0.0], [3.0, 0.0]]), None);
+        assert_eq!(
+            square.inside([Point2::new(-2.0, 1.0), Point2::new(2.0, 1.0)]),
+            None,
+            "along a side"
+        );
+        assert_eq!(square.inside([Point2::new(2.0, 0.0), Point2::new(3.0, 0.0)]), None);
     }
 }

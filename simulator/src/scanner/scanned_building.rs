@@ -16,6 +16,7 @@ use crate::render::{StreamPurpose, about, stream};
 /// A building as a laser scanner sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScannedBuilding {
+    /// In pieces of one surface each.
     walls: Vec<ScannedWall>,
     furniture: Vec<ConvexPolygon>,
     people: Vec<Person>,
@@ -23,7 +24,7 @@ pub struct ScannedBuilding {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScannedWall {
-    pub ends: [[f64; 2]; 2],
+    pub ends: Segment,
     pub surface: WallSurface,
 }
 
@@ -100,11 +101,6 @@ impl ScannedBuilding {
         }
         let people = people(plan, params, &mut stream(seed, StreamPurpose::People, 0));
         Self { walls, furniture, people }
-    }
-
-    /// Its walls, in pieces of one surface each.
-    pub fn walls(&self) -> &[ScannedWall] {
-        &self.walls
     }
 
     /// Everything that a ray may meet at a time, in seconds.
@@ -257,22 +253,25 @@ impl Person {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Point2, center};
+
     use super::*;
 
     fn corridor() -> CorridorPlan {
-        let corridors = vec![Corridor { ends: [[0.0, 0.0], [40.0, 0.0]], width: 2.0 }];
+        let corridors =
+            vec![Corridor { ends: [Point2::new(0.0, 0.0), Point2::new(40.0, 0.0)], width: 2.0 }];
         CorridorPlan { corridors, lobbies: Vec::new() }
     }
 
     fn total(building: &ScannedBuilding, surface: WallSurface) -> f64 {
-        let walls = building.walls().iter().filter(|wall| wall.surface == surface);
+        let walls = building.walls.iter().filter(|wall| wall.surface == surface);
         walls.map(|wall| length(wall.ends)).sum()
     }
 
     #[test]
     fn an_empty_corridor_has_four_walls() {
         let building = ScannedBuilding::new(&corridor(), &ScannerParams::PLAIN, 1);
-        assert_eq!(building.walls().len(), 4);
+        assert_eq!(building.walls.len(), 4);
         // It goes on for 1 m behind its ends.
         assert!((total(&building, WallSurface::Plain) - 2.0 * (42.0 + 2.0)).abs() < 1e-9);
     }
@@ -282,12 +281,12 @@ mod tests {
         let params = ScannerParams { doors: 0.25, ..ScannerParams::PLAIN };
         let building = ScannedBuilding::new(&corridor(), &params, 3);
         let on_wall =
-            |wall: &&ScannedWall| wall.ends.iter().all(|end| (end[1].abs() - 1.0).abs() < 1e-6);
-        let walls: f64 = building.walls().iter().filter(on_wall).map(|w| length(w.ends)).sum();
+            |wall: &&ScannedWall| wall.ends.iter().all(|end| (end.y.abs() - 1.0).abs() < 1e-6);
+        let walls: f64 = building.walls.iter().filter(on_wall).map(|w| length(w.ends)).sum();
         // One door in 40 m; the walls at both ends are 2 m wide.
         assert!((walls - (84.0 + 4.0 - 0.9)).abs() < 1e-4, "{walls}");
-        let depth = |wall: &ScannedWall| wall.ends.map(|end| end[1].abs());
-        let deepest = building.walls().iter().flat_map(depth).fold(0.0, f64::max);
+        let depth = |wall: &ScannedWall| wall.ends.map(|end| end.y.abs());
+        let deepest = building.walls.iter().flat_map(depth).fold(0.0, f64::max);
         assert!((4.1..6.2).contains(&deepest), "{deepest}");
         assert!(!building.furniture.is_empty());
     }
@@ -317,7 +316,7 @@ mod tests {
         let building = ScannedBuilding::new(&corridor(), &params, 1);
         assert!(building.furniture.len() >= 18, "{}", building.furniture.len());
         for corner in building.furniture.iter().flat_map(ConvexPolygon::sides).flatten() {
-            assert!((0.6 - 1e-9..=1.0 + 1e-9).contains(&corner[1].abs()), "{corner:?}");
+            assert!((0.6 - 1e-9..=1.0 + 1e-9).contains(&corner.y.abs()), "{corner:?}");
         }
     }
 
@@ -327,11 +326,11 @@ mod tests {
         let person = Person { corridor, left: 0.3, speed: 1.25, come: 0.0 };
         let at = |time: f64| {
             let feet = person.legs(time).map(|leg| leg.sides().next().unwrap()[0]);
-            [0, 1].map(|axis| f64::midpoint(feet[0][axis], feet[1][axis]))
+            center(&feet[0], &feet[1])
         };
         for (time, x) in [(0.0, 0.0), (8.0, 10.0), (32.0, 40.0), (40.0, 30.0), (64.0, 0.0)] {
-            let [found, y] = at(time);
-            assert!((found - LEG - x).abs() < 1e-9 && (y - 0.3).abs() < 1e-9, "{time}: {found}");
+            let off = at(time) - Point2::new(x + LEG, 0.3);
+            assert!(off.amax() < 1e-9, "{time}: {off}");
         }
     }
 }

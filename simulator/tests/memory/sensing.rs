@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::pose::Pose;
 use toposlam_simulator::{
-    Building, BuildingLook, Effects, Rig, learned, render, view_sampler::ViewSampler,
+    Building, BuildingLook, Effects, Rig, learned, plan_named, render, view_sampler::ViewSampler,
 };
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 
@@ -40,7 +40,7 @@ pub(crate) fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let views = ViewSampler::from_looks([look], camera.image, 1).unwrap();
     let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
-    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 1);
+    let building = Building::new(&plan_named("shape-8").unwrap(), look, None, &effects, 1);
     let images = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
     let mut sensor = Sensor::new(&camera, &colours);
     let first = taken(&mut sensor, &images, 1);

@@ -2,9 +2,8 @@
 
 use std::{collections::BTreeMap, io::Write, path::Path};
 
-use serde::Serialize;
+use serde_json::{Value, json};
 use toposlam_model::{
-    driving::scene::MarkerView,
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, world_file},
 };
@@ -13,7 +12,7 @@ use toposlam_terminal::{
     json::print_line,
     output, picture_file,
     progress::must_stop,
-    scene::{self, SceneLine},
+    scene::{MarkerLine, SceneLine},
     text::{counted, print_hanging},
 };
 
@@ -26,7 +25,7 @@ use toposlam_simulator::{
         judged_view::{JudgedView, JudgedVisit, SceneClass},
         verdict::{MarkerVerdict, PlaceVerdict},
     },
-    truth::{JunctionTruth, MarkerTruth, Truth},
+    truth::{JunctionTruth, Truth},
     view_sampler::RenderedView,
 };
 
@@ -135,24 +134,24 @@ pub(super) fn add(
     judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), CliError> {
-    let line = ViewLine::new(judged, calibration, None);
+    let line = view_line(judged, calibration, None);
     sheet.line("view", &line)?;
-    let out = &mut sheet.text;
-    writeln!(out, "view {}, calibration {}: {}", line.view, line.calibration, line.verdict)?;
-    let ([width, height], [x, y]) = (line.size, line.position);
-    let heading = line.heading.to_degrees();
-    let effects: Vec<_> =
-        line.effects.iter().map(|(name, value)| format!("{name} {value:.2}")).collect();
-    let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
-    let distance = line.distance.map_or(String::new(), |distance| {
+    let (view, out) = (&judged.view, &mut sheet.text);
+    let name = calibration_name(calibration);
+    writeln!(out, "view {}, calibration {name}: {}", view.number, judged.verdict)?;
+    let ([width, height], [x, y]) = (view.image, view.pose.position);
+    let heading = view.pose.heading.to_degrees();
+    let effects = effects(view).into_iter().map(|(name, value)| format!("{name} {value:.2}"));
+    let distance = distance(judged).map_or(String::new(), |distance| {
         format!(", {distance:.2} m from the turning point of a junction")
     });
+    let (plan, look) = (&view.plan_name, view.look.name);
     for (label, text) in [
-        ("plan", format!("{}, look {}, {width} by {height} pixels", line.plan, line.look)),
+        ("plan", format!("{plan}, look {look}, {width} by {height} pixels")),
         ("robot", format!("at {x:.2}, {y:.2} m, heading {heading:.0} degrees{distance}")),
-        ("effects", effects),
-        ("truth", line.truth),
-        ("sensed", line.said),
+        ("effects", effects.collect::<Vec<_>>().join(", ")),
+        ("truth", truth_name(judged)),
+        ("sensed", SceneClass::from_scene(&judged.scene).to_string()),
     ] {
         print_hanging(out, &format!("  {label:<9}"), &text)?;
     }
@@ -165,61 +164,41 @@ fn print_view(
     calibration: Calibration,
     visit: Option<u64>,
 ) -> Result<(), CliError> {
-    print_line(out, "view", &ViewLine::new(judged, calibration, visit))
+    print_line(out, "view", &view_line(judged, calibration, visit))
 }
 
-#[derive(Serialize)]
-struct ViewLine<'a> {
-    view: u64,
-    /// The number of the visit, if the view is part of one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    visit: Option<u64>,
-    calibration: &'static str,
-    plan: &'a str,
-    hallway_width: f64,
-    look: &'a str,
-    size: [u32; 2],
-    position: [f64; 2],
-    heading: f64,
-    marker: Option<scene::MarkerLine>,
-    effects: BTreeMap<&'static str, f64>,
-    truth: String,
-    /// Distance to the turning point of the junction, in metres.
-    distance: Option<f64>,
-    said: String,
-    verdict: String,
-    answer: SceneLine,
-}
-
-impl<'a> ViewLine<'a> {
-    fn new(judged: &'a JudgedView, calibration: Calibration, visit: Option<u64>) -> Self {
-        let view = &judged.view;
-        let settings = view.effects.settings().into_iter();
-        let truth = match (&judged.truth, judged.class()) {
-            (Truth::Between(..), _) => "between".to_owned(),
-            (_, Some(class)) => class.to_string(),
-            (_, None) => "turned".to_owned(),
-        };
-        Self {
-            view: view.number,
-            visit,
-            calibration: calibration_name(calibration),
-            plan: &view.plan_name,
-            hallway_width: view.plan.hallway_width(),
-            look: view.look.name,
-            size: view.image,
-            position: view.pose.position,
-            heading: view.pose.heading,
-            marker: view.marker().map(|marker| {
-                let MarkerTruth { position, axis, door, .. } = marker;
-                scene::MarkerLine::from(&MarkerView { position, axis, door })
-            }),
-            effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
-            truth,
-            distance: judged.truth.junctions().first().and_then(JunctionTruth::distance),
-            said: SceneClass::from_scene(&judged.scene).to_string(),
-            verdict: judged.verdict.to_string(),
-            answer: SceneLine::from(&judged.scene),
-        }
+/// All about a view, with the number of its visit if it is part of one.
+fn view_line(judged: &JudgedView, calibration: Calibration, visit: Option<u64>) -> Value {
+    let view = &judged.view;
+    let mut line = json!({
+        "view": view.number, "visit": visit, "calibration": calibration_name(calibration),
+        "plan": view.plan_name, "hallway_width": view.plan.hallway_width(),
+        "look": view.look.name, "size": view.image,
+        "position": view.pose.position, "heading": view.pose.heading,
+        "marker": view.marker().as_ref().map(MarkerLine::from), "effects": effects(view),
+        "truth": truth_name(judged), "distance": distance(judged),
+        "said": SceneClass::from_scene(&judged.scene).to_string(),
+        "verdict": judged.verdict.to_string(), "answer": SceneLine::from(&judged.scene),
+    });
+    if let (None, Some(line)) = (visit, line.as_object_mut()) {
+        line.shift_remove("visit");
     }
+    line
+}
+
+fn effects(view: &RenderedView) -> BTreeMap<&'static str, f64> {
+    view.effects.settings().into_iter().map(|(knob, value)| (knob.name, value)).collect()
+}
+
+fn truth_name(judged: &JudgedView) -> String {
+    match (&judged.truth, judged.class()) {
+        (Truth::Between(..), _) => "between".to_owned(),
+        (_, Some(class)) => class.to_string(),
+        (_, None) => "turned".to_owned(),
+    }
+}
+
+/// The distance to the turning point of the junction, in metres.
+fn distance(judged: &JudgedView) -> Option<f64> {
+    judged.truth.junctions().first().and_then(JunctionTruth::distance)
 }

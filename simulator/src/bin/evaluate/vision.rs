@@ -3,7 +3,7 @@
 use std::{io::Write, path::PathBuf};
 
 use serde_json::{Map, Value, json};
-use toposlam_simulator::evaluation::bound::upper_bound;
+use toposlam_model::enumerate::Watch;
 use toposlam_terminal::{
     CliError, Outcome,
     exit_codes::help_end,
@@ -24,16 +24,16 @@ use super::{
 use toposlam_simulator::{
     BuildingLook, EffectSettings, Effects,
     evaluation::{
+        bound::upper_bound,
         judge::{Calibration, Judge, JudgingError},
-        judged_view::{JudgedView, JudgedVisit},
+        judged_view::JudgedView,
         report::TargetStatus,
         vision_report,
     },
     options::appearance::{EffectSetting, ImageSize, camera_with, looks, read_setting, settings},
     plans,
     sample_verdict::SampleTally,
-    view_sampler::ViewSampler,
-    view_sampler::WhichEffects,
+    view_sampler::{ViewSampler, WhichEffects},
 };
 
 /// Measure sensing on rendered views against the floor plan
@@ -143,8 +143,10 @@ impl EvaluateVisionArguments {
                 let title = "With a camera 5 pixels, 2 cm and 1 degree off its calibration";
                 (title, ", badly calibrated")
             };
-            let judged = judged(&judge, views, self.views, calibration, calibrated)?;
-            let visits = judged_visits(&judge, views, wanted[1], calibration, calibrated)?;
+            let judged = judged_views(&judge, views, self.views, calibration, calibrated)?;
+            let visits = measured("visits", calibrated, wanted[1], |number, watch| {
+                judge.visit(views.visit(number)?, calibration, watch)
+            })?;
             if [judged.len() as u64, visits.len() as u64] != wanted {
                 ending = MeasurementEnd::Interrupted;
             }
@@ -191,7 +193,7 @@ impl EvaluateVisionArguments {
             let views = ViewSampler { settings, ..views.clone() };
             let judge = judge(&views, &[Calibration::Right])?;
             let what = format!(", clutter: {name}");
-            let judged = judged(&judge, &views, self.views, Calibration::Right, &what)?;
+            let judged = judged_views(&judge, &views, self.views, Calibration::Right, &what)?;
             let counting = judged.iter().filter(|view| view.counts());
             let tally: SampleTally = counting.map(|view| view.verdict.verdict()).collect();
             let wrong = judged.iter().filter(|view| view.verdict.is_wrong()).count();
@@ -206,13 +208,14 @@ impl EvaluateVisionArguments {
             sheet.line("clutter", &line)?;
             let [right, unknown] = [tally.right, tally.undecided]
                 .map(|part| format!("{:.1} %", 100.0 * part as f64 / tally.all().max(1) as f64));
-            let of_all = |count| format!("{count} of {}", judged.len());
+            let [wrong_scenes, wrong_markers] =
+                [wrong, markers].map(|count| format!("{count} of {}", judged.len()));
             rows.push([
                 name.to_owned(),
                 right,
                 unknown,
-                of_all(wrong),
-                of_all(markers),
+                wrong_scenes,
+                wrong_markers,
                 String::new(),
             ]);
             all += judged.len();
@@ -299,32 +302,28 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Cli
     })
 }
 
-fn judged(
+/// Judges views or visits on all threads.
+fn measured<R: Send>(
+    unit: &'static str,
+    what: &str,
+    count: u64,
+    one: impl Fn(u64, &dyn Watch) -> Result<Option<R>, JudgingError> + Sync,
+) -> Result<Vec<R>, CliError> {
+    let work = format!("{unit}{what}");
+    let judged = measure(&work, unit, 0..count, |number, watch| one(number, watch).transpose())?;
+    judged.into_iter().collect::<Result<_, _>>().map_err(unmeasured)
+}
+
+fn judged_views(
     judge: &Judge,
     views: &ViewSampler,
     count: u64,
     calibration: Calibration,
     what: &str,
 ) -> Result<Vec<JudgedView>, CliError> {
-    let judged = measure(&format!("views{what}"), "views", 0..count, |number, _| {
-        let view = views.view(number).map_err(JudgingError::from);
-        Some(view.and_then(|view| judge.view(view, calibration)))
-    })?;
-    judged.into_iter().collect::<Result<_, _>>().map_err(unmeasured)
-}
-
-fn judged_visits(
-    judge: &Judge,
-    views: &ViewSampler,
-    count: u64,
-    calibration: Calibration,
-    what: &str,
-) -> Result<Vec<JudgedVisit>, CliError> {
-    let visits = measure(&format!("visits{what}"), "visits", 0..count, |number, watch| {
-        let visit = views.visit(number).map_err(JudgingError::from);
-        visit.and_then(|views| judge.visit(views, calibration, watch)).transpose()
-    })?;
-    visits.into_iter().collect::<Result<_, _>>().map_err(unmeasured)
+    measured("views", what, count, |number, _| {
+        Ok(Some(judge.view(views.view(number)?, calibration)?))
+    })
 }
 
 /// Adds what is measured: the numbers of views and visits, and where they come from.

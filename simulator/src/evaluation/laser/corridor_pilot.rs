@@ -1,7 +1,8 @@
 //! Where a robot drives that leaves a place in a direction: along a corridor, into an alcove, or up to a wall.
 
+use nalgebra::{Point2, Vector2};
 use toposlam_model::driving::scene::wrapped;
-use toposlam_vision::geometry::{direction, distance};
+use toposlam_vision::geometry::{direction, distance, unit};
 
 use super::{corridor_world::CorridorWorld, nearest};
 use crate::{ConvexPolygon, Corridor};
@@ -17,7 +18,7 @@ pub(super) struct CorridorPilot<'w> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PilotLeg {
     /// Its end, in metres.
-    pub to: [f64; 2],
+    pub to: Point2<f64>,
     /// Where the way goes on from there.
     next: LegEnd,
 }
@@ -53,7 +54,7 @@ impl<'w> CorridorPilot<'w> {
 
     /// The way of a robot at a point that leaves in a direction: the corridor or the alcove that begins in about this
     /// direction, or the free floor up to a wall.
-    pub(super) fn leave(&self, from: [f64; 2], towards: f64) -> PilotLeg {
+    pub(super) fn leave(&self, from: Point2<f64>, towards: f64) -> PilotLeg {
         let world = self.world;
         let mut ways: Vec<(f64, PilotLeg)> = Vec::new();
         let off = |ahead: f64| wrapped(ahead - towards).abs();
@@ -79,9 +80,8 @@ impl<'w> CorridorPilot<'w> {
     }
 
     /// Straight on up to a wall.
-    fn ahead(&self, from: [f64; 2], towards: f64) -> PilotLeg {
-        let (sine, cosine) = towards.sin_cos();
-        let at = |length: f64| [from[0] + length * cosine, from[1] + length * sine];
+    fn ahead(&self, from: Point2<f64>, towards: f64) -> PilotLeg {
+        let at = |length: f64| from + length * unit(towards);
         let steps = (0_u32..).map(|step| STEP * f64::from(step));
         let free = steps.take_while(|&length| self.is_floor(at(length + RADIUS))).last();
         PilotLeg { to: at(free.unwrap_or_default()), next: LegEnd::Blocked }
@@ -106,12 +106,12 @@ impl<'w> CorridorPilot<'w> {
         }
     }
 
-    pub(super) fn has_space_at(&self, point: [f64; 2]) -> bool {
-        let around = [[RADIUS, 0.0], [-RADIUS, 0.0], [0.0, RADIUS], [0.0, -RADIUS]];
-        around.iter().all(|off| self.is_floor([point[0] + off[0], point[1] + off[1]]))
+    pub(super) fn has_space_at(&self, point: Point2<f64>) -> bool {
+        let [along, across] = [Vector2::new(RADIUS, 0.0), Vector2::new(0.0, RADIUS)];
+        [along, -along, across, -across].into_iter().all(|off| self.is_floor(point + off))
     }
 
-    fn is_floor(&self, point: [f64; 2]) -> bool {
+    fn is_floor(&self, point: Point2<f64>) -> bool {
         self.floor.iter().any(|piece| piece.holds(point))
     }
 }
@@ -127,7 +127,7 @@ impl PilotLeg {
 }
 
 /// Whether a point is within a corridor or a little beside it.
-fn is_within(corridor: &Corridor, point: [f64; 2]) -> bool {
+fn is_within(corridor: &Corridor, point: Point2<f64>) -> bool {
     ConvexPolygon::along(corridor.ends, corridor.width + 2.0 * BESIDE, BESIDE).holds(point)
 }
 

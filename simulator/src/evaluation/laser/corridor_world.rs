@@ -6,10 +6,10 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::{Point2, Rotation2};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::driving::scene::wrapped;
+use toposlam_model::{driving::scene::wrapped, embedded_graph::EmbeddedGraph};
 use toposlam_vision::geometry::{direction, distance};
 
 use crate::{Corridor, CorridorPlan, Lobby};
@@ -18,7 +18,7 @@ use crate::{Corridor, CorridorPlan, Lobby};
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorridorWorld {
     /// Where corridors end, in metres.
-    pub places: Vec<[f64; 2]>,
+    pub places: Vec<Point2<f64>>,
     /// The places that each corridor joins.
     pub links: Vec<[usize; 2]>,
     /// The corridors, in the order of the links; then the alcoves. The lobbies.
@@ -31,6 +31,13 @@ pub struct CorridorArm {
     pub to: usize,
     pub direction: f64,
     pub width: f64,
+}
+
+/// The graph of a building's junctions and dead ends. Its bends are no vertices.
+pub(super) struct SmoothedWorld {
+    pub(super) graph: EmbeddedGraph,
+    /// For each dart, the places from and to which its first corridor leads.
+    pub(super) corridors: Vec<[usize; 2]>,
 }
 
 /// The kind of a random building.
@@ -62,7 +69,7 @@ const ALCOVE: f64 = 7.5;
 
 /// Points, those that may be joined, and how far they may be moved, as a part of their distance.
 struct Lattice {
-    points: Vec<[f64; 2]>,
+    points: Vec<Point2<f64>>,
     pairs: Vec<[usize; 2]>,
     moved: f64,
 }
@@ -95,11 +102,11 @@ impl CorridorWorld {
         };
         let spacing = chance.random_range(least..most);
         let turn = Rotation2::new(chance.random_range(0.0..TAU));
-        let mut place = |point: [f64; 2]| {
+        let mut place = |point: &Point2<f64>| {
             let moved = point.map(|part| part + lattice.moved * chance.random_range(-1.0..=1.0));
-            (turn * Vector2::from(moved.map(|part| spacing * part))).into()
+            turn * moved.map(|part| spacing * part)
         };
-        let places: Vec<[f64; 2]> = lattice.points.iter().map(|&point| place(point)).collect();
+        let places: Vec<Point2<f64>> = lattice.points.iter().map(&mut place).collect();
         let links = grown(&places, &lattice.pairs, chance);
         let plan = planned(&places, &links, chance);
         Self { places, links, plan }
@@ -126,6 +133,23 @@ impl CorridorWorld {
         arms
     }
 
+    /// The graph of its junctions and dead ends.
+    pub(super) fn smoothed(&self) -> Option<SmoothedWorld> {
+        let mut corridors = Vec::new();
+        let mut lists = Vec::new();
+        for place in 0..self.places.len() {
+            let arms = self.arms(place);
+            corridors.extend(arms.iter().map(|arm| [place, arm.to]));
+            if !arms.is_empty() {
+                let neighbours: Vec<_> = arms.iter().map(|arm| arm.to.to_string()).collect();
+                lists.push((place.to_string(), neighbours));
+            }
+        }
+        let (graph, darts) = EmbeddedGraph::from_neighbour_lists(&lists).ok()?.smoothed();
+        let corridors = darts.into_iter().map(|dart| corridors[dart.at()]).collect();
+        Some(SmoothedWorld { graph, corridors })
+    }
+
     /// The radius of the free circle around a place, in metres.
     pub fn clearance(&self, place: usize) -> f64 {
         let lobby = self.lobby(place).map(|lobby| lobby.radius);
@@ -145,20 +169,16 @@ impl CorridorWorld {
 
 impl Lattice {
     fn square() -> Self {
-        let points = (0..12).map(|number| [f64::from(number % 4), f64::from(number / 4)]);
+        let points = (0..12).map(|number| Point2::new(number % 4, number / 4).map(f64::from));
         Self::near(points.collect(), 0.12)
     }
 
     /// The same, and one diagonal of each square may be a corridor, too.
     fn with_diagonals() -> Self {
         let square = Self::square();
-        let is_even = |[x, y]: [f64; 2]| ((x + y) as u32).is_multiple_of(2);
+        let is_even = |point: usize| point.is_multiple_of(2) == (point / 4).is_multiple_of(2);
         let diagonals =
-            (0..square.points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
-        let diagonals = diagonals.filter(|pair| {
-            let [one, other] = pair.map(|point| square.points[point]);
-            is_even(one) && (distance(one, other) - SQRT_2).abs() < 0.01
-        });
+            pairs_at(&square.points, SQRT_2).into_iter().filter(|pair| is_even(pair[0]));
         let pairs = square.pairs.iter().copied().chain(diagonals).collect();
         Self { pairs, ..square }
     }
@@ -169,24 +189,28 @@ impl Lattice {
         let kept = all.filter(|&(column, row)| is_point(column, row));
         let height = 0.75_f64.sqrt();
         let point = |(column, row): (i32, i32)| {
-            [f64::from(column) + 0.5 * f64::from(row), height * f64::from(row)]
+            Point2::new(f64::from(column) + 0.5 * f64::from(row), height * f64::from(row))
         };
         Self::near(kept.map(point).collect(), 0.05)
     }
 
     /// Points at a distance of 1 may be joined.
-    fn near(points: Vec<[f64; 2]>, moved: f64) -> Self {
-        let near =
-            |one: usize, other: usize| (distance(points[one], points[other]) - 1.0).abs() < 0.01;
-        let pairs = (0..points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
-        let pairs = pairs.filter(|&[one, other]| near(one, other)).collect();
-        Self { points, pairs, moved }
+    fn near(points: Vec<Point2<f64>>, moved: f64) -> Self {
+        Self { pairs: pairs_at(&points, 1.0), points, moved }
     }
+}
+
+/// The pairs of points with this distance.
+fn pairs_at(points: &[Point2<f64>], apart: f64) -> Vec<[usize; 2]> {
+    let pairs = (0..points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
+    let is_at =
+        |[one, other]: &[usize; 2]| (distance(points[*one], points[*other]) - apart).abs() < 0.01;
+    pairs.filter(is_at).collect()
 }
 
 /// Connected links.
 fn grown(
-    places: &[[f64; 2]],
+    places: &[Point2<f64>],
     pairs: &[[usize; 2]],
     chance: &mut Xoshiro256PlusPlus,
 ) -> Vec<[usize; 2]> {
@@ -218,7 +242,7 @@ fn grown(
 
 /// The corridors of links, alcoves and lobbies.
 fn planned(
-    places: &[[f64; 2]],
+    places: &[Point2<f64>],
     links: &[[usize; 2]],
     chance: &mut Xoshiro256PlusPlus,
 ) -> CorridorPlan {
@@ -322,6 +346,22 @@ mod tests {
         assert!((1..=5).all(|degree| degrees.contains(&degree)), "{degrees:?}");
         assert_eq!(slants.len(), 9, "{slants:?}");
         assert!(lobbies > 50 && alcoves > 100, "{lobbies} {alcoves}");
+    }
+
+    #[test]
+    fn the_darts_of_the_graph_are_the_corridors_at_junctions_and_dead_ends_clockwise() {
+        for world in worlds(BuildingKind::Mixed, 200) {
+            let SmoothedWorld { graph, corridors } = world.smoothed().unwrap();
+            assert_eq!(graph.genus(), 0, "a plan is planar");
+            for dart in graph.darts() {
+                let [place, to] = corridors[dart.at()];
+                let arms = world.arms_from(place, to);
+                assert_ne!(arms.len(), 2, "a bend");
+                assert_eq!(graph.degree_around(dart) as usize, arms.len());
+                let next = arms[1 % arms.len()].to;
+                assert_eq!(corridors[graph.clockwise(dart).at()], [place, next]);
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use nalgebra::Point2;
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     enumerate::Watch,
@@ -149,12 +148,7 @@ impl WalkSampler {
             let here = |junction: &SeenPlace| {
                 distance(junction.centre, view.robot.position) < range + junction.clearance
             };
-            let is_wrong = seen.iter().any(here);
-            return Some(SeenFrom::Corridor(if is_wrong {
-                SampleVerdict::Wrong
-            } else {
-                SampleVerdict::Right
-            }));
+            return Some(SeenFrom::Corridor(SampleVerdict::right_if(!seen.iter().any(here))));
         }
         let clearance = world.clearance(place);
         if away(&place) > range + clearance {
@@ -162,7 +156,7 @@ impl WalkSampler {
         }
         let Pose { position, heading } = pose;
         let map_from_plan = motion_between(&Odometry { position, heading }, &view.robot);
-        let centre = map_from_plan * Point2::from(world.places[place]);
+        let centre = map_from_plan * world.places[place];
         let off = |junction: &&SeenPlace| distance(junction.centre, centre);
         let found = seen.iter().filter(|junction| off(junction) < SAME.max(clearance));
         let Some(found) = nearest(found, off) else {
@@ -175,7 +169,7 @@ impl WalkSampler {
         };
         let is_right =
             found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
-        Some(SeenFrom::Junction(if is_right { SampleVerdict::Right } else { SampleVerdict::Wrong }))
+        Some(SeenFrom::Junction(SampleVerdict::right_if(is_right)))
     }
 }
 

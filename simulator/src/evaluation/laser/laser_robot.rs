@@ -25,10 +25,9 @@ use toposlam_vision::{
 
 use super::{
     corridor_pilot::{CorridorPilot, PilotLeg},
-    corridor_world::CorridorWorld,
+    corridor_world::{CorridorWorld, SmoothedWorld},
     nearest,
     robot_params::LaserRobotParams,
-    smoothed_world::SmoothedWorld,
     walk::{WalkDriver, WalkStep, clockwise},
 };
 use crate::LaserScanner;
@@ -186,7 +185,7 @@ impl<'w> LaserRobot<'w> {
 
     fn drive_along(
         &mut self,
-        points: impl IntoIterator<Item = [f64; 2]>,
+        points: impl IntoIterator<Item = Point2<f64>>,
     ) -> Result<(), ScanFailure> {
         for point in points {
             self.driver.drive_to(point);
@@ -225,8 +224,8 @@ impl<'w> LaserRobot<'w> {
     /// Goes to the centre of a place, if it can stand there.
     fn go_to(&mut self, place: &SeenPlace) -> Result<(), ScanFailure> {
         let centre = self.plan_from_map() * place.centre;
-        if self.pilot.has_space_at(centre.into()) && distance(centre, self.driver.at) > 0.2 {
-            self.drive_along([centre.into()])?;
+        if self.pilot.has_space_at(centre) && distance(centre, self.driver.at) > 0.2 {
+            self.drive_along([centre])?;
         }
         Ok(())
     }
@@ -303,8 +302,7 @@ impl<'w> LaserRobot<'w> {
         let (mut left, mut at) = (self.params.arm.min_arm, begin);
         while let Some(next) = leg {
             let length = distance(at, next.to);
-            let share = (left / length.max(1e-9)).min(1.0);
-            let to = between(at, next.to, share);
+            let to = at + (left / length.max(1e-9)).min(1.0) * (next.to - at);
             self.drive_along([to])?;
             points.push(to);
             left -= length;
@@ -324,7 +322,7 @@ impl<'w> LaserRobot<'w> {
         let begin = self.driver.at;
         let leg = self.pilot.leave(begin, towards);
         let share = (ROBOT.further / distance(begin, leg.to).max(1e-9)).min(1.0);
-        self.driver.drive_to(between(begin, leg.to, share));
+        self.driver.drive_to(begin + share * (leg.to - begin));
         self.driver.look_around();
         self.drive_along([begin])?;
         self.look_around()
@@ -387,7 +385,7 @@ impl<'w> LaserRobot<'w> {
     fn came_from(&self, place: &SeenPlace) -> f64 {
         let centre = self.plan_from_map() * place.centre;
         let far = place.clearance.max(1.0) + ROBOT.came_from;
-        self.driver.before_entering(centre.into(), far).map_or_else(
+        self.driver.before_entering(centre, far).map_or_else(
             || self.driver.heading.unwrap_or_default() + PI,
             |point| direction(centre, point),
         )
@@ -434,8 +432,8 @@ impl<'w> LaserRobot<'w> {
 
     /// Where it is on the local map.
     fn on_local_map(&self) -> Point2<f64> {
-        let at = self.last_step().map_or(self.driver.at, |step| step.odometry.position);
-        self.odometry_from_map.inverse() * Point2::from(at)
+        let at = self.last_step().map_or(self.driver.at, |step| step.odometry.position.into());
+        self.odometry_from_map.inverse() * at
     }
 
     /// From the local map to the plan, which is right near the robot.
@@ -461,7 +459,7 @@ impl<'w> LaserRobot<'w> {
 
     /// Whether the robot is at the place of a dart's vertex.
     fn is_near_place_of(&self, dart: Dart) -> bool {
-        let place = self.smoothed.place_of(dart);
+        let [place, _] = self.smoothed.corridors[dart.at()];
         distance(self.world.places[place], self.driver.at)
             < self.world.clearance(place) + ROBOT.marker_range
     }
@@ -473,7 +471,7 @@ impl<'w> LaserRobot<'w> {
 
     /// The direction on the plan in which a dart leaves its vertex.
     fn direction_of(&self, dart: Dart) -> f64 {
-        let [from, to] = self.smoothed.first_corridor(dart).map(|place| self.world.places[place]);
+        let [from, to] = self.smoothed.corridors[dart.at()].map(|place| self.world.places[place]);
         direction(from, to)
     }
 
@@ -520,11 +518,6 @@ impl Relocate for LaserRobot<'_> {
         }
         Err(error)
     }
-}
-
-/// The point at this share of the way from one to another.
-fn between(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
-    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
 }
 
 fn is_same(one: f64, other: f64) -> bool {

@@ -7,7 +7,6 @@ pub mod laser_report;
 mod laser_robot;
 mod robot_params;
 pub mod scanned_run;
-mod smoothed_world;
 pub mod walk;
 
 /// The item with the least distance.

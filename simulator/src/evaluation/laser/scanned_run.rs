@@ -10,12 +10,12 @@ use toposlam_model::{
     isomorphism::Candidate,
     mapping::{ExploredMap, FACING, MappingError, MappingMethod},
 };
+use toposlam_vision::geometry::angle;
 
 use super::{
     corridor_world::CorridorWorld,
     judged_walk::WalkSampler,
     laser_robot::{LaserRobot, ScanFailure},
-    smoothed_world::SmoothedWorld,
     walk::WalkDriver,
 };
 use crate::run::RobotOutcome;
@@ -46,20 +46,19 @@ impl WalkSampler {
     pub fn run(&self, number: u64, method: MappingMethod, watch: &dyn Watch) -> Option<ScannedRun> {
         let seed = self.run_seed(number);
         let world = CorridorWorld::random(self.buildings, seed);
-        let smoothed = SmoothedWorld::from_world(&world)?;
+        let smoothed = world.smoothed()?;
         let scanner = self.scanner(&world, number, seed);
         let mut driver = WalkDriver::new(self.drift, seed);
         let graph = &smoothed.graph;
         let starts: Vec<Dart> =
             graph.darts().filter(|dart| graph.degree_around(*dart) >= 3).collect();
         let &facing = starts.choose(&mut driver.chance)?;
-        let [start, behind] = smoothed.first_corridor(facing).map(|place| world.places[place]);
-        let off = [0, 1].map(|axis| behind[axis] - start[axis]);
-        let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
-        driver.at = [0, 1].map(|axis| start[axis] + share * off[axis]);
+        let [start, behind] = smoothed.corridors[facing.at()].map(|place| world.places[place]);
+        let off = behind - start;
+        driver.at = start + (BEFORE / off.x.hypot(off.y)).min(0.5) * off;
         let mut robot =
             LaserRobot::new(&world, &smoothed, scanner, &self.sensing, driver, facing, watch);
-        let begun = robot.drive((-off[1]).atan2(-off[0]));
+        let begun = robot.drive(angle(-off));
         if begun == Err(ScanFailure::Stopped) {
             return None;
         }

@@ -2,11 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::{Point2, Rotation2, Vector2, center};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::driving::{odometry::Odometry, pose::Pose, scene::wrapped};
-use toposlam_vision::geometry::{direction, distance};
+use toposlam_vision::geometry::{direction, distance, unit};
 
 use super::corridor_world::{CorridorArm, CorridorWorld};
 
@@ -62,7 +63,7 @@ const BACK: f64 = 0.08;
 pub(super) struct WalkDriver {
     pub(super) steps: Vec<WalkStep>,
     /// Where it is, or will be after its last step, and the length of its way, in metres.
-    pub(super) at: [f64; 2],
+    pub(super) at: Point2<f64>,
     pub(super) way: f64,
     /// The direction of the last leg.
     pub(super) heading: Option<f64>,
@@ -84,7 +85,7 @@ impl LaserWalk {
         if driver.chance.random() {
             std::mem::swap(&mut from, &mut at);
         }
-        driver.at = middle(world.places[from], world.places[at]);
+        driver.at = center(&world.places[from], &world.places[at]);
         let (mut turned_back, mut has_visited) = (false, false);
         for _ in 0..places {
             let arms = world.arms_from(at, from);
@@ -107,7 +108,7 @@ impl LaserWalk {
             }
             (from, at) = (at, to);
         }
-        driver.drive_to(middle(driver.at, world.places[at]));
+        driver.drive_to(center(&driver.at, &world.places[at]));
         Self { passed, steps: driver.steps }
     }
 }
@@ -116,33 +117,33 @@ impl WalkDriver {
     pub(super) fn new(drift: f64, seed: u64) -> Self {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
         let drift = drift * chance.random_range(-1.0..=1.0);
-        Self { steps: Vec::new(), at: [0.0; 2], way: 0.0, heading: None, drift, chance }
+        Self { steps: Vec::new(), at: Point2::origin(), way: 0.0, heading: None, drift, chance }
     }
 
     /// Stays where it is after this number of steps. Those after them are not made.
     pub(super) fn stop_after(&mut self, steps: usize) {
         self.steps.truncate(steps);
         if let Some(step) = self.steps.last() {
-            (self.at, self.way) = (step.pose.position, step.way);
+            (self.at, self.way) = (step.pose.position.into(), step.way);
             self.heading = Some(step.pose.heading);
         }
     }
 
     /// Where it was before it entered a circle the last time; `None` if it was never inside or outside.
-    pub(super) fn before_entering(&self, centre: [f64; 2], radius: f64) -> Option<[f64; 2]> {
-        let is_outside = |place: &[f64; 2]| distance(*place, centre) >= radius;
-        let places = self.steps.iter().rev().map(|step| step.pose.position);
+    pub(super) fn before_entering(&self, centre: Point2<f64>, radius: f64) -> Option<Point2<f64>> {
+        let is_outside = |place: &Point2<f64>| distance(*place, centre) >= radius;
+        let places = self.steps.iter().rev().map(|step| step.pose.position.into());
         places.skip_while(is_outside).find(is_outside)
     }
 
     /// Drives to a place, nearly.
-    pub(super) fn drive_near(&mut self, place: [f64; 2]) {
-        let off = [(); 2].map(|()| OFF * self.chance.random_range(-1.0..=1.0));
-        self.drive_to([0, 1].map(|axis| place[axis] + off[axis]));
+    pub(super) fn drive_near(&mut self, place: Point2<f64>) {
+        let place = place.map(|part| part + OFF * self.chance.random_range(-1.0..=1.0));
+        self.drive_to(place);
     }
 
     /// Turns, and drives to a point.
-    pub(super) fn drive_to(&mut self, point: [f64; 2]) {
+    pub(super) fn drive_to(&mut self, point: Point2<f64>) {
         let from = self.at;
         let length = distance(from, point);
         if length < 1e-6 {
@@ -153,22 +154,22 @@ impl WalkDriver {
         let turns = (turn.abs() / TURN).ceil();
         for part in 1..=turns as u32 {
             let heading = wrapped(ahead - turn * (1.0 - f64::from(part) / turns));
-            self.push(Pose { position: from, heading }, self.way);
+            self.push(Pose { position: from.into(), heading }, self.way);
         }
         self.heading = Some(ahead);
         // The robot swings about the middle of the corridor, and is on the line at both ends.
         let swings = f64::from(self.chance.random_range(1..=3_u32));
         let aside = ASIDE * self.chance.random_range(-1.0..=1.0);
         let count = (length / STEP).ceil();
-        let (sine, cosine) = ahead.sin_cos();
+        let onwards = unit(ahead);
+        let leftwards = Vector2::new(-onwards.y, onwards.x);
         for step in 1..=count as u32 {
             let share = f64::from(step) / count;
             let swing = (PI * swings * share).sin_cos();
             let left = aside * swing.0;
             let slope = aside * PI * swings / length * swing.1;
             let along = share * length;
-            let position =
-                [from[0] + along * cosine - left * sine, from[1] + along * sine + left * cosine];
+            let position = (from + along * onwards + left * leftwards).into();
             let heading = wrapped(ahead + slope.atan());
             self.push(Pose { position, heading }, self.way + along);
         }
@@ -182,7 +183,7 @@ impl WalkDriver {
         let turns = (TAU / TURN).ceil();
         for part in 1..=turns as u32 {
             let heading = wrapped(heading + TAU * f64::from(part) / turns);
-            self.push(Pose { position: self.at, heading }, self.way);
+            self.push(Pose { position: self.at.into(), heading }, self.way);
         }
     }
 
@@ -194,25 +195,19 @@ impl WalkDriver {
             self.steps.push(WalkStep { way, pose, odometry, time: 0.0 });
             return;
         };
-        let off = [0, 1].map(|axis| position[axis] - last.pose.position[axis]);
-        let (driven, turned) = (off[0].hypot(off[1]), wrapped(heading - last.pose.heading));
+        let off = Point2::from(position) - Point2::from(last.pose.position);
+        let (driven, turned) = (off.x.hypot(off.y), wrapped(heading - last.pose.heading));
         let chance = &mut self.chance;
         let mut standard = || -> f64 { StandardNormal.sample(chance) };
-        let (sine, cosine) = wrapped(last.odometry.heading - last.pose.heading).sin_cos();
+        let odometry_from_plan = Rotation2::new(wrapped(last.odometry.heading - last.pose.heading));
         let scale = 1.0 + LENGTH_NOISE * standard();
-        let position = [
-            last.odometry.position[0] + scale * (off[0] * cosine - off[1] * sine),
-            last.odometry.position[1] + scale * (off[0] * sine + off[1] * cosine),
-        ];
+        let position = Point2::from(last.odometry.position) + scale * (odometry_from_plan * off);
         let noise = HEADING_NOISE * standard();
         let heading = wrapped(last.odometry.heading + turned + self.drift * driven + noise);
         let time = last.time + driven / SPEED + turned.abs() / TURN_RATE;
-        self.steps.push(WalkStep { way, pose, odometry: Odometry { position, heading }, time });
+        let odometry = Odometry { position: position.into(), heading };
+        self.steps.push(WalkStep { way, pose, odometry, time });
     }
-}
-
-fn middle(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|axis| f64::midpoint(one[axis], other[axis]))
 }
 
 /// The clockwise angle from one direction to another, in radians, from 0 to a full turn.
