@@ -86,7 +86,6 @@ enum Leaving {
 }
 
 impl Allowance {
-    #[must_use]
     pub fn new(budget: RunBudget) -> Self {
         Self {
             budget,

@@ -482,9 +482,7 @@ mod tests {
         (percept, explorer.into_parts().0.asked)
     }
 
-    // paper: hardware.capture
-    // paper: alg2.4
-    // paper: alg2.5
+    // paper: hardware.capture, alg2.4, alg2.5
     #[test]
     fn an_image_from_before_the_end_of_the_last_motion_is_not_used() {
         let (percept, asked) = percept(&[Some(1.9), Some(1.9), Some(2.0), Some(2.5)]);

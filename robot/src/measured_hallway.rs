@@ -32,7 +32,6 @@ pub struct MeasuredHallway {
 
 impl MeasuredHallway {
     /// The robot stands at a junction, perhaps at this odometry.
-    #[must_use]
     pub fn from(odometry: Option<Odometry>) -> Self {
         let mut hallway = Self::default();
         if let Some(odometry) = odometry {

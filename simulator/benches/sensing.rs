@@ -22,7 +22,6 @@ use toposlam_vision::{
     junction::junction,
     line::lines,
     marker::marker,
-    params::{BoundaryParams, MarkerParams, SensingParams},
     sensing::Sensor,
     wall::{WallFrame, WallSegment},
 };
@@ -98,7 +97,7 @@ fn view(case: &Case, place: usize) -> GroundView {
 }
 
 fn bearings(case: &Case) -> Bearings {
-    Bearings::new(case.colours.stripe, case.camera.eye_height(), &BoundaryParams::default())
+    Bearings::new(case.colours.stripe, case.camera.eye_height())
 }
 
 /// The boundary points.
@@ -109,10 +108,10 @@ fn step_3_boundary(bencher: Bencher) {
     bencher.bench_local(|| bearings.look(&view));
 }
 
-fn walls(boundary: &Boundary, params: &SensingParams) -> Option<(WallFrame, Vec<WallSegment>)> {
-    let lines = lines(&clusters(boundary, &params.cluster), &params.line);
-    let frame = WallFrame::of(&lines, &params.wall)?;
-    let walls = frame.walls(&lines, &params.wall);
+fn walls(boundary: &Boundary) -> Option<(WallFrame, Vec<WallSegment>)> {
+    let lines = lines(&clusters(boundary));
+    let frame = WallFrame::of(&lines)?;
+    let walls = frame.walls(&lines);
     Some((frame, walls))
 }
 
@@ -121,8 +120,7 @@ fn walls(boundary: &Boundary, params: &SensingParams) -> Option<(WallFrame, Vec<
 fn step_4_walls(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, 2));
-    let params = SensingParams::default();
-    bencher.bench_local(|| walls(&boundary, &params));
+    bencher.bench_local(|| walls(&boundary));
 }
 
 /// Finds a hallway.
@@ -130,9 +128,8 @@ fn step_4_walls(bencher: Bencher) {
 fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, PLACE));
-    let params = SensingParams::default();
-    let (frame, walls) = walls(&boundary, &params).unwrap();
-    bencher.bench_local(|| hallway(&walls, &boundary, &frame, &params));
+    let (frame, walls) = walls(&boundary).unwrap();
+    bencher.bench_local(|| hallway(&walls, &boundary, &frame));
 }
 
 /// Finds corners and the junction.
@@ -140,11 +137,8 @@ fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
 fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, PLACE));
-    let params = SensingParams::default();
-    let (frame, walls) = walls(&boundary, &params).unwrap();
-    bencher.bench_local(|| {
-        junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
-    });
+    let (frame, walls) = walls(&boundary).unwrap();
+    bencher.bench_local(|| junction(&corners(&walls), &walls, &boundary, &frame));
 }
 
 /// The marker.
@@ -153,6 +147,5 @@ fn step_7_marker(bencher: Bencher) {
     let case = case(1280);
     let view = view(&case, 1);
     let boundary = bearings(&case).look(&view);
-    let params = MarkerParams::default();
-    bencher.bench_local(|| marker(&view, &boundary, None, &params));
+    bencher.bench_local(|| marker(&view, &boundary, None));
 }

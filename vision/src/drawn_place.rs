@@ -6,7 +6,6 @@ use crate::{
     boundary::Bearings,
     colour::{PixelClass, Stripe, StripeKind},
     ground_view::GroundView,
-    params::BoundaryParams,
 };
 
 /// The floor of a place: rectangles along the axes, in metres.
@@ -19,7 +18,7 @@ pub(crate) const TAPE: f64 = 0.05;
 pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAPE };
 
 pub(crate) fn bearings() -> Bearings {
-    Bearings::new(STRIPE, 1.05, &BoundaryParams::default())
+    Bearings::new(STRIPE, 1.05)
 }
 
 impl DrawnPlace {

@@ -5,9 +5,15 @@ use nalgebra::{Point2, Vector2};
 use crate::{
     boundary::Boundary,
     least_squares::NormalEquations,
-    params::OutlineParams,
     wall::{Axis, WallFrame},
 };
+
+/// A point this near to a wall agrees with it, at the robot. Views.
+const NEAR: f64 = 0.05;
+/// What each metre from the robot adds to that distance. Geometry: as `cluster::GAP_PER_METRE`.
+const NEAR_PER_METRE: f64 = 0.03;
+/// The length of a junction's arms, in hallway widths. Geometry: the next junction may begin there.
+const ARM: f64 = 1.0;
 
 /// The four directions of a frame, counter-clockwise: x, y, and their opposites.
 pub const DIRECTIONS: [Vector2<f64>; 4] = [
@@ -83,17 +89,13 @@ impl Outline {
     }
 
     /// A junction with doors in some of the four [`DIRECTIONS`].
-    pub fn junction(
-        doors: [bool; 4],
-        Square { middle, half }: Square,
-        params: &OutlineParams,
-    ) -> Self {
+    pub fn junction(doors: [bool; 4], Square { middle, half }: Square) -> Self {
         let mut sides = Vec::with_capacity(MOST_SIDES);
         for (towards, (&open, direction)) in doors.iter().zip(DIRECTIONS).enumerate() {
             let sign = direction.sum();
             let arm = if direction.y == 0.0 { Axis::X } else { Axis::Y };
             let (along, across) = arm.split();
-            let (edge, end) = (half, half + 2.0 * half * params.arm);
+            let (edge, end) = (half, half + 2.0 * half * ARM);
             let [near, far] = [edge, end].map(|reach| middle[along] + sign * reach);
             let closing = |kind, offset| OutlineSide {
                 kind,
@@ -151,14 +153,13 @@ impl Outline {
         square: Square,
         boundary: &Boundary,
         frame: &WallFrame,
-        params: &OutlineParams,
     ) -> (Square, WallFrame) {
         // What is not seen stays as it is: a pull of a thousandth of a point.
         let mut equations = NormalEquations::<4>::with_pull(1e-3);
         for (_, point) in boundary.points() {
             let from_robot = point.coords.norm();
             let point = frame.walls_from_robot() * point;
-            let near = near(from_robot, params);
+            let near = near(from_robot);
             let walls = self.sides.iter().filter_map(|side| match side.kind {
                 Kind::Wall(sign) => Some((side, sign, side.distance(point))),
                 Kind::Open => None,
@@ -204,8 +205,8 @@ impl OutlineSide {
 }
 
 /// The distance from a wall that counts as near, at this range from the robot.
-pub(crate) fn near(range: f64, params: &OutlineParams) -> f64 {
-    params.near + params.near_per_metre * range
+pub(crate) fn near(range: f64) -> f64 {
+    NEAR + NEAR_PER_METRE * range
 }
 
 #[cfg(test)]
@@ -219,11 +220,9 @@ mod tests {
         let view = DrawnPlace::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
         let boundary = drawn_place::bearings().look(&view);
         let mut frame = WallFrame::along(-0.27);
-        let params = OutlineParams::default();
         let mut square = Square { middle: Point2::new(0.16, -0.06), half: 0.78 };
         for _ in 0..4 {
-            (square, frame) = Outline::junction(doors, square, &params)
-                .fitted(square, &boundary, &frame, &params);
+            (square, frame) = Outline::junction(doors, square).fitted(square, &boundary, &frame);
         }
         let off = [
             square.middle[0] - 0.2,
@@ -237,8 +236,7 @@ mod tests {
     #[test]
     fn a_ray_meets_the_nearest_side_first() {
         let square = Square { middle: Point2::origin(), half: 0.8 };
-        let dead_end =
-            Outline::junction([false, false, true, false], square, &OutlineParams::default());
+        let dead_end = Outline::junction([false, false, true, false], square);
         let first = |ray: [f64; 2]| {
             dead_end.first_on(ray.into()).map(|(range, side)| (range, dead_end.sides[side]))
         };

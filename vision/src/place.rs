@@ -87,7 +87,6 @@ impl ViewSector {
     pub const ALL_AROUND: Self = Self { first: 0.0, angle: TAU };
 
     /// The angle between a direction and the nearest one in which the sensor looks, in radians; 0 if it looks there.
-    #[must_use]
     pub fn angle_off(&self, bearing: f64) -> f64 {
         let from_first = (bearing - self.first).rem_euclid(TAU);
         (from_first - self.angle).max(0.0).min(TAU - from_first)
@@ -102,19 +101,16 @@ impl SeenPlace {
 }
 
 impl PlaceArm {
-    #[must_use]
     pub fn certain(direction: f64) -> Self {
         Self { direction, certainty: Certainty::Certain }
     }
 
-    #[must_use]
     pub fn is_certain(&self) -> bool {
         self.certainty == Certainty::Certain
     }
 }
 
 /// The index of the direction that is nearest to another one; the first one of several.
-#[must_use]
 pub fn nearest_direction(directions: &[f64], to: f64) -> Option<usize> {
     let off = |index: &usize| wrapped(directions[*index] - to).abs();
     (0..directions.len()).min_by(|one, other| off(one).total_cmp(&off(other)))

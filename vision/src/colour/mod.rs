@@ -11,7 +11,6 @@ mod file;
 mod hsv;
 mod light;
 mod model;
-pub mod params;
 mod table;
 mod training;
 

@@ -9,12 +9,22 @@ use super::{
     hsv::{BINS, Bin},
     light::{self, LightError},
     model::Histogram,
-    params::TrainingParams,
     table::{self, CELLS},
 };
 use crate::camera::Camera;
 
-const TRAINING: TrainingParams = TrainingParams::DEFAULT;
+/// The radius of the floor that is learned from, in metres from the robot's centre. Geometry: the reach of the ground
+/// view.
+const RANGE: f64 = 3.0;
+/// The spread of one colour in the same light ([`Smoothing::colour`](super::Smoothing)). Views.
+const COLOUR_SMOOTHING: f64 = 0.7;
+/// The relative spread of the light from place to place ([`Smoothing::light`](super::Smoothing)). Views.
+const LIGHT_SMOOTHING: f64 = 0.08;
+/// A class does not have a colour if its part of the pixels is less. Views.
+const UNKNOWN_BELOW: f64 = 1e-6;
+/// The number of mixed pixels that count as one pure pixel. Views: a floor in the shade has the colour of a mixture of
+/// lit floor and dark stripe, and is floor. If no pure pixel has the colour, it is a mixture.
+const MIXED: u64 = 256;
 
 #[derive(Clone, Debug)]
 pub struct TrainingView {
@@ -28,7 +38,7 @@ impl TrainingView {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
             let ground = camera.pixel_to_ground(pixel.map(f64::from));
-            ground.is_some_and(|at| at.coords.norm() <= TRAINING.range) && camera.sees(pixel)
+            ground.is_some_and(|at| at.coords.norm() <= RANGE) && camera.sees(pixel)
         };
         let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
         let ground = pixels
@@ -148,7 +158,7 @@ fn is_mixed(labels: &[[u8; 3]], width: usize, pixel: usize) -> bool {
 pub enum TrainingError {
     #[error("there is no image to learn from")]
     NoImage,
-    #[error("no pixel within {} m is labelled as {}", TRAINING.range, class.name())]
+    #[error("no pixel within {} m is labelled as {}", RANGE, class.name())]
     NoPixel { class: PixelClass },
     #[error(
         "{images} images cannot be divided into {folds} parts; the number of parts must be from 2 to {images}"
@@ -276,11 +286,8 @@ impl Training {
             stripe: self.stripe,
             floor,
             priors: Priors::EQUAL,
-            smoothing: Smoothing {
-                colour: TRAINING.colour_smoothing,
-                light: TRAINING.light_smoothing,
-            },
-            unknown_below: TRAINING.unknown_below,
+            smoothing: Smoothing { colour: COLOUR_SMOOTHING, light: LIGHT_SMOOTHING },
+            unknown_below: UNKNOWN_BELOW,
             histograms,
         })
     }
@@ -306,7 +313,7 @@ fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
             let counts = cells.iter_mut().filter(|(learned, _)| *learned == alike.class);
             counts.for_each(|(_, counts)| {
                 counts[table::index(&offsets, alike.colour)] +=
-                    TRAINING.mixed * u64::from(alike.pure) + u64::from(alike.mixed);
+                    MIXED * u64::from(alike.pure) + u64::from(alike.mixed);
             });
         }
     }

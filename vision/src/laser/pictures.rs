@@ -29,7 +29,6 @@ const DOOR: f64 = 1.5;
 const ROBOT: f64 = 0.25;
 
 /// The name of each step from a scan to what is seen with it, and its picture. The x axis of the map points to the right.
-#[must_use]
 pub fn stages(view: &PlaceView, map: &LocalMap, scan: &Scan) -> [(&'static str, RgbImage); 4] {
     let background = [DARK, DIM, WALL];
     let canvases = [
@@ -43,7 +42,6 @@ pub fn stages(view: &PlaceView, map: &LocalMap, scan: &Scan) -> [(&'static str, 
 }
 
 /// The legend of the picture of a step, by the step's name; empty for any other name.
-#[must_use]
 pub fn legend(stage: &str, cell: f64) -> StageLegend {
     use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
     let walls = (Areas(vec![WALL]), "wall or obstacle");

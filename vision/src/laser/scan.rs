@@ -92,13 +92,11 @@ impl Scan {
         Ok(Self { geometry, ranges, robot_from_scanner })
     }
 
-    #[must_use]
     pub fn geometry(&self) -> ScanGeometry {
         self.geometry
     }
 
     /// The angle between the first and the last reading, in radians.
-    #[must_use]
     pub fn field_of_view(&self) -> f64 {
         self.ranges.len().saturating_sub(1) as f64 * self.geometry.angle_increment
     }
@@ -109,32 +107,27 @@ impl Scan {
         ViewSector { first, angle: self.field_of_view() }
     }
 
-    #[must_use]
     pub fn ranges(&self) -> &[f32] {
         &self.ranges
     }
 
     /// The pose of the scanner on the robot, whose x axis points ahead.
-    #[must_use]
     pub fn robot_from_scanner(&self) -> Isometry2<f64> {
         self.robot_from_scanner
     }
 
     /// Where the scanner is, in metres in the robot's frame.
-    #[must_use]
     pub fn scanner(&self) -> Point2<f64> {
         self.robot_from_scanner.translation.vector.into()
     }
 
     /// The direction of the scanner's x axis, in radians counter-clockwise from the robot's heading.
-    #[must_use]
     pub fn heading(&self) -> f64 {
         self.robot_from_scanner.rotation.angle()
     }
 
     /// The readings in counter-clockwise order, each with its bearing: the direction in which it was taken
     /// from the scanner, in radians counter-clockwise from the robot's heading, above -pi and up to pi.
-    #[must_use]
     pub fn readings(&self) -> impl ExactSizeIterator<Item = (f64, Reading)> + '_ {
         let first = self.heading() + self.geometry.angle_min;
         self.ranges.iter().enumerate().map(move |(index, &range)| {
@@ -158,7 +151,6 @@ impl Scan {
     }
 
     /// The point at a bearing and a range from the scanner, in metres in the robot's frame.
-    #[must_use]
     pub fn point(&self, bearing: f64, range: f64) -> Point2<f64> {
         self.scanner() + range * unit(bearing)
     }

@@ -65,13 +65,11 @@ const CORNERS: [Vector2<f64>; 2] = [Vector2::new(0.0, 0.0), Vector2::new(0.5, 0.
 const MARGIN: usize = 3;
 
 impl LaserSensor {
-    #[must_use]
     pub fn new(params: LaserParams) -> Self {
         Self { params, matcher: ScanMatcher::new(params.matching), ..Self::default() }
     }
 
     /// The map of the last view.
-    #[must_use]
     pub fn map(&self) -> Option<&LocalMap> {
         self.map.as_ref()
     }

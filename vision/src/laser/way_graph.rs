@@ -131,7 +131,6 @@ fn length(line: &[(Point2<f64>, f64)]) -> f64 {
 }
 
 impl WayGraph {
-    #[must_use]
     pub fn new(skeleton: &Skeleton, grid: &Grid, clearances: &Clearances) -> Self {
         let clearance = |at: usize| f64::from(clearances.wall[at]).sqrt() * grid.cell;
         let on_line = |at: usize| (grid.point(at), clearance(at));
@@ -168,7 +167,6 @@ impl WayGraph {
     }
 
     /// The indices of the ways at a node; a loop is there twice.
-    #[must_use]
     pub fn at(&self, node: usize) -> Vec<usize> {
         let ends = |(index, way): (usize, &Way)| way.nodes.map(|end| (end, index));
         let all = self.ways.iter().enumerate().flat_map(ends);

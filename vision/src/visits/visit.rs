@@ -101,7 +101,6 @@ const MOST_POSSIBLE_ARMS: usize = 8;
 
 impl<S> Visit<S> {
     /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known.
-    #[must_use]
     pub fn alternatives(&self) -> Vec<Option<VisitPercept>> {
         let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
         if self.arms.is_empty() || possible > MOST_POSSIBLE_ARMS {
@@ -128,7 +127,6 @@ impl<S> Visit<S> {
     }
 
     /// The percept of the arms that are certain, and the door that was taken.
-    #[must_use]
     pub fn percept(&self) -> VisitPercept {
         self.percept_with(&self.doors())
     }
@@ -139,13 +137,11 @@ impl<S> Visit<S> {
     }
 
     /// The directions of the arms that are certain, clockwise from the entry door.
-    #[must_use]
     pub fn doors(&self) -> Vec<f64> {
         self.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
     }
 
     /// The direction of the entry door.
-    #[must_use]
     pub fn entry(&self) -> Option<f64> {
         self.arms.first().map(|arm| arm.direction)
     }
