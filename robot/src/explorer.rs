@@ -21,7 +21,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    budget::{Allowance, BudgetLimit, RunBudget, Spent},
+    budget::{Allowance, BudgetLimit, Spent},
     measured_hallway::{MeasuredHallway, direction},
     robot::{Robot, RobotError, Sample},
     run_settings::RunSettings,
@@ -73,7 +73,6 @@ pub struct RobotExplorer<R, S, O = ()> {
     sampled: f64,
 }
 
-/// Why a frame cannot be used.
 #[derive(Debug, Error)]
 enum Unusable {
     #[error("the camera gives no image")]
@@ -101,7 +100,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             returns_at_obstacles: false,
             stall: None,
             begins_anywhere: false,
-            allowance: Allowance::new(RunBudget::default()),
+            allowance: Allowance::default(),
             metres: 0.0,
             hallway: None,
             measured: ArrivalMeasurement::default(),

@@ -31,7 +31,7 @@ const MIN_DIRECTION_SEEN: f64 = 0.25;
 const OPEN: f64 = 0.8;
 /// A gap in a wall is a door if it is narrower than this part of a hallway. Geometry.
 pub(crate) const DOOR_WIDTH: f64 = 0.75;
-/// Beside a door, this part of [`NEAR`] is near: around the corner of an opening there is wall, too. Views.
+/// Beside a door, this part of the usual distance is near: around the corner of an opening there is wall, too. Views.
 const DOOR_NEAR: f64 = 0.5;
 /// The length of wall that must be seen beside a door. Views.
 const DOOR_WALL: f64 = 0.30;
@@ -275,7 +275,7 @@ mod tests {
     const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: HALF - drawn_place::TAPE };
 
     fn seen(place: &DrawnPlace) -> Boundary {
-        drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
+        place.boundary([0.0, 0.0], 0.0)
     }
 
     fn agreement(outline: &Outline, boundary: &Boundary) -> OutlineAgreement {
@@ -326,8 +326,7 @@ mod tests {
     #[test]
     fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
         let dead_end = DrawnPlace::junction([false, false, true, false], HALF);
-        let view = dead_end.seen_from([-0.8, 0.0], 0.0);
-        let boundary = drawn_place::bearings().look(&view);
+        let boundary = dead_end.boundary([-0.8, 0.0], 0.0);
         let square = Square { middle: Point2::new(0.8, 0.0), half: HALF - drawn_place::TAPE };
         let l = Outline::junction([false, true, true, false], square);
         let agreement = agreement(&l, &boundary);
@@ -339,7 +338,7 @@ mod tests {
     fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
         let t = DrawnPlace::junction([false, true, true, true], 0.7);
         for before in [0.4, 0.5, 0.55] {
-            let boundary = drawn_place::bearings().look(&t.seen_from([-before, 0.0], 0.0));
+            let boundary = t.boundary([-before, 0.0], 0.0);
             // A little too wide and too near: a camera that is not as calibrated gives such an error.
             let square = Square { middle: Point2::new(before - 0.05, 0.0), half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);

@@ -11,6 +11,7 @@ use crate::{
     colour::{PixelClass, Stripe, StripeKind},
     geometry::unit,
     ground_view::GroundView,
+    wall::{WallFrame, WallSegment},
 };
 
 /// A stripe is at least this part of its true width. Geometry: one pixel of the image may cover the rest.
@@ -51,7 +52,6 @@ pub struct Sight {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// Its range, in metres.
     pub range: f64,
     /// Whether it is a stripe without floor behind it, or part of a long straight wall.
     pub sure: bool,
@@ -174,8 +174,12 @@ impl Bearings {
 
 impl Sight {
     /// A bearing on which a wall was measured at this range. A wall behind [`REACH`] is not looked at.
-    pub(crate) fn measured(range: f64) -> Self {
-        if range < REACH { Self::at(Some(range)) } else { Self { floor: REACH, ..Self::default() } }
+    pub(crate) fn measured(range: Option<f64>) -> Self {
+        match range {
+            Some(range) if range < REACH => Self::at(Some(range)),
+            Some(_) => Self { floor: REACH, ..Self::default() },
+            None => Self::default(),
+        }
     }
 
     pub(crate) fn at(range: Option<f64>) -> Self {
@@ -223,15 +227,15 @@ impl Boundary {
         })
     }
 
-    /// The same boundary, with these edges sure, too; they are given with their bearing.
-    #[must_use]
-    pub fn with_sure(mut self, is_sure: impl Fn(usize, &Edge) -> bool) -> Self {
+    /// Makes the edges sure that lie on long walls: what is behind a wall may have the floor's colour.
+    pub(crate) fn confirm(&mut self, walls: &[WallSegment], frame: &WallFrame) {
         for (bearing, sight) in self.sights.iter_mut().enumerate() {
             for edge in sight.edges.iter_mut().flatten() {
-                edge.sure = edge.sure || is_sure(bearing, edge);
+                let point =
+                    frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
+                edge.sure |= walls.iter().any(|wall| wall.confirms(point));
             }
         }
-        self
     }
 }
 

@@ -21,7 +21,6 @@ const MIN_EXTENT: f64 = 0.12;
 /// Boundary points that follow each other, counter-clockwise as seen from the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cluster {
-    /// In metres.
     pub points: Vec<Point2<f64>>,
 }
 

@@ -1,6 +1,8 @@
 //! Hallways: two parallel walls on opposite sides of the robot, and floor ahead and behind. Section 3,
 //! Figure 7.
 
+use std::ops::RangeInclusive;
+
 use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undirected};
 
 use crate::{
@@ -13,7 +15,7 @@ use crate::{
 
 /// Half the width of a hallway, from the least to the greatest. Geometry: in less the robot cannot turn, and the walls
 /// of a wider one are too far away to be seen.
-const HALF_WIDTH: [f64; 2] = [0.45, 1.2];
+pub(crate) const HALF_WIDTH: RangeInclusive<f64> = 0.45..=1.2;
 /// The walls must be closed this far ahead and behind, less half the width. Views: nearer to a turning point they are
 /// open at a side.
 const CLOSED: f64 = 1.4;
@@ -56,11 +58,6 @@ pub struct FittedHallway {
     pub agreement: OutlineAgreement,
 }
 
-/// Whether a hallway can be this wide; `half` is half its width.
-pub(crate) fn has_width(half: f64) -> bool {
-    (HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&half)
-}
-
 /// The hallway that the robot is in, if any.
 // paper: sense.hallway.two-clusters, sense.hallway.major
 pub fn hallway(
@@ -76,7 +73,7 @@ pub fn hallway(
     });
     pairs
         .filter_map(|(axis, offsets)| between(axis, offsets, walls, boundary, frame))
-        .max_by(|one, other| one.balance().total_cmp(&other.balance()))
+        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
 }
 
 /// The hallway between walls with these offsets, on the left and on the right.
@@ -89,7 +86,7 @@ fn between(
 ) -> Option<FittedHallway> {
     let mut square =
         Square { middle: axis.point(0.0, f64::midpoint(left, right)), half: (left - right) / 2.0 };
-    if !has_width(square.half) {
+    if !HALF_WIDTH.contains(&square.half) {
         return None;
     }
     let reach = (CLOSED - square.half).max(MIN_CLOSED);
@@ -101,8 +98,8 @@ fn between(
     }
     let outline = Outline::hallway(axis, square, -reach, reach);
     let agreement = outline.agreement(boundary, &frame, 1);
-    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame)
-        && goes_on(axis, -1.0, square, walls, boundary, &frame);
+    let goes_on =
+        [1.0, -1.0].iter().all(|&sign| goes_on(axis, sign, square, walls, boundary, &frame));
     let likely = agreement.holds(MIN_TRUST) && agreement.cover() >= MIN_COVER;
     let found = (likely && goes_on).then(|| FittedHallway {
         frame,
@@ -241,10 +238,6 @@ impl FittedHallway {
         self.agreement.holds(SURE_TRUST)
     }
 
-    fn balance(&self) -> f64 {
-        self.agreement.balance()
-    }
-
     /// The hallway in a scene. `margin` is the distance from the edges that are seen to the wall
     /// planes.
     // paper: sense.distances
@@ -275,19 +268,14 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
-    use crate::{
-        cluster::clusters,
-        drawn_place::{self, DrawnPlace},
-        line::lines,
-    };
+    use crate::drawn_place::{self, DrawnPlace};
 
     const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: 0.8 };
 
     fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
-        let boundary = drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
-        let lines = lines(&clusters(&boundary));
-        let frame = WallFrame::of(&lines)?;
-        hallway(&frame.walls(&lines), &boundary, &frame)
+        let boundary = place.boundary([0.0, 0.0], 0.0);
+        let (frame, walls) = drawn_place::walls(&boundary)?;
+        hallway(&walls, &boundary, &frame)
     }
 
     fn straight(width: f64) -> DrawnPlace {

@@ -12,7 +12,7 @@ use crate::{
     agreement::{OutlineAgreement, bearings},
     boundary::Boundary,
     corner::{Bend, Corner},
-    hallway::{FittedHallway, has_width, status},
+    hallway::{FittedHallway, HALF_WIDTH, status},
     outline::{DIRECTIONS, Outline, Square},
     wall::{Axis, WallFrame, WallSegment},
 };
@@ -89,8 +89,7 @@ pub fn junction(
     }
     best_first(&mut guesses);
     guesses.truncate(SHORT_LIST);
-    let fitted = |guess: FittedJunction| guess.fitted(boundary);
-    let mut found: Vec<_> = guesses.into_iter().map(fitted).collect();
+    let mut found: Vec<_> = guesses.into_iter().map(|guess| guess.fitted(boundary)).collect();
     best_first(&mut found);
     decided(&found)
 }
@@ -98,7 +97,7 @@ pub fn junction(
 /// The best junction, if it is seen well and no different one is about as good. The best is first.
 fn decided(found: &[FittedJunction]) -> JunctionSearch {
     let Some(&best) = found.first() else { return JunctionSearch::Nothing };
-    let wide = has_width(best.square.half);
+    let wide = HALF_WIDTH.contains(&best.square.half);
     let seen = best.agreement.cover() >= MIN_COVER
         && best.agreement.good() >= bearings(MIN_SUPPORT, 1)
         && best.agreement.blank == 0;
@@ -110,8 +109,7 @@ fn decided(found: &[FittedJunction]) -> JunctionSearch {
         (best.is_here() || other.is_here())
             && (other.doors != best.doors || apart(other.square, best.square) > SAME_PLACE)
     };
-    let balance = |junction: &FittedJunction| junction.agreement.balance();
-    let lead = |other: &FittedJunction| balance(&best) - balance(other);
+    let lead = |other: &FittedJunction| best.agreement.balance() - other.agreement.balance();
     if found.iter().any(|other| differs(other) && lead(other) < bearings(MIN_LEAD, 1)) {
         return JunctionSearch::Ambiguous;
     }
@@ -119,8 +117,7 @@ fn decided(found: &[FittedJunction]) -> JunctionSearch {
 }
 
 fn best_first(guesses: &mut [FittedJunction]) {
-    let balance = |guess: &FittedJunction| guess.agreement.balance();
-    guesses.sort_by(|one, other| balance(other).total_cmp(&balance(one)));
+    guesses.sort_by(|one, other| other.agreement.balance().total_cmp(&one.agreement.balance()));
 }
 
 fn apart(one: Square, other: Square) -> f64 {
@@ -136,7 +133,7 @@ fn half_widths(walls: &[WallSegment]) -> Vec<f64> {
             let half = (one.offset - other.offset).abs() / 2.0;
             let opposite = one.along == other.along && one.offset * other.offset < 0.0;
             let known = halves.iter().any(|&known: &f64| (known - half).abs() < same);
-            if opposite && has_width(half) && !known {
+            if opposite && HALF_WIDTH.contains(&half) && !known {
                 halves.push(half);
             }
         }
@@ -226,30 +223,18 @@ mod tests {
     use super::*;
     use crate::{
         boundary::{BEARINGS, Sight, bearing},
-        cluster::clusters,
         corner::{CornerSource, corners},
         drawn_place::{self, DrawnPlace},
-        line::lines,
     };
 
     const HALF: f64 = 0.8;
 
-    fn bearings_of(place: &DrawnPlace, position: [f64; 2]) -> Boundary {
-        drawn_place::bearings().look(&place.seen_from(position, 0.2))
-    }
-
     fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> JunctionSearch {
-        let mut boundary = bearings_of(&DrawnPlace::junction(doors, HALF), [-0.3, 0.1]);
+        let mut boundary = DrawnPlace::junction(doors, HALF).boundary([-0.3, 0.1], 0.2);
         for bearing in hidden {
             boundary.sights[bearing % BEARINGS] = Sight::default();
         }
-        finding(&boundary, &walls_of(&boundary))
-    }
-
-    fn walls_of(boundary: &Boundary) -> (WallFrame, Vec<WallSegment>) {
-        let lines = lines(&clusters(boundary));
-        let frame = WallFrame::of(&lines).unwrap();
-        (frame, frame.walls(&lines))
+        finding(&boundary, &drawn_place::walls(&boundary).unwrap())
     }
 
     fn finding(
@@ -257,26 +242,6 @@ mod tests {
         (frame, walls): &(WallFrame, Vec<WallSegment>),
     ) -> JunctionSearch {
         junction(&corners(walls), walls, boundary, frame)
-    }
-
-    // paper: sense.junction.two, sense.junction.three
-    #[test]
-    fn corners_of_the_same_type_make_an_l_and_of_different_types_with_a_wall_a_t() {
-        let kinds = [
-            [false, true, true, false],
-            [false, false, true, true],
-            [false, true, true, true],
-            [true, true, true, false],
-            [true, false, true, true],
-        ];
-        for doors in kinds {
-            let JunctionSearch::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
-            assert_eq!(found.doors, doors);
-            let [x, y] = (found.frame.robot_from_walls() * found.square.middle).into();
-            // 0.3 m ahead and 0.1 m to the right in a hallway to which the robot is turned by 0.2.
-            let [ahead, left] = [0.3 * 0.2_f64.cos() - 0.1 * 0.2_f64.sin(), -0.157_601];
-            assert!((x - ahead).abs() < 0.01 && (y - left).abs() < 0.01, "{x}, {y}");
-        }
     }
 
     #[test]
@@ -303,8 +268,8 @@ mod tests {
     #[test]
     fn no_junction_is_found_on_few_bearings() {
         let far_off = DrawnPlace::junction([false, true, true, true], 0.55);
-        let boundary = bearings_of(&far_off, [-1.9, 0.0]);
-        let walls = walls_of(&boundary);
+        let boundary = far_off.boundary([-1.9, 0.0], 0.2);
+        let walls = drawn_place::walls(&boundary).unwrap();
         let found = |every: usize| {
             let mut boundary = boundary.clone();
             for (bearing, sight) in boundary.sights.iter_mut().enumerate() {

@@ -48,7 +48,6 @@ impl WallLine {
         self.middle + (point - self.middle).dot(&self.along) * self.along
     }
 
-    /// Its length in metres.
     pub fn length(&self) -> f64 {
         distance(&self.from, &self.to)
     }

@@ -11,6 +11,7 @@ use crate::{
     colour::PixelClass,
     geometry::angle,
     ground_view::GroundView,
+    least_squares::median,
     line::WallLine,
     params::{MARKER_LENGTH, MARKER_WIDTH},
 };
@@ -74,16 +75,10 @@ fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<Point2<f64>> {
         (point.coords.norm() <= reach && is_within(view, index as usize)).then_some(point)
     });
     let points: Vec<_> = on_floor.collect();
-    if points.is_empty() {
-        return points;
-    }
-    let median = [0, 1].map(|axis| {
-        let mut parts: Vec<f64> = points.iter().map(|point| point[axis]).collect();
-        let middle = parts.len() / 2;
-        *parts.select_nth_unstable_by(middle, f64::total_cmp).1
-    });
-    let median = Point2::from(median);
-    points.into_iter().filter(|point| distance(point, &median) <= MAX_SPREAD).collect()
+    let middle =
+        [0, 1].map(|axis| median(points.iter().map(|point| point[axis])).unwrap_or_default());
+    let middle = Point2::from(middle);
+    points.into_iter().filter(|point| distance(point, &middle) <= MAX_SPREAD).collect()
 }
 
 /// Whether the pixels to the left and above have the colour, too; a speck has no such neighbours.

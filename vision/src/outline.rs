@@ -217,8 +217,7 @@ mod tests {
     #[test]
     fn a_place_is_moved_turned_and_widened_to_where_its_walls_are_seen() {
         let doors = [true, false, true, true];
-        let view = DrawnPlace::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
-        let boundary = drawn_place::bearings().look(&view);
+        let boundary = DrawnPlace::junction(doors, 0.8).boundary([-0.2, 0.1], 0.3);
         let mut frame = WallFrame::along(-0.27);
         let mut square = Square { middle: Point2::new(0.16, -0.06), half: 0.78 };
         for _ in 0..4 {

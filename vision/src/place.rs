@@ -12,7 +12,6 @@ use toposlam_model::driving::{
     scene::{Scene, wrapped},
 };
 
-/// Sees places.
 pub trait PlaceSensor {
     /// What is sensed at once: a scan, or the scene in an image.
     type Frame;
@@ -46,7 +45,6 @@ pub struct PlaceView {
 /// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenPlace {
-    /// In metres.
     pub centre: Point2<f64>,
     /// The distance from the centre to the nearest wall, in metres; 0 by a camera.
     pub clearance: f64,
@@ -57,12 +55,10 @@ pub struct SeenPlace {
 /// A way that may leave a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaceArm {
-    /// In radians.
     pub direction: f64,
     pub certainty: Certainty,
 }
 
-/// Whether an arm is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Certainty {
     /// It was driven, or is seen beyond doubt.
@@ -73,7 +69,6 @@ pub enum Certainty {
     Excluded,
 }
 
-/// The directions in which a sensor looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewSector {
     /// The first one, in radians counter-clockwise from the robot's heading.

@@ -21,7 +21,7 @@ use crate::{
     line::{WallLine, lines},
     marker::marker,
     place::{PlaceArm, PlaceSensor, PlaceView, SeenPlace, ViewSector},
-    wall::{WallFrame, WallSegment, confirmed},
+    wall::{WallFrame, WallSegment},
 };
 
 /// The fewest boundary points that can show a place. Views.
@@ -76,28 +76,21 @@ impl PlaceSensor for SceneSensor {
     .found[0], .found[1], .expected[0], .expected[1]
 )]
 pub struct WrongSize {
-    /// Width and height of the image.
     pub found: [u32; 2],
-    /// Width and height of the camera's images.
     pub expected: [u32; 2],
 }
 
 /// The results of all steps that lead to a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensingTrace {
-    /// What is seen on each bearing.
     pub boundary: Option<Boundary>,
-    /// The pieces of wall.
     pub clusters: Vec<Cluster>,
-    /// Their straight pieces.
     pub lines: Vec<WallLine>,
     /// The frame along which most of them run.
     pub frame: Option<WallFrame>,
     /// The lines that run along its axes.
     pub walls: Vec<WallSegment>,
-    /// The corners where they meet or end.
     pub corners: Vec<Corner>,
-    /// The hallway, if there is one.
     pub hallway: Option<FittedHallway>,
     /// The junction, if one was searched for and found.
     pub junction: Option<FittedJunction>,
@@ -143,7 +136,6 @@ impl Sensor {
         Ok(interpreted(&self.view, &self.bearings))
     }
 
-    /// The camera whose images it takes.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
@@ -175,7 +167,7 @@ pub(crate) fn place_within(mut boundary: Boundary, margin: f64) -> (Place, Sensi
     let frame = WallFrame::of(&lines);
     let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
     if let Some(frame) = &frame {
-        boundary = confirmed(boundary, &walls, frame);
+        boundary.confirm(&walls, frame);
     }
     let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame));
     let mut trace =
@@ -259,6 +251,7 @@ mod tests {
 
     // paper: sense.junction.type, sense.junction.entry, sense.centre-lines, sense.place
     // paper: drive.junction, alg2.6
+    // paper: sense.junction.two, sense.junction.three
     #[test]
     fn every_junction_is_found_from_half_a_metre_before_it_to_beyond_it() {
         for (number, doors) in KINDS.into_iter().enumerate() {

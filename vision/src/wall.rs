@@ -5,10 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{Point2, UnitComplex};
 use toposlam_model::driving::scene::wrapped;
 
-use crate::{
-    boundary::{Boundary, direction},
-    line::WallLine,
-};
+use crate::line::WallLine;
 
 /// The largest angle between a wall and its axis. Views.
 const MAX_SKEW: f64 = 0.20;
@@ -156,25 +153,17 @@ impl Axis {
 }
 
 impl WallSegment {
-    pub fn contains(&self, point: Point2<f64>) -> bool {
+    /// Whether a boundary point is sure, because it lies on this wall and the wall is long.
+    pub(crate) fn confirms(&self, point: Point2<f64>) -> bool {
         let (along, across) = self.along.split();
-        let near = ON_WALL;
-        (self.from - near..=self.to + near).contains(&point[along])
-            && (point[across] - self.offset).abs() <= near
+        self.length() >= LONG_WALL
+            && (self.from - ON_WALL..=self.to + ON_WALL).contains(&point[along])
+            && (point[across] - self.offset).abs() <= ON_WALL
     }
 
     pub fn length(&self) -> f64 {
         self.to - self.from
     }
-}
-
-/// The boundary with the edges that lie on long walls sure, too: what is behind a wall may have the
-/// floor's colour.
-pub fn confirmed(boundary: Boundary, walls: &[WallSegment], frame: &WallFrame) -> Boundary {
-    boundary.with_sure(|bearing, edge| {
-        let point = frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
-        walls.iter().any(|wall| wall.length() >= LONG_WALL && wall.contains(point))
-    })
 }
 
 #[cfg(test)]

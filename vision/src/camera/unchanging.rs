@@ -14,7 +14,7 @@ use super::{
     morphology::{Colours, close, dilate, open, pieces, smooth},
     rim::Rim,
 };
-use crate::geometry::angle;
+use crate::{geometry::angle, least_squares::median};
 
 /// The least number of images. Geometry: in fewer, edges of the building are in the same place by chance.
 const FEWEST: usize = 4;
@@ -201,20 +201,14 @@ fn shrunk(image: &RgbImage, factor: u32) -> Colours {
 fn noise(image: &Colours) -> f32 {
     let (width, height) = image.dimensions();
     let at = |u: u32, v: u32| image.get_pixel(u, v)[1];
-    let mut sizes: Vec<f32> = (1..height.max(2) - 1)
-        .flat_map(|v| (1..width.max(2) - 1).map(move |u| (u, v)))
-        .map(|(u, v)| {
-            (4.0 * at(u, v) - at(u - 1, v) - at(u + 1, v) - at(u, v - 1) - at(u, v + 1)).abs()
-        })
-        .collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return 1.0;
-    }
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
+    let inner = (1..height.max(2) - 1).flat_map(|v| (1..width.max(2) - 1).map(move |u| (u, v)));
+    let sizes = inner.map(|(u, v)| {
+        (4.0 * at(u, v) - at(u - 1, v) - at(u + 1, v) - at(u, v - 1) - at(u, v + 1)).abs()
+    });
+    let Some(median) = median(sizes.map(f64::from)) else { return 1.0 };
     // The difference between four times a pixel and its four neighbours has sqrt(20) times the noise.
     // Rounding is noise, too.
-    (*median * 1.4826 / 20.0_f32.sqrt()).max(0.3)
+    (median as f32 * 1.4826 / 20.0_f32.sqrt()).max(0.3)
 }
 
 struct Struts {
@@ -231,9 +225,8 @@ impl Struts {
             let of_images: Vec<[f32; 3]> =
                 slopes.iter().map(|slopes| slopes.across(bearing, disc)).collect();
             for (channel, rises) in rises.iter_mut().enumerate() {
-                let mut rise: Vec<f32> = of_images.iter().map(|image| image[channel]).collect();
-                rise.sort_by(f32::total_cmp);
-                rises.push(rise[rise.len() / 2]);
+                let rise = median(of_images.iter().map(|image| image[channel].into()));
+                rises.push(rise.unwrap_or_default() as f32);
             }
         }
         let mut struts = Self { hidden: vec![false; Self::BEARINGS] };
@@ -245,9 +238,8 @@ impl Struts {
 
     /// The struts in one channel, from its slopes from bearing to bearing.
     fn add(&mut self, rises: &[f32]) {
-        let mut sizes: Vec<f32> = rises.iter().map(|rise| rise.abs()).collect();
-        sizes.sort_by(f32::total_cmp);
-        let steep = (8.0 * sizes[sizes.len() / 2]).max(0.004);
+        let size = median(rises.iter().map(|rise| rise.abs().into())).unwrap_or_default();
+        let steep = (8.0 * size as f32).max(0.004);
         // It gets darker and then as bright again, or the other way round.
         for (from, &rise) in rises.iter().enumerate().filter(|(_, rise)| rise.abs() > steep) {
             let back = (1..=WIDEST_STRUT)

@@ -90,18 +90,13 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
     let mut floor = median(&lit);
     let mut share = 1.0;
     for _ in 0..4 {
-        let near = lit.iter().filter(|colour| is_near(floor, **colour));
-        let (mut count, mut sum) = (0_u32, [0_u32; 3]);
-        for colour in near {
-            count += 1;
-            for (sum, &level) in sum.iter_mut().zip(colour) {
-                *sum += u32::from(level);
-            }
+        let near: Vec<_> = lit.iter().filter(|colour| is_near(floor, **colour)).collect();
+        let count = near.len() as f64;
+        if count > 0.0 {
+            let level = |channel: usize| near.iter().map(move |colour| f64::from(colour[channel]));
+            floor = std::array::from_fn(|channel| level(channel).sum::<f64>() / count);
         }
-        if count > 0 {
-            floor = sum.map(|sum| f64::from(sum) / f64::from(count));
-        }
-        share = f64::from(count) / ring.len() as f64;
+        share = count / ring.len() as f64;
     }
     if floor.into_iter().fold(0.0, f64::max) < DARK {
         Err(LightError::TooDark)

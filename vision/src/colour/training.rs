@@ -5,13 +5,13 @@ use thiserror::Error;
 use toposlam_model::enumerate::{Interrupted, Watch};
 
 use super::{
-    ColourModel, Confusion, FloorRing, PixelClass, Priors, Smoothing, Stripe,
+    ColourModel, Confusion, FloorRing, PixelClass, Smoothing, Stripe,
     hsv::{BINS, Bin},
     light::{self, LightError},
-    model::Histogram,
+    model::{EQUAL_PRIORS, Histogram},
     table::{self, CELLS},
 };
-use crate::camera::Camera;
+use crate::{camera::Camera, least_squares::median};
 
 /// The radius of the floor that is learned from, in metres from the robot's centre. Geometry: the reach of the ground
 /// view.
@@ -27,14 +27,14 @@ const UNKNOWN_BELOW: f64 = 1e-6;
 const MIXED: u64 = 256;
 
 #[derive(Clone, Debug)]
-pub struct TrainingView {
+struct TrainingView {
     camera: Camera,
     ground: Vec<usize>,
     ring: FloorRing,
 }
 
 impl TrainingView {
-    pub fn new(camera: &Camera) -> Self {
+    fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
             let ground = camera.pixel_to_ground(pixel.map(f64::from));
@@ -78,7 +78,7 @@ fn allowed() -> String {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Example {
+struct Example {
     floor: [f64; 3],
     colours: Vec<Alike>,
 }
@@ -101,16 +101,7 @@ impl Alike {
 }
 
 impl Example {
-    /// An image with its labels.
-    ///
-    /// # Errors
-    /// Returns an error if image or labels have another size, if a label has an unknown colour, or if the
-    /// light is not known.
-    pub fn new(
-        view: &TrainingView,
-        image: &RgbImage,
-        labels: &RgbImage,
-    ) -> Result<Self, ExampleError> {
+    fn new(view: &TrainingView, image: &RgbImage, labels: &RgbImage) -> Result<Self, ExampleError> {
         let expected = view.camera.image;
         let [found, labelled] = [image, labels].map(|image| <[u32; 2]>::from(image.dimensions()));
         if found != expected {
@@ -192,7 +183,8 @@ impl Training {
     /// Adds an image of this camera with its labels.
     ///
     /// # Errors
-    /// Returns an error if they cannot be used; then they are left out.
+    /// Returns an error if image or labels have another size, if a label has an unknown colour, or if the light is not
+    /// known; then they are left out.
     pub fn add(
         &mut self,
         camera: &Camera,
@@ -205,12 +197,8 @@ impl Training {
         };
         let example = Example::new(&view, image, labels);
         self.view = Some(view);
-        self.push(example?);
+        self.examples.push(example?);
         Ok(())
-    }
-
-    pub fn push(&mut self, example: Example) {
-        self.examples.push(example);
     }
 
     pub fn images(&self) -> usize {
@@ -285,7 +273,7 @@ impl Training {
         Ok(ColourModel {
             stripe: self.stripe,
             floor,
-            priors: Priors::EQUAL,
+            priors: EQUAL_PRIORS,
             smoothing: Smoothing { colour: COLOUR_SMOOTHING, light: LIGHT_SMOOTHING },
             unknown_below: UNKNOWN_BELOW,
             histograms,
@@ -298,9 +286,8 @@ fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
         return Err(TrainingError::NoImage);
     }
     Ok(std::array::from_fn(|channel| {
-        let mut levels: Vec<_> = examples.iter().map(|example| example.floor[channel]).collect();
-        levels.sort_by(f64::total_cmp);
-        (levels[levels.len() / 2].max(1.0) * 100.0).round() / 100.0
+        let level = median(examples.iter().map(|example| example.floor[channel]));
+        (level.unwrap_or_default().max(1.0) * 100.0).round() / 100.0
     }))
 }
 

@@ -6,11 +6,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Point2;
 
-use super::{
-    clearances::Clearances,
-    grid::{Cell, Grid},
+use super::{clearances::Clearances, grid::Cell};
+use crate::{
+    geometry::{direction, distance, unit},
+    least_squares::median,
 };
-use crate::geometry::{direction, distance, unit};
 
 /// Lines of sight begin this far behind the walls of the junction. Geometry: two cells of the local map.
 const MOUTH: f64 = 0.3;
@@ -58,7 +58,7 @@ impl ArmView {
     pub(super) fn new(
         line: &[(Point2<f64>, f64)],
         (meet, clearance): (Point2<f64>, f64),
-        (grid, clearances): (&Grid, &Clearances),
+        map: &Clearances,
         far: f64,
     ) -> Self {
         let behind = |least: f64| {
@@ -79,7 +79,7 @@ impl ArmView {
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
-                let (free, _) = clearances.sight(grid, from, angle, far - before);
+                let (free, _) = map.sight(from, angle, far - before);
                 if free + before >= far {
                     return Self::Far;
                 }
@@ -88,7 +88,7 @@ impl ArmView {
                 }
             }
         }
-        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid, clearances));
+        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
         Self::Near { depth: length + distance(longest.from, meet), walled }
     }
@@ -101,18 +101,17 @@ impl Ray {
 
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
-    fn walled(&self, length: f64, side: f64, grid: &Grid, clearances: &Clearances) -> f64 {
+    fn walled(&self, length: f64, side: f64, map: &Clearances) -> f64 {
         let points = ((length.min(FAR) / APART) as u32).max(1);
         let across = self.angle + side * FRAC_PI_2;
         let beside = |point: u32| {
             let from = self.at(APART * f64::from(point));
-            let (off, cell) = clearances.sight(grid, from, across, BESIDE);
+            let (off, cell) = map.sight(from, across, BESIDE);
             (cell == Cell::Occupied).then_some(off)
         };
-        let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();
-        walls.sort_by(f64::total_cmp);
-        let Some(&usual) = walls.get(walls.len() / 2) else { return 0.0 };
-        let straight = walls.iter().filter(|&&off| (off - usual).abs() < STRAIGHT);
+        let walls: Vec<f64> = (0..points).filter_map(beside).collect();
+        let Some(usual) = median(walls.iter().copied()) else { return 0.0 };
+        let straight = walls.iter().filter(|&off| (off - usual).abs() < STRAIGHT);
         straight.count() as f64 / f64::from(points)
     }
 }

@@ -3,6 +3,7 @@
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{matching::ScanMatcher, params::LaserParams, scan::Scan};
+use crate::least_squares::median;
 
 /// The rounds of matching with which drift is measured and corrected. Geometry: 8 are enough.
 pub const ROUNDS: usize = 8;
@@ -11,7 +12,6 @@ const STRETCH: f64 = 10.0;
 /// Fewer stretches do not show a drift. Geometry: their median is used.
 const LEAST: usize = 3;
 
-/// Measures the drift of the heading of odometry.
 #[derive(Clone, Debug, Default)]
 pub struct DriftMeter {
     params: LaserParams,
@@ -50,7 +50,6 @@ impl DriftMeter {
     #[must_use]
     pub fn finish(mut self) -> Option<f64> {
         self.changes.retain(|change| change.is_finite());
-        self.changes.sort_by(f64::total_cmp);
-        (self.changes.len() >= LEAST).then(|| self.changes[self.changes.len() / 2])
+        if self.changes.len() < LEAST { None } else { median(self.changes) }
     }
 }

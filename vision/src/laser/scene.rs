@@ -58,7 +58,6 @@ const HIDDEN_CONFIDENCE: f64 = 0.5;
 /// least every 2 degrees.
 const NEXT: f64 = 0.06;
 
-/// Senses places with a laser scanner.
 #[derive(Clone, Debug, Default)]
 pub struct ScanPlaceSensor {
     /// Where the last scans were taken, with the pieces of wall that they have hit, in the frame of odometry.
@@ -207,7 +206,7 @@ impl ScanPlaceSensor {
                 }
             }
         }
-        let mut sights: Vec<Sight> = sights.into_iter().map(sight).collect();
+        let mut sights: Vec<Sight> = sights.into_iter().map(Sight::measured).collect();
         let seen_by_robot = |(bearing, range): (f64, Option<f64>)| match range {
             Some(range) => {
                 let (bearing, range) = polar(scan.point(bearing, range));
@@ -310,11 +309,7 @@ fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
         }
         _ => nearest,
     };
-    sight(range)
-}
-
-fn sight(range: Option<f64>) -> Sight {
-    range.map_or_else(Sight::default, Sight::measured)
+    Sight::measured(range)
 }
 
 /// How far a point is to the left of a direction.

@@ -50,7 +50,7 @@ struct Approach<S> {
     onwards: WayLength,
 }
 
-impl<S: Copy> ApproachRule<S> {
+impl<S: Copy + Default> ApproachRule<S> {
     pub(super) fn new(marked: bool) -> Self {
         let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
         Self { approach: None, seen, hallway: None, way: WayLength::default() }
@@ -173,7 +173,7 @@ impl<S: Copy> ApproachRule<S> {
     }
 }
 
-impl<S: Copy> Approach<S> {
+impl<S: Copy + Default> Approach<S> {
     fn is_visit(&self) -> bool {
         self.nearest <= APPROACH_RANGE
     }
@@ -198,16 +198,10 @@ impl<S: Copy> Approach<S> {
         Visit {
             at,
             centre: self.turning_point,
-            clearance: 0.0,
             extent: APPROACH_RANGE,
-            arms: Vec::new(),
             least_degree: 1,
-            exit: None,
             doubt: Some(UndecidedCause::Unclear),
-            shape: None,
-            sighting: None,
-            turned_back: Vec::new(),
-            hallway: None,
+            ..Visit::default()
         }
     }
 }

@@ -22,7 +22,7 @@ use brightness::Brightness;
 use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 
-use crate::geometry;
+use crate::{geometry, least_squares::median};
 
 /// Edges are searched for up to this many units from a circle, ... Views.
 const REACH: f64 = 8.0;
@@ -56,9 +56,7 @@ const EVERY: usize = 4;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
-    /// Its centre, in pixels.
     pub centre: Point2<f64>,
-    /// Its radius, in pixels.
     pub radius: f64,
     /// The share of the full circle that was seen.
     pub seen: f64,
@@ -103,12 +101,12 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     let mean = Brightness::mean(images)?;
     let mut fits: Vec<CircleFit> = search::candidates(&mean)
         .into_iter()
-        .map(|circle| CircleFit::near(&mean, circle))
+        .map(|circle| CircleFit::fitted(&mean, circle, EVERY))
         .collect();
     fits.retain(|fit| fit.is_plausible(&mean));
     fits.sort_by(|one, other| other.score().total_cmp(&one.score()));
     let first = fits.first().ok_or(RimError::NoRim)?.circle;
-    let best = CircleFit::exact(&mean, first);
+    let best = CircleFit::fitted(&mean, first, 1);
     if !best.is_seen() {
         return Err(RimError::NoRim);
     }
@@ -158,8 +156,10 @@ pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<R
     // What is given by hand is not exact.
     let near = 0.01 * radius;
     let edges = CircleEdges::near(&mean, &circle, (near / unit(&circle)).max(REACH), 1);
-    let seen = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
-    Ok(CircleFit::of(circle, seen.collect()).rim())
+    let on = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
+    let edges: Vec<CircleEdge> = on.collect();
+    let seen = edges.len() as f64 / BEARINGS as f64;
+    Ok(CircleFit { circle, edges, seen, visible: 1.0 }.rim())
 }
 
 #[derive(Clone, Debug)]
@@ -172,20 +172,7 @@ struct CircleFit {
 }
 
 impl CircleFit {
-    fn of(circle: Circle, edges: Vec<CircleEdge>) -> Self {
-        let seen = edges.len() as f64 / BEARINGS as f64;
-        Self { circle, edges, seen, visible: 1.0 }
-    }
-
-    /// The circle through the edges near a circle; on some of the bearings only.
-    fn near(image: &Brightness, circle: Circle) -> Self {
-        Self::fitted(image, circle, EVERY)
-    }
-
-    fn exact(image: &Brightness, circle: Circle) -> Self {
-        Self::fitted(image, circle, 1)
-    }
-
+    /// The circle through the edges near a circle, on one bearing in `every`.
     fn fitted(image: &Brightness, mut circle: Circle, every: usize) -> Self {
         for reach in [6.0, 4.0, 4.0] {
             let places = CircleEdges::near(image, &circle, reach, every).places();
@@ -245,13 +232,8 @@ impl CircleFit {
         let inner = widths.filter_map(|part| {
             let circle = Circle { radius: outer * (1.0 - part), ..self.circle };
             let edges = CircleEdges::near(image, &circle, 3.0, EVERY).edges;
-            let mut off: Vec<f64> = edges
-                .iter()
-                .filter(|edge| edge.fall > 0.0)
-                .map(|edge| circle.off(edge.at))
-                .collect();
-            off.sort_by(f64::total_cmp);
-            let radius = circle.radius + off.get(off.len() / 2)?;
+            let falls = edges.iter().filter(|edge| edge.fall > 0.0);
+            let radius = circle.radius + median(falls.map(|edge| circle.off(edge.at)))?;
             let fit = Self::on(image, Circle { radius, ..circle }, EVERY);
             let apart = outer - radius > 4.0 * unit(&circle);
             let is_inner = apart
@@ -331,8 +313,7 @@ fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
             darker += usize::from(ring < outside + NOISE);
         }
     }
-    rings.sort_by(f64::total_cmp);
-    let median = rings.get(rings.len() / 2).copied().unwrap_or_default();
+    let median = median(rings.iter().copied()).unwrap_or_default();
     let even = |ring: &&f64| (**ring - median).abs() < NOISE + 0.25 * median;
     let most = |count: usize| count as f64 > 0.75 * rings.len() as f64;
     most(darker) && most(rings.iter().filter(even).count())
