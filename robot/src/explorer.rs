@@ -352,12 +352,6 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.allowance.perceive(percept, spent);
     }
 
-    /// A robot that was lost has come to a junction. How many moves lead there is not known.
-    fn arrive_from_nowhere(&mut self, standing: Standing) {
-        self.hallway = None;
-        self.stand(standing, Arrival { number: None, ..Arrival::new(self.last_move, &standing) });
-    }
-
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
         self.place = Some(Standpoint::Junction(standing));
         self.stall = None;

@@ -242,6 +242,7 @@ impl Boundary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn_place;
 
     /// Classes on a bearing: one letter is eight steps of a class.
     fn on(letters: &str) -> Vec<PixelClass> {
@@ -257,8 +258,7 @@ mod tests {
     }
 
     fn sight(letters: &str) -> Sight {
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        Bearings::new(stripe, 1.05).sight(&on(letters))
+        drawn_place::bearings().sight(&on(letters))
     }
 
     // paper: sense.boundary, sense.boundary-points
@@ -300,8 +300,7 @@ mod tests {
     fn a_joint_between_tiles_is_narrower_than_the_stripe() {
         let mut classes = on("ffffffffffff");
         classes[40..42].fill(PixelClass::Stripe);
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        assert_eq!(Bearings::new(stripe, 1.05).sight(&classes).edges().count(), 0);
+        assert_eq!(drawn_place::bearings().sight(&classes).edges().count(), 0);
     }
 
     #[test]
