@@ -33,7 +33,8 @@ pub struct Outline {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OutlineSide {
-    kind: Kind,
+    /// The side of the middle, on the axis across it, on which a wall is: -1 or 1. `None` if it is open.
+    wall: Option<f64>,
     /// Its direction from the middle, an index in [`DIRECTIONS`].
     pub(crate) towards: usize,
     pub(crate) along: Axis,
@@ -41,13 +42,6 @@ pub(crate) struct OutlineSide {
     pub(crate) offset: f64,
     from: f64,
     to: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    /// A wall on this side of the middle, on the axis across it: -1 or 1.
-    Wall(f64),
-    Open,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +64,7 @@ impl Outline {
             if sign > 0.0 { first } else { first + 2 }
         };
         let wall = |sign: f64| OutlineSide {
-            kind: Kind::Wall(sign),
+            wall: Some(sign),
             towards: number(axis.across(), sign),
             along: axis,
             offset: centre + sign * square.half,
@@ -78,7 +72,7 @@ impl Outline {
             to: beside + to,
         };
         let end = |at: f64| OutlineSide {
-            kind: Kind::Open,
+            wall: None,
             towards: number(axis, at),
             along: axis.across(),
             offset: beside + at,
@@ -97,8 +91,8 @@ impl Outline {
             let (along, across) = arm.split();
             let (edge, end) = (half, half + 2.0 * half * ARM);
             let [near, far] = [edge, end].map(|reach| middle[along] + sign * reach);
-            let closing = |kind, offset| OutlineSide {
-                kind,
+            let closing = |wall, offset| OutlineSide {
+                wall,
                 towards,
                 along: arm.across(),
                 offset,
@@ -106,9 +100,9 @@ impl Outline {
                 to: middle[across] + half,
             };
             if open {
-                sides.push(closing(Kind::Open, far));
+                sides.push(closing(None, far));
                 sides.extend([1.0, -1.0].map(|side| OutlineSide {
-                    kind: Kind::Wall(side),
+                    wall: Some(side),
                     towards,
                     along: arm,
                     offset: middle[across] + side * half,
@@ -116,7 +110,7 @@ impl Outline {
                     to: near.max(far),
                 }));
             } else {
-                sides.push(closing(Kind::Wall(sign), near));
+                sides.push(closing(Some(sign), near));
             }
         }
         Self { sides, width: 2.0 * half }
@@ -159,18 +153,11 @@ impl Outline {
         for (_, point) in boundary.points() {
             let from_robot = point.coords.norm();
             let point = frame.walls_from_robot() * point;
-            let near = near(from_robot);
-            let walls = self.sides.iter().filter_map(|side| match side.kind {
-                Kind::Wall(sign) => Some((side, sign, side.distance(point))),
-                Kind::Open => None,
-            });
-            let Some((side, sign, off)) = walls.min_by(|one, other| one.2.total_cmp(&other.2))
-            else {
-                continue;
-            };
-            if off > near {
-                continue;
-            }
+            let walls =
+                self.sides.iter().filter_map(|side| Some((side, side.wall?, side.distance(point))));
+            let nearest = walls.min_by(|one, other| one.2.total_cmp(&other.2));
+            let near = nearest.filter(|&(_, _, off)| off <= near(from_robot));
+            let Some((side, sign, _)) = near else { continue };
             // To first order, turning the frame by `turn` moves the point across the wall by
             // -turn x for a wall along x, and by turn y for one along y.
             let (along, across) = side.along.split();
@@ -193,7 +180,7 @@ impl Outline {
 
 impl OutlineSide {
     pub(crate) fn is_wall(&self) -> bool {
-        self.kind != Kind::Open
+        self.wall.is_some()
     }
 
     /// The distance of a point from it, in metres.
