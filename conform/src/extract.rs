@@ -21,7 +21,7 @@ use toposlam_vision::{
         sensor::LaserSensor,
     },
     sensing::Sensor,
-    visits::{ApproachParams, Visits},
+    visits::{APPROACH_RANGE, Visits},
 };
 
 use super::{
@@ -216,7 +216,7 @@ pub fn extract(
         run.events.measurement_noise = match evidence {
             Evidence::Recorded => noise,
             Evidence::Scenes | Evidence::Images => {
-                MeasurementNoise { standing: ApproachParams::DEFAULT.near, ..noise }
+                MeasurementNoise { standing: APPROACH_RANGE, ..noise }
             }
             Evidence::Laser => MeasurementNoise::UNKNOWN,
         };

@@ -8,7 +8,6 @@ use std::fmt;
 use nalgebra::Vector3;
 use toposlam_model::percept::{Door, Percept, Sighting};
 
-/// What a run may spend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunBudget {
     pub moves: Option<u64>,
@@ -64,7 +63,7 @@ struct Leg {
 }
 
 /// A robot's budget, and its way back to the marker.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Allowance {
     budget: RunBudget,
     spent: Spent,
@@ -72,6 +71,7 @@ pub struct Allowance {
     legs: Vec<Leg>,
     /// The door by which the robot has come in, counted from the one by which it first came in.
     entry: u32,
+    /// 0 before the first junction.
     degree: u32,
     leaving: Option<Leaving>,
     knows_way: bool,
@@ -86,18 +86,8 @@ enum Leaving {
 }
 
 impl Allowance {
-    #[must_use]
     pub fn new(budget: RunBudget) -> Self {
-        Self {
-            budget,
-            spent: Spent::zeros(),
-            longest: None,
-            legs: Vec::new(),
-            entry: 0,
-            degree: 1,
-            leaving: None,
-            knows_way: false,
-        }
+        Self { budget, ..Self::default() }
     }
 
     fn way_back(&self) -> Spent {
@@ -153,7 +143,6 @@ impl Allowance {
         }
     }
 
-    /// The robot got lost.
     pub fn lose_way(&mut self) {
         self.knows_way = false;
         self.leaving = None;
@@ -167,7 +156,6 @@ impl Allowance {
         is_away.then(|| Door(self.entry).inverse(self.degree.max(1)))
     }
 
-    /// Whether the robot is at the marker.
     pub fn is_at_marker(&self) -> bool {
         self.knows_way && self.legs.is_empty() && self.leaving.is_none()
     }

@@ -21,7 +21,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    budget::{Allowance, BudgetLimit, RunBudget, Spent},
+    budget::{Allowance, BudgetLimit, Spent},
     measured_hallway::{MeasuredHallway, direction},
     robot::{Robot, RobotError, Sample},
     run_settings::RunSettings,
@@ -73,7 +73,6 @@ pub struct RobotExplorer<R, S, O = ()> {
     sampled: f64,
 }
 
-/// Why a frame cannot be used.
 #[derive(Debug, Error)]
 enum Unusable {
     #[error("the camera gives no image")]
@@ -101,7 +100,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             returns_at_obstacles: false,
             stall: None,
             begins_anywhere: false,
-            allowance: Allowance::new(RunBudget::default()),
+            allowance: Allowance::default(),
             metres: 0.0,
             hallway: None,
             measured: ArrivalMeasurement::default(),
@@ -353,12 +352,6 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         self.allowance.perceive(percept, spent);
     }
 
-    /// A robot that was lost has come to a junction. How many moves lead there is not known.
-    fn arrive_from_nowhere(&mut self, standing: Standing) {
-        self.hallway = None;
-        self.stand(standing, Arrival { number: None, ..Arrival::new(self.last_move, &standing) });
-    }
-
     fn stand(&mut self, standing: Standing, arrival: Arrival) {
         self.place = Some(Standpoint::Junction(standing));
         self.stall = None;
@@ -482,9 +475,7 @@ mod tests {
         (percept, explorer.into_parts().0.asked)
     }
 
-    // paper: hardware.capture
-    // paper: alg2.4
-    // paper: alg2.5
+    // paper: hardware.capture, alg2.4, alg2.5
     #[test]
     fn an_image_from_before_the_end_of_the_last_motion_is_not_used() {
         let (percept, asked) = percept(&[Some(1.9), Some(1.9), Some(2.0), Some(2.5)]);

@@ -32,7 +32,6 @@ pub struct MeasuredHallway {
 
 impl MeasuredHallway {
     /// The robot stands at a junction, perhaps at this odometry.
-    #[must_use]
     pub fn from(odometry: Option<Odometry>) -> Self {
         let mut hallway = Self::default();
         if let Some(odometry) = odometry {
@@ -53,13 +52,10 @@ impl MeasuredHallway {
     /// The measurement up to an arrival with this direction of the entry door.
     pub fn measured(self, entry: Option<f64>) -> Option<HallwayMeasurement> {
         let length = self.way.length().filter(|_| self.moved)?;
-        Some(HallwayMeasurement { length, turn: turn(self.exit, entry) })
+        // From the direction of the door by which it left to that in which it comes in.
+        let turn = self.exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit));
+        Some(HallwayMeasurement { length, turn })
     }
-}
-
-/// The turn from the direction of the door by which a robot left to that in which it comes in.
-pub fn turn(exit: Option<f64>, entry: Option<f64>) -> Option<f64> {
-    exit.zip(entry).map(|(exit, entry)| wrapped(entry + PI - exit))
 }
 
 /// The direction of a door of a junction, in the frame of odometry.

@@ -32,13 +32,6 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    fn note(&mut self, agrees: bool) -> bool {
-        self.of += 1;
-        self.agree += u64::from(agrees);
-        agrees
-    }
-
-    /// Whether all were reproduced.
     pub fn is_whole(self) -> bool {
         self.agree == self.of
     }
@@ -60,8 +53,9 @@ pub struct Replay {
 /// How a replay compares with the recorded run.
 #[derive(Clone, Debug, Default)]
 pub struct ReplayComparison {
-    /// The number of frames that were used.
+    /// The number of frames that were used, and when the last one was taken.
     pub frames: u64,
+    time: f64,
     pub scenes: Agreement,
     pub commands: Agreement,
     pub percepts: Agreement,
@@ -79,13 +73,12 @@ pub struct ReplayDifference {
     /// The number of the frame, counted from 1.
     pub frame: u64,
     /// When it was taken, in seconds since the first message of the log.
-    pub time: f64,
+    time: f64,
     pub what: &'static str,
     pub recorded: String,
     pub found: String,
 }
 
-/// Why a log cannot be replayed.
 #[derive(Debug, Error)]
 pub enum ReplayError {
     #[error(transparent)]
@@ -236,41 +229,38 @@ const SAME: f64 = 1e-6;
 impl RecordedResults {
     fn compare(&self, results: &[Event]) -> ReplayComparison {
         let mut to = ReplayComparison::default();
-        let (mut id, mut time) = (0, 0.0);
+        let mut id = 0;
         for event in results {
             match &event.kind {
                 EventKind::Frame(frame) => {
                     to.frames += 1;
-                    (id, time) = (frame.id, frame.taken);
+                    (id, to.time) = (frame.id, frame.taken);
                     if let (Some(recorded), Some(found)) = (self.scenes.get(&id), &frame.scene) {
-                        let same = to.scenes.note(recorded == found);
-                        to.differs(same, time, "scene", recorded, found);
+                        to.note(|to| &mut to.scenes, recorded == found, "scene", recorded, found);
                     }
                 }
                 EventKind::Command { command: Some(found), .. } => {
                     if let Some(recorded) = self.commands.get(&id) {
                         let same = (recorded.turn - found.turn).abs() <= SAME
                             && (recorded.forward - found.forward).abs() <= SAME;
-                        let same = to.commands.note(same);
-                        to.differs(same, time, "command", recorded, found);
+                        to.note(|to| &mut to.commands, same, "command", recorded, found);
                     }
                 }
                 EventKind::Door { door: found, .. } => {
                     let recorded = self.doors.get(to.doors.of as usize);
-                    let same = to.doors.note(recorded == Some(found));
-                    to.differs(same, time, "door", &recorded, found);
+                    let same = recorded == Some(found);
+                    to.note(|to| &mut to.doors, same, "door", &recorded, found);
                 }
                 EventKind::Arrival(arrival) => {
                     let Some(percept) = arrival.percept() else { continue };
                     let recorded = self.arrivals.get(to.percepts.of as usize);
                     let same = recorded.is_some_and(|recorded| recorded.agrees(&percept));
-                    let same = to.percepts.note(same);
                     // What is not recorded cannot differ.
                     let recorded = recorded.map(|recorded| Percept {
                         degree: recorded.degree,
                         sighting: recorded.sighting.unwrap_or(percept.sighting),
                     });
-                    to.differs(same, time, "percept", &recorded.as_ref(), &percept);
+                    to.note(|to| &mut to.percepts, same, "percept", &recorded, &percept);
                 }
                 _ => {}
             }
@@ -283,16 +273,20 @@ impl RecordedResults {
 }
 
 impl ReplayComparison {
-    fn differs(
+    /// Counts a result, and keeps the first one that differs.
+    fn note(
         &mut self,
+        results: fn(&mut Self) -> &mut Agreement,
         same: bool,
-        time: f64,
         what: &'static str,
         recorded: &impl fmt::Debug,
         found: &impl fmt::Debug,
     ) {
-        let frame = self.frames;
+        let results = results(self);
+        results.of += 1;
+        results.agree += u64::from(same);
         if !same && self.difference.is_none() {
+            let (frame, time) = (self.frames, self.time);
             let (recorded, found) = (format!("{recorded:?}"), format!("{found:?}"));
             self.difference = Some(ReplayDifference { frame, time, what, recorded, found });
         }

@@ -50,7 +50,6 @@ pub struct TimedOdometry {
     pub odometry: Odometry,
 }
 
-/// Why a robot fails.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RobotError {
     #[error("the camera gives no image")]

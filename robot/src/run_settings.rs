@@ -22,7 +22,6 @@ pub struct RunSettings {
 
 impl RunSettings {
     /// A run from the marker, without a budget.
-    #[must_use]
     pub fn new(method: impl Into<MappingMethod>, dart_bound: usize) -> Self {
         let (budget, earlier) = (RunBudget::default(), Vec::new());
         Self { method: method.into(), dart_bound, budget, earlier }

@@ -29,7 +29,6 @@ use toposlam_vision::{
     cluster::clusters,
     colour::FloorRing,
     ground_view::{GroundView, Unwrapping},
-    params::SensingParams,
 };
 
 /// The number of frames of each.
@@ -60,8 +59,7 @@ fn main() {
     };
     let (ring, table) = (FloorRing::new(&camera), colours.table());
     let unwrapping = Unwrapping::new(&camera);
-    let params = SensingParams::default();
-    let bearings = Bearings::new(colours.stripe, camera.eye_height(), &params.boundary);
+    let bearings = Bearings::new(colours.stripe, camera.eye_height());
     let mut view = GroundView::unseen();
     let mut ours = || {
         let begun = Instant::now();
@@ -70,7 +68,7 @@ fn main() {
         let lighted = Instant::now();
         unwrapping.view(&image, &lit, &mut view);
         let classified = Instant::now();
-        black_box(clusters(&bearings.look(&view), &params.cluster));
+        black_box(clusters(&bearings.look(&view)));
         let done = Instant::now();
         [lighted - begun, classified - lighted, done - classified]
             .map(|time| time.as_secs_f64() * 1e6)

@@ -22,7 +22,6 @@ use toposlam_vision::{
     junction::junction,
     line::lines,
     marker::marker,
-    params::SensingParams,
     sensing::Sensor,
     wall::{WallFrame, WallSegment},
 };
@@ -49,7 +48,6 @@ struct Case {
     view: GroundView,
     bearings: Bearings,
     boundary: Boundary,
-    params: SensingParams,
 }
 
 impl Case {
@@ -62,21 +60,19 @@ impl Case {
         let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
         let building = Building::new(&plan_named("shape-8").unwrap(), look, None, &effects, 7);
         let image = render(&rig, &building, POSES[place], &effects, 7);
-        let params = SensingParams::default();
         let (ring, table) = (FloorRing::new(&camera), colours.table());
         let gain = colours.gain(&ring.colours(&image)).unwrap();
         let mut view = GroundView::unseen();
         Unwrapping::new(&camera).view(&image, &table.lit(gain), &mut view);
-        let bearings = Bearings::new(colours.stripe, camera.eye_height(), &params.boundary);
+        let bearings = Bearings::new(colours.stripe, camera.eye_height());
         let boundary = bearings.look(&view);
-        Self { camera, colours, image, ring, table, gain, view, bearings, boundary, params }
+        Self { camera, colours, image, ring, table, gain, view, bearings, boundary }
     }
 
     fn walls(&self) -> Option<(WallFrame, Vec<WallSegment>)> {
-        let params = &self.params;
-        let lines = lines(&clusters(&self.boundary, &params.cluster), &params.line);
-        let frame = WallFrame::of(&lines, &params.wall)?;
-        let walls = frame.walls(&lines, &params.wall);
+        let lines = lines(&clusters(&self.boundary));
+        let frame = WallFrame::of(&lines)?;
+        let walls = frame.walls(&lines);
         Some((frame, walls))
     }
 }
@@ -127,7 +123,7 @@ fn step_4_walls(bencher: Bencher) {
 fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
     let case = Case::new(1280, PLACE);
     let (frame, walls) = case.walls().unwrap();
-    bencher.bench_local(|| hallway(&walls, &case.boundary, &frame, &case.params));
+    bencher.bench_local(|| hallway(&walls, &case.boundary, &frame));
 }
 
 /// Finds corners and the junction.
@@ -136,8 +132,7 @@ fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     let case = Case::new(1280, PLACE);
     let (frame, walls) = case.walls().unwrap();
     bencher.bench_local(|| {
-        let corners = corners(&walls, &case.params.corner);
-        junction(&corners, &walls, &case.boundary, &frame, &case.params)
+        junction(&corners(&walls), &walls, &case.boundary, &frame)
     });
 }
 
@@ -145,5 +140,5 @@ fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_7_marker(bencher: Bencher) {
     let case = Case::new(1280, 1);
-    bencher.bench_local(|| marker(&case.view, &case.boundary, None, &case.params.marker));
+    bencher.bench_local(|| marker(&case.view, &case.boundary, None));
 }

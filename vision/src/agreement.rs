@@ -8,9 +8,35 @@ use nalgebra::{Point2, Vector2};
 use crate::{
     boundary::{BEARINGS, Boundary, Edge, Sight, direction},
     outline::{Outline, OutlineSide, near},
-    params::OutlineParams,
     wall::WallFrame,
 };
+
+/// Weight of a bearing on which the floor ends without a stripe, against 1 for one on which the wall is seen. Views.
+const ENDED_WEIGHT: f64 = 0.5;
+/// Weight of a bearing on which floor is seen behind a wall. Views.
+const THROUGH_WEIGHT: f64 = 1.5;
+/// Weight of a bearing on which a wall is seen in front of the outline. Views.
+const AGAINST_WEIGHT: f64 = 3.0;
+/// The most bearings with a wall in front of the outline, as a part of those in support. Views.
+const MAX_AGAINST: f64 = 0.12;
+/// The most bearings with doors, as a multiple of those in support. Views.
+const MAX_DOORS: f64 = 2.0;
+/// Walls farther away are not expected to be seen. Geometry: a pixel of the image covers as much there as a stripe.
+const MAX_RANGE: f64 = 2.1;
+/// A direction need not be seen if it has at most this part of all bearings. Views.
+const NARROW: f64 = 0.02;
+/// In any other direction, at least this part of the bearings must be seen. Views.
+const MIN_DIRECTION_SEEN: f64 = 0.25;
+/// A bearing is open if floor is seen for this part of the way. Views.
+const OPEN: f64 = 0.8;
+/// A gap in a wall is a door if it is narrower than this part of a hallway. Geometry.
+pub(crate) const DOOR_WIDTH: f64 = 0.75;
+/// Beside a door, this part of the usual distance is near: around the corner of an opening there is wall, too. Views.
+const DOOR_NEAR: f64 = 0.5;
+/// The length of wall that must be seen beside a door. Views.
+const DOOR_WALL: f64 = 0.30;
+/// The part of that wall's bearings on which it must be seen. Views.
+const DOOR_WALL_SEEN: f64 = 0.75;
 
 /// How an outline agrees with what is seen: the number of bearings of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +74,6 @@ impl Outline {
         boundary: &Boundary,
         frame: &WallFrame,
         every: usize,
-        params: &OutlineParams,
     ) -> OutlineAgreement {
         let mut agreement = OutlineAgreement::default();
         let mut towards = [Seen::default(); 4];
@@ -57,21 +82,20 @@ impl Outline {
             let ray = frame.walls_from_robot() * direction(bearing);
             let sight = &boundary.sights[bearing];
             let Some((range, number)) = self.first_on(ray).filter(|&(range, _)| {
-                range <= params.max_range
-                    || sight.sure().is_some_and(|wall| wall <= params.max_range)
+                range <= MAX_RANGE || sight.sure().is_some_and(|wall| wall <= MAX_RANGE)
             }) else {
                 continue;
             };
             let side = &self.sides[number];
-            let mut held = self.held(side, range, ray, sight, params);
+            let mut held = self.held(side, range, ray, sight);
             if held == Held::Through {
                 let (along, _) = side.along.split();
                 let at = range * ray[along];
                 let in_gap = |gap: &Gap| gap.side == number && gap.from <= at && at <= gap.to;
                 let around = gap
                     .filter(in_gap)
-                    .unwrap_or_else(|| self.gap(number, bearing, at, boundary, frame, params));
-                if around.to - around.from < params.door_width * self.width {
+                    .unwrap_or_else(|| self.gap(number, bearing, at, boundary, frame));
+                if around.to - around.from < DOOR_WIDTH * self.width {
                     held = Held::Door;
                 }
                 gap = Some(around);
@@ -89,25 +113,18 @@ impl Outline {
             }
             seen.seen += u32::from(matches!(held, Held::Support | Held::Ended | Held::Open));
         }
-        agreement.blank = towards.iter().filter(|seen| seen.is_blank(every, params)).count() as u32;
+        agreement.blank = towards.iter().filter(|seen| seen.is_blank(every)).count() as u32;
         agreement
     }
 
     /// What is seen on a bearing that first meets this side, at the range `at`.
-    fn held(
-        &self,
-        side: &OutlineSide,
-        at: f64,
-        ray: Vector2<f64>,
-        sight: &Sight,
-        params: &OutlineParams,
-    ) -> Held {
+    fn held(&self, side: &OutlineSide, at: f64, ray: Vector2<f64>, sight: &Sight) -> Held {
         // The distance of something in front of the side, perpendicular to it.
         let (_, across) = side.along.split();
         let before = |range: f64| (at - range) * ray[across].abs();
         let is_wall = side.is_wall();
         let fits = |edge: &Edge| {
-            let near = near(edge.range, params);
+            let near = near(edge.range);
             is_wall && before(edge.range).abs() < near
                 || self.distance(Point2::from(edge.range * ray)) < near
         };
@@ -116,10 +133,10 @@ impl Outline {
             // A wider edge is not a stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
-            None if is_wall && before(sight.floor).abs() < near(at, params) => Held::Ended,
-            None if is_wall && before(sight.floor) < -near(at, params) => Held::Through,
+            None if is_wall && before(sight.floor).abs() < near(at) => Held::Ended,
+            None if is_wall && before(sight.floor) < -near(at) => Held::Through,
             None if is_wall => Held::Silent,
-            None if sight.floor >= params.open * at => Held::Open,
+            None if sight.floor >= OPEN * at => Held::Open,
             None => Held::Unseen,
         }
     }
@@ -133,7 +150,6 @@ impl Outline {
         at: f64,
         boundary: &Boundary,
         frame: &WallFrame,
-        params: &OutlineParams,
     ) -> Gap {
         let side = &self.sides[number];
         let (along, across) = side.along.split();
@@ -142,17 +158,15 @@ impl Outline {
             let ray = frame.walls_from_robot() * direction(bearing);
             let range = side.offset / ray[across];
             let off = |edge: Edge| ((edge.range - range) * ray[across]).abs();
-            let seen = |edge: Edge| edge.sure && off(edge) < params.door_near * near(range, params);
-            (range > 0.0 && range <= params.max_range)
+            let seen = |edge: Edge| edge.sure && off(edge) < DOOR_NEAR * near(range);
+            (range > 0.0 && range <= MAX_RANGE)
                 .then(|| (range * ray[along], boundary.sights[bearing].edges().any(seen)))
         };
         let edge = |step: usize| {
             let nth = |steps: usize| on_wall((bearing + steps * step) % BEARINGS);
             (1..BEARINGS)
                 .map_while(|steps| Some((steps, nth(steps)?)))
-                .find(|&(steps, (_, seen))| {
-                    seen && goes_on((steps..BEARINGS).map_while(nth), params)
-                })
+                .find(|&(steps, (_, seen))| seen && goes_on((steps..BEARINGS).map_while(nth)))
                 .map(|(_, (on, _))| on)
         };
         let edges = [edge(1), edge(BEARINGS - 1)];
@@ -168,14 +182,14 @@ impl Outline {
 }
 
 /// Whether a wall goes on from the first of these places; each with whether the wall is seen there.
-fn goes_on(wall: impl Iterator<Item = (f64, bool)>, params: &OutlineParams) -> bool {
+fn goes_on(wall: impl Iterator<Item = (f64, bool)>) -> bool {
     let mut wall = wall.peekable();
     let Some(&(first, _)) = wall.peek() else { return false };
     let (mut all, mut seen, mut length) = (0, 0, 0.0);
-    for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= params.door_wall) {
+    for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= DOOR_WALL) {
         (all, seen, length) = (all + 1, seen + u32::from(is_seen), (on - first).abs());
     }
-    length >= 0.8 * params.door_wall && f64::from(seen) >= params.door_wall_seen * f64::from(all)
+    length >= 0.8 * DOOR_WALL && f64::from(seen) >= DOOR_WALL_SEEN * f64::from(all)
 }
 
 /// A gap in a side of an outline, from one place along it to another, in metres.
@@ -194,50 +208,50 @@ struct Seen {
 }
 
 impl Seen {
-    fn is_blank(self, every: usize, params: &OutlineParams) -> bool {
+    fn is_blank(self, every: usize) -> bool {
         let Self { due, seen } = self;
-        f64::from(due) > bearings(params.narrow, every)
-            && f64::from(seen) < params.min_direction_seen * f64::from(due)
+        f64::from(due) > bearings(NARROW, every)
+            && f64::from(seen) < MIN_DIRECTION_SEEN * f64::from(due)
     }
 }
 
 impl OutlineAgreement {
     /// What supports the outline minus what contradicts it, which has more weight.
-    pub fn balance(&self, params: &OutlineParams) -> f64 {
-        self.good(params)
-            - params.through_weight * f64::from(self.through)
-            - params.against_weight * f64::from(self.against)
+    pub fn balance(&self) -> f64 {
+        self.good()
+            - THROUGH_WEIGHT * f64::from(self.through)
+            - AGAINST_WEIGHT * f64::from(self.against)
     }
 
     /// The part of what is seen that supports the outline, from 0 to 1.
-    pub fn trust(&self, params: &OutlineParams) -> f64 {
-        let good = self.good(params);
+    pub fn trust(&self) -> f64 {
+        let good = self.good();
         good / (good + f64::from(self.through + self.against)).max(1.0)
     }
 
     /// The part of the outline's walls that is seen, from 0 to 1.
-    pub fn cover(&self, params: &OutlineParams) -> f64 {
+    pub fn cover(&self) -> f64 {
         let all = self.support + self.ended + self.silent + self.door + self.through + self.against;
-        self.good(params) / f64::from(all.max(1))
+        self.good() / f64::from(all.max(1))
     }
 
     /// How certain the place is, from 0 to 1.
-    pub fn confidence(&self, params: &OutlineParams) -> f64 {
-        self.trust(params) * self.cover(params).sqrt()
+    pub fn confidence(&self) -> f64 {
+        self.trust() * self.cover().sqrt()
     }
 
     /// What supports the outline, as a number of bearings on which its wall is seen.
-    pub fn good(&self, params: &OutlineParams) -> f64 {
-        f64::from(self.support) + params.ended_weight * f64::from(self.ended)
+    pub fn good(&self) -> f64 {
+        f64::from(self.support) + ENDED_WEIGHT * f64::from(self.ended)
     }
 
     /// Whether the trust is at least this, few bearings contradict the outline, and there is not
     /// much more door than wall.
-    pub fn holds(&self, trust: f64, params: &OutlineParams) -> bool {
-        let good = self.good(params);
-        self.trust(params) >= trust
-            && f64::from(self.against) <= params.max_against * good
-            && f64::from(self.door) <= params.max_doors * good
+    pub fn holds(&self, trust: f64) -> bool {
+        let good = self.good();
+        self.trust() >= trust
+            && f64::from(self.against) <= MAX_AGAINST * good
+            && f64::from(self.door) <= MAX_DOORS * good
     }
 }
 
@@ -260,20 +274,16 @@ mod tests {
     const HALF: f64 = 0.8;
     const SQUARE: Square = Square { middle: Point2::new(0.0, 0.0), half: HALF - drawn_place::TAPE };
 
-    fn params() -> OutlineParams {
-        OutlineParams::default()
-    }
-
     fn seen(place: &DrawnPlace) -> Boundary {
-        drawn_place::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
+        place.boundary([0.0, 0.0], 0.0)
     }
 
     fn agreement(outline: &Outline, boundary: &Boundary) -> OutlineAgreement {
-        outline.agreement(boundary, &WallFrame::along(0.0), 1, &params())
+        outline.agreement(boundary, &WallFrame::along(0.0), 1)
     }
 
     fn held(doors: [bool; 4], boundary: &Boundary) -> OutlineAgreement {
-        agreement(&Outline::junction(doors, SQUARE, &params()), boundary)
+        agreement(&Outline::junction(doors, SQUARE), boundary)
     }
 
     #[test]
@@ -286,18 +296,12 @@ mod tests {
         for &doors in &forms {
             let boundary = seen(&DrawnPlace::junction(doors, HALF));
             let own = held(doors, &boundary);
-            assert!(
-                own.trust(&params()) > 0.99 && own.cover(&params()) > 0.9,
-                "{doors:?}: {own:?}"
-            );
+            assert!(own.trust() > 0.99 && own.cover() > 0.9, "{doors:?}: {own:?}");
             assert_eq!((own.against, own.blank), (0, 0), "{doors:?}");
             for other in forms.iter().filter(|&&other| other != doors) {
                 let agreement = held(*other, &boundary);
-                assert!(!agreement.holds(0.85, &params()), "{other:?} at {doors:?}: {agreement:?}");
-                assert!(
-                    agreement.balance(&params()) < own.balance(&params()) - 100.0,
-                    "{other:?} at {doors:?}"
-                );
+                assert!(!agreement.holds(0.85), "{other:?} at {doors:?}: {agreement:?}");
+                assert!(agreement.balance() < own.balance() - 100.0, "{other:?} at {doors:?}");
             }
         }
     }
@@ -316,26 +320,25 @@ mod tests {
             assert!(door.door > 50, "a door from {from}: {door:?}");
         }
         let opening = beside([-HALF, HALF]);
-        assert!(opening.through > 150 && !opening.holds(0.7, &params()), "{opening:?}");
+        assert!(opening.through > 150 && !opening.holds(0.7), "{opening:?}");
     }
 
     #[test]
     fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
         let dead_end = DrawnPlace::junction([false, false, true, false], HALF);
-        let view = dead_end.seen_from([-0.8, 0.0], 0.0);
-        let boundary = drawn_place::bearings().look(&view);
+        let boundary = dead_end.boundary([-0.8, 0.0], 0.0);
         let square = Square { middle: Point2::new(0.8, 0.0), half: HALF - drawn_place::TAPE };
-        let l = Outline::junction([false, true, true, false], square, &params());
+        let l = Outline::junction([false, true, true, false], square);
         let agreement = agreement(&l, &boundary);
         assert!(agreement.against > 60, "{agreement:?}");
-        assert!(!agreement.holds(0.75, &params()), "{agreement:?}");
+        assert!(!agreement.holds(0.75), "{agreement:?}");
     }
 
     #[test]
     fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
         let t = DrawnPlace::junction([false, true, true, true], 0.7);
         for before in [0.4, 0.5, 0.55] {
-            let boundary = drawn_place::bearings().look(&t.seen_from([-before, 0.0], 0.0));
+            let boundary = t.boundary([-before, 0.0], 0.0);
             // A little too wide and too near: a camera that is not as calibrated gives such an error.
             let square = Square { middle: Point2::new(before - 0.05, 0.0), half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
@@ -371,8 +374,8 @@ mod tests {
             door,
             ..OutlineAgreement::default()
         };
-        assert!(with_doors(220).holds(1.0, &params()));
-        assert!(!with_doors(221).holds(0.0, &params()));
+        assert!(with_doors(220).holds(1.0));
+        assert!(!with_doors(221).holds(0.0));
     }
 
     #[test]
@@ -383,10 +386,10 @@ mod tests {
             boundary.sights[bearing] = Sight::default();
             boundary.sights[BEARINGS - 1 - bearing] = Sight::default();
         }
-        let outline = Outline::junction(doors, SQUARE, &params());
+        let outline = Outline::junction(doors, SQUARE);
         let agreement = agreement(&outline, &boundary);
         assert_eq!(agreement.blank, 1, "{agreement:?}");
-        assert!(agreement.trust(&params()) > 0.99, "what is not seen does not speak against it");
+        assert!(agreement.trust() > 0.99, "what is not seen does not speak against it");
     }
 
     #[test]
@@ -394,9 +397,8 @@ mod tests {
         let doors = [false, true, true, true];
         let square = Square { middle: Point2::origin(), half: 0.55 };
         let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn_place::TAPE));
-        let blank = |boundary: &Boundary| {
-            agreement(&Outline::junction(doors, square, &params()), boundary).blank
-        };
+        let blank =
+            |boundary: &Boundary| agreement(&Outline::junction(doors, square), boundary).blank;
         assert_eq!(blank(&boundary), 0);
         for bearing in 3 * BEARINGS / 8..5 * BEARINGS / 8 {
             boundary.sights[bearing] = Sight::default();

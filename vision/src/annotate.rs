@@ -10,7 +10,7 @@ use crate::{
     camera::Camera,
     colour::PixelClass,
     corner::{Bend, CornerSource},
-    draw,
+    draw::{self, Canvas, PEN},
     geometry::unit,
     ground_view::GroundView,
     params::{MARKER_LENGTH, MARKER_WIDTH, ROBOT_RADIUS},
@@ -37,10 +37,8 @@ const CLUSTERS: [Rgb<u8>; 6] = [
     Rgb([220, 120, 230]),
     Rgb([90, 220, 210]),
 ];
-/// The length of a centre line in a picture, in metres.
+/// The length of a centre line in a picture, in metres. The legend names it, too.
 const CENTRE_LINE: f64 = 1.6;
-/// The pixels around each pixel of a line over an image.
-const PEN: [[f32; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
 pub(crate) const REACH: Rgb<u8> = Rgb([40, 60, 40]);
 const WALL: Rgb<u8> = Rgb([150, 150, 150]);
 pub(crate) const DARK: Rgb<u8> = Rgb([24, 24, 28]);
@@ -81,64 +79,59 @@ pub fn shade(class: PixelClass) -> Rgb<u8> {
 }
 
 pub fn classes(view: &GroundView) -> RgbImage {
-    let side = GroundView::SIDE as u32;
-    let mut picture = RgbImage::new(side, side);
-    for (pixel, &class) in picture.pixels_mut().zip(&view.classes) {
+    let mut canvas = empty();
+    for (pixel, &class) in canvas.picture.pixels_mut().zip(&view.classes) {
         *pixel = shade(class);
     }
-    body(&mut picture);
-    picture
+    with_body(canvas).picture
 }
 
 pub fn boundary(trace: &SensingTrace) -> RgbImage {
-    let mut picture = empty();
+    let mut canvas = empty();
     for (bearing, sight) in
         trace.boundary.iter().flat_map(|boundary| boundary.sights.iter().enumerate())
     {
         let at = |range: f64| Point2::from(range * crate::boundary::direction(bearing));
         if sight.floor > 0.0 {
-            line(&mut picture, at(0.30), at(sight.floor), REACH);
+            canvas.line(at(0.30), at(sight.floor), REACH);
         }
         for edge in sight.edges() {
-            dot(&mut picture, at(edge.range), 1, if edge.sure { WHITE } else { ORANGE });
+            canvas.dot(at(edge.range), 1, if edge.sure { WHITE } else { ORANGE });
         }
     }
-    body(&mut picture);
-    picture
+    with_body(canvas).picture
 }
 
 pub fn clusters(trace: &SensingTrace) -> RgbImage {
-    let mut picture = empty();
+    let mut canvas = empty();
     for (cluster, colour) in trace.clusters.iter().zip(CLUSTERS.into_iter().cycle()) {
         for &point in &cluster.points {
-            dot(&mut picture, point, 2, colour);
+            canvas.dot(point, 2, colour);
         }
     }
-    body(&mut picture);
-    picture
+    with_body(canvas).picture
 }
 
 /// Straight lines, in the colours of their clusters. Walls are thick, with a point at both ends.
 pub fn lines(trace: &SensingTrace) -> RgbImage {
-    let mut picture = empty();
+    let mut canvas = empty();
     for piece in &trace.lines {
-        line(&mut picture, piece.from, piece.to, CLUSTERS[piece.cluster % CLUSTERS.len()]);
+        canvas.line(piece.from, piece.to, CLUSTERS[piece.cluster % CLUSTERS.len()]);
     }
     for wall in &trace.walls {
         let Some([from, to]) = ends(trace, wall) else { continue };
-        thick(&mut picture, from, to, CLUSTERS[wall.cluster % CLUSTERS.len()]);
-        dot(&mut picture, from, 4, WHITE);
-        dot(&mut picture, to, 4, WHITE);
+        canvas.thick(from, to, CLUSTERS[wall.cluster % CLUSTERS.len()]);
+        canvas.dot(from, 4, WHITE);
+        canvas.dot(to, 4, WHITE);
     }
-    body(&mut picture);
-    picture
+    with_body(canvas).picture
 }
 
 pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
-    let mut picture = empty();
+    let mut canvas = empty();
     for wall in &trace.walls {
         let Some([from, to]) = ends(trace, wall) else { continue };
-        thick(&mut picture, from, to, WALL);
+        canvas.thick(from, to, WALL);
     }
     for corner in trace.corners.iter().filter(|corner| corner.formed != CornerSource::End) {
         let Some(frame) = trace.frame else { continue };
@@ -146,19 +139,19 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
             Bend::Inwards => CYAN,
             Bend::Outwards => ORANGE,
         };
-        ring(&mut picture, frame.robot_from_walls() * corner.position, 9, colour);
+        canvas.ring(frame.robot_from_walls() * corner.position, 9, colour);
     }
-    body(&mut picture);
+    let mut canvas = with_body(canvas);
     for (from, to, colour) in centre_lines(scene) {
-        thick(&mut picture, from, to, colour);
+        canvas.thick(from, to, colour);
     }
     if let Place::Junction(junction) = &scene.place {
-        dot(&mut picture, junction.turning_point.into(), 6, WHITE);
+        canvas.dot(junction.turning_point.into(), 6, WHITE);
     }
     if let Some(marker) = &scene.marker {
-        draw::convex_polygon(&mut picture, &rectangle(marker).map(at), BLUE);
+        draw::convex_polygon(&mut canvas.picture, &rectangle(marker).map(at), BLUE);
     }
-    picture
+    canvas.picture
 }
 
 pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
@@ -224,19 +217,11 @@ fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[Point2<f64>; 2]> {
     Some([wall.from, wall.to].map(|end| robot_from_walls * wall.along.point(end, wall.offset)))
 }
 
-fn empty() -> RgbImage {
+/// An empty ground view.
+fn empty() -> Canvas<fn(Point2<f64>) -> [f32; 2]> {
     let side = GroundView::SIDE as u32;
-    RgbImage::from_pixel(side, side, DARK)
-}
-
-/// The robot: its outline, and a line ahead.
-// paper: sense.contour
-fn body(picture: &mut RgbImage) {
-    let middle = at(Point2::origin());
-    let radius = (ROBOT_RADIUS / GroundView::SCALE) as i32;
-    draw::disc(picture, middle, radius, BODY);
-    draw::ring(picture, middle, radius, WHITE);
-    line(picture, Point2::origin(), Point2::new(ROBOT_RADIUS, 0.0), WHITE);
+    let pixel = |point: Point2<f64>| at(point).map(|part| part as f32);
+    Canvas { picture: RgbImage::from_pixel(side, side, DARK), pixel }
 }
 
 /// The pixel of a ground view that contains a point of the floor.
@@ -245,34 +230,24 @@ fn at(point: Point2<f64>) -> [i32; 2] {
     [point.y, point.x].map(|part| (middle - part / GroundView::SCALE) as i32)
 }
 
-fn line(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
-    let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
-    draw::line(picture, from, to, colour);
-}
-
-fn thick(picture: &mut RgbImage, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
-    let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
-    for [u, v] in PEN {
-        draw::line(picture, [from[0] + u, from[1] + v], [to[0] + u, to[1] + v], colour);
-    }
-}
-
-fn dot(picture: &mut RgbImage, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
-    draw::disc(picture, at(point), radius, colour);
-}
-
-fn ring(picture: &mut RgbImage, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
-    let middle = at(point);
-    for radius in [radius - 1, radius] {
-        draw::ring(picture, middle, radius, colour);
-    }
+/// The picture with the robot: its outline, and a line ahead.
+// paper: sense.contour
+fn with_body<P: Fn(Point2<f64>) -> [f32; 2]>(mut canvas: Canvas<P>) -> Canvas<P> {
+    let (middle, radius) = (Point2::origin(), (ROBOT_RADIUS / GroundView::SCALE) as i32);
+    canvas.dot(middle, radius, BODY);
+    draw::ring(&mut canvas.picture, at(middle), radius, WHITE);
+    canvas.line(middle, Point2::new(ROBOT_RADIUS, 0.0), WHITE);
+    canvas
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use toposlam_model::driving::scene::{HallwayStatus, HallwayView, JunctionView, Reason};
 
     use super::*;
+    use crate::colour::Confusion;
 
     fn l_with_marker() -> Scene {
         let through = [0.5, -0.1];
@@ -325,20 +300,9 @@ mod tests {
     #[test]
     fn every_class_has_its_own_shade() {
         let mut view = GroundView::unseen();
-        let classes = [
-            PixelClass::Floor,
-            PixelClass::Stripe,
-            PixelClass::Marker,
-            PixelClass::Other,
-            PixelClass::Unknown,
-        ];
-        for (pixel, class) in classes.into_iter().enumerate() {
-            view.classes[pixel] = class;
-        }
-        let picture = super::classes(&view);
-        let shades: Vec<_> = picture.pixels().take(6).collect();
-        for (number, one) in shades.iter().enumerate() {
-            assert!(!shades[..number].contains(one), "{number}");
-        }
+        view.classes[..5].copy_from_slice(&Confusion::GIVEN);
+        let picture = classes(&view);
+        let shades: HashSet<_> = picture.pixels().take(6).collect();
+        assert_eq!(shades.len(), 6);
     }
 }

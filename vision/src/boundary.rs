@@ -11,8 +11,29 @@ use crate::{
     colour::{PixelClass, Stripe, StripeKind},
     geometry::unit,
     ground_view::GroundView,
-    params::BoundaryParams,
+    wall::{WallFrame, WallSegment},
 };
+
+/// A stripe is at least this part of its true width. Geometry: one pixel of the image may cover the rest.
+const MIN_STRIPE_WIDTH: f64 = 0.40;
+/// A stripe is at most this many times its true width, plus [`STRIPE_BLUR`]. Geometry: on most bearings a wall is met
+/// at an angle.
+const MAX_STRIPE_WIDTH: f64 = 2.0;
+/// What pixels and blur add to a stripe's width, in steps. Views.
+const STRIPE_BLUR: f64 = 10.0;
+/// What is this many times wider than the widest stripe is an area: lit floor may have the colour of a stripe in the
+/// shade. Views.
+const AREA_WIDTH: f64 = 3.0;
+/// Steps between floor and stripe in which their colours mix. Views.
+const MIXED_STEPS: usize = 10;
+/// Fewer steps of another class do not end a stripe. Views.
+const SPECK_STEPS: usize = 3;
+/// Steps behind a stripe that are searched for floor. Views.
+const BEHIND_STEPS: usize = 30;
+/// With this many steps of floor behind a stripe, its edge is not sure. Views.
+const FLOOR_BEHIND_STEPS: usize = 10;
+/// After this many steps of other classes the rest of the bearing is ignored. Views.
+const LOST_STEPS: usize = 60;
 
 /// What is seen on each bearing.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +52,6 @@ pub struct Sight {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// Its range, in metres.
     pub range: f64,
     /// Whether it is a stripe without floor behind it, or part of a long straight wall.
     pub sure: bool,
@@ -56,12 +76,12 @@ pub struct Bearings {
     pixels: Vec<u32>,
     /// The width of a stripe that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
-    params: BoundaryParams,
+    pub(crate) stripe: Stripe,
 }
 
 impl Bearings {
     /// The bearings of a camera at this height above the floor, in metres, for walls with this stripe.
-    pub fn new(stripe: Stripe, height: f64, params: &BoundaryParams) -> Self {
+    pub fn new(stripe: Stripe, height: f64) -> Self {
         let pixels = (0..BEARINGS)
             .flat_map(|bearing| {
                 (0..STEPS).map(move |step| {
@@ -80,12 +100,11 @@ impl Bearings {
             };
             width / GroundView::SCALE
         });
-        Self { pixels, width: width.collect(), params: *params }
+        Self { pixels, width: width.collect(), stripe }
     }
 
     /// What is seen on each bearing of a ground view.
-    // paper: sense.boundary
-    // paper: sense.boundary-points
+    // paper: sense.boundary, sense.boundary-points
     pub fn look(&self, view: &GroundView) -> Boundary {
         let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
             let mut classes = [PixelClass::Unseen; STEPS];
@@ -99,7 +118,6 @@ impl Bearings {
 
     /// What is seen on one bearing, from its classes, from the robot outwards.
     fn sight(&self, classes: &[PixelClass]) -> Sight {
-        let params = &self.params;
         let mut sight = Sight::default();
         let mut edges = sight.edges.iter_mut();
         let mut floor: Option<usize> = None;
@@ -114,28 +132,26 @@ impl Bearings {
                     let from = step;
                     while classes[step + 1..]
                         .iter()
-                        .take(params.speck_steps)
+                        .take(SPECK_STEPS)
                         .any(|&class| class == PixelClass::Stripe)
                     {
                         step += 1;
                     }
                     let width = (step + 1 - from) as f64;
                     if let Some(floor) = floor
-                        && width >= params.min_stripe_width * self.width[from]
+                        && width >= MIN_STRIPE_WIDTH * self.width[from]
                     {
                         // The edge is at the end of the floor's last pixel. Floor that was taken for
                         // something else has no such pixel.
-                        let (last, seen) = if from - floor <= params.mixed_steps {
+                        let (last, seen) = if from - floor <= MIXED_STEPS {
                             (floor, true)
                         } else {
                             (from - 1, false)
                         };
-                        let widest =
-                            params.max_stripe_width * self.width[from] + params.stripe_blur;
+                        let widest = MAX_STRIPE_WIDTH * self.width[from] + STRIPE_BLUR;
                         let width = width / widest;
-                        let sure = seen
-                            && width < params.area_width
-                            && !floor_follows(&classes[step + 1..], params);
+                        let sure =
+                            seen && width < AREA_WIDTH && !floor_follows(&classes[step + 1..]);
                         let edge = Edge { range: range(last as f64 + 0.5), sure, width };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
@@ -146,7 +162,7 @@ impl Bearings {
                 }
                 PixelClass::Unseen | PixelClass::Unknown | PixelClass::Other => lost += 1,
             }
-            if floor.is_some() && lost > params.lost_steps {
+            if floor.is_some() && lost > LOST_STEPS {
                 break;
             }
             step += 1;
@@ -158,8 +174,12 @@ impl Bearings {
 
 impl Sight {
     /// A bearing on which a wall was measured at this range. A wall behind [`REACH`] is not looked at.
-    pub(crate) fn measured(range: f64) -> Self {
-        if range < REACH { Self::at(Some(range)) } else { Self { floor: REACH, ..Self::default() } }
+    pub(crate) fn measured(range: Option<f64>) -> Self {
+        match range {
+            Some(range) if range < REACH => Self::at(Some(range)),
+            Some(_) => Self { floor: REACH, ..Self::default() },
+            None => Self::default(),
+        }
     }
 
     pub(crate) fn at(range: Option<f64>) -> Self {
@@ -177,10 +197,9 @@ impl Sight {
 }
 
 /// Whether floor goes on behind a stripe; more stripe does not matter.
-fn floor_follows(behind: &[PixelClass], params: &BoundaryParams) -> bool {
-    let behind =
-        behind.iter().filter(|&&class| class != PixelClass::Stripe).take(params.behind_steps);
-    behind.filter(|&&class| class == PixelClass::Floor).count() >= params.floor_behind_steps
+fn floor_follows(behind: &[PixelClass]) -> bool {
+    let behind = behind.iter().filter(|&&class| class != PixelClass::Stripe).take(BEHIND_STEPS);
+    behind.filter(|&&class| class == PixelClass::Floor).count() >= FLOOR_BEHIND_STEPS
 }
 
 fn range(step: f64) -> f64 {
@@ -208,21 +227,22 @@ impl Boundary {
         })
     }
 
-    /// The same boundary, with these edges sure, too; they are given with their bearing.
-    #[must_use]
-    pub fn with_sure(mut self, is_sure: impl Fn(usize, &Edge) -> bool) -> Self {
+    /// Makes the edges sure that lie on long walls: what is behind a wall may have the floor's colour.
+    pub(crate) fn confirm(&mut self, walls: &[WallSegment], frame: &WallFrame) {
         for (bearing, sight) in self.sights.iter_mut().enumerate() {
             for edge in sight.edges.iter_mut().flatten() {
-                edge.sure = edge.sure || is_sure(bearing, edge);
+                let point =
+                    frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
+                edge.sure |= walls.iter().any(|wall| wall.confirms(point));
             }
         }
-        self
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn_place;
 
     /// Classes on a bearing: one letter is eight steps of a class.
     fn on(letters: &str) -> Vec<PixelClass> {
@@ -238,12 +258,10 @@ mod tests {
     }
 
     fn sight(letters: &str) -> Sight {
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        Bearings::new(stripe, 1.05, &BoundaryParams::default()).sight(&on(letters))
+        drawn_place::bearings().sight(&on(letters))
     }
 
-    // paper: sense.boundary
-    // paper: sense.boundary-points
+    // paper: sense.boundary, sense.boundary-points
     #[test]
     fn a_wall_is_where_floor_ends_at_a_stripe() {
         for classes in ["ffffsoooo", "ffff?soooo", "   fsoooo", "ffmmsoooo", "ffffsoo?oo   "] {
@@ -282,11 +300,7 @@ mod tests {
     fn a_joint_between_tiles_is_narrower_than_the_stripe() {
         let mut classes = on("ffffffffffff");
         classes[40..42].fill(PixelClass::Stripe);
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        assert_eq!(
-            Bearings::new(stripe, 1.05, &BoundaryParams::default()).sight(&classes).edges().count(),
-            0
-        );
+        assert_eq!(drawn_place::bearings().sight(&classes).edges().count(), 0);
     }
 
     #[test]

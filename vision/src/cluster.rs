@@ -4,32 +4,39 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Point2, distance};
 
-use crate::{
-    boundary::{BEARINGS, Boundary},
-    params::ClusterParams,
-};
+use crate::boundary::{BEARINGS, Boundary};
+
+/// The largest gap between two successive points at the robot. Views.
+const GAP: f64 = 0.10;
+/// What each metre from the robot to the farther point adds to the gap. Geometry: pixels of the image cover more floor
+/// there.
+const GAP_PER_METRE: f64 = 0.08;
+/// The most bearings that a strut of the camera hides. Geometry: 8 degrees.
+const HIDDEN_BEARINGS: usize = 16;
+/// Clusters of fewer points are noise. Views.
+const MIN_POINTS: usize = 6;
+/// Clusters of less extent are noise. Views.
+const MIN_EXTENT: f64 = 0.12;
 
 /// Boundary points that follow each other, counter-clockwise as seen from the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cluster {
-    /// In metres.
     pub points: Vec<Point2<f64>>,
 }
 
 /// The pieces of wall, without those that are noise.
-// paper: sense.cluster
-// paper: sense.small-clusters
-pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
+// paper: sense.cluster, sense.small-clusters
+pub fn clusters(boundary: &Boundary) -> Vec<Cluster> {
     let mut chains: Vec<Chain> = Vec::new();
     // The indices of those that may go on.
     let mut open: Vec<usize> = Vec::new();
     for point in boundary.points() {
-        open.retain(|&chain| point.0 <= chains[chain].last.0 + params.hidden_bearings);
+        open.retain(|&chain| point.0 <= chains[chain].last.0 + HIDDEN_BEARINGS);
         let away = |chain: usize| distance(&chains[chain].last.1, &point.1);
         let nearest = open
             .iter()
             .copied()
-            .filter(|&chain| follows(chains[chain].last, point, params))
+            .filter(|&chain| follows(chains[chain].last, point))
             .min_by(|&one, &other| away(one).total_cmp(&away(other)));
         if let Some(chain) = nearest {
             chains[chain].last = point;
@@ -39,10 +46,8 @@ pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
             chains.push(Chain::new(point));
         }
     }
-    let mut clusters = joined_around(chains, params);
-    clusters.retain(|cluster| {
-        cluster.points.len() >= params.min_points && cluster.extent() >= params.min_extent
-    });
+    let mut clusters = joined_around(chains);
+    clusters.retain(|cluster| cluster.points.len() >= MIN_POINTS && cluster.extent() >= MIN_EXTENT);
     clusters
 }
 
@@ -60,12 +65,11 @@ impl Chain {
 }
 
 /// The clusters; those that go on across the bearing straight ahead are joined.
-fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster> {
+fn joined_around(mut chains: Vec<Chain>) -> Vec<Cluster> {
     let mut at = 0;
     while at < chains.len() {
         let goes_on = |other: &Chain| {
-            other.last.0 + params.hidden_bearings >= BEARINGS
-                && follows(other.last, chains[at].first, params)
+            other.last.0 + HIDDEN_BEARINGS >= BEARINGS && follows(other.last, chains[at].first)
         };
         let before = (at + 1..chains.len()).find(|&other| goes_on(&chains[other]));
         if let Some(before) = before {
@@ -79,17 +83,13 @@ fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster>
 }
 
 /// Whether the second point continues the cluster of the first.
-fn follows(
-    (bearing, one): (usize, Point2<f64>),
-    (next, other): (usize, Point2<f64>),
-    params: &ClusterParams,
-) -> bool {
+fn follows((bearing, one): (usize, Point2<f64>), (next, other): (usize, Point2<f64>)) -> bool {
     let hidden = (next + BEARINGS - bearing) % BEARINGS;
     let farther = one.coords.norm().max(other.coords.norm());
     // The wall may go on behind a strut.
     let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
-    (1..=params.hidden_bearings).contains(&hidden)
-        && distance(&one, &other) <= params.gap + params.gap_per_metre * farther + bridged
+    (1..=HIDDEN_BEARINGS).contains(&hidden)
+        && distance(&one, &other) <= GAP + GAP_PER_METRE * farther + bridged
 }
 
 impl Cluster {
@@ -108,7 +108,7 @@ mod tests {
     use crate::boundary::Sight;
 
     fn clusters(boundary: &Boundary) -> Vec<Cluster> {
-        super::clusters(boundary, &ClusterParams::default())
+        super::clusters(boundary)
     }
 
     fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {

@@ -2,10 +2,10 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::{
-    params::CornerParams,
-    wall::{Axis, WallSegment},
-};
+use crate::wall::{Axis, WallSegment};
+
+/// Walls meet if both end this near to the point where they would meet. Views.
+const TOUCH: f64 = 0.22;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
@@ -33,13 +33,12 @@ pub enum CornerSource {
 }
 
 /// All corners of some walls.
-// paper: sense.corner.pair
-// paper: sense.corner.direction
-pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
+// paper: sense.corner.pair, sense.corner.direction
+pub fn corners(walls: &[WallSegment]) -> Vec<Corner> {
     let along = |axis: Axis| walls.iter().filter(move |wall| wall.along == axis);
     let mut corners: Vec<Corner> = Vec::new();
     for x_wall in along(Axis::X) {
-        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall, params.touch)));
+        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall, TOUCH)));
     }
     for wall in walls {
         let ends = [(wall.to, -1.0), (wall.from, 1.0)];
@@ -89,15 +88,11 @@ mod tests {
     }
 
     fn met(walls: &[WallSegment]) -> Vec<Corner> {
-        corners(walls, &CornerParams::default())
-            .into_iter()
-            .filter(|corner| corner.formed != CornerSource::End)
-            .collect()
+        corners(walls).into_iter().filter(|corner| corner.formed != CornerSource::End).collect()
     }
 
     /// Figure 8: an L to the left, half a metre before its turning point.
-    // paper: sense.corner.pair
-    // paper: sense.junction.two
+    // paper: sense.corner.pair, sense.junction.two
     #[test]
     fn the_two_corners_of_an_l_are_of_the_same_type() {
         let corners = met(&[
@@ -114,8 +109,7 @@ mod tests {
     }
 
     /// Figure 9: a T entered by its stem.
-    // paper: sense.corner.direction
-    // paper: sense.junction.three
+    // paper: sense.corner.direction, sense.junction.three
     #[test]
     fn the_two_corners_of_a_t_are_of_different_types() {
         let corners = met(&[
@@ -137,9 +131,7 @@ mod tests {
 
     #[test]
     fn the_end_of_a_wall_may_be_an_edge() {
-        let [ahead, behind] =
-            corners(&[wall(Axis::X, 0.8, -1.0, 0.4, 0)], &CornerParams::default())[..]
-        else {
+        let [ahead, behind] = corners(&[wall(Axis::X, 0.8, -1.0, 0.4, 0)])[..] else {
             panic!("two ends")
         };
         assert_eq!(

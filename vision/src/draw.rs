@@ -1,6 +1,43 @@
 //! Lines, circles and polygons on an image. What lies outside of the image is left out.
 
 use image::{Rgb, RgbImage};
+use nalgebra::Point2;
+
+/// The pixels around each pixel of a thick line.
+pub(crate) const PEN: [[f32; 2]; 5] =
+    [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+
+/// A picture of a plane, and the pixel of each point of the plane.
+pub(crate) struct Canvas<P> {
+    pub(crate) picture: RgbImage,
+    pub(crate) pixel: P,
+}
+
+impl<P: Fn(Point2<f64>) -> [f32; 2]> Canvas<P> {
+    pub(crate) fn line(&mut self, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
+        line(&mut self.picture, (self.pixel)(from), (self.pixel)(to), colour);
+    }
+
+    pub(crate) fn thick(&mut self, from: Point2<f64>, to: Point2<f64>, colour: Rgb<u8>) {
+        let ends = [from, to].map(&self.pixel);
+        for [right, down] in PEN {
+            let [from, to] = ends.map(|[u, v]| [u + right, v + down]);
+            line(&mut self.picture, from, to, colour);
+        }
+    }
+
+    pub(crate) fn dot(&mut self, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
+        disc(&mut self.picture, (self.pixel)(point).map(|at| at as i32), radius, colour);
+    }
+
+    /// A circle, two pixels wide.
+    pub(crate) fn ring(&mut self, point: Point2<f64>, radius: i32, colour: Rgb<u8>) {
+        let middle = (self.pixel)(point).map(|at| at as i32);
+        for radius in [radius - 1, radius] {
+            ring(&mut self.picture, middle, radius, colour);
+        }
+    }
+}
 
 fn put(image: &mut RgbImage, u: i32, v: i32, colour: Rgb<u8>) {
     if let (Ok(u), Ok(v)) = (u.try_into(), v.try_into())

@@ -3,10 +3,12 @@
 use std::f64::consts::TAU;
 
 use crate::{
-    boundary::Bearings,
+    boundary::{Bearings, Boundary},
+    cluster::clusters,
     colour::{PixelClass, Stripe, StripeKind},
     ground_view::GroundView,
-    params::BoundaryParams,
+    line::lines,
+    wall::{WallFrame, WallSegment},
 };
 
 /// The floor of a place: rectangles along the axes, in metres.
@@ -19,7 +21,14 @@ pub(crate) const TAPE: f64 = 0.05;
 pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAPE };
 
 pub(crate) fn bearings() -> Bearings {
-    Bearings::new(STRIPE, 1.05, &BoundaryParams::default())
+    Bearings::new(STRIPE, 1.05)
+}
+
+/// The walls within a boundary.
+pub(crate) fn walls(boundary: &Boundary) -> Option<(WallFrame, Vec<WallSegment>)> {
+    let lines = lines(&clusters(boundary));
+    let frame = WallFrame::of(&lines)?;
+    Some((frame, frame.walls(&lines)))
 }
 
 impl DrawnPlace {
@@ -49,6 +58,10 @@ impl DrawnPlace {
             let (sine, cosine) = (TAU * f64::from(part) / 16.0).sin_cos();
             !self.holds([x + TAPE * cosine, y + TAPE * sine], 0.0)
         })
+    }
+
+    pub(crate) fn boundary(&self, position: [f64; 2], heading: f64) -> Boundary {
+        bearings().look(&self.seen_from(position, heading))
     }
 
     pub(crate) fn seen_from(&self, position: [f64; 2], heading: f64) -> GroundView {

@@ -70,26 +70,18 @@ impl Unwrapping {
 
     /// Fills a ground view from an image of the camera's size.
     pub fn view(&self, image: &RgbImage, colours: &LitTable<'_>, view: &mut GroundView) {
-        let raw = image.as_raw();
+        let (pixels, _) = image.as_raw().as_chunks::<3>();
         view.marker.clear();
         for (index, (class, &pixel)) in view.classes.iter_mut().zip(&self.pixels).enumerate() {
             *class = if pixel == Self::UNSEEN {
                 PixelClass::Unseen
             } else {
-                colours.class(colour(raw, pixel as usize))
+                colours.class(pixels.get(pixel as usize).copied().unwrap_or_default())
             };
             if *class == PixelClass::Marker {
                 view.marker.push(index as u32);
             }
         }
-    }
-}
-
-/// A pixel's colour; black outside of the image.
-fn colour(raw: &[u8], pixel: usize) -> [u8; 3] {
-    match raw.get(3 * pixel..3 * pixel + 3) {
-        Some(&[red, green, blue]) => [red, green, blue],
-        _ => [0; 3],
     }
 }
 

@@ -12,11 +12,33 @@ use crate::{
     agreement::{OutlineAgreement, bearings},
     boundary::Boundary,
     corner::{Bend, Corner},
-    hallway::{FittedHallway, status},
+    hallway::{FittedHallway, HALF_WIDTH, status},
     outline::{DIRECTIONS, Outline, Square},
-    params::{HallwayParams, JunctionParams, OutlineParams, SensingParams},
     wall::{Axis, WallFrame, WallSegment},
 };
+
+/// The robot is at a junction if its turning point is at most this far ahead or aside. Views.
+const AHEAD: f64 = 1.0;
+/// The robot has left a junction whose turning point is farther behind. Views.
+const BEHIND: f64 = 0.75;
+/// Turning points farther away on either axis are not considered. Geometry: their walls are too far away to be seen.
+const MAX_DISTANCE: f64 = 1.9;
+/// Every candidate is first compared on one bearing in this many. Views: faster, with the same results.
+const COARSE_STEP: usize = 5;
+/// The number of candidates that are then fitted. Views.
+const SHORT_LIST: usize = 6;
+/// The least trust in a junction. Views.
+const MIN_TRUST: f64 = 0.75;
+/// The least part of its walls that must be seen. Views.
+const MIN_COVER: f64 = 0.40;
+/// The fewest bearings in support, as a part of all. Views.
+const MIN_SUPPORT: f64 = 0.17;
+/// The least lead over a different junction, in bearings as a part of all. Views.
+const MIN_LEAD: f64 = 0.04;
+/// Junctions whose turning points are nearer to each other are the same. Views.
+const SAME_PLACE: f64 = 0.25;
+/// Candidates are the same if turning points and half widths differ by less. Views.
+const SAME_CANDIDATE: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedJunction {
@@ -36,75 +58,66 @@ pub enum JunctionSearch {
 }
 
 /// The junction that fits the corners and walls.
-// paper: sense.junction.type
-// paper: sense.junction.two
-// paper: sense.junction.three
+// paper: sense.junction.type, sense.junction.two, sense.junction.three
 pub fn junction(
     corners: &[Corner],
     walls: &[WallSegment],
     boundary: &Boundary,
     frame: &WallFrame,
-    params: &SensingParams,
 ) -> JunctionSearch {
-    let JunctionParams { max_distance, same_candidate, .. } = params.junction;
     let mut guesses: Vec<FittedJunction> = Vec::new();
-    for half in half_widths(walls, params) {
+    for half in half_widths(walls) {
         for corner in corners {
             let (square, kinds) = around(corner, half);
-            if square.middle.coords.amax() > max_distance {
+            if square.middle.coords.amax() > MAX_DISTANCE {
                 continue;
             }
             for doors in kinds {
                 let known = guesses.iter().any(|guess| {
                     guess.doors == doors
-                        && apart(guess.square, square) < same_candidate
-                        && (guess.square.half - half).abs() < same_candidate
+                        && apart(guess.square, square) < SAME_CANDIDATE
+                        && (guess.square.half - half).abs() < SAME_CANDIDATE
                 });
                 if !known {
-                    let outline = Outline::junction(doors, square, &params.outline);
-                    let every = params.junction.coarse_step.max(1);
-                    let agreement = outline.agreement(boundary, frame, every, &params.outline);
+                    let outline = Outline::junction(doors, square);
+                    let every = COARSE_STEP;
+                    let agreement = outline.agreement(boundary, frame, every);
                     guesses.push(FittedJunction { frame: *frame, doors, square, agreement });
                 }
             }
         }
     }
-    best_first(&mut guesses, &params.outline);
-    guesses.truncate(params.junction.short_list);
-    let fitted = |guess: FittedJunction| guess.fitted(boundary, &params.outline);
-    let mut found: Vec<_> = guesses.into_iter().map(fitted).collect();
-    best_first(&mut found, &params.outline);
-    decided(&found, params)
+    best_first(&mut guesses);
+    guesses.truncate(SHORT_LIST);
+    let mut found: Vec<_> = guesses.into_iter().map(|guess| guess.fitted(boundary)).collect();
+    best_first(&mut found);
+    decided(&found)
 }
 
 /// The best junction, if it is seen well and no different one is about as good. The best is first.
-fn decided(found: &[FittedJunction], params: &SensingParams) -> JunctionSearch {
+fn decided(found: &[FittedJunction]) -> JunctionSearch {
     let Some(&best) = found.first() else { return JunctionSearch::Nothing };
-    let JunctionParams { min_trust, min_cover, min_support, min_lead, same_place, .. } =
-        params.junction;
-    let wide = params.hallway.has_width(best.square.half);
-    let seen = best.agreement.cover(&params.outline) >= min_cover
-        && best.agreement.good(&params.outline) >= bearings(min_support, 1)
+    let wide = HALF_WIDTH.contains(&best.square.half);
+    let seen = best.agreement.cover() >= MIN_COVER
+        && best.agreement.good() >= bearings(MIN_SUPPORT, 1)
         && best.agreement.blank == 0;
-    if !wide || !seen || !best.agreement.holds(min_trust, &params.outline) {
+    if !wide || !seen || !best.agreement.holds(MIN_TRUST) {
         return JunctionSearch::Nothing;
     }
     // In a hallway it does not matter which junction is far ahead or behind.
     let differs = |other: &FittedJunction| {
-        (best.is_here(&params.junction) || other.is_here(&params.junction))
-            && (other.doors != best.doors || apart(other.square, best.square) > same_place)
+        (best.is_here() || other.is_here())
+            && (other.doors != best.doors || apart(other.square, best.square) > SAME_PLACE)
     };
-    let balance = |junction: &FittedJunction| junction.agreement.balance(&params.outline);
-    let lead = |other: &FittedJunction| balance(&best) - balance(other);
-    if found.iter().any(|other| differs(other) && lead(other) < bearings(min_lead, 1)) {
+    let lead = |other: &FittedJunction| best.agreement.balance() - other.agreement.balance();
+    if found.iter().any(|other| differs(other) && lead(other) < bearings(MIN_LEAD, 1)) {
         return JunctionSearch::Ambiguous;
     }
     JunctionSearch::Junction(best)
 }
 
-fn best_first(guesses: &mut [FittedJunction], params: &OutlineParams) {
-    let balance = |guess: &FittedJunction| guess.agreement.balance(params);
-    guesses.sort_by(|one, other| balance(other).total_cmp(&balance(one)));
+fn best_first(guesses: &mut [FittedJunction]) {
+    guesses.sort_by(|one, other| other.agreement.balance().total_cmp(&one.agreement.balance()));
 }
 
 fn apart(one: Square, other: Square) -> f64 {
@@ -112,15 +125,15 @@ fn apart(one: Square, other: Square) -> f64 {
 }
 
 /// Half the distance between each two walls on opposite sides of the robot, each once.
-fn half_widths(walls: &[WallSegment], params: &SensingParams) -> Vec<f64> {
-    let same = params.junction.same_candidate / 2.0;
+fn half_widths(walls: &[WallSegment]) -> Vec<f64> {
+    let same = SAME_CANDIDATE / 2.0;
     let mut halves: Vec<f64> = Vec::new();
     for (number, one) in walls.iter().enumerate() {
         for other in &walls[..number] {
             let half = (one.offset - other.offset).abs() / 2.0;
             let opposite = one.along == other.along && one.offset * other.offset < 0.0;
             let known = halves.iter().any(|&known: &f64| (known - half).abs() < same);
-            if opposite && params.hallway.has_width(half) && !known {
+            if opposite && HALF_WIDTH.contains(&half) && !known {
                 halves.push(half);
             }
         }
@@ -151,29 +164,29 @@ fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
 }
 
 impl FittedJunction {
-    fn fitted(self, boundary: &Boundary, params: &OutlineParams) -> Self {
+    fn fitted(self, boundary: &Boundary) -> Self {
         let (mut square, mut frame) = (self.square, self.frame);
         for _ in 0..3 {
-            let outline = Outline::junction(self.doors, square, params);
-            (square, frame) = outline.fitted(square, boundary, &frame, params);
+            let outline = Outline::junction(self.doors, square);
+            (square, frame) = outline.fitted(square, boundary, &frame);
         }
-        let outline = Outline::junction(self.doors, square, params);
-        let agreement = outline.agreement(boundary, &frame, 1, params);
+        let outline = Outline::junction(self.doors, square);
+        let agreement = outline.agreement(boundary, &frame, 1);
         Self { frame, square, agreement, ..self }
     }
 
     /// Whether the robot is there: the turning point is neither far ahead nor far behind.
-    pub fn is_here(&self, params: &JunctionParams) -> bool {
+    pub fn is_here(&self) -> bool {
         let away = -self.square.middle.x;
         let aside = self.square.middle.y.abs();
-        (-params.ahead..=params.behind).contains(&away) && aside <= params.ahead
+        (-AHEAD..=BEHIND).contains(&away) && aside <= AHEAD
     }
 
-    pub fn hallway(&self, walls: &[WallSegment], params: &HallwayParams) -> Option<FittedHallway> {
+    pub fn hallway(&self, walls: &[WallSegment]) -> Option<FittedHallway> {
         let axis = self.arm()?;
         let mut square = self.square;
         square.middle[axis.split().0] = 0.0;
-        let status = status(axis, self.frame.ahead(axis), square, walls, params);
+        let status = status(axis, self.frame.ahead(axis), square, walls);
         let agreement = self.agreement;
         let hallway = FittedHallway { frame: self.frame, axis, square, status, agreement };
         Some(hallway).filter(FittedHallway::has_robot)
@@ -190,15 +203,14 @@ impl FittedJunction {
     }
 
     /// The junction in a scene: its doors clockwise from the one behind.
-    // paper: sense.junction.entry
-    // paper: sense.centre-lines
-    pub fn view(&self, params: &OutlineParams) -> JunctionView {
+    // paper: sense.junction.entry, sense.centre-lines
+    pub fn view(&self) -> JunctionView {
         let turning_point = (self.frame.robot_from_walls() * self.square.middle).into();
         let doors = (0..4).rev().filter(|&number| self.doors[number]).map(|number| CentreLine {
             through: turning_point,
             direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
         });
-        let confidence = self.agreement.confidence(params);
+        let confidence = self.agreement.confidence();
         JunctionView { doors: doors.collect(), turning_point, confidence }
             .entered_from(std::f64::consts::PI)
     }
@@ -211,60 +223,25 @@ mod tests {
     use super::*;
     use crate::{
         boundary::{BEARINGS, Sight, bearing},
-        cluster::clusters,
         corner::{CornerSource, corners},
         drawn_place::{self, DrawnPlace},
-        line::lines,
     };
 
     const HALF: f64 = 0.8;
 
-    fn bearings_of(place: &DrawnPlace, position: [f64; 2]) -> Boundary {
-        drawn_place::bearings().look(&place.seen_from(position, 0.2))
-    }
-
     fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> JunctionSearch {
-        let mut boundary = bearings_of(&DrawnPlace::junction(doors, HALF), [-0.3, 0.1]);
+        let mut boundary = DrawnPlace::junction(doors, HALF).boundary([-0.3, 0.1], 0.2);
         for bearing in hidden {
             boundary.sights[bearing % BEARINGS] = Sight::default();
         }
-        finding(&boundary, &walls_of(&boundary))
-    }
-
-    fn walls_of(boundary: &Boundary) -> (WallFrame, Vec<WallSegment>) {
-        let params = SensingParams::default();
-        let lines = lines(&clusters(boundary, &params.cluster), &params.line);
-        let frame = WallFrame::of(&lines, &params.wall).unwrap();
-        (frame, frame.walls(&lines, &params.wall))
+        finding(&boundary, &drawn_place::walls(&boundary).unwrap())
     }
 
     fn finding(
         boundary: &Boundary,
         (frame, walls): &(WallFrame, Vec<WallSegment>),
     ) -> JunctionSearch {
-        let params = SensingParams::default();
-        junction(&corners(walls, &params.corner), walls, boundary, frame, &params)
-    }
-
-    // paper: sense.junction.two
-    // paper: sense.junction.three
-    #[test]
-    fn corners_of_the_same_type_make_an_l_and_of_different_types_with_a_wall_a_t() {
-        let kinds = [
-            [false, true, true, false],
-            [false, false, true, true],
-            [false, true, true, true],
-            [true, true, true, false],
-            [true, false, true, true],
-        ];
-        for doors in kinds {
-            let JunctionSearch::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
-            assert_eq!(found.doors, doors);
-            let [x, y] = (found.frame.robot_from_walls() * found.square.middle).into();
-            // 0.3 m ahead and 0.1 m to the right in a hallway to which the robot is turned by 0.2.
-            let [ahead, left] = [0.3 * 0.2_f64.cos() - 0.1 * 0.2_f64.sin(), -0.157_601];
-            assert!((x - ahead).abs() < 0.01 && (y - left).abs() < 0.01, "{x}, {y}");
-        }
+        junction(&corners(walls), walls, boundary, frame)
     }
 
     #[test]
@@ -291,8 +268,8 @@ mod tests {
     #[test]
     fn no_junction_is_found_on_few_bearings() {
         let far_off = DrawnPlace::junction([false, true, true, true], 0.55);
-        let boundary = bearings_of(&far_off, [-1.9, 0.0]);
-        let walls = walls_of(&boundary);
+        let boundary = far_off.boundary([-1.9, 0.0], 0.2);
+        let walls = drawn_place::walls(&boundary).unwrap();
         let found = |every: usize| {
             let mut boundary = boundary.clone();
             for (bearing, sight) in boundary.sights.iter_mut().enumerate() {

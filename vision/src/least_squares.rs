@@ -1,8 +1,15 @@
-//! Least squares and principal components.
+//! Least squares, principal components and the median.
 
 use nalgebra::{Matrix2, Point2, SMatrix, SVector, Vector2};
 
 use crate::geometry::unit;
+
+/// The middle one of some numbers, the greater one of two; `None` if there are none.
+pub(crate) fn median(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut numbers: Vec<f64> = numbers.into_iter().collect();
+    let middle = numbers.len() / 2;
+    (!numbers.is_empty()).then(|| *numbers.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
 
 /// The normal equations of a least-squares problem with `N` unknowns.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,15 @@
 //!
 //! [`sensing`] has the steps in their order; [`laser`] senses with a laser scanner; [`place`] and [`visits`] are what both
 //! see, and the visits of places.
+//!
+//! The constants of a step stand at the beginning of its file; what users may change for their building is in
+//! [`laser::params`]. The paper gives none of them. Lengths are in metres and angles in radians, if nothing else is
+//! written. A *bearing* is half a degree, a *step* is one pixel of the ground view along a bearing: 7.5 mm. "A part of" is
+//! a number from 0 to 1. The values come from:
+//!
+//! * **geometry**: the robot, the sensor, the building or the arithmetic gives the value;
+//! * **views**: chosen on rendered views, where it meets the targets of `evaluate vision` (`docs/sensing.md`);
+//! * **logs**, **simulated buildings**: as in [`laser::params`].
 
 // Tests compare numbers exactly and list many wrong files.
 #![cfg_attr(test, allow(clippy::float_cmp, clippy::too_many_lines))]

@@ -2,7 +2,16 @@
 
 use nalgebra::{Point2, Vector2, distance};
 
-use crate::{cluster::Cluster, geometry::angle, least_squares::PrincipalAxis, params::LineParams};
+use crate::{cluster::Cluster, geometry::angle, least_squares::PrincipalAxis};
+
+/// A cluster is split at a point this far from the chord between its ends, at the robot. Views.
+const BEND: f64 = 0.035;
+/// What each metre from the robot adds to that distance. Geometry: as `cluster::GAP_PER_METRE`.
+const BEND_PER_METRE: f64 = 0.02;
+/// The fewest points of a line. Views.
+const MIN_POINTS: usize = 5;
+/// The least length of a line. Views.
+const MIN_LENGTH: f64 = 0.10;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallLine {
@@ -39,7 +48,6 @@ impl WallLine {
         self.middle + (point - self.middle).dot(&self.along) * self.along
     }
 
-    /// Its length in metres.
     pub fn length(&self) -> f64 {
         distance(&self.from, &self.to)
     }
@@ -53,44 +61,45 @@ impl WallLine {
 /// The straight pieces of clusters. A cluster is split at the point farthest from the chord between its
 /// ends, until no point is far (Ramer 1972, Douglas and Peucker 1973).
 // paper: sense.corner.single
-pub fn lines(clusters: &[Cluster], params: &LineParams) -> Vec<WallLine> {
+pub fn lines(clusters: &[Cluster]) -> Vec<WallLine> {
     let pieces = clusters.iter().enumerate().flat_map(|(number, cluster)| {
-        split(cluster, params).into_iter().map(move |line| WallLine { cluster: number, ..line })
+        split(cluster).into_iter().map(move |line| WallLine { cluster: number, ..line })
     });
     pieces.collect()
 }
 
-fn split(cluster: &Cluster, params: &LineParams) -> Vec<WallLine> {
+fn split(cluster: &Cluster) -> Vec<WallLine> {
     let mut lines = Vec::new();
     let mut open = vec![cluster.points.as_slice()];
     while let Some(points) = open.pop() {
-        match bend(points, params) {
+        match bend(points) {
             Some(at) => open.extend([&points[at..], &points[..=at]]),
-            None => lines.extend(WallLine::through(points).filter(|line| {
-                line.points >= params.min_points && line.length() >= params.min_length
-            })),
+            None => lines.extend(
+                WallLine::through(points)
+                    .filter(|line| line.points >= MIN_POINTS && line.length() >= MIN_LENGTH),
+            ),
         }
     }
     lines
 }
 
 /// The index of the point farthest from the chord between the ends, if it is far.
-fn bend(points: &[Point2<f64>], params: &LineParams) -> Option<usize> {
+fn bend(points: &[Point2<f64>]) -> Option<usize> {
     let (&first, &last) = (points.first()?, points.last()?);
-    if points.len() < 2 * params.min_points {
+    if points.len() < 2 * MIN_POINTS {
         return None;
     }
     let chord = last - first;
     let off = |point: Point2<f64>| {
         let from_first = point - first;
-        if chord.norm() < params.min_length {
+        if chord.norm() < MIN_LENGTH {
             return from_first.norm();
         }
         from_first.perp(&chord).abs() / chord.norm()
     };
     let inner = 1..points.len() - 1;
     let at = inner.max_by(|&one, &other| off(points[one]).total_cmp(&off(points[other])))?;
-    let far = params.bend + params.bend_per_metre * points[at].coords.norm();
+    let far = BEND + BEND_PER_METRE * points[at].coords.norm();
     (off(points[at]) > far).then_some(at)
 }
 
@@ -107,7 +116,7 @@ mod tests {
     fn a_straight_cluster_is_one_line() {
         let wall =
             cluster((0..50).map(|step| [0.02 * f64::from(step), 1.0 + 0.01 * f64::from(step)]));
-        let [line] = split(&wall, &LineParams::default())[..] else { panic!("one line") };
+        let [line] = split(&wall)[..] else { panic!("one line") };
         assert!((line.direction() - 0.5_f64.atan()).abs() < 1e-9);
         assert!(line.spread < 1e-6);
         assert!((line.length() - 0.02 * 49.0 * 1.25_f64.sqrt()).abs() < 1e-9);
@@ -121,7 +130,7 @@ mod tests {
                 .map(|step| [1.0, 0.02 * f64::from(step) - 0.5])
                 .chain((1..50).map(|step| [1.0 - 0.02 * f64::from(step), 0.48])),
         );
-        let [one, other] = split(&bent, &LineParams::default())[..] else { panic!("two lines") };
+        let [one, other] = split(&bent)[..] else { panic!("two lines") };
         let dot = one.along.dot(&other.along);
         assert!(dot.abs() < 0.02, "{dot}");
         assert!(distance(&one.to, &other.from) < 0.05);

@@ -11,9 +11,19 @@ use crate::{
     colour::PixelClass,
     geometry::angle,
     ground_view::GroundView,
+    least_squares::median,
     line::WallLine,
-    params::MarkerParams,
+    params::{MARKER_LENGTH, MARKER_WIDTH},
 };
+
+/// The least part of the marker's area that must be seen. Views.
+const MIN_SEEN: f64 = 0.12;
+/// The marker lies in front of the wall. Its colour farther behind is something else. Views.
+const MAX_BEHIND: f64 = 0.05;
+/// Points of its colour farther from their median are something else. Geometry: a little more than half its length.
+const MAX_SPREAD: f64 = 0.40;
+/// At a junction it lies this near to the turning point. Geometry: half its length.
+const MAX_OFF_CENTRE: f64 = 0.30;
 
 /// The marker, if enough of its colour is seen on the floor.
 // paper: marker-sense.present, marker-sense.direction
@@ -21,11 +31,9 @@ pub fn marker(
     view: &GroundView,
     boundary: &Boundary,
     junction: Option<&JunctionView>,
-    params: &MarkerParams,
 ) -> Option<MarkerView> {
-    let &MarkerParams { length, width, .. } = params;
-    let points = pixels(view, boundary, params);
-    let least = params.min_seen * length * width / (GroundView::SCALE * GroundView::SCALE);
+    let points = pixels(view, boundary);
+    let least = MIN_SEEN * MARKER_LENGTH * MARKER_WIDTH / (GroundView::SCALE * GroundView::SCALE);
     if (points.len() as f64) < least {
         return None;
     }
@@ -33,7 +41,7 @@ pub fn marker(
     let axis = undirected(line.direction());
     let at_l = junction.filter(|junction| {
         junction.doors.len() == 2
-            && distance(&junction.turning_point.into(), &line.middle) < params.max_off_centre
+            && distance(&junction.turning_point.into(), &line.middle) < MAX_OFF_CENTRE
     });
     let Some(junction) = at_l else {
         return Some(MarkerView { position: line.middle.into(), axis, door: None });
@@ -45,7 +53,7 @@ pub fn marker(
         let middle = Point2::from(junction.turning_point);
         let inside = points.iter().filter(|&point| {
             let off = marker_from_robot * (point - middle);
-            off.x.abs() <= length / 2.0 && off.y.abs() <= width / 2.0
+            off.x.abs() <= MARKER_LENGTH / 2.0 && off.y.abs() <= MARKER_WIDTH / 2.0
         });
         inside.count()
     };
@@ -59,24 +67,18 @@ pub fn marker(
 }
 
 /// The points of the floor in the marker's colour, without those far from most of them.
-fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<Point2<f64>> {
+fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<Point2<f64>> {
     let on_floor = view.marker.iter().filter_map(|&index| {
         let point = GroundView::ground(index as usize);
         let sight = boundary.sights[bearing(angle(point.coords))];
-        let reach = sight.floor + params.max_behind;
+        let reach = sight.floor + MAX_BEHIND;
         (point.coords.norm() <= reach && is_within(view, index as usize)).then_some(point)
     });
     let points: Vec<_> = on_floor.collect();
-    if points.is_empty() {
-        return points;
-    }
-    let median = [0, 1].map(|axis| {
-        let mut parts: Vec<f64> = points.iter().map(|point| point[axis]).collect();
-        let middle = parts.len() / 2;
-        *parts.select_nth_unstable_by(middle, f64::total_cmp).1
-    });
-    let median = Point2::from(median);
-    points.into_iter().filter(|point| distance(point, &median) <= params.max_spread).collect()
+    let middle =
+        [0, 1].map(|axis| median(points.iter().map(|point| point[axis])).unwrap_or_default());
+    let middle = Point2::from(middle);
+    points.into_iter().filter(|point| distance(point, &middle) <= MAX_SPREAD).collect()
 }
 
 /// Whether the pixels to the left and above have the colour, too; a speck has no such neighbours.
@@ -97,10 +99,7 @@ mod tests {
     use toposlam_model::driving::scene::CentreLine;
 
     use super::*;
-    use crate::{
-        drawn_place,
-        params::{MARKER_LENGTH, MARKER_WIDTH},
-    };
+    use crate::drawn_place;
 
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
         let mut view = GroundView::unseen();
@@ -122,11 +121,10 @@ mod tests {
 
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
         let view = floor_with_marker(position, axis);
-        marker(&view, &drawn_place::bearings().look(&view), junction, &MarkerParams::default())
+        marker(&view, &drawn_place::bearings().look(&view), junction)
     }
 
-    // paper: marker-sense.direction
-    // paper: marker-sense.shape
+    // paper: marker-sense.direction, marker-sense.shape
     #[test]
     fn a_whole_marker_has_its_true_position_and_axis() {
         for axis in [0.0, 0.7, 1.5, -1.2] {
@@ -151,7 +149,7 @@ mod tests {
             }
         }
         let boundary = drawn_place::bearings().look(&view);
-        assert_eq!(marker(&view, &boundary, None, &MarkerParams::default()), None);
+        assert_eq!(marker(&view, &boundary, None), None);
     }
 
     #[test]

@@ -5,9 +5,15 @@ use nalgebra::{Point2, Vector2};
 use crate::{
     boundary::Boundary,
     least_squares::NormalEquations,
-    params::OutlineParams,
     wall::{Axis, WallFrame},
 };
+
+/// A point this near to a wall agrees with it, at the robot. Views.
+const NEAR: f64 = 0.05;
+/// What each metre from the robot adds to that distance. Geometry: as `cluster::GAP_PER_METRE`.
+const NEAR_PER_METRE: f64 = 0.03;
+/// The length of a junction's arms, in hallway widths. Geometry: the next junction may begin there.
+const ARM: f64 = 1.0;
 
 /// The four directions of a frame, counter-clockwise: x, y, and their opposites.
 pub const DIRECTIONS: [Vector2<f64>; 4] = [
@@ -27,7 +33,8 @@ pub struct Outline {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OutlineSide {
-    kind: Kind,
+    /// The side of the middle, on the axis across it, on which a wall is: -1 or 1. `None` if it is open.
+    wall: Option<f64>,
     /// Its direction from the middle, an index in [`DIRECTIONS`].
     pub(crate) towards: usize,
     pub(crate) along: Axis,
@@ -35,13 +42,6 @@ pub(crate) struct OutlineSide {
     pub(crate) offset: f64,
     from: f64,
     to: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    /// A wall on this side of the middle, on the axis across it: -1 or 1.
-    Wall(f64),
-    Open,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ impl Outline {
             if sign > 0.0 { first } else { first + 2 }
         };
         let wall = |sign: f64| OutlineSide {
-            kind: Kind::Wall(sign),
+            wall: Some(sign),
             towards: number(axis.across(), sign),
             along: axis,
             offset: centre + sign * square.half,
@@ -72,7 +72,7 @@ impl Outline {
             to: beside + to,
         };
         let end = |at: f64| OutlineSide {
-            kind: Kind::Open,
+            wall: None,
             towards: number(axis, at),
             along: axis.across(),
             offset: beside + at,
@@ -83,20 +83,16 @@ impl Outline {
     }
 
     /// A junction with doors in some of the four [`DIRECTIONS`].
-    pub fn junction(
-        doors: [bool; 4],
-        Square { middle, half }: Square,
-        params: &OutlineParams,
-    ) -> Self {
+    pub fn junction(doors: [bool; 4], Square { middle, half }: Square) -> Self {
         let mut sides = Vec::with_capacity(MOST_SIDES);
         for (towards, (&open, direction)) in doors.iter().zip(DIRECTIONS).enumerate() {
             let sign = direction.sum();
             let arm = if direction.y == 0.0 { Axis::X } else { Axis::Y };
             let (along, across) = arm.split();
-            let (edge, end) = (half, half + 2.0 * half * params.arm);
+            let (edge, end) = (half, half + 2.0 * half * ARM);
             let [near, far] = [edge, end].map(|reach| middle[along] + sign * reach);
-            let closing = |kind, offset| OutlineSide {
-                kind,
+            let closing = |wall, offset| OutlineSide {
+                wall,
                 towards,
                 along: arm.across(),
                 offset,
@@ -104,9 +100,9 @@ impl Outline {
                 to: middle[across] + half,
             };
             if open {
-                sides.push(closing(Kind::Open, far));
+                sides.push(closing(None, far));
                 sides.extend([1.0, -1.0].map(|side| OutlineSide {
-                    kind: Kind::Wall(side),
+                    wall: Some(side),
                     towards,
                     along: arm,
                     offset: middle[across] + side * half,
@@ -114,7 +110,7 @@ impl Outline {
                     to: near.max(far),
                 }));
             } else {
-                sides.push(closing(Kind::Wall(sign), near));
+                sides.push(closing(Some(sign), near));
             }
         }
         Self { sides, width: 2.0 * half }
@@ -151,25 +147,17 @@ impl Outline {
         square: Square,
         boundary: &Boundary,
         frame: &WallFrame,
-        params: &OutlineParams,
     ) -> (Square, WallFrame) {
         // What is not seen stays as it is: a pull of a thousandth of a point.
         let mut equations = NormalEquations::<4>::with_pull(1e-3);
         for (_, point) in boundary.points() {
             let from_robot = point.coords.norm();
             let point = frame.walls_from_robot() * point;
-            let near = near(from_robot, params);
-            let walls = self.sides.iter().filter_map(|side| match side.kind {
-                Kind::Wall(sign) => Some((side, sign, side.distance(point))),
-                Kind::Open => None,
-            });
-            let Some((side, sign, off)) = walls.min_by(|one, other| one.2.total_cmp(&other.2))
-            else {
-                continue;
-            };
-            if off > near {
-                continue;
-            }
+            let walls =
+                self.sides.iter().filter_map(|side| Some((side, side.wall?, side.distance(point))));
+            let nearest = walls.min_by(|one, other| one.2.total_cmp(&other.2));
+            let near = nearest.filter(|&(_, _, off)| off <= near(from_robot));
+            let Some((side, sign, _)) = near else { continue };
             // To first order, turning the frame by `turn` moves the point across the wall by
             // -turn x for a wall along x, and by turn y for one along y.
             let (along, across) = side.along.split();
@@ -192,7 +180,7 @@ impl Outline {
 
 impl OutlineSide {
     pub(crate) fn is_wall(&self) -> bool {
-        self.kind != Kind::Open
+        self.wall.is_some()
     }
 
     /// The distance of a point from it, in metres.
@@ -204,8 +192,8 @@ impl OutlineSide {
 }
 
 /// The distance from a wall that counts as near, at this range from the robot.
-pub(crate) fn near(range: f64, params: &OutlineParams) -> f64 {
-    params.near + params.near_per_metre * range
+pub(crate) fn near(range: f64) -> f64 {
+    NEAR + NEAR_PER_METRE * range
 }
 
 #[cfg(test)]
@@ -216,14 +204,11 @@ mod tests {
     #[test]
     fn a_place_is_moved_turned_and_widened_to_where_its_walls_are_seen() {
         let doors = [true, false, true, true];
-        let view = DrawnPlace::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
-        let boundary = drawn_place::bearings().look(&view);
+        let boundary = DrawnPlace::junction(doors, 0.8).boundary([-0.2, 0.1], 0.3);
         let mut frame = WallFrame::along(-0.27);
-        let params = OutlineParams::default();
         let mut square = Square { middle: Point2::new(0.16, -0.06), half: 0.78 };
         for _ in 0..4 {
-            (square, frame) = Outline::junction(doors, square, &params)
-                .fitted(square, &boundary, &frame, &params);
+            (square, frame) = Outline::junction(doors, square).fitted(square, &boundary, &frame);
         }
         let off = [
             square.middle[0] - 0.2,
@@ -237,8 +222,7 @@ mod tests {
     #[test]
     fn a_ray_meets_the_nearest_side_first() {
         let square = Square { middle: Point2::origin(), half: 0.8 };
-        let dead_end =
-            Outline::junction([false, false, true, false], square, &OutlineParams::default());
+        let dead_end = Outline::junction([false, false, true, false], square);
         let first = |ray: [f64; 2]| {
             dead_end.first_on(ray.into()).map(|(range, side)| (range, dead_end.sides[side]))
         };

@@ -12,7 +12,6 @@ use toposlam_model::driving::{
     scene::{Scene, wrapped},
 };
 
-/// Sees places.
 pub trait PlaceSensor {
     /// What is sensed at once: a scan, or the scene in an image.
     type Frame;
@@ -46,7 +45,6 @@ pub struct PlaceView {
 /// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenPlace {
-    /// In metres.
     pub centre: Point2<f64>,
     /// The distance from the centre to the nearest wall, in metres; 0 by a camera.
     pub clearance: f64,
@@ -57,12 +55,10 @@ pub struct SeenPlace {
 /// A way that may leave a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaceArm {
-    /// In radians.
     pub direction: f64,
     pub certainty: Certainty,
 }
 
-/// Whether an arm is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Certainty {
     /// It was driven, or is seen beyond doubt.
@@ -73,7 +69,6 @@ pub enum Certainty {
     Excluded,
 }
 
-/// The directions in which a sensor looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewSector {
     /// The first one, in radians counter-clockwise from the robot's heading.
@@ -87,7 +82,6 @@ impl ViewSector {
     pub const ALL_AROUND: Self = Self { first: 0.0, angle: TAU };
 
     /// The angle between a direction and the nearest one in which the sensor looks, in radians; 0 if it looks there.
-    #[must_use]
     pub fn angle_off(&self, bearing: f64) -> f64 {
         let from_first = (bearing - self.first).rem_euclid(TAU);
         (from_first - self.angle).max(0.0).min(TAU - from_first)
@@ -102,19 +96,16 @@ impl SeenPlace {
 }
 
 impl PlaceArm {
-    #[must_use]
     pub fn certain(direction: f64) -> Self {
         Self { direction, certainty: Certainty::Certain }
     }
 
-    #[must_use]
     pub fn is_certain(&self) -> bool {
         self.certainty == Certainty::Certain
     }
 }
 
 /// The index of the direction that is nearest to another one; the first one of several.
-#[must_use]
 pub fn nearest_direction(directions: &[f64], to: f64) -> Option<usize> {
     let off = |index: &usize| wrapped(directions[*index] - to).abs();
     (0..directions.len()).min_by(|one, other| off(one).total_cmp(&off(other)))

@@ -20,10 +20,14 @@ use crate::{
     junction::{FittedJunction, JunctionSearch, junction},
     line::{WallLine, lines},
     marker::marker,
-    params::SensingParams,
     place::{PlaceArm, PlaceSensor, PlaceView, SeenPlace, ViewSector},
-    wall::{WallFrame, WallSegment, confirmed},
+    wall::{WallFrame, WallSegment},
 };
+
+/// The fewest boundary points that can show a place. Views.
+const MIN_POINTS: usize = 40;
+/// The fewest bearings on which floor is seen; with fewer there is no scene. Geometry: a fifth of the 720 bearings.
+const MIN_FLOOR_BEARINGS: usize = 144;
 
 /// Sensing with one camera in one building. Its tables are computed once.
 #[derive(Clone, Debug)]
@@ -35,7 +39,6 @@ pub struct Sensor {
     model: ColourModel,
     colours: ColourTable,
     view: GroundView,
-    params: SensingParams,
 }
 
 /// Sees places in the scenes of a camera, sensed now or recorded.
@@ -73,52 +76,37 @@ impl PlaceSensor for SceneSensor {
     .found[0], .found[1], .expected[0], .expected[1]
 )]
 pub struct WrongSize {
-    /// Width and height of the image.
     pub found: [u32; 2],
-    /// Width and height of the camera's images.
     pub expected: [u32; 2],
 }
 
 /// The results of all steps that lead to a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensingTrace {
-    /// What is seen on each bearing.
     pub boundary: Option<Boundary>,
-    /// The pieces of wall.
     pub clusters: Vec<Cluster>,
-    /// Their straight pieces.
     pub lines: Vec<WallLine>,
     /// The frame along which most of them run.
     pub frame: Option<WallFrame>,
     /// The lines that run along its axes.
     pub walls: Vec<WallSegment>,
-    /// The corners where they meet or end.
     pub corners: Vec<Corner>,
-    /// The hallway, if there is one.
     pub hallway: Option<FittedHallway>,
     /// The junction, if one was searched for and found.
     pub junction: Option<FittedJunction>,
 }
 
 impl Sensor {
-    /// Sensing with a camera in a building with these colours, and with the default parameters.
-    #[must_use]
+    /// Sensing with a camera in a building with these colours.
     pub fn new(camera: &Camera, colours: &ColourModel) -> Self {
-        Self::with_params(camera, colours, &SensingParams::default())
-    }
-
-    /// Sensing with other parameters.
-    #[must_use]
-    pub fn with_params(camera: &Camera, colours: &ColourModel, params: &SensingParams) -> Self {
         Self {
             camera: camera.clone(),
             unwrapping: Unwrapping::new(camera),
             ring: FloorRing::new(camera),
-            bearings: Bearings::new(colours.stripe, camera.eye_height(), &params.boundary),
+            bearings: Bearings::new(colours.stripe, camera.eye_height()),
             colours: colours.table(),
             model: colours.clone(),
             view: GroundView::unseen(),
-            params: *params,
         }
     }
 
@@ -145,17 +133,14 @@ impl Sensor {
             return Ok((scene, SensingTrace::default()));
         };
         self.unwrapping.view(image, &self.colours.lit(gain), &mut self.view);
-        Ok(interpreted(&self.view, &self.bearings, self.model.stripe, &self.params))
+        Ok(interpreted(&self.view, &self.bearings))
     }
 
-    /// The camera whose images it takes.
-    #[must_use]
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
     /// The ground view of the last image.
-    #[must_use]
     pub fn ground_view(&self) -> &GroundView {
         &self.view
     }
@@ -163,41 +148,31 @@ impl Sensor {
 
 /// The scene in a ground view, and the results of the steps that lead to it.
 // paper: sense.hallway.first
-#[must_use]
-pub fn interpreted(
-    view: &GroundView,
-    bearings: &Bearings,
-    stripe: Stripe,
-    params: &SensingParams,
-) -> (Scene, SensingTrace) {
-    let (place, trace) = place_within(bearings.look(view), margin(stripe), params);
+fn interpreted(view: &GroundView, bearings: &Bearings) -> (Scene, SensingTrace) {
+    let (place, trace) = place_within(bearings.look(view), margin(bearings.stripe));
     let junction = match &place {
         Place::Junction(junction) => Some(junction),
         Place::Hallway(_) | Place::Unknown(_) => None,
     };
     let boundary = trace.boundary.as_ref();
-    let marker = boundary.and_then(|boundary| marker(view, boundary, junction, &params.marker));
+    let marker = boundary.and_then(|boundary| marker(view, boundary, junction));
     (Scene { marker, place }, trace)
 }
 
 /// The place within a boundary, and the results of the steps that lead to it. `margin` is the distance from
 /// the boundary to the wall planes, in metres.
-pub(crate) fn place_within(
-    mut boundary: Boundary,
-    margin: f64,
-    params: &SensingParams,
-) -> (Place, SensingTrace) {
-    let clusters = clusters(&boundary, &params.cluster);
-    let lines = lines(&clusters, &params.line);
-    let frame = WallFrame::of(&lines, &params.wall);
-    let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines, &params.wall));
+pub(crate) fn place_within(mut boundary: Boundary, margin: f64) -> (Place, SensingTrace) {
+    let clusters = clusters(&boundary);
+    let lines = lines(&clusters);
+    let frame = WallFrame::of(&lines);
+    let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
     if let Some(frame) = &frame {
-        boundary = confirmed(boundary, &walls, frame, &params.wall);
+        boundary.confirm(&walls, frame);
     }
-    let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame, params));
+    let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame));
     let mut trace =
         SensingTrace { clusters, lines, frame, walls, hallway, ..SensingTrace::default() };
-    let place = place(&mut trace, &boundary, margin, params);
+    let place = place(&mut trace, &boundary, margin);
     trace.boundary = Some(boundary);
     (place, trace)
 }
@@ -211,38 +186,31 @@ fn margin(stripe: Stripe) -> f64 {
 }
 
 /// Where the robot is. It searches for a hallway first, then for a junction.
-fn place(
-    trace: &mut SensingTrace,
-    boundary: &Boundary,
-    margin: f64,
-    params: &SensingParams,
-) -> Place {
-    if boundary.sights.iter().filter(|sight| sight.floor > 0.0).count() < params.min_floor_bearings
-    {
+fn place(trace: &mut SensingTrace, boundary: &Boundary, margin: f64) -> Place {
+    if boundary.sights.iter().filter(|sight| sight.floor > 0.0).count() < MIN_FLOOR_BEARINGS {
         return Place::Unknown(Reason::NoFloor);
     }
-    let Some(frame) = trace.frame.filter(|_| boundary.points().count() >= params.min_points) else {
+    let Some(frame) = trace.frame.filter(|_| boundary.points().count() >= MIN_POINTS) else {
         return Place::Unknown(Reason::FewWalls);
     };
-    let in_hallway =
-        |hallway: &FittedHallway| Place::Hallway(hallway.view(margin, &params.outline));
-    if let Some(hallway) = trace.hallway.as_ref().filter(|hallway| hallway.is_sure(params)) {
+    let in_hallway = |hallway: &FittedHallway| Place::Hallway(hallway.view(margin));
+    if let Some(hallway) = trace.hallway.as_ref().filter(|hallway| hallway.is_sure()) {
         return in_hallway(hallway);
     }
-    trace.corners = corners(&trace.walls, &params.corner);
+    trace.corners = corners(&trace.walls);
     let otherwise = |reason| match &trace.hallway {
         Some(hallway) => in_hallway(hallway),
         None => Place::Unknown(reason),
     };
-    match junction(&trace.corners, &trace.walls, boundary, &frame, params) {
+    match junction(&trace.corners, &trace.walls, boundary, &frame) {
         JunctionSearch::Nothing => otherwise(Reason::NothingFits),
         JunctionSearch::Ambiguous => otherwise(Reason::Ambiguous),
         JunctionSearch::Junction(junction) => {
             trace.junction = Some(junction);
-            if junction.is_here(&params.junction) {
-                return Place::Junction(junction.view(&params.outline));
+            if junction.is_here() {
+                return Place::Junction(junction.view());
             }
-            trace.hallway = junction.hallway(&trace.walls, &params.hallway);
+            trace.hallway = junction.hallway(&trace.walls);
             match &trace.hallway {
                 Some(hallway) => in_hallway(hallway),
                 None => Place::Unknown(Reason::NothingFits),
@@ -278,22 +246,12 @@ mod tests {
     fn scene(doors: [bool; 4], before: f64, view: usize) -> Place {
         let (half, left, heading) = VIEWS[view % VIEWS.len()];
         let drawn = DrawnPlace::junction(doors, half).seen_from([-before, left], heading);
-        interpreted(
-            &drawn,
-            &drawn_place::bearings(),
-            drawn_place::STRIPE,
-            &SensingParams::default(),
-        )
-        .0
-        .place
+        interpreted(&drawn, &drawn_place::bearings()).0.place
     }
 
-    // paper: sense.junction.type
-    // paper: sense.junction.entry
-    // paper: sense.centre-lines
-    // paper: sense.place
-    // paper: drive.junction
-    // paper: alg2.6
+    // paper: sense.junction.type, sense.junction.entry, sense.centre-lines, sense.place
+    // paper: drive.junction, alg2.6
+    // paper: sense.junction.two, sense.junction.three
     #[test]
     fn every_junction_is_found_from_half_a_metre_before_it_to_beyond_it() {
         for (number, doors) in KINDS.into_iter().enumerate() {
@@ -322,10 +280,7 @@ mod tests {
         }
     }
 
-    // paper: sense.hallway.first
-    // paper: sense.distances
-    // paper: sense.parallel
-    // paper: sense.opposite
+    // paper: sense.hallway.first, sense.distances, sense.parallel, sense.opposite
     // paper: sense.hallway.two-clusters
     #[test]
     fn a_metre_and_a_half_before_a_junction_is_a_hallway() {
@@ -348,14 +303,7 @@ mod tests {
         let reason = |class| {
             let mut view = GroundView::unseen();
             view.classes.fill(class);
-            interpreted(
-                &view,
-                &drawn_place::bearings(),
-                drawn_place::STRIPE,
-                &SensingParams::default(),
-            )
-            .0
-            .place
+            interpreted(&view, &drawn_place::bearings()).0.place
         };
         assert_eq!(reason(PixelClass::Other), Place::Unknown(Reason::NoFloor));
         assert_eq!(reason(PixelClass::Stripe), Place::Unknown(Reason::NoFloor));

@@ -5,11 +5,17 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{Point2, UnitComplex};
 use toposlam_model::driving::scene::wrapped;
 
-use crate::{
-    boundary::{Boundary, direction},
-    line::WallLine,
-    params::WallParams,
-};
+use crate::line::WallLine;
+
+/// The largest angle between a wall and its axis. Views.
+const MAX_SKEW: f64 = 0.20;
+/// No wall is nearer to the robot's centre: such a line is the edge of a strut. Geometry: the radius of the
+/// SuperScout's body.
+const MIN_OFFSET: f64 = 0.20;
+/// A point this near to a wall is on it. Views.
+const ON_WALL: f64 = 0.06;
+/// A boundary point on a wall of at least this length is sure. Views: the floor's own patterns are shorter.
+const LONG_WALL: f64 = 0.60;
 
 /// A frame of reference along the walls of a place. Its x axis is the one nearest to ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,14 +50,14 @@ impl WallFrame {
 
     /// The frame along which the most lines run, by length; `None` without lines.
     // paper: env.right-angles
-    pub fn of(lines: &[WallLine], params: &WallParams) -> Option<Self> {
+    pub fn of(lines: &[WallLine]) -> Option<Self> {
         let angles: Vec<_> =
             lines.iter().map(|line| (Self::along(line.direction()).angle, line.length())).collect();
         let near = |angle: f64| {
             angles
                 .iter()
                 .map(move |&(other, length)| (wrapped(4.0 * (other - angle)) / 4.0, length))
-                .filter(|(off, _)| off.abs() < params.max_skew)
+                .filter(|(off, _)| off.abs() < MAX_SKEW)
         };
         let supported = |angle: f64| near(angle).map(|(_, length)| length).sum::<f64>();
         let (angle, _) = angles
@@ -85,21 +91,21 @@ impl WallFrame {
         self.robot_from_walls.inverse()
     }
 
-    pub fn walls(&self, lines: &[WallLine], params: &WallParams) -> Vec<WallSegment> {
-        lines.iter().filter_map(|line| self.wall(line, params)).collect()
+    pub fn walls(&self, lines: &[WallLine]) -> Vec<WallSegment> {
+        lines.iter().filter_map(|line| self.wall(line)).collect()
     }
 
-    fn wall(&self, line: &WallLine, params: &WallParams) -> Option<WallSegment> {
+    fn wall(&self, line: &WallLine) -> Option<WallSegment> {
         let off = wrapped(line.direction() - self.angle).rem_euclid(TAU);
         let quarters = (off / FRAC_PI_2).round();
-        if (off - quarters * FRAC_PI_2).abs() > params.max_skew {
+        if (off - quarters * FRAC_PI_2).abs() > MAX_SKEW {
             return None;
         }
         let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
         let [middle, from, to] =
             [line.middle, line.from, line.to].map(|point| self.walls_from_robot() * point);
         let (on, off) = along.split();
-        if middle[off].abs() < params.min_offset {
+        if middle[off].abs() < MIN_OFFSET {
             return None;
         }
         Some(WallSegment {
@@ -147,30 +153,17 @@ impl Axis {
 }
 
 impl WallSegment {
-    pub fn contains(&self, point: Point2<f64>, params: &WallParams) -> bool {
+    /// Whether a boundary point is sure, because it lies on this wall and the wall is long.
+    pub(crate) fn confirms(&self, point: Point2<f64>) -> bool {
         let (along, across) = self.along.split();
-        let near = params.on_wall;
-        (self.from - near..=self.to + near).contains(&point[along])
-            && (point[across] - self.offset).abs() <= near
+        self.length() >= LONG_WALL
+            && (self.from - ON_WALL..=self.to + ON_WALL).contains(&point[along])
+            && (point[across] - self.offset).abs() <= ON_WALL
     }
 
     pub fn length(&self) -> f64 {
         self.to - self.from
     }
-}
-
-/// The boundary with the edges that lie on long walls sure, too: what is behind a wall may have the
-/// floor's colour.
-pub fn confirmed(
-    boundary: Boundary,
-    walls: &[WallSegment],
-    frame: &WallFrame,
-    params: &WallParams,
-) -> Boundary {
-    boundary.with_sure(|bearing, edge| {
-        let point = frame.walls_from_robot() * Point2::from(edge.range * direction(bearing));
-        walls.iter().any(|wall| wall.length() >= params.long_wall && wall.contains(point, params))
-    })
 }
 
 #[cfg(test)]
@@ -199,9 +192,9 @@ mod tests {
                 turned_line([[1.5, 0.8], [1.5, -0.8]]),
                 turned_line([[0.3, 0.4], [0.6, 0.7]]),
             ];
-            let found = WallFrame::of(&lines, &WallParams::default()).unwrap();
+            let found = WallFrame::of(&lines).unwrap();
             assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
-            let walls = found.walls(&lines, &WallParams::default());
+            let walls = found.walls(&lines);
             assert_eq!(walls.len(), 2, "the slanted line is not a wall");
             assert_eq!(walls[0].along, Axis::X);
             assert!((walls[0].offset - 0.8).abs() < 1e-9);
@@ -215,7 +208,7 @@ mod tests {
         let wall = line([-1.0, 0.8], [1.0, 0.8]);
         let strut = line([0.1, 0.4], [0.1, 0.7]);
         let across = line([1.2, 0.4], [1.2, 0.7]);
-        let walls = WallFrame::along(0.0).walls(&[wall, strut, across], &WallParams::default());
+        let walls = WallFrame::along(0.0).walls(&[wall, strut, across]);
         assert_eq!(walls.iter().map(|wall| wall.along).collect::<Vec<_>>(), [Axis::X, Axis::Y]);
         assert!((walls[1].offset - 1.2).abs() < 1e-9);
     }
@@ -223,6 +216,6 @@ mod tests {
     #[test]
     fn the_x_axis_of_a_frame_is_the_one_nearest_to_ahead() {
         assert!((WallFrame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
-        assert_eq!(WallFrame::of(&[], &WallParams::default()), None);
+        assert_eq!(WallFrame::of(&[]), None);
     }
 }

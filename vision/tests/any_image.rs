@@ -1,8 +1,6 @@
 //! For any image, sensing finds a scene, and the same one each time: buildings in pieces, lamps and posters
 //! anywhere, noise.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
 use std::sync::LazyLock;
 
 use image::{Rgb, RgbImage};
@@ -22,35 +20,28 @@ static SENSOR: LazyLock<Sensor> = LazyLock::new(|| {
 
 #[derive(Clone, Debug)]
 enum Patch {
-    Rectangle {
-        from: [u32; 2],
-        to: [u32; 2],
-    },
-    Beyond {
-        radius: f64,
-    },
-    Sector {
-        from: f64,
-        wide: f64,
-    },
+    /// From one corner to another.
+    Rectangle([u32; 2], [u32; 2]),
+    /// Beyond a radius.
+    Beyond(f64),
+    /// From a direction on, over an angle.
+    Sector(f64, f64),
     /// Single pixels at regular distances.
-    Specks {
-        step: usize,
-    },
+    Specks(usize),
 }
 
 impl Patch {
     fn covers(&self, nth: usize, [u, v]: [u32; 2]) -> bool {
         let (x, y) = (f64::from(u) - 80.0, f64::from(v) - 60.0);
         match *self {
-            Self::Rectangle { from, to } => {
-                (from[0]..to[0]).contains(&u) && (from[1]..to[1]).contains(&v)
+            Self::Rectangle([left, top], [right, bottom]) => {
+                (left..right).contains(&u) && (top..bottom).contains(&v)
             }
-            Self::Beyond { radius } => x.hypot(y) > radius,
-            Self::Sector { from, wide } => {
+            Self::Beyond(radius) => x.hypot(y) > radius,
+            Self::Sector(from, wide) => {
                 (y.atan2(x) - from).rem_euclid(std::f64::consts::TAU) < wide
             }
-            Self::Specks { step } => nth.is_multiple_of(step),
+            Self::Specks(step) => nth.is_multiple_of(step),
         }
     }
 }
@@ -62,10 +53,10 @@ fn any_colour() -> impl Strategy<Value = [u8; 3]> {
 fn any_patch() -> impl Strategy<Value = (Patch, [u8; 3])> {
     let corner = || [0..SIZE[0], 0..SIZE[1]];
     let patch = prop_oneof![
-        3 => (corner(), corner()).prop_map(|(from, to)| Patch::Rectangle { from, to }),
-        2 => (10.0..60.0_f64).prop_map(|radius| Patch::Beyond { radius }),
-        2 => (-3.2..3.2_f64, 0.0..2.0_f64).prop_map(|(from, wide)| Patch::Sector { from, wide }),
-        1 => (1..200_usize).prop_map(|step| Patch::Specks { step }),
+        3 => (corner(), corner()).prop_map(|(from, to)| Patch::Rectangle(from, to)),
+        2 => (10.0..60.0_f64).prop_map(Patch::Beyond),
+        2 => (-3.2..3.2_f64, 0.0..2.0_f64).prop_map(|(from, wide)| Patch::Sector(from, wide)),
+        1 => (1..200_usize).prop_map(Patch::Specks),
     ];
     (patch, any_colour())
 }

@@ -1,6 +1,5 @@
 //! The colour classifier on images of a few colours, in many kinds of light.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 #![allow(clippy::cast_sign_loss, reason = "levels are never negative")]
 
 use std::sync::{
@@ -15,13 +14,12 @@ use toposlam_model::enumerate::{Interrupted, Watch};
 use toposlam_vision::{
     camera::Camera,
     colour::{
-        ColourModel, Example, ExampleError, FloorRing, Gain, LightError, PixelClass, Stripe,
-        StripeKind, Training, TrainingError, TrainingView,
+        ColourModel, ExampleError, FloorRing, Gain, LightError, PixelClass, Stripe, StripeKind,
+        Training, TrainingError,
     },
 };
 
 static CAMERA: LazyLock<Camera> = LazyLock::new(Camera::superscout);
-static VIEW: LazyLock<TrainingView> = LazyLock::new(|| TrainingView::new(&CAMERA));
 /// The point of the floor that each pixel shows.
 static GROUND: LazyLock<Vec<Option<Point2<f64>>>> = LazyLock::new(|| {
     let [width, height] = CAMERA.image;
@@ -83,17 +81,19 @@ fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
 
 const LIGHTS: [[f64; 3]; 4] = [[1.0; 3], [0.6, 0.62, 0.7], [1.1, 1.05, 0.8], [0.8, 0.9, 0.5]];
 
-/// The model that is learned from images in all lights but one.
-fn trained_without(left_out: usize) -> Training {
+/// What is learned from images in some of the lights, in this order.
+fn trained(lights: &[usize]) -> Training {
     let mut training = Training::new(TAPE);
-    for (seed, &light) in LIGHTS.iter().enumerate().filter(|(nth, _)| *nth != left_out) {
-        let (image, labels) = taken(Taken { light, noise: 6.0, seed: seed as u64 });
-        training.push(Example::new(&VIEW, &image, &labels).unwrap());
+    for &light in lights {
+        let taken_in = Taken { light: LIGHTS[light], noise: 6.0, seed: light as u64 };
+        let (image, labels) = taken(taken_in);
+        training.add(&CAMERA, &image, &labels).unwrap();
     }
     training
 }
 
-static TRAINED: LazyLock<ColourModel> = LazyLock::new(|| trained_without(9).model().unwrap());
+static TRAINING: LazyLock<Training> = LazyLock::new(|| trained(&[0, 1, 2, 3]));
+static TRAINED: LazyLock<ColourModel> = LazyLock::new(|| TRAINING.model().unwrap());
 
 /// The share of each class that is recognised.
 fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
@@ -115,7 +115,8 @@ fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
 fn colours_are_recognised_in_new_light() {
     let ring = FloorRing::new(&CAMERA);
     for (left_out, &light) in LIGHTS.iter().enumerate() {
-        let model = trained_without(left_out).model().unwrap();
+        let others: Vec<usize> = (0..LIGHTS.len()).filter(|&nth| nth != left_out).collect();
+        let model = trained(&others).model().unwrap();
         let (image, _) = taken(Taken { light, noise: 6.0, seed: 77 });
         let gain = model.gain(&ring.colours(&image)).unwrap();
         let recalls = recalls(&model, &image, gain);
@@ -185,10 +186,8 @@ fn a_mixture_at_a_stripes_edge_is_the_stripe_unless_floor_has_its_colour() {
 
 #[test]
 fn cross_validation_counts_every_labelled_pixel_once() {
-    let training = trained_without(9);
-    let model = training.model().unwrap();
     for folds in [2, 3, 4] {
-        let confusion = training.cross_validate(folds, &()).unwrap();
+        let confusion = TRAINING.cross_validate(folds, &()).unwrap();
         let all: u64 = PixelClass::LEARNED.map(|class| confusion.of(class)).iter().sum();
         let shown = |ground: &&Option<Point2<f64>>| {
             ground.is_some_and(|at| (0.32..=3.0).contains(&at.coords.norm()))
@@ -199,8 +198,7 @@ fn cross_validation_counts_every_labelled_pixel_once() {
             assert!(confusion.precision(class).unwrap() > 0.98, "{class:?} {confusion:?}");
         }
     }
-    assert_eq!(training.images(), 4);
-    assert_eq!(model.stripe, TAPE);
+    assert_eq!((TRAINING.images(), TRAINED.stripe), (4, TAPE));
 }
 
 struct QuestionLimit {
@@ -217,15 +215,14 @@ impl Watch for QuestionLimit {
 /// The watch is asked before each part and before each image.
 #[test]
 fn cross_validation_ends_at_the_question_at_which_it_is_stopped() {
-    let training = trained_without(9);
     for at in 1..=2 + 4 {
         let watch = QuestionLimit { at, asked: AtomicU64::new(0) };
-        let stopped = training.cross_validate(2, &watch).unwrap_err();
+        let stopped = TRAINING.cross_validate(2, &watch).unwrap_err();
         assert_eq!(stopped, TrainingError::Interrupted(Interrupted));
         assert_eq!(watch.asked.into_inner(), at);
     }
     let watch = QuestionLimit { at: 7, asked: AtomicU64::new(0) };
-    training.cross_validate(2, &watch).unwrap();
+    TRAINING.cross_validate(2, &watch).unwrap();
 }
 
 #[test]
@@ -295,13 +292,7 @@ fn floor_and_stripe_are_needed_and_the_marker_is_not() {
 
 #[test]
 fn the_order_of_the_images_does_not_matter() {
-    let forwards = trained_without(9).model().unwrap();
-    let mut training = Training::new(TAPE);
-    for (seed, &light) in LIGHTS.iter().enumerate().rev() {
-        let (image, labels) = taken(Taken { light, noise: 6.0, seed: seed as u64 });
-        training.add(&CAMERA, &image, &labels).unwrap();
-    }
-    assert_eq!(training.model().unwrap(), forwards);
+    assert_eq!(&trained(&[3, 2, 1, 0]).model().unwrap(), &*TRAINED);
 }
 
 proptest! {

@@ -7,3 +7,14 @@ mod calibration;
 mod camera;
 mod colour;
 mod rim;
+
+use std::{fs, io, path::Path};
+
+/// A file in `tests/cameras`.
+fn file(name: &str) -> io::Result<Vec<u8>> {
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cameras").join(name))
+}
+
+fn text(name: &str) -> String {
+    String::from_utf8(file(name).unwrap()).unwrap()
+}

@@ -25,45 +25,32 @@ struct Stated {
     besides: usize,
 }
 
+const fn stated(
+    reader: &'static str,
+    read: fn(&[u8]) -> Option<String>,
+    [multiple, besides]: [usize; 2],
+) -> Stated {
+    Stated { reader, read, multiple, besides }
+}
+
 fn message<T, E: ToString>(read: Result<T, E>) -> Option<String> {
     black_box(read).err().map(|error| error.to_string())
 }
-
-const READERS: [Stated; 5] = [
-    Stated { reader: "calibration", read: read_calibration, multiple: 512, besides: 4096 },
-    Stated {
-        reader: "OCamCalib",
-        read: |bytes| message(OCam::read("f", bytes, 1.0)),
-        multiple: 32,
-        besides: 4096,
-    },
-    Stated {
-        reader: "MEI",
-        read: |bytes| message(Mei::read("f", bytes, 1.0)),
-        multiple: 512,
-        besides: 65_536,
-    },
-    COLOURS,
-    IMAGE_HEAD,
-];
 
 fn read_calibration(bytes: &[u8]) -> Option<String> {
     message(calibration::read(bytes, &mut |_| Err(std::io::ErrorKind::NotFound.into())))
 }
 
-const COLOURS: Stated = Stated {
-    reader: "colours",
-    read: |bytes| message(ColourModel::read(bytes)),
-    multiple: 512,
-    besides: 4096,
-};
-
-const IMAGE_HEAD: Stated = Stated {
-    reader: "image",
-    read: |bytes| message(ImageFile::open(bytes).map(|file| file.size())),
-    multiple: 16,
-    besides: 1 << 20,
-};
+const COLOURS: Stated = stated("colours", |bytes| message(ColourModel::read(bytes)), [512, 4096]);
+const IMAGE: Stated =
+    stated("image", |bytes| message(ImageFile::open(bytes).map(|it| it.size())), [16, 1 << 20]);
+const READERS: [Stated; 5] = [
+    stated("calibration", read_calibration, [512, 4096]),
+    stated("OCamCalib", |bytes| message(OCam::read("f", bytes, 1.0)), [32, 4096]),
+    stated("MEI", |bytes| message(Mei::read("f", bytes, 1.0)), [512, 65_536]),
+    COLOURS,
+    IMAGE,
+];
 
 fn peak(run: impl FnOnce()) -> usize {
     let before = MEMORY.current_usage();
@@ -138,13 +125,13 @@ fn colour_files_hold() {
 /// decoded.
 fn images_hold() {
     let (head, pixels) = (include_bytes!("../../fuzz/corpus/image/error-promises-much"), 16_384);
-    IMAGE_HEAD.holds(head);
+    IMAGE.holds(head);
     let taken = peak(|| {
         let file = ImageFile::open(head).unwrap();
         let refused = file.image().unwrap_err();
         assert_eq!(refused, ImageFileError::TooLarge { size: [pixels; 2] });
     });
-    assert!(taken <= IMAGE_HEAD.multiple * head.len() + IMAGE_HEAD.besides, "{taken}");
+    assert!(taken <= IMAGE.multiple * head.len() + IMAGE.besides, "{taken}");
     let size = [1280, 960];
     let picture =
         RgbImage::from_fn(size[0], size[1], |u, v| Rgb([u as u8, v as u8, (u + v) as u8]));
@@ -157,7 +144,7 @@ fn images_hold() {
     let mut deep_png = Cursor::new(Vec::new());
     deep.write_to(&mut deep_png, ImageFormat::Png).unwrap();
     for image in [encoded(ImageFormat::Png), encoded(ImageFormat::Jpeg), deep_png.into_inner()] {
-        IMAGE_HEAD.holds(&image);
+        IMAGE.holds(&image);
         let taken = peak(|| drop(black_box(ImageFile::open(&image).unwrap().image().unwrap())));
         let pixels = 1280 * 960;
         println!("{} bytes for each pixel", taken / pixels);

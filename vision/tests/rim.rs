@@ -1,7 +1,5 @@
 //! The mirror's rim in drawn images.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
 use image::{GrayImage, Luma};
 use toposlam_vision::camera::rim::{self, RimError};
 

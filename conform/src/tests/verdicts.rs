@@ -12,7 +12,7 @@ use toposlam_model::{
     marker::{Marker, NoMarker, Undirected},
     trace::{Trace, TraceEventKind},
 };
-use toposlam_vision::visits::ApproachParams;
+use toposlam_vision::visits::APPROACH_RANGE;
 
 use super::{
     oracle::{Position, is_explained_by_small, takes_doors, witness},
@@ -121,7 +121,7 @@ impl Options {
         let mut events = log.recorded();
         if self.inferred {
             events.events = log.inferred();
-            events.measurement_noise.standing = ApproachParams::DEFAULT.near;
+            events.measurement_noise.standing = APPROACH_RANGE;
         }
         for event in &mut events.events {
             match &mut event.kind {

@@ -24,7 +24,10 @@ pub enum ExplorerError {
     Robot(#[from] RobotError),
     /// The robot could not go on and still return to its marker within its budget. The moves are those of the way
     /// back, too.
-    #[error("{}", budget_in_words(*.moves, *.limit, *.is_at_marker))]
+    #[error(
+        "the robot turned back to keep within {limit}; after {moves} moves {}",
+        if *.is_at_marker { "it is back at its marker" } else { "it did not find back to its marker" }
+    )]
     Budget { moves: u64, limit: BudgetLimit, is_at_marker: bool },
     /// The user or an observer stopped the run.
     #[error("the run was ended on move {moves}")]
@@ -39,13 +42,4 @@ impl ExplorerError {
 
 fn by_door(door: Option<Door>) -> String {
     door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
-}
-
-fn budget_in_words(moves: u64, limit: BudgetLimit, is_at_marker: bool) -> String {
-    let place = if is_at_marker {
-        "it is back at its marker"
-    } else {
-        "it did not find back to its marker"
-    };
-    format!("the robot turned back to keep within {limit}; after {moves} moves {place}")
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use toposlam_logs::record::{EventKind, Frame, FrameSensor, RunObserver};
+use toposlam_logs::record::{Arrival, EventKind, Frame, FrameSensor, RunObserver};
 use toposlam_model::{
     driving::{
         algorithm2::{Command, PathState, Standing, UNIT},
@@ -111,7 +111,10 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
             let direction = left.unwrap_or_else(|| wrapped(heading + relative));
             match self.go_in_direction(direction) {
                 Ok(standing) => {
-                    self.arrive_from_nowhere(standing);
+                    // How many moves lead there is not known.
+                    self.hallway = None;
+                    let arrival = Arrival::new(self.last_move, &standing);
+                    self.stand(standing, Arrival { number: None, ..arrival });
                     return Ok(standing);
                 }
                 Err(ExplorerError::Lost { .. } | ExplorerError::NoImage { .. }) if !is_last => {}

@@ -45,7 +45,6 @@ pub enum LiveSensor {
     Laser,
 }
 
-/// The topics of a sensor.
 enum SensorTopics {
     Camera(Subscription<Stamped<Vec<u8>>>),
     Laser { scans: Subscription<Stamped<Scan>>, markers: Subscription<Stamped<MarkerView>> },

@@ -28,7 +28,6 @@ use crate::superscout::WheelSpeeds;
 /// Nanoseconds since the beginning of 1970, or since a robot was switched on.
 pub type Nanoseconds = u64;
 
-/// A second.
 pub const SECOND: Nanoseconds = 1_000_000_000;
 
 /// What is read of odometry.

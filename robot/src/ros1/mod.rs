@@ -32,7 +32,6 @@ pub struct RobotTopics {
 
 impl RobotTopics {
     /// The usual topics, as in a log, at a master.
-    #[must_use]
     pub fn usual(master: &str) -> Self {
         Self {
             master: master.to_owned(),

@@ -53,7 +53,6 @@ impl Node {
         Ok(Self { handle: Some(handle), runtime: Some(runtime), runner, master })
     }
 
-    /// Advertises a topic.
     pub fn advertise<M: Message>(&self, topic: &str) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let (name, text) = (type_name::<M>(), definition::<M>());

@@ -15,7 +15,6 @@ impl WheelSpeeds {
 
     /// The wheel speeds for a speed ahead, in metres a second, and a turn rate counter-clockwise, in
     /// radians a second, within the robot's limits.
-    #[must_use]
     pub fn of(speed: f64, turn_rate: f64) -> Self {
         let speed = speed.clamp(-SPEED, SPEED);
         let half = turn_rate.clamp(-TURN_RATE, TURN_RATE) * WHEEL_BASE / 2.0;

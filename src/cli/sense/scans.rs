@@ -157,7 +157,7 @@ impl SenseArguments {
         for (stage, picture) in &pictures::stages(view, map, scan) {
             let mut name = input::stem(path);
             name.push(format!("-{number}-{stage}.png"));
-            let legend = pictures::legend(stage, map.grid.cell);
+            let legend = pictures::legend(stage, map.clearances.grid.cell);
             picture_file::write_stage(&folder.join(name), &legend, picture)?;
         }
         Ok(())

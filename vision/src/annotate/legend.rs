@@ -2,12 +2,12 @@
 
 use image::Rgb;
 
-use super::{BLUE, BODY, CENTRE_LINE, CLUSTERS, CYAN, GREEN, ORANGE, RED, WHITE, shade};
+use super::{BLUE, BODY, CLUSTERS, CYAN, GREEN, ORANGE, RED, WHITE, shade};
 use crate::{colour::PixelClass, ground_view::GroundView};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageLegend {
-    pub entries: Vec<(LegendSign, String)>,
+    pub entries: Vec<(LegendSign, &'static str)>,
     /// The length of a metre, in pixels; `None` if the picture has no uniform scale.
     pub metre: Option<f64>,
 }
@@ -26,51 +26,49 @@ pub enum LegendSign {
 pub fn legend(stage: &str) -> StageLegend {
     use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
     let area = |class| Areas(vec![shade(class)]);
-    let entered = (Thick(GREEN), "centre line of the hallway in which the robot is".to_owned());
-    let others = "centre lines of the other hallways";
+    let entered = (Thick(GREEN), "centre line of the hallway in which the robot is");
     let entries = match stage {
         "1-classes" => vec![
-            (area(PixelClass::Floor), "floor".to_owned()),
-            (area(PixelClass::Stripe), "boundary stripe".to_owned()),
-            (area(PixelClass::Marker), "marker".to_owned()),
-            (area(PixelClass::Other), "something else".to_owned()),
-            (area(PixelClass::Unknown), "unknown colour".to_owned()),
-            (area(PixelClass::Unseen), "not seen".to_owned()),
+            (area(PixelClass::Floor), "floor"),
+            (area(PixelClass::Stripe), "boundary stripe"),
+            (area(PixelClass::Marker), "marker"),
+            (area(PixelClass::Other), "something else"),
+            (area(PixelClass::Unknown), "unknown colour"),
+            (area(PixelClass::Unseen), "not seen"),
         ],
         "2-boundary" => vec![
-            (Line(super::REACH), "floor, up to the farthest seen".to_owned()),
-            (Dot(WHITE), "end of the floor".to_owned()),
-            (Dot(ORANGE), "possible end of the floor".to_owned()),
+            (Line(super::REACH), "floor, up to the farthest seen"),
+            (Dot(WHITE), "end of the floor"),
+            (Dot(ORANGE), "possible end of the floor"),
         ],
-        "3-clusters" => vec![(
-            Areas(CLUSTERS[..3].to_vec()),
-            "boundary points, each cluster in its own colour".to_owned(),
-        )],
+        "3-clusters" => {
+            vec![(Areas(CLUSTERS[..3].to_vec()), "boundary points, each cluster in its own colour")]
+        }
         "4-lines" => vec![
-            (Line(CLUSTERS[0]), "straight piece, in its cluster's colour".to_owned()),
-            (Thick(CLUSTERS[0]), "wall".to_owned()),
-            (Dot(WHITE), "end of a wall".to_owned()),
+            (Line(CLUSTERS[0]), "straight piece, in its cluster's colour"),
+            (Thick(CLUSTERS[0]), "wall"),
+            (Dot(WHITE), "end of a wall"),
         ],
         "5-scene" => vec![
-            (Thick(super::WALL), "wall".to_owned()),
-            (Ring(CYAN), "corner that bends inwards".to_owned()),
-            (Ring(ORANGE), "corner that bends outwards".to_owned()),
+            (Thick(super::WALL), "wall"),
+            (Ring(CYAN), "corner that bends inwards"),
+            (Ring(ORANGE), "corner that bends outwards"),
             entered,
-            (Thick(RED), others.to_owned()),
-            (Dot(WHITE), "turning point".to_owned()),
-            (Areas(vec![BLUE]), "marker".to_owned()),
+            (Thick(RED), "centre lines of the other hallways"),
+            (Dot(WHITE), "turning point"),
+            (Areas(vec![BLUE]), "marker"),
         ],
         "6-image" => vec![
             entered,
-            (Thick(RED), format!("{others}, {CENTRE_LINE} m from the turning point")),
-            (Line(BLUE), "marker".to_owned()),
+            (Thick(RED), "centre lines of the other hallways, 1.6 m from the turning point"),
+            (Line(BLUE), "marker"),
         ],
         _ => Vec::new(),
     };
     let mut legend = StageLegend { entries, metre: None };
     if !legend.entries.is_empty() && stage != "6-image" {
         let robot = Robot { body: BODY, outline: WHITE };
-        legend.entries.push((robot, "robot, facing up".to_owned()));
+        legend.entries.push((robot, "robot, facing up"));
         legend.metre = Some(1.0 / GroundView::SCALE);
     }
     legend

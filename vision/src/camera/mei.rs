@@ -34,27 +34,26 @@ pub struct Mei {
     reach: f64,
 }
 
-/// The keys of OpenCV's omnidir and of camodocal.
-const KEYS: [&str; 18] = [
-    "image_width",
-    "image_height",
-    "model_type",
+/// The keys of the numbers of camodocal: xi, the distortion, and the variable numbers of the matrix.
+const CAMODOCAL: [&str; 9] = [
     "mirror_parameters.xi",
     "distortion_parameters.k1",
     "distortion_parameters.k2",
     "distortion_parameters.p1",
     "distortion_parameters.p2",
     "projection_parameters.gamma1",
-    "projection_parameters.gamma2",
     "projection_parameters.u0",
+    "projection_parameters.gamma2",
     "projection_parameters.v0",
-    "xi",
-    "xi.data",
-    "camera_matrix.data",
-    "K.data",
-    "distortion_coefficients.data",
-    "D.data",
 ];
+/// Those of OpenCV's omnidir, by either name.
+const OMNIDIR: [[&str; 2]; 3] = [
+    ["xi", "xi.data"],
+    ["camera_matrix.data", "K.data"],
+    ["distortion_coefficients.data", "D.data"],
+];
+/// The other keys.
+const SHARED: [&str; 3] = ["image_width", "image_height", "model_type"];
 
 impl Mei {
     /// Reads the YAML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`)
@@ -66,7 +65,8 @@ impl Mei {
     /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
-        let found = yaml::values(text, &KEYS)?;
+        let known = [&SHARED[..], &CAMODOCAL, OMNIDIR.as_flattened()].concat();
+        let found = yaml::values(text, &known)?;
         let side = |key| side_of_image(key, found.number(key)?);
         let image = match ["image_width", "image_height"].map(|key| found.has(key)) {
             [false, false] => None,
@@ -231,31 +231,23 @@ impl Mei {
 /// xi, the four numbers of the distortion, and the variable numbers of the matrix.
 type Numbers = (f64, [f64; 4], [f64; 5]);
 
-fn camodocal(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {
+fn camodocal(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
     if let Some(model) = found.text("model_type").filter(|&model| model != "MEI") {
         return Err(OpticsFileError::OtherModel(shown(model)));
     }
-    let xi = found.number("mirror_parameters.xi")?;
-    let distortion = [
-        found.number("distortion_parameters.k1")?,
-        found.number("distortion_parameters.k2")?,
-        found.number("distortion_parameters.p1")?,
-        found.number("distortion_parameters.p2")?,
-    ];
-    let matrix = [
-        found.number("projection_parameters.gamma1")?,
-        0.0,
-        found.number("projection_parameters.u0")?,
-        found.number("projection_parameters.gamma2")?,
-        found.number("projection_parameters.v0")?,
-    ];
-    Ok((xi, distortion, matrix))
+    let mut numbers = [0.0; 9];
+    for (number, key) in numbers.iter_mut().zip(CAMODOCAL) {
+        *number = found.number(key)?;
+    }
+    let [xi, k1, k2, p1, p2, gamma1, u0, gamma2, v0] = numbers;
+    Ok((xi, [k1, k2, p1, p2], [gamma1, 0.0, u0, gamma2, v0]))
 }
 
-fn omnidir(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {
-    let either = |one, other| if found.has(other) { other } else { one };
-    let matrix: [f64; 9] = found.numbers(either("camera_matrix.data", "K.data"))?;
-    let [xi] = found.numbers(either("xi", "xi.data"))?;
-    let distortion = found.numbers(either("distortion_coefficients.data", "D.data"))?;
+fn omnidir(found: &yaml::Values<'_>) -> Result<Numbers, OpticsFileError> {
+    let [xi, matrix, distortion] =
+        OMNIDIR.map(|[one, other]| if found.has(other) { other } else { one });
+    let matrix: [f64; 9] = found.numbers(matrix)?;
+    let [xi] = found.numbers(xi)?;
+    let distortion = found.numbers(distortion)?;
     Ok((xi, distortion, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
 }

@@ -11,7 +11,6 @@ mod mei;
 mod morphology;
 mod ocam;
 mod optics_file;
-pub mod params;
 pub mod rim;
 mod root;
 mod spherical;
@@ -120,7 +119,6 @@ impl Camera {
 
     /// The same camera with another size of image. Both images show the same, so their proportions
     /// should be the same.
-    #[must_use]
     pub fn sized(&self, image: [u32; 2]) -> Self {
         let factor = f64::from(image[0]) / f64::from(self.image[0]);
         let optics = match &self.optics {

@@ -15,7 +15,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::{
     ViewingRay,
-    optics_file::{OpticsFileError, shown, side_of_image, within},
+    optics_file::{OpticsFileError, finite, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place,
 };
@@ -172,11 +172,8 @@ impl<'a> Lines<'a> {
 
     fn next(&mut self, what: &'static str) -> Result<(usize, Vec<f64>), OpticsFileError> {
         let (line, text) = self.lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
-        let number = |word: &str| {
-            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| OpticsFileError::NotANumber { line, found: shown(word) })
-        };
-        Ok((line, text.split_whitespace().map(number).collect::<Result<_, _>>()?))
+        let numbers = text.split_whitespace().map(|word| finite(word, line));
+        Ok((line, numbers.collect::<Result<_, _>>()?))
     }
 
     /// The numbers of the next line, which must be `N`.

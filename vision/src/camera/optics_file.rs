@@ -58,6 +58,12 @@ pub(super) fn side_of_image(what: &'static str, side: f64) -> Result<u32, Optics
     }
 }
 
+/// The number that a word of a line is.
+pub(super) fn finite(word: &str, line: usize) -> Result<f64, OpticsFileError> {
+    let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| OpticsFileError::NotANumber { line, found: shown(word) })
+}
+
 pub(super) fn shown(word: &str) -> String {
     let beginning: String = word.chars().take(40).collect();
     let escaped = beginning.escape_debug().to_string();

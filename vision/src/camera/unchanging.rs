@@ -12,17 +12,38 @@ use thiserror::Error;
 use super::{
     Mask,
     morphology::{Colours, close, dilate, open, pieces, smooth},
-    params::UnchangingParams,
     rim::Rim,
 };
-use crate::geometry::angle;
+use crate::{geometry::angle, least_squares::median};
+
+/// The least number of images. Geometry: in fewer, edges of the building are in the same place by chance.
+const FEWEST: usize = 4;
+/// The longest side of an image; larger ones are reduced. Geometry: memory and time.
+const LONGEST: u32 = 640;
+/// The least part of the pixels of a piece that change in some image. Views.
+const LEAST_CHANGING: f64 = 0.04;
+/// Pieces with a smaller part of the mirror are ignored. Views.
+const SMALL: f64 = 0.01;
+/// The least part of the mirror that must be seen. Views.
+const LEAST_SEEN: f64 = 0.3;
+/// Added to the brightness, from 0 to 255, so that its logarithm is finite. Geometry.
+const BLACK: f32 = 8.0;
+/// The standard deviation of the smoothing. Geometry: the noise of one pixel.
+const SIGMA: f32 = 1.0;
+/// The least slope of an edge: of the logarithm of the brightness, for each pixel. Views.
+const STEEP: f32 = 0.05;
+/// The radii at which struts are searched for, as parts of the rim's. Geometry: the lens is nearer to the centre, the
+/// rim's own edge farther away.
+const STRUT_RADII: [f64; 2] = [0.25, 0.97];
+/// The most bearings, of 2048, that one strut hides. Geometry: 7 degrees.
+const WIDEST_STRUT: usize = 40;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum UnchangingError {
     #[error(
         "{0} images are too few to find what never changes; take at least {least}, from different \
          places",
-        least = UNCHANGING.fewest
+        least = FEWEST
     )]
     TooFew(usize),
     #[error(
@@ -32,8 +53,6 @@ pub enum UnchangingError {
     Still,
 }
 
-const UNCHANGING: UnchangingParams = UnchangingParams::DEFAULT;
-
 /// The mask of the pixels inside the rim that change: they can show floor or walls.
 ///
 /// The images must be of the same size. For each of them, and for each of at most 640 by 640 pixels, it
@@ -42,11 +61,11 @@ const UNCHANGING: UnchangingParams = UnchangingParams::DEFAULT;
 /// # Errors
 /// Returns an error if there are too few images, or if they are all the same.
 pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, UnchangingError> {
-    if images.len() < UNCHANGING.fewest {
+    if images.len() < FEWEST {
         return Err(UnchangingError::TooFew(images.len()));
     }
     let (width, height) = images[0].dimensions();
-    let factor = width.max(height).div_ceil(UNCHANGING.longest);
+    let factor = width.max(height).div_ceil(LONGEST);
     let disc = Disc {
         centre: rim.centre.map(|at| (at + 0.5) / f64::from(factor) - 0.5),
         radius: rim.radius / f64::from(factor),
@@ -92,14 +111,12 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     let all = std::f64::consts::PI * disc.radius * disc.radius;
     let alive = |piece: usize| {
         let size = f64::from(sizes[piece]);
-        piece > 0
-            && size > UNCHANGING.small * all
-            && f64::from(changing[piece]) > UNCHANGING.least_changing * size
+        piece > 0 && size > SMALL * all && f64::from(changing[piece]) > LEAST_CHANGING * size
     };
     let seen = binary(width, height, |u, v| alive(pieces.get_pixel(u, v)[0] as usize));
     let seen = open(&close(&seen, 1), 2);
     let count = seen.pixels().filter(|pixel| pixel[0] > 0).count() as f64;
-    if count < UNCHANGING.least_seen * all { Err(UnchangingError::Still) } else { Ok(seen) }
+    if count < LEAST_SEEN * all { Err(UnchangingError::Still) } else { Ok(seen) }
 }
 
 fn binary(width: u32, height: u32, is: impl Fn(u32, u32) -> bool) -> GrayImage {
@@ -120,12 +137,12 @@ impl Slopes {
         let image = shrunk(image, factor);
         let (width, height) = image.dimensions();
         // The noise of a slope after smoothing, from the noise before it; there are six slopes.
-        let share = 6.0_f32.sqrt() * noise(&image)
-            / (UNCHANGING.sigma * UNCHANGING.sigma * (8.0 * std::f32::consts::PI).sqrt());
+        let share =
+            6.0_f32.sqrt() * noise(&image) / (SIGMA * SIGMA * (8.0 * std::f32::consts::PI).sqrt());
         let logarithms = ImageBuffer::from_fn(width, height, |u, v| {
-            Rgb(image.get_pixel(u, v).0.map(|channel| (channel + UNCHANGING.black).ln()))
+            Rgb(image.get_pixel(u, v).0.map(|channel| (channel + BLACK).ln()))
         });
-        let smooth = smooth(&logarithms, UNCHANGING.sigma);
+        let smooth = smooth(&logarithms, SIGMA);
         let at = |u: u32, v: u32| smooth.get_pixel(u.min(width - 1), v.min(height - 1)).0;
         let rise = |(u, v): (u32, u32)| {
             let (right, left) = (at(u + 1, v), at(u.max(1) - 1, v));
@@ -145,7 +162,7 @@ impl Slopes {
     fn across(&self, bearing: usize, disc: &Disc) -> [f32; 3] {
         let angle = std::f64::consts::TAU * (bearing as f64 + 0.5) / Struts::BEARINGS as f64;
         let (sine, cosine) = angle.sin_cos();
-        let [first, last] = UNCHANGING.strut_radii.map(|share| (share * disc.radius) as u32);
+        let [first, last] = STRUT_RADII.map(|share| (share * disc.radius) as u32);
         let (mut sum, mut count) = ([0.0; 3], 0.0_f32);
         for radius in first..last {
             let out = [cosine, sine].map(|along| f64::from(radius) * along);
@@ -184,20 +201,14 @@ fn shrunk(image: &RgbImage, factor: u32) -> Colours {
 fn noise(image: &Colours) -> f32 {
     let (width, height) = image.dimensions();
     let at = |u: u32, v: u32| image.get_pixel(u, v)[1];
-    let mut sizes: Vec<f32> = (1..height.max(2) - 1)
-        .flat_map(|v| (1..width.max(2) - 1).map(move |u| (u, v)))
-        .map(|(u, v)| {
-            (4.0 * at(u, v) - at(u - 1, v) - at(u + 1, v) - at(u, v - 1) - at(u, v + 1)).abs()
-        })
-        .collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return 1.0;
-    }
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
+    let inner = (1..height.max(2) - 1).flat_map(|v| (1..width.max(2) - 1).map(move |u| (u, v)));
+    let sizes = inner.map(|(u, v)| {
+        (4.0 * at(u, v) - at(u - 1, v) - at(u + 1, v) - at(u, v - 1) - at(u, v + 1)).abs()
+    });
+    let Some(median) = median(sizes.map(f64::from)) else { return 1.0 };
     // The difference between four times a pixel and its four neighbours has sqrt(20) times the noise.
     // Rounding is noise, too.
-    (*median * 1.4826 / 20.0_f32.sqrt()).max(0.3)
+    (median as f32 * 1.4826 / 20.0_f32.sqrt()).max(0.3)
 }
 
 struct Struts {
@@ -214,9 +225,8 @@ impl Struts {
             let of_images: Vec<[f32; 3]> =
                 slopes.iter().map(|slopes| slopes.across(bearing, disc)).collect();
             for (channel, rises) in rises.iter_mut().enumerate() {
-                let mut rise: Vec<f32> = of_images.iter().map(|image| image[channel]).collect();
-                rise.sort_by(f32::total_cmp);
-                rises.push(rise[rise.len() / 2]);
+                let rise = median(of_images.iter().map(|image| image[channel].into()));
+                rises.push(rise.unwrap_or_default() as f32);
             }
         }
         let mut struts = Self { hidden: vec![false; Self::BEARINGS] };
@@ -228,12 +238,11 @@ impl Struts {
 
     /// The struts in one channel, from its slopes from bearing to bearing.
     fn add(&mut self, rises: &[f32]) {
-        let mut sizes: Vec<f32> = rises.iter().map(|rise| rise.abs()).collect();
-        sizes.sort_by(f32::total_cmp);
-        let steep = (8.0 * sizes[sizes.len() / 2]).max(0.004);
+        let size = median(rises.iter().map(|rise| rise.abs().into())).unwrap_or_default();
+        let steep = (8.0 * size as f32).max(0.004);
         // It gets darker and then as bright again, or the other way round.
         for (from, &rise) in rises.iter().enumerate().filter(|(_, rise)| rise.abs() > steep) {
-            let back = (1..=UNCHANGING.widest_strut)
+            let back = (1..=WIDEST_STRUT)
                 .rev()
                 .find(|step| -rise.signum() * rises[(from + step) % Self::BEARINGS] > steep);
             // With a margin on both sides.
@@ -279,12 +288,12 @@ impl Changes {
             // One image in five may differ.
             along.sort_by(f32::total_cmp);
             let low = along[slopes.len() / 5];
-            if steep > UNCHANGING.steep.max(4.0 * noise * share.sqrt()) && low > 0.4 * steep {
+            if steep > STEEP.max(4.0 * noise * share.sqrt()) && low > 0.4 * steep {
                 stays.0 = [255];
             }
             let moving = |slopes: &Slopes| {
                 let off = size(std::array::from_fn(|part| slopes.rises[at][part] - mean[part]));
-                off > (1.5 * UNCHANGING.steep).max(5.0 * slopes.noise[at]) && off > steep
+                off > (1.5 * STEEP).max(5.0 * slopes.noise[at]) && off > steep
             };
             if slopes.iter().any(moving) {
                 moves.0 = [255];

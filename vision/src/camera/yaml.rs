@@ -1,18 +1,16 @@
 //! Values of a YAML file, as far as calibrations need them.
 
+use std::collections::BTreeMap;
+
 use saphyr_parser::{Event, Parser};
 
-use super::optics_file::{OpticsFileError, shown};
+use super::optics_file::{OpticsFileError, finite, shown};
 
-/// Values by their keys; nested keys are joined by points.
-pub(super) struct Values {
-    found: Vec<Value>,
-}
-
-struct Value {
-    key: &'static str,
-    line: usize,
-    words: Vec<String>,
+/// The words of known keys, each with the line of the key; nested keys are joined by points.
+pub(super) struct Values<'k> {
+    known: &'k [&'static str],
+    found: BTreeMap<&'static str, (usize, Vec<String>)>,
+    path: Vec<Inside>,
 }
 
 /// What the parser is in: a mapping, under the key that was read last, or a list.
@@ -24,11 +22,14 @@ enum Inside {
 const DEPTH: usize = 2;
 
 /// Reads the values of known keys, each a word or a list of words. Aliases and tags are ignored.
-pub(super) fn values(text: &str, known: &[&'static str]) -> Result<Values, OpticsFileError> {
+pub(super) fn values<'k>(
+    text: &str,
+    known: &'k [&'static str],
+) -> Result<Values<'k>, OpticsFileError> {
     // OpenCV's files begin with a directive that is not YAML; in older ones no `---` follows.
     let first = text.lines().next().unwrap_or_default();
     let rest = if first.starts_with("%YAML:") { &text[first.len()..] } else { text };
-    let mut reading = Reading { path: Vec::new(), found: Vec::new(), known };
+    let mut values = Values { known, found: BTreeMap::new(), path: Vec::new() };
     for event in Parser::new_from_str(rest) {
         let (event, span) = event.map_err(|error| OpticsFileError::Syntax {
             line: error.marker().line(),
@@ -36,51 +37,37 @@ pub(super) fn values(text: &str, known: &[&'static str]) -> Result<Values, Optic
         })?;
         let line = span.start.line();
         match event {
-            Event::Scalar(word, ..) => reading.word(&word, line)?,
-            Event::MappingStart(..) => reading.begin(Inside::Mapping(None), line)?,
-            Event::SequenceStart(..) => reading.begin(Inside::List, line)?,
-            Event::MappingEnd | Event::SequenceEnd => reading.end(),
+            Event::Scalar(word, ..) => values.word(&word, line)?,
+            Event::MappingStart(..) => values.begin(Inside::Mapping(None), line)?,
+            Event::SequenceStart(..) => values.begin(Inside::List, line)?,
+            Event::MappingEnd | Event::SequenceEnd => values.end(),
             Event::Alias(_) => {
-                reading.begin(Inside::List, line)?;
-                reading.end();
+                values.begin(Inside::List, line)?;
+                values.end();
             }
             // Only the first document.
             Event::DocumentEnd => break,
             _ => {}
         }
     }
-    Ok(Values { found: reading.found })
+    Ok(values)
 }
 
-struct Reading<'a> {
-    path: Vec<Inside>,
-    found: Vec<Value>,
-    known: &'a [&'static str],
-}
-
-impl Reading<'_> {
+impl Values<'_> {
     fn word(&mut self, word: &str, line: usize) -> Result<(), OpticsFileError> {
         if let Some(Inside::Mapping(key @ None)) = self.path.last_mut() {
             *key = Some(word.to_owned());
             return match self.known_key() {
-                Some(key) if self.found.iter().any(|value| value.key == key) => {
+                Some(key) if self.found.insert(key, (line, Vec::new())).is_some() => {
                     Err(OpticsFileError::Twice { line, key: key.to_owned() })
                 }
-                Some(key) => {
-                    self.found.push(Value { key, line, words: Vec::new() });
-                    Ok(())
-                }
-                None => Ok(()),
+                _ => Ok(()),
             };
         }
-        if let Some(key) = self.known_key() {
-            for value in self.found.iter_mut().filter(|value| value.key == key) {
-                value.words.push(word.to_owned());
-            }
+        if let Some((_, words)) = self.known_key().and_then(|key| self.found.get_mut(key)) {
+            words.push(word.to_owned());
         }
-        if let Some(Inside::Mapping(key)) = self.path.last_mut() {
-            *key = None;
-        }
+        self.end_value();
         Ok(())
     }
 
@@ -95,6 +82,11 @@ impl Reading<'_> {
 
     fn end(&mut self) {
         self.path.pop();
+        self.end_value();
+    }
+
+    /// In a mapping, a key follows.
+    fn end_value(&mut self) {
         if let Some(Inside::Mapping(key)) = self.path.last_mut() {
             *key = None;
         }
@@ -117,20 +109,14 @@ impl Reading<'_> {
         let path = keys?.join(".");
         self.known.iter().find(|known| **known == path).copied()
     }
-}
-
-impl Values {
-    fn get(&self, key: &str) -> Option<&Value> {
-        self.found.iter().find(|value| value.key == key)
-    }
 
     pub(super) fn has(&self, key: &str) -> bool {
-        self.get(key).is_some()
+        self.found.contains_key(key)
     }
 
     /// The word of a key, if there is one.
     pub(super) fn text(&self, key: &str) -> Option<&str> {
-        self.get(key)?.words.first().map(String::as_str)
+        self.found.get(key)?.1.first().map(String::as_str)
     }
 
     /// The numbers of a key, which must be `N`.
@@ -138,16 +124,13 @@ impl Values {
         &self,
         key: &'static str,
     ) -> Result<[f64; N], OpticsFileError> {
-        let value = self.get(key).ok_or(OpticsFileError::MissingKey(key))?;
-        if value.words.len() != N {
-            return Err(OpticsFileError::Count { key, found: value.words.len(), expected: N });
+        let (line, words) = self.found.get(key).ok_or(OpticsFileError::MissingKey(key))?;
+        if words.len() != N {
+            return Err(OpticsFileError::Count { key, found: words.len(), expected: N });
         }
         let mut numbers = [0.0; N];
-        for (number, word) in numbers.iter_mut().zip(&value.words) {
-            *number =
-                word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                    OpticsFileError::NotANumber { line: value.line, found: shown(word) }
-                })?;
+        for (number, word) in numbers.iter_mut().zip(words) {
+            *number = finite(word, *line)?;
         }
         Ok(numbers)
     }

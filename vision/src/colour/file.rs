@@ -7,9 +7,7 @@ use toposlam_model::format::document::{
     Document, DocumentError, DocumentErrorKind, DocumentTable, DocumentValue, TextPosition,
 };
 
-use super::{
-    ColourModel, PixelClass, Priors, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram,
-};
+use super::{ColourModel, PixelClass, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram};
 
 const VERSION: i64 = 1;
 const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
@@ -59,7 +57,8 @@ impl StripeKind {
 
 impl ColourModel {
     pub fn to_toml(&self) -> String {
-        let Self { stripe, floor: [red, green, blue], priors, smoothing, .. } = self;
+        let Self { stripe, floor: [red, green, blue], smoothing, .. } = self;
+        let [floor, stripe_prior, marker, other] = self.priors;
         let mut text = format!(
             "\
 # The colours of a building, learned by `toposlam camera train`.
@@ -73,10 +72,10 @@ width = {:?} # metres
 colour = [{red:?}, {green:?}, {blue:?}] # red, green and blue to which each image's floor is brought
 
 [priors] # how likely each class is before its colour is seen; only their ratios matter
-floor = {:?}
-stripe = {:?}
-marker = {:?}
-other = {:?}
+floor = {floor:?}
+stripe = {stripe_prior:?}
+marker = {marker:?}
+other = {other:?}
 
 [smoothing]
 colour = {:?} # by how much the same colour differs in the same light, in steps of chroma
@@ -90,10 +89,6 @@ unknown_below = {:?} # a colour is unknown if each class has a smaller share of 
 ",
             stripe.kind.place(),
             stripe.width,
-            priors.floor,
-            priors.stripe,
-            priors.marker,
-            priors.other,
             smoothing.colour,
             smoothing.light,
             self.unknown_below,
@@ -129,13 +124,10 @@ unknown_below = {:?} # a colour is unknown if each class has a smaller share of 
         let stripe = read_stripe(file.need("stripe")?)?;
         let floor = read_colour(file.need("floor")?.table(&["colour"])?.need("colour")?)?;
         let table = file.need("priors")?.table(&CLASSES)?;
-        let prior = |class| table.need(class)?.number_in("a prior", 1e-6..=1.0);
-        let priors = Priors {
-            floor: prior("floor")?,
-            stripe: prior("stripe")?,
-            marker: prior("marker")?,
-            other: prior("other")?,
-        };
+        let mut priors = [0.0; 4];
+        for (prior, class) in priors.iter_mut().zip(CLASSES) {
+            *prior = table.need(class)?.number_in("a prior", 1e-6..=1.0)?;
+        }
         let table = file.need("smoothing")?.table(&["colour", "light", "unknown_below"])?;
         let smoothing = Smoothing {
             colour: table.need("colour")?.number_in("the difference of colour", 0.1..=4.0)?,
@@ -143,12 +135,10 @@ unknown_below = {:?} # a colour is unknown if each class has a smaller share of 
         };
         let unknown_below = table.need("unknown_below")?.number_in("the share", 0.0..=0.1)?;
         let table = file.need("histograms")?.table(&CLASSES)?;
-        let histograms = [
-            read_histogram(&table, "floor")?,
-            read_histogram(&table, "stripe")?,
-            read_histogram(&table, "marker")?,
-            read_histogram(&table, "other")?,
-        ];
+        let mut histograms: [Histogram; 4] = Default::default();
+        for (histogram, class) in histograms.iter_mut().zip(CLASSES) {
+            *histogram = read_histogram(&table, class)?;
+        }
         for (class, histogram) in ["floor", "stripe"].into_iter().zip(&histograms) {
             if histogram.is_empty() {
                 return Err(ColourFileErrorKind::NoColour.at(table.need(class)?));

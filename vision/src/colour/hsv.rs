@@ -155,6 +155,11 @@ mod tests {
         })
     }
 
+    /// The bins whose hexagons touch one, and itself.
+    fn beside(lattice: &Lattice, bin: usize) -> HashSet<usize> {
+        Lattice::offsets(1).filter_map(|(offset, _)| lattice.beside(bin, offset)).collect()
+    }
+
     #[test]
     fn every_bin_has_its_own_index_in_order() {
         let places: Vec<_> = all().map(Bin::index).collect();
@@ -191,11 +196,7 @@ mod tests {
         assert_eq!([purple.hue, orange.hue], [239, 1]);
         let red = Bin { hue: 0, ..purple };
         let lattice = Lattice::new();
-        let beside = |bin: Bin| -> HashSet<_> {
-            Lattice::offsets(1)
-                .filter_map(|(offset, _)| lattice.beside(bin.in_plane(), offset))
-                .collect()
-        };
+        let beside = |bin: Bin| beside(&lattice, bin.in_plane());
         assert!(beside(red).contains(&purple.in_plane()));
         assert!(beside(red).contains(&orange.in_plane()));
         assert!(beside(purple).contains(&red.in_plane()));
@@ -207,8 +208,7 @@ mod tests {
         assert_eq!(Lattice::offsets(2).count(), 19);
         let lattice = Lattice::new();
         for bin in 0..PLANE {
-            let beside = Lattice::offsets(1).filter_map(|(offset, _)| lattice.beside(bin, offset));
-            let beside: HashSet<_> = beside.collect();
+            let beside = beside(&lattice, bin);
             assert!(beside.contains(&bin));
             // The outermost ring has nothing beyond it.
             let inside = bin < ring_start(CHROMAS - 1);
@@ -228,9 +228,7 @@ mod tests {
                 let [bin, other] = [colour, other].map(|colour| {
                     Bin::of(colour.map(|level: i32| f64::from(level) + 1.5)).in_plane()
                 });
-                let near = Lattice::offsets(1)
-                    .any(|(offset, _)| lattice.beside(bin, offset) == Some(other));
-                assert!(near, "{colour:?}, {channel}");
+                assert!(beside(&lattice, bin).contains(&other), "{colour:?}, {channel}");
             }
         }
     }

@@ -4,8 +4,26 @@ use image::RgbImage;
 use nalgebra::Point2;
 use thiserror::Error;
 
-use super::{Gain, params::LightParams};
+use super::Gain;
 use crate::{camera::Camera, geometry::unit};
+
+/// The inner and the outer radius of the ring of samples, in metres. Geometry: the body hides what is nearer; farther
+/// away there may be walls.
+const RING: [f64; 2] = [0.34, 0.50];
+/// The number of bearings with samples. Geometry: every 1.5 degrees.
+const BEARINGS: u32 = 240;
+/// The number of samples on each bearing. Geometry: every 1.5 cm.
+const RANGES: u32 = 12;
+/// From this level on, a channel may be saturated. Geometry: a JPEG image blurs the greatest level.
+const BURNT: u8 = 250;
+/// Below this level of the brightest channel, single levels are too coarse to be multiplied. Geometry.
+const DARK: f64 = 16.0;
+/// Levels below this are noise. Views.
+const NOISE: f64 = 4.0;
+/// Samples of the floor differ from its colour by at most this factor. Views.
+const SPREAD: f64 = 1.35;
+/// At least this part of the samples is floor. Views.
+const AGREEING: f64 = 0.3;
 
 /// A ring of samples beside the robot's body, evenly spread in bearing and range. There is floor
 /// wherever the robot is.
@@ -16,15 +34,12 @@ pub struct FloorRing {
     pixels: Vec<usize>,
 }
 
-const LIGHT: LightParams = LightParams::DEFAULT;
-
 impl FloorRing {
     pub fn new(camera: &Camera) -> Self {
-        let samples = (0..LIGHT.ranges).flat_map(|nth| {
-            let range = LIGHT.ring[0]
-                + (LIGHT.ring[1] - LIGHT.ring[0]) * f64::from(nth) / f64::from(LIGHT.ranges - 1);
-            (0..LIGHT.bearings).map(move |nth| {
-                let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(LIGHT.bearings);
+        let samples = (0..RANGES).flat_map(|nth| {
+            let range = RING[0] + (RING[1] - RING[0]) * f64::from(nth) / f64::from(RANGES - 1);
+            (0..BEARINGS).map(move |nth| {
+                let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(BEARINGS);
                 Point2::from(range * unit(bearing))
             })
         });
@@ -64,11 +79,8 @@ pub enum LightError {
 /// they are less than half of the samples; then they are left out and do not move the mean. If the light
 /// changes around the robot, the mean is in the middle; a mode would be at one end.
 pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
-    let lit: Vec<_> = ring
-        .iter()
-        .copied()
-        .filter(|colour| colour.iter().all(|&level| level < LIGHT.burnt))
-        .collect();
+    let lit: Vec<_> =
+        ring.iter().copied().filter(|colour| colour.iter().all(|&level| level < BURNT)).collect();
     if ring.is_empty() {
         return Err(LightError::Unseen);
     }
@@ -78,22 +90,17 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
     let mut floor = median(&lit);
     let mut share = 1.0;
     for _ in 0..4 {
-        let near = lit.iter().filter(|colour| is_near(floor, **colour));
-        let (mut count, mut sum) = (0_u32, [0_u32; 3]);
-        for colour in near {
-            count += 1;
-            for (sum, &level) in sum.iter_mut().zip(colour) {
-                *sum += u32::from(level);
-            }
+        let near: Vec<_> = lit.iter().filter(|colour| is_near(floor, **colour)).collect();
+        let count = near.len() as f64;
+        if count > 0.0 {
+            let level = |channel: usize| near.iter().map(move |colour| f64::from(colour[channel]));
+            floor = std::array::from_fn(|channel| level(channel).sum::<f64>() / count);
         }
-        if count > 0 {
-            floor = sum.map(|sum| f64::from(sum) / f64::from(count));
-        }
-        share = f64::from(count) / ring.len() as f64;
+        share = count / ring.len() as f64;
     }
-    if floor.into_iter().fold(0.0, f64::max) < LIGHT.dark {
+    if floor.into_iter().fold(0.0, f64::max) < DARK {
         Err(LightError::TooDark)
-    } else if share < LIGHT.agreeing {
+    } else if share < AGREEING {
         Err(LightError::Mixed)
     } else {
         Ok(floor)
@@ -102,8 +109,8 @@ pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
 
 fn is_near(floor: [f64; 3], colour: [u8; 3]) -> bool {
     floor.into_iter().zip(colour).all(|(floor, level)| {
-        let (floor, level) = (floor.max(LIGHT.noise), f64::from(level).max(LIGHT.noise));
-        level <= floor * LIGHT.spread + LIGHT.noise && level >= floor / LIGHT.spread - LIGHT.noise
+        let (floor, level) = (floor.max(NOISE), f64::from(level).max(NOISE));
+        level <= floor * SPREAD + NOISE && level >= floor / SPREAD - NOISE
     })
 }
 
@@ -124,7 +131,7 @@ fn median(colours: &[[u8; 3]]) -> [f64; 3] {
 
 /// The gain that changes the floor of an image from one colour to another.
 pub(super) fn gain(from: [f64; 3], to: [f64; 3]) -> Gain {
-    Gain::between(from.map(|level| level.max(LIGHT.noise)), to.map(|level| level.max(LIGHT.noise)))
+    Gain::between(from.map(|level| level.max(NOISE)), to.map(|level| level.max(NOISE)))
 }
 
 #[cfg(test)]

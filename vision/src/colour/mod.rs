@@ -11,16 +11,15 @@ mod file;
 mod hsv;
 mod light;
 mod model;
-pub mod params;
 mod table;
 mod training;
 
 pub use confusion::Confusion;
 pub use file::{ColourFileError, ColourFileErrorKind};
 pub use light::{FloorRing, LightError};
-pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
+pub use model::{ColourModel, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
-pub use training::{ClassPixels, Example, ExampleError, Training, TrainingError, TrainingView};
+pub use training::{ClassPixels, ExampleError, Training, TrainingError};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]

@@ -27,26 +27,10 @@ pub enum StripeKind {
     OnWall,
 }
 
-/// The prior probability of each class. Only the ratios matter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Priors {
-    pub floor: f64,
-    pub stripe: f64,
-    pub marker: f64,
-    pub other: f64,
-}
-
-impl Priors {
-    /// Equal priors. The stripe is a few hundredths of an image, the marker less, so priors equal to
-    /// these shares would classify as floor what could be either. But a missed stripe opens a wall,
-    /// while a speck of floor that is taken for stripe does not matter.
-    pub const EQUAL: Self = Self { floor: 0.25, stripe: 0.25, marker: 0.25, other: 0.25 };
-
-    /// Those of [`PixelClass::LEARNED`].
-    pub(super) fn of_learned(self) -> [f64; 4] {
-        [self.floor, self.stripe, self.marker, self.other]
-    }
-}
+/// Equal priors. The stripe is a few hundredths of an image, the marker less, so priors equal to these shares would
+/// classify as floor what could be either. But a missed stripe opens a wall, while a speck of floor that is taken for
+/// stripe does not matter.
+pub(super) const EQUAL_PRIORS: [f64; 4] = [0.25; 4];
 
 /// How far the learned colours stand for similar ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +49,8 @@ pub struct ColourModel {
     pub stripe: Stripe,
     /// The floor's colour in the light of the model: red, green and blue from 0 to 255.
     pub floor: [f64; 3],
-    pub priors: Priors,
+    /// How likely each of [`PixelClass::LEARNED`] is before its colour is seen. Only the ratios matter.
+    pub priors: [f64; 4],
     pub smoothing: Smoothing,
     /// A colour is unknown if each class has a smaller share of it.
     pub unknown_below: f64,
@@ -93,7 +78,7 @@ impl ColourModel {
         let mut best = vec![(0.0, PixelClass::Unknown); BINS];
         let smoothed = self.smoothing.of(&self.histograms);
         for ((class, densities), prior) in
-            PixelClass::LEARNED.into_iter().zip(smoothed).zip(self.priors.of_learned())
+            PixelClass::LEARNED.into_iter().zip(smoothed).zip(self.priors)
         {
             for (best, density) in best.iter_mut().zip(densities) {
                 let likelihood = prior * density;

@@ -5,30 +5,40 @@ use thiserror::Error;
 use toposlam_model::enumerate::{Interrupted, Watch};
 
 use super::{
-    ColourModel, Confusion, FloorRing, PixelClass, Priors, Smoothing, Stripe,
+    ColourModel, Confusion, FloorRing, PixelClass, Smoothing, Stripe,
     hsv::{BINS, Bin},
     light::{self, LightError},
-    model::Histogram,
-    params::TrainingParams,
+    model::{EQUAL_PRIORS, Histogram},
     table::{self, CELLS},
 };
-use crate::camera::Camera;
+use crate::{camera::Camera, least_squares::median};
 
-const TRAINING: TrainingParams = TrainingParams::DEFAULT;
+/// The radius of the floor that is learned from, in metres from the robot's centre. Geometry: the reach of the ground
+/// view.
+const RANGE: f64 = 3.0;
+/// The spread of one colour in the same light ([`Smoothing::colour`](super::Smoothing)). Views.
+const COLOUR_SMOOTHING: f64 = 0.7;
+/// The relative spread of the light from place to place ([`Smoothing::light`](super::Smoothing)). Views.
+const LIGHT_SMOOTHING: f64 = 0.08;
+/// A class does not have a colour if its part of the pixels is less. Views.
+const UNKNOWN_BELOW: f64 = 1e-6;
+/// The number of mixed pixels that count as one pure pixel. Views: a floor in the shade has the colour of a mixture of
+/// lit floor and dark stripe, and is floor. If no pure pixel has the colour, it is a mixture.
+const MIXED: u64 = 256;
 
 #[derive(Clone, Debug)]
-pub struct TrainingView {
+struct TrainingView {
     camera: Camera,
     ground: Vec<usize>,
     ring: FloorRing,
 }
 
 impl TrainingView {
-    pub fn new(camera: &Camera) -> Self {
+    fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
         let shows_floor = |pixel: [u32; 2]| {
             let ground = camera.pixel_to_ground(pixel.map(f64::from));
-            ground.is_some_and(|at| at.coords.norm() <= TRAINING.range) && camera.sees(pixel)
+            ground.is_some_and(|at| at.coords.norm() <= RANGE) && camera.sees(pixel)
         };
         let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
         let ground = pixels
@@ -68,7 +78,7 @@ fn allowed() -> String {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Example {
+struct Example {
     floor: [f64; 3],
     colours: Vec<Alike>,
 }
@@ -91,16 +101,7 @@ impl Alike {
 }
 
 impl Example {
-    /// An image with its labels.
-    ///
-    /// # Errors
-    /// Returns an error if image or labels have another size, if a label has an unknown colour, or if the
-    /// light is not known.
-    pub fn new(
-        view: &TrainingView,
-        image: &RgbImage,
-        labels: &RgbImage,
-    ) -> Result<Self, ExampleError> {
+    fn new(view: &TrainingView, image: &RgbImage, labels: &RgbImage) -> Result<Self, ExampleError> {
         let expected = view.camera.image;
         let [found, labelled] = [image, labels].map(|image| <[u32; 2]>::from(image.dimensions()));
         if found != expected {
@@ -148,7 +149,7 @@ fn is_mixed(labels: &[[u8; 3]], width: usize, pixel: usize) -> bool {
 pub enum TrainingError {
     #[error("there is no image to learn from")]
     NoImage,
-    #[error("no pixel within {} m is labelled as {}", TRAINING.range, class.name())]
+    #[error("no pixel within {} m is labelled as {}", RANGE, class.name())]
     NoPixel { class: PixelClass },
     #[error(
         "{images} images cannot be divided into {folds} parts; the number of parts must be from 2 to {images}"
@@ -182,7 +183,8 @@ impl Training {
     /// Adds an image of this camera with its labels.
     ///
     /// # Errors
-    /// Returns an error if they cannot be used; then they are left out.
+    /// Returns an error if image or labels have another size, if a label has an unknown colour, or if the light is not
+    /// known; then they are left out.
     pub fn add(
         &mut self,
         camera: &Camera,
@@ -195,12 +197,8 @@ impl Training {
         };
         let example = Example::new(&view, image, labels);
         self.view = Some(view);
-        self.push(example?);
+        self.examples.push(example?);
         Ok(())
-    }
-
-    pub fn push(&mut self, example: Example) {
-        self.examples.push(example);
     }
 
     pub fn images(&self) -> usize {
@@ -275,12 +273,9 @@ impl Training {
         Ok(ColourModel {
             stripe: self.stripe,
             floor,
-            priors: Priors::EQUAL,
-            smoothing: Smoothing {
-                colour: TRAINING.colour_smoothing,
-                light: TRAINING.light_smoothing,
-            },
-            unknown_below: TRAINING.unknown_below,
+            priors: EQUAL_PRIORS,
+            smoothing: Smoothing { colour: COLOUR_SMOOTHING, light: LIGHT_SMOOTHING },
+            unknown_below: UNKNOWN_BELOW,
             histograms,
         })
     }
@@ -291,9 +286,8 @@ fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
         return Err(TrainingError::NoImage);
     }
     Ok(std::array::from_fn(|channel| {
-        let mut levels: Vec<_> = examples.iter().map(|example| example.floor[channel]).collect();
-        levels.sort_by(f64::total_cmp);
-        (levels[levels.len() / 2].max(1.0) * 100.0).round() / 100.0
+        let level = median(examples.iter().map(|example| example.floor[channel]));
+        (level.unwrap_or_default().max(1.0) * 100.0).round() / 100.0
     }))
 }
 
@@ -306,7 +300,7 @@ fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
             let counts = cells.iter_mut().filter(|(learned, _)| *learned == alike.class);
             counts.for_each(|(_, counts)| {
                 counts[table::index(&offsets, alike.colour)] +=
-                    TRAINING.mixed * u64::from(alike.pure) + u64::from(alike.mixed);
+                    MIXED * u64::from(alike.pure) + u64::from(alike.mixed);
             });
         }
     }

@@ -6,12 +6,31 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Point2;
 
-use super::{
-    clearances::Clearances,
-    grid::{Cell, Grid},
-    params::ArmViewParams,
+use super::{clearances::Clearances, grid::Cell};
+use crate::{
+    geometry::{direction, distance, unit},
+    least_squares::median,
 };
-use crate::geometry::{direction, distance, unit};
+
+/// Lines of sight begin this far behind the walls of the junction. Geometry: two cells of the local map.
+const MOUTH: f64 = 0.3;
+/// They are directed along the middle line of the arm, from there to this far behind the walls. Geometry: the width of
+/// a corridor.
+const AHEAD: f64 = 2.0;
+/// The number of lines of sight to each side of this direction. Geometry: 16 degrees.
+const FAN: i32 = 8;
+/// The angle between two of them. Geometry: 2 degrees.
+const STEP: f64 = 0.035;
+/// How far to the left of the middle line they begin. Geometry: two cells.
+const ASIDE: [f64; 3] = [-0.3, 0.0, 0.3];
+/// Walls are looked for up to this far on a line of sight, ... Geometry: the least length of an arm.
+const FAR: f64 = 10.0;
+/// ... up to this far beside it, ... Geometry: more than the width of a corridor.
+const BESIDE: f64 = 3.0;
+/// ... and at points this far apart. Geometry: two cells.
+const APART: f64 = 0.3;
+/// A wall is straight where it is this near to its usual distance from the line. Logs.
+const STRAIGHT: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ArmView {
@@ -27,8 +46,6 @@ pub(super) enum ArmView {
     },
 }
 
-const VIEW: ArmViewParams = ArmViewParams::DEFAULT;
-
 #[derive(Clone, Copy)]
 struct Ray {
     from: Point2<f64>,
@@ -41,7 +58,7 @@ impl ArmView {
     pub(super) fn new(
         line: &[(Point2<f64>, f64)],
         (meet, clearance): (Point2<f64>, f64),
-        (grid, clearances): (&Grid, &Clearances),
+        map: &Clearances,
         far: f64,
     ) -> Self {
         let behind = |least: f64| {
@@ -49,20 +66,20 @@ impl ArmView {
                 |(point, _): &&(Point2<f64>, f64)| distance(*point, meet) >= clearance + least;
             line.iter().find(beyond).or(line.last()).map(|&(point, _)| point)
         };
-        let Some((mouth, towards)) = behind(VIEW.mouth).zip(behind(VIEW.ahead)) else {
+        let Some((mouth, towards)) = behind(MOUTH).zip(behind(AHEAD)) else {
             return Self::Near { depth: 0.0, walled: [0.0; 2] };
         };
         let from = if distance(mouth, towards) > 0.5 { mouth } else { meet };
         let ahead = direction(from, towards);
         let left = unit(ahead + FRAC_PI_2);
-        let starts = VIEW.aside.map(|aside| mouth + aside * left);
+        let starts = ASIDE.map(|aside| mouth + aside * left);
         let (mut longest, mut length) = (Ray { from: mouth, angle: ahead }, 0.0);
-        for number in (0..=VIEW.fan).flat_map(|number| [number, -number]) {
-            let angle = ahead + VIEW.step * f64::from(number);
+        for number in (0..=FAN).flat_map(|number| [number, -number]) {
+            let angle = ahead + STEP * f64::from(number);
             for from in starts {
                 let ray = Ray { from, angle };
                 let before = distance(from, meet);
-                let (free, _) = clearances.sight(grid, from, angle, far - before);
+                let (free, _) = map.sight(from, angle, far - before);
                 if free + before >= far {
                     return Self::Far;
                 }
@@ -71,7 +88,7 @@ impl ArmView {
                 }
             }
         }
-        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, grid, clearances));
+        let mut walled = [1.0, -1.0].map(|side| longest.walled(length, side, map));
         walled.sort_by(f64::total_cmp);
         Self::Near { depth: length + distance(longest.from, meet), walled }
     }
@@ -84,18 +101,17 @@ impl Ray {
 
     /// The part of a length of the ray beside which there is a straight wall, on the left (1) or on the
     /// right (-1).
-    fn walled(&self, length: f64, side: f64, grid: &Grid, clearances: &Clearances) -> f64 {
-        let points = ((length.min(VIEW.far) / VIEW.apart) as u32).max(1);
+    fn walled(&self, length: f64, side: f64, map: &Clearances) -> f64 {
+        let points = ((length.min(FAR) / APART) as u32).max(1);
         let across = self.angle + side * FRAC_PI_2;
         let beside = |point: u32| {
-            let from = self.at(VIEW.apart * f64::from(point));
-            let (off, cell) = clearances.sight(grid, from, across, VIEW.beside);
+            let from = self.at(APART * f64::from(point));
+            let (off, cell) = map.sight(from, across, BESIDE);
             (cell == Cell::Occupied).then_some(off)
         };
-        let mut walls: Vec<f64> = (0..points).filter_map(beside).collect();
-        walls.sort_by(f64::total_cmp);
-        let Some(&usual) = walls.get(walls.len() / 2) else { return 0.0 };
-        let straight = walls.iter().filter(|&&off| (off - usual).abs() < VIEW.straight);
+        let walls: Vec<f64> = (0..points).filter_map(beside).collect();
+        let Some(usual) = median(walls.iter().copied()) else { return 0.0 };
+        let straight = walls.iter().filter(|&off| (off - usual).abs() < STRAIGHT);
         straight.count() as f64 / f64::from(points)
     }
 }

@@ -8,9 +8,10 @@ use nalgebra::Point2;
 use super::grid::{Cell, Grid, floor};
 use crate::geometry::unit;
 
-/// Squared distances of each free cell, in cells; the numbers of the others mean nothing.
+/// The local map with squared distances of each free cell, in cells; the numbers of the others mean nothing.
 #[derive(Clone, Debug)]
 pub struct Clearances {
+    pub grid: Grid,
     /// To the nearest occupied cell.
     pub wall: Vec<u32>,
     /// To the nearest cell that is not free.
@@ -18,27 +19,21 @@ pub struct Clearances {
 }
 
 impl Clearances {
-    pub(super) fn new(grid: &Grid) -> Self {
-        Self {
-            wall: squared_distances(grid.columns, &grid.cells, |cell| cell == Cell::Occupied),
-            border: squared_distances(grid.columns, &grid.cells, |cell| cell != Cell::Free),
-        }
+    pub(super) fn new(grid: Grid) -> Self {
+        let wall = squared_distances(grid.columns, &grid.cells, |cell| cell == Cell::Occupied);
+        let border = squared_distances(grid.columns, &grid.cells, |cell| cell != Cell::Free);
+        Self { grid, wall, border }
     }
 
     /// Whether a free cell is beside the unknown, and not beside a wall, where that means nothing.
-    pub(super) fn is_unknown_border(&self, grid: &Grid, at: usize) -> bool {
-        grid.cells[at] == Cell::Free && self.border[at] == 1 && self.wall[at] >= 2
+    pub(super) fn is_unknown_border(&self, at: usize) -> bool {
+        self.grid.cells[at] == Cell::Free && self.border[at] == 1 && self.wall[at] >= 2
     }
 
     /// How far one sees on the map from a point in a direction: the length up to the first cell that is not
     /// free, or to a limit, in metres; and what that cell is. The line is sampled twice for each cell.
-    pub(crate) fn sight(
-        &self,
-        grid: &Grid,
-        from: Point2<f64>,
-        direction: f64,
-        limit: f64,
-    ) -> (f64, Cell) {
+    pub(crate) fn sight(&self, from: Point2<f64>, direction: f64, limit: f64) -> (f64, Cell) {
+        let grid = &self.grid;
         let step = grid.cell / 2.0;
         let last = ((limit / step).floor().max(-1.0) as i64).saturating_add(1);
         let (columns, rows) = (grid.columns as i64, grid.rows() as i64);
@@ -177,7 +172,7 @@ mod tests {
                 grid.origin[axis] + part * grid.cell * sides[axis] as f64
             });
             let from = Point2::from(from);
-            let seen = Clearances::new(&grid).sight(&grid, from, direction, limit);
+            let seen = Clearances::new(grid.clone()).sight(from, direction, limit);
             let step = grid.cell / 2.0;
             let start = (from - grid.origin) / grid.cell;
             let at = |length: f64| {

@@ -2,13 +2,16 @@
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
-use super::{
-    matching::ScanMatcher,
-    params::{DriftParams, LaserParams},
-    scan::Scan,
-};
+use super::{matching::ScanMatcher, params::LaserParams, scan::Scan};
+use crate::least_squares::median;
 
-/// Measures the drift of the heading of odometry.
+/// The rounds of matching with which drift is measured and corrected. Geometry: 8 are enough.
+pub const ROUNDS: usize = 8;
+/// Drift is measured on stretches of the way of this length. Geometry: drift is given in 10 m.
+const STRETCH: f64 = 10.0;
+/// Fewer stretches do not show a drift. Geometry: their median is used.
+const LEAST: usize = 3;
+
 #[derive(Clone, Debug, Default)]
 pub struct DriftMeter {
     params: LaserParams,
@@ -23,12 +26,7 @@ pub struct DriftMeter {
     changes: Vec<f64>,
 }
 
-/// The rounds of matching with which drift is measured and corrected.
-pub const ROUNDS: usize = DRIFT.rounds;
-const DRIFT: DriftParams = DriftParams::DEFAULT;
-
 impl DriftMeter {
-    #[must_use]
     pub fn new(mut params: LaserParams) -> Self {
         params.matching.rounds = ROUNDS;
         let matcher = ScanMatcher::new(params.matching);
@@ -42,9 +40,8 @@ impl DriftMeter {
         self.matcher.see(scan, odometry, self.way, self.way - params.memory);
         let correction = self.matcher.correction().rotation.angle();
         let (begun, before) = *self.begun.get_or_insert((self.way, correction));
-        if self.way - begun >= DRIFT.stretch {
-            self.changes
-                .push(wrapped(correction - before).abs() * DRIFT.stretch / (self.way - begun));
+        if self.way - begun >= STRETCH {
+            self.changes.push(wrapped(correction - before).abs() * STRETCH / (self.way - begun));
             self.begun = Some((self.way, correction));
         }
     }
@@ -53,7 +50,6 @@ impl DriftMeter {
     #[must_use]
     pub fn finish(mut self) -> Option<f64> {
         self.changes.retain(|change| change.is_finite());
-        self.changes.sort_by(f64::total_cmp);
-        (self.changes.len() >= DRIFT.least).then(|| self.changes[self.changes.len() / 2])
+        if self.changes.len() < LEAST { None } else { median(self.changes) }
     }
 }

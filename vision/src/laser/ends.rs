@@ -4,7 +4,6 @@ use std::cmp::Reverse;
 
 use super::{clearances::Clearances, grid::Grid, params::LaserParams};
 
-/// How a way ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WayEnd {
     /// Free space goes on where nothing was seen yet.
@@ -15,7 +14,6 @@ pub enum WayEnd {
     Closed,
 }
 
-/// An end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
     pub cell: usize,
@@ -67,21 +65,19 @@ pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u
 pub(super) fn ends(
     ways: &[usize],
     lengths: &[u32],
-    clearances: &Clearances,
-    grid: &Grid,
+    map: &Clearances,
     params: &LaserParams,
 ) -> Vec<End> {
+    let grid = &map.grid;
     let metres = |length: u32| f64::from(length) / f64::from(STRAIGHT) * grid.cell;
     let mut at_gap = vec![false; grid.cells.len()];
     let mut ends = Vec::new();
-    let near_border: Vec<usize> =
-        ways.iter().copied().filter(|&at| clearances.border[at] <= 4).collect();
+    let near_border: Vec<usize> = ways.iter().copied().filter(|&at| map.border[at] <= 4).collect();
     for gap in grid.groups(&near_border) {
         for &at in &gap {
             at_gap[at] = true;
         }
-        let Some(&cell) = gap.iter().max_by_key(|&&at| (clearances.wall[at], lengths[at], at))
-        else {
+        let Some(&cell) = gap.iter().max_by_key(|&&at| (map.wall[at], lengths[at], at)) else {
             continue;
         };
         let farthest = gap.iter().map(|&at| lengths[at]).max().unwrap_or_default();
@@ -93,7 +89,7 @@ pub(super) fn ends(
             beyond: metres(farthest - lengths[cell]),
         });
     }
-    let borders = unknown_borders(clearances, grid, params);
+    let borders = unknown_borders(map, params);
     let prominence = (params.arm.min_prominence / grid.cell * f64::from(STRAIGHT)) as u32;
     for cell in maxima(ways, lengths, grid, prominence) {
         if !at_gap[cell] {
@@ -108,9 +104,10 @@ pub(super) fn ends(
 }
 
 /// The free cells on long stretches of border to the unknown.
-fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -> Vec<bool> {
+fn unknown_borders(map: &Clearances, params: &LaserParams) -> Vec<bool> {
+    let grid = &map.grid;
     let mut borders = vec![false; grid.cells.len()];
-    let all = (0..grid.cells.len()).filter(|&at| clearances.is_unknown_border(grid, at));
+    let all = (0..grid.cells.len()).filter(|&at| map.is_unknown_border(at));
     for border in grid.groups(&all.collect::<Vec<_>>()) {
         let is_long = border.len() as f64 * grid.cell >= params.arm.border;
         for at in border {

@@ -52,16 +52,13 @@ impl WayGraph {
             }
         }
         let mut junctions = Vec::new();
-        for leader in (0..self.nodes.len()).filter(|&node| degrees[node] >= 3) {
-            let members: Vec<_> =
-                (0..self.nodes.len()).filter(|&node| group[node] == leader).collect();
-            if members.is_empty() {
-                continue;
-            }
-            let all = members.iter().map(|&node| self.nodes[node].point.coords);
-            let centre = Point2::from(all.sum::<Vector2<f64>>() / members.len() as f64);
-            let clearances = members.iter().map(|&node| self.nodes[node].clearance);
-            let clearance = clearances.fold(0.0, f64::max);
+        let is_leader = |&node: &usize| degrees[node] >= 3 && group[node] == node;
+        for leader in (0..self.nodes.len()).filter(is_leader) {
+            let members = self.nodes.iter().zip(&group).filter(|&(_, &group)| group == leader);
+            let members: Vec<&WayNode> = members.map(|(node, _)| node).collect();
+            let sum: Vector2<f64> = members.iter().map(|node| node.point.coords).sum();
+            let centre = Point2::from(sum / members.len() as f64);
+            let clearance = members.iter().map(|node| node.clearance).fold(0.0, f64::max);
             let gate = clearance + params.direction;
             let mut arms = Vec::new();
             for way in &self.ways {

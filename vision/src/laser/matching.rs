@@ -173,8 +173,8 @@ fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint>
     let is_near = |hit: &Point2<f64>| distance(scanner, *hit) <= params.range;
     let hits: Vec<Point2<f64>> = scan.hits().filter(is_near).collect();
     let joined = |one: usize| {
-        let [one, other] = [hits.get(one)?, hits.get(one + 1)?];
-        (distance(*one, *other) <= params.max_step).then_some(())
+        let two = hits.get(one).zip(hits.get(one + 1));
+        two.is_some_and(|(one, other)| distance(*one, *other) <= params.max_step)
     };
     let mut points = Vec::new();
     for (at, &point) in hits.iter().enumerate() {
@@ -183,8 +183,8 @@ fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint>
         let line = loop {
             reach += 1;
             let first = at.checked_sub(reach);
-            let is_joined = first.and_then(joined).is_some() && joined(at + reach - 1).is_some();
-            let Some(first) = first.filter(|_| is_joined) else { break None };
+            let first = first.filter(|&first| joined(first) && joined(at + reach - 1));
+            let Some(first) = first else { break None };
             if distance(hits[first], hits[at + reach]) >= params.line {
                 break Some(&hits[first..=at + reach]);
             }

@@ -2,7 +2,7 @@
 //!
 //! From the ground up:
 //!
-//! * [`params`]: the thresholds of all steps;
+//! * [`params`]: what a user may change for a building;
 //! * [`scan`]: one sweep of the scanner;
 //! * `matching`: where it was taken, by odometry and by the walls of earlier scans;
 //! * [`drift`]: how much the heading of odometry drifts;

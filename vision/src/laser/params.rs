@@ -1,8 +1,7 @@
 //! The parameters of sensing with a laser scanner, in one place.
 //!
-//! Lengths are in metres and angles in radians. A TOML file sets those of [`LaserParams`], with one table for each of
-//! its structs ([`params::read`]); the others are the same for all buildings. The defaults are for buildings with
-//! corridors, and come from:
+//! Lengths are in metres and angles in radians. A TOML file sets them, with one table for each struct
+//! ([`params::read`]). The defaults are for buildings with corridors, and come from:
 //!
 //! * **geometry**: the robot, the scanner or the building gives the value;
 //! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them;
@@ -232,80 +231,6 @@ params! {
         /// is manoeuvring.
         unseen_way: f64 = 2.0,
     }
-
-    /// What is seen along an arm of a junction.
-    ArmViewParams {
-        /// Lines of sight begin this far behind the walls of the junction. Geometry: two cells of the local map.
-        mouth: f64 = 0.3,
-        /// They are directed along the middle line of the arm, from there to this far behind the walls. Geometry: the
-        /// width of a corridor.
-        ahead: f64 = 2.0,
-        /// The number of lines of sight to each side of this direction. Geometry: 16 degrees.
-        fan: i32 = 8,
-        /// The angle between two of them. Geometry: 2 degrees.
-        step: f64 = 0.035,
-        /// How far to the left of the middle line they begin. Geometry: two cells.
-        aside: [f64; 3] = [-0.3, 0.0, 0.3] => -10.0..=10.0,
-        /// Walls are looked for up to this far on a line of sight, ... Geometry: [`ArmParams::min_arm`].
-        far: f64 = 10.0,
-        /// ... up to this far beside it, ... Geometry: more than the width of a corridor.
-        beside: f64 = 3.0,
-        /// ... and at points this far apart. Geometry: two cells.
-        apart: f64 = 0.3,
-        /// A wall is straight where it is this near to its usual distance from the line. Logs.
-        straight: f64 = 0.25,
-    }
-
-    /// How the drift of the heading of odometry is measured.
-    DriftParams {
-        /// The rounds of matching with which drift is measured and corrected. Geometry: see
-        /// [`MatchingParams::rounds`].
-        rounds: usize = 8,
-        /// It is measured on stretches of the way of this length. Geometry: drift is given in 10 m.
-        stretch: f64 = 10.0,
-        /// Fewer stretches do not show a drift. Geometry: their median is used.
-        least: usize = 3,
-    }
-
-    /// The place of a robot in a building with right angles ([`scene`](super::scene)).
-    PlaceParams {
-        /// A scan is remembered if the robot has driven this far since the last one that is, or has turned by
-        /// [`Self::every_turn`]. Simulated buildings.
-        every: f64 = 0.2,
-        /// See [`Self::every`]. Simulated buildings.
-        every_turn: f64 = 0.2,
-        /// The number of scans that are remembered. Geometry: the robot has driven a few metres since.
-        remembered: usize = 24,
-        /// A robot whose scanner does not see all round turns so far that two scans show the same surfaces over this
-        /// angle. Geometry: more than odometry errs in a turn.
-        overlap: f64 = 0.17,
-        /// It looks around again when it has driven this far since, or has turned by [`Self::look_again_turn`].
-        /// Simulated buildings.
-        look_again: f64 = 0.1,
-        /// See [`Self::look_again`]. Simulated buildings.
-        look_again_turn: f64 = 0.5,
-        /// The hits of two successive readings are on one wall if their ranges differ by less than this, and ...
-        /// Geometry: half a degree before a gap there is no wall.
-        step: f64 = 0.15,
-        /// ... by less than this part. Geometry.
-        step_part: f64 = 0.1,
-        /// A robot is at most this far past the turning point of a dead end. Geometry: half of a hallway's width less
-        /// its radius.
-        past_dead_end: f64 = 0.45,
-        /// A hallway whose walls are hidden goes on for at most this far. Simulated buildings.
-        hidden: f64 = 5.0,
-        /// What is beside the robot is at most this much farther than the wall. Simulated buildings.
-        wall_slack: f64 = 0.25,
-        /// A robot needs this much free space ahead, ... Geometry: twice its length.
-        free_ahead: f64 = 0.8,
-        /// ... and this much on both sides of its middle. Geometry: more than its radius.
-        free_aside: f64 = 0.3,
-        /// The confidence in a hallway whose walls are hidden, from 0 to 1. Half: it is neither sure nor impossible.
-        hidden_confidence: f64 = 0.5,
-        /// Successive readings are neighbours if their bearings differ by less than this. Geometry: scanners have a
-        /// reading at least every 2 degrees.
-        next: f64 = 0.06,
-    }
 }
 
 impl LocalMapParams {
@@ -342,42 +267,29 @@ mod tests {
         expected.corner.corners = true;
         assert_eq!(params, expected);
         assert_eq!(read(""), Ok(LaserParams::default()));
+        assert_eq!(read(&toml::to_string(&params).unwrap()), Ok(params));
+        // A whole number is as good as any other.
+        let params: LaserParams = read("[arm]\nmin_gap = 0").unwrap();
+        assert!(params.arm.min_gap.abs() < 1e-12);
     }
+
+    const ERRORS: &str = r#"
+[arm]\nmin = 2.0 | line 2, column 1: arm.min: unknown key; expected one of: min_arm,
+min_arm = 2.0 | line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit
+[arm]\nmin_arm = "far" | line 2, column 11: arm.min_arm: expected a number, found a text
+[arm]\nmin_arm = -1.0 | line 2, column 11: arm.min_arm: -1 is out of range; this parameter lies between 0 and 1000
+[arm]\nmin_arm = nan | line 2, column 11: arm.min_arm: NaN is out of range; this parameter lies between 0 and 1000
+[map]\ncell = 0.0001 | line 2, column 8: map.cell: 0.0001 is out of range; this parameter lies between 0.02 and 1
+[map]\nreach = inf | line 2, column 9: map.reach: inf is out of range; this parameter lies between 2 and 40
+[visit]\nviews = 0 | line 2, column 9: visit.views: 0 is out of range; this parameter lies between 1 and 1000
+[arm | line
+[corner]\ncorners = yes | line"#;
 
     #[test]
     fn unknown_keys_and_impossible_numbers_are_errors() {
-        let out = "is out of range; this parameter lies between";
-        for (text, error) in [
-            (
-                "[arm]\nmin = 2.0",
-                "line 2, column 1: arm.min: unknown key; expected one of: min_arm, ",
-            ),
-            (
-                "min_arm = 2.0",
-                "line 1, column 1: min_arm: unknown key; expected one of: matching, map, arm, corner, visit",
-            ),
-            (
-                "[arm]\nmin_arm = \"far\"",
-                "line 2, column 11: arm.min_arm: expected a number, found a text",
-            ),
-            (
-                "[arm]\nmin_arm = -1.0",
-                &format!("line 2, column 11: arm.min_arm: -1 {out} 0 and 1000"),
-            ),
-            (
-                "[arm]\nmin_arm = nan",
-                &format!("line 2, column 11: arm.min_arm: NaN {out} 0 and 1000"),
-            ),
-            (
-                "[map]\ncell = 0.0001",
-                &format!("line 2, column 8: map.cell: 0.0001 {out} 0.02 and 1"),
-            ),
-            ("[map]\nreach = inf", &format!("line 2, column 9: map.reach: inf {out} 2 and 40")),
-            ("[visit]\nviews = 0", &format!("line 2, column 9: visit.views: 0 {out} 1 and 1000")),
-            ("[arm", "line "),
-            ("[corner]\ncorners = yes", "line "),
-        ] {
-            let message = read::<LaserParams>(text).unwrap_err().to_string();
+        for row in ERRORS.lines().skip(1) {
+            let (text, error) = row.split_once(" | ").unwrap();
+            let message = read::<LaserParams>(&text.replace(r"\n", "\n")).unwrap_err().to_string();
             assert!(message.starts_with(error) && !message.contains('\n'), "{message}");
         }
     }

@@ -10,7 +10,6 @@ use super::{
 /// The rays of one scan, in metres on the local map.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rays {
-    /// Where the scanner was.
     pub from: Point2<f64>,
     /// Where rays ended at an obstacle.
     pub hits: Vec<Point2<f64>>,
@@ -95,24 +94,18 @@ impl RayCounts {
         let inner = side.saturating_sub(2);
         let width = (west + inner).min(self.side - 1) - west;
         let mut all = Vec::with_capacity(inner * width);
-        let mut is_known_column = vec![false; width];
-        let mut known_rows: Option<[usize; 2]> = None;
-        for row in 0..(south + inner).min(self.side - 1) - south {
-            let first = (south + row) * self.side + west;
-            let begin = all.len();
+        for row in south..(south + inner).min(self.side - 1) {
+            let first = row * self.side + west;
             all.extend((first..first + width).map(|index| self.cell(index, params)));
-            let mut is_known_row = false;
-            for (is_known, &cell) in is_known_column.iter_mut().zip(&all[begin..]) {
-                *is_known |= cell != Cell::Unknown;
-                is_known_row |= cell != Cell::Unknown;
-            }
-            if is_known_row {
-                known_rows = Some([known_rows.map_or(row, |[bottom, _]| bottom), row]);
-            }
         }
-        let [bottom, top] = known_rows.unwrap_or_default();
-        let left = is_known_column.iter().position(|&known| known).unwrap_or_default();
-        let right = is_known_column.iter().rposition(|&known| known).unwrap_or_default();
+        let is_known = |at: usize| all[at] != Cell::Unknown;
+        let is_known_row = |row: &usize| (row * width..(row + 1) * width).any(is_known);
+        let is_known_column = |column: &usize| (*column..all.len()).step_by(width).any(is_known);
+        let (mut rows, mut columns) = (0..all.len() / width, 0..width);
+        let bottom = rows.find(is_known_row).unwrap_or_default();
+        let top = rows.rfind(is_known_row).unwrap_or(bottom);
+        let left = columns.find(is_known_column).unwrap_or_default();
+        let right = columns.rfind(is_known_column).unwrap_or(left);
         let columns = right + 3 - left;
         let mut cells = vec![Cell::Unknown; columns];
         for row in bottom..=top {

@@ -92,49 +92,41 @@ impl Scan {
         Ok(Self { geometry, ranges, robot_from_scanner })
     }
 
-    #[must_use]
     pub fn geometry(&self) -> ScanGeometry {
         self.geometry
     }
 
     /// The angle between the first and the last reading, in radians.
-    #[must_use]
     pub fn field_of_view(&self) -> f64 {
         self.ranges.len().saturating_sub(1) as f64 * self.geometry.angle_increment
     }
 
-    /// Where the scanner looks.
     pub(super) fn sector(&self) -> ViewSector {
         let first = self.heading() + self.geometry.angle_min;
         ViewSector { first, angle: self.field_of_view() }
     }
 
-    #[must_use]
     pub fn ranges(&self) -> &[f32] {
         &self.ranges
     }
 
     /// The pose of the scanner on the robot, whose x axis points ahead.
-    #[must_use]
     pub fn robot_from_scanner(&self) -> Isometry2<f64> {
         self.robot_from_scanner
     }
 
     /// Where the scanner is, in metres in the robot's frame.
-    #[must_use]
     pub fn scanner(&self) -> Point2<f64> {
         self.robot_from_scanner.translation.vector.into()
     }
 
     /// The direction of the scanner's x axis, in radians counter-clockwise from the robot's heading.
-    #[must_use]
     pub fn heading(&self) -> f64 {
         self.robot_from_scanner.rotation.angle()
     }
 
     /// The readings in counter-clockwise order, each with its bearing: the direction in which it was taken
     /// from the scanner, in radians counter-clockwise from the robot's heading, above -pi and up to pi.
-    #[must_use]
     pub fn readings(&self) -> impl ExactSizeIterator<Item = (f64, Reading)> + '_ {
         let first = self.heading() + self.geometry.angle_min;
         self.ranges.iter().enumerate().map(move |(index, &range)| {
@@ -158,7 +150,6 @@ impl Scan {
     }
 
     /// The point at a bearing and a range from the scanner, in metres in the robot's frame.
-    #[must_use]
     pub fn point(&self, bearing: f64, range: f64) -> Point2<f64> {
         self.scanner() + range * unit(bearing)
     }
@@ -278,37 +269,24 @@ mod tests {
 
     #[test]
     fn impossible_numbers_are_errors() {
-        let scan_with = |change: fn(&mut ScanGeometry)| {
-            let mut geometry = HALF_CIRCLE;
-            change(&mut geometry);
-            scan(geometry, &[1.0]).unwrap_err().to_string()
-        };
-        for (error, expected) in [
-            (scan(HALF_CIRCLE, &[]).unwrap_err().to_string(), "the scan has no readings"),
-            (scan_with(|it| it.angle_increment = 0.0), "the angle increment of the scan is 0"),
-            (
-                scan_with(|it| it.angle_increment = f64::NAN),
-                "the angle increment of the scan is NaN",
-            ),
-            (
-                scan_with(|it| it.angle_increment = f64::INFINITY),
-                "the angle increment of the scan is inf",
-            ),
-            (scan_with(|it| it.angle_min = f64::NAN), "the first angle of the scan, or "),
-            (scan_with(|it| it.range_max = 0.1), "the ranges of the scan go from 0.1 m to 0.1 m"),
-            (scan_with(|it| it.range_max = 0.05), "the ranges of the scan go from 0.1 m to 0.05 m"),
-            (
-                scan_with(|it| (it.range_min, it.range_max) = (-2.0, -1.0)),
-                "the ranges of the scan go from -2 m to -1 m",
-            ),
-            (scan_with(|it| it.range_min = f64::NAN), "the ranges of the scan go from NaN m"),
-            (
-                scan_with(|it| it.range_max = f64::NAN),
-                "the ranges of the scan go from 0.1 m to NaN m",
-            ),
+        let (nan, inf) = (f64::NAN, f64::INFINITY);
+        for ([angle_min, angle_increment, range_min, range_max], message) in [
+            ([0.0, 0.0, 0.1, 50.0], "the angle increment of the scan is 0"),
+            ([0.0, nan, 0.1, 50.0], "the angle increment of the scan is NaN"),
+            ([0.0, inf, 0.1, 50.0], "the angle increment of the scan is inf"),
+            ([nan, 1.0, 0.1, 50.0], "the first angle of the scan, or "),
+            ([0.0, 1.0, 0.1, 0.1], "the ranges of the scan go from 0.1 m to 0.1 m"),
+            ([0.0, 1.0, 0.1, 0.05], "the ranges of the scan go from 0.1 m to 0.05 m"),
+            ([0.0, 1.0, -2.0, -1.0], "the ranges of the scan go from -2 m to -1 m"),
+            ([0.0, 1.0, nan, 50.0], "the ranges of the scan go from NaN m"),
+            ([0.0, 1.0, 0.1, nan], "the ranges of the scan go from 0.1 m to NaN m"),
         ] {
-            assert!(error.starts_with(expected), "{error}");
+            let geometry = ScanGeometry { angle_min, angle_increment, range_min, range_max };
+            let error = scan(geometry, &[1.0]).unwrap_err().to_string();
+            assert!(error.starts_with(message), "{error}");
         }
+        let empty = scan(HALF_CIRCLE, &[]).unwrap_err().to_string();
+        assert_eq!(empty, "the scan has no readings");
         let nowhere = Isometry2::translation(0.0, f64::NAN);
         assert_eq!(Scan::new(HALF_CIRCLE, vec![1.0], nowhere), Err(ScanError::NotFinite));
     }

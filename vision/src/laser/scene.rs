@@ -15,18 +15,51 @@ use toposlam_model::driving::{
     scene::{HallwayStatus, HallwayView, JunctionView, Place, Reason, Unclear, wrapped},
 };
 
-use super::{params::PlaceParams, scan::Scan};
+use super::scan::Scan;
 use crate::{
-    boundary::{BEARINGS, Boundary, Sight},
+    boundary::{BEARINGS, Boundary, Sight, bearing},
     geometry::{angle, from_robot, unit},
-    params::SensingParams,
     sensing::place_within,
 };
 
-/// Senses places with a laser scanner.
+/// A scan is remembered if the robot has driven this far since the last one that is, or has turned by [`EVERY_TURN`].
+/// Simulated buildings.
+const EVERY: f64 = 0.2;
+/// See [`EVERY`]. Simulated buildings.
+const EVERY_TURN: f64 = 0.2;
+/// The number of scans that are remembered. Geometry: the robot has driven a few metres since.
+const REMEMBERED: usize = 24;
+/// A robot whose scanner does not see all round turns so far that two scans show the same surfaces over this angle.
+/// Geometry: more than odometry errs in a turn.
+const OVERLAP: f64 = 0.17;
+/// It looks around again when it has driven this far since, or has turned by [`LOOK_AGAIN_TURN`]. Simulated buildings.
+const LOOK_AGAIN: f64 = 0.1;
+/// See [`LOOK_AGAIN`]. Simulated buildings.
+const LOOK_AGAIN_TURN: f64 = 0.5;
+/// The hits of two successive readings are on one wall if their ranges differ by less than this, and ... Geometry: half
+/// a degree before a gap there is no wall.
+const STEP: f64 = 0.15;
+/// ... by less than this part. Geometry.
+const STEP_PART: f64 = 0.1;
+/// A robot is at most this far past the turning point of a dead end. Geometry: half of a hallway's width less its
+/// radius.
+const PAST_DEAD_END: f64 = 0.45;
+/// A hallway whose walls are hidden goes on for at most this far. Simulated buildings.
+const HIDDEN: f64 = 5.0;
+/// What is beside the robot is at most this much farther than the wall. Simulated buildings.
+const WALL_SLACK: f64 = 0.25;
+/// A robot needs this much free space ahead, ... Geometry: twice its length.
+const FREE_AHEAD: f64 = 0.8;
+/// ... and this much on both sides of its middle. Geometry: more than its radius.
+const FREE_ASIDE: f64 = 0.3;
+/// The confidence in a hallway whose walls are hidden, from 0 to 1. Half: it is neither sure nor impossible.
+const HIDDEN_CONFIDENCE: f64 = 0.5;
+/// Successive readings are neighbours if their bearings differ by less than this. Geometry: scanners have a reading at
+/// least every 2 degrees.
+const NEXT: f64 = 0.06;
+
 #[derive(Clone, Debug, Default)]
 pub struct ScanPlaceSensor {
-    params: SensingParams,
     /// Where the last scans were taken, with the pieces of wall that they have hit, in the frame of odometry.
     last: VecDeque<(Odometry, Vec<WallPiece>)>,
     /// Where the robot looked around last.
@@ -48,14 +81,7 @@ struct SensedHallway {
     width: f64,
 }
 
-const PLACE: PlaceParams = PlaceParams::DEFAULT;
-
 impl ScanPlaceSensor {
-    #[must_use]
-    pub fn with_params(params: &SensingParams) -> Self {
-        Self { params: *params, ..Self::default() }
-    }
-
     /// The place in a scan, and the odometry when it was taken.
     pub fn sense(&mut self, scan: &Scan, odometry: &Odometry) -> Place {
         let place = self.place(scan, odometry);
@@ -77,14 +103,13 @@ impl ScanPlaceSensor {
     /// The headings to which the robot turns to look around, one after the other, relative to its own; empty if it need
     /// not: the scan covers a full circle, or with the last scans it shows a hallway, or a junction where the robot has
     /// just looked around.
-    #[must_use]
     pub fn headings_to_look_around(&self, scan: &Scan, odometry: &Odometry) -> Vec<f64> {
         if sees_all_round(scan) {
             return Vec::new();
         }
-        let has_looked_here = self.looked.is_some_and(|looked| {
-            is_near(&looked, odometry, PLACE.look_again, PLACE.look_again_turn)
-        });
+        let has_looked_here = self
+            .looked
+            .is_some_and(|looked| is_near(&looked, odometry, LOOK_AGAIN, LOOK_AGAIN_TURN));
         let is_seen = match self.place(scan, odometry) {
             Place::Hallway(_) => self.looked.is_some(),
             Place::Junction(_) => has_looked_here,
@@ -104,17 +129,17 @@ impl ScanPlaceSensor {
         let place = |piece: WallPiece| piece.map(|end| odometry_from_robot * end);
         let pieces = wall_pieces(scan).into_iter().map(place).collect();
         self.last.push_back((*odometry, pieces));
-        while self.last.len() > PLACE.remembered {
+        while self.last.len() > REMEMBERED {
             self.last.pop_front();
         }
     }
 
     fn place(&self, scan: &Scan, odometry: &Odometry) -> Place {
-        let (place, trace) = place_within(self.boundary(scan, odometry), 0.0, &self.params);
+        let (place, trace) = place_within(self.boundary(scan, odometry), 0.0);
         match &place {
             Place::Junction(junction) if is_behind_its_wall(junction) => {
                 trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
-                    Place::Hallway(hallway.view(0.0, &self.params.outline))
+                    Place::Hallway(hallway.view(0.0))
                 })
             }
             _ => place,
@@ -125,13 +150,13 @@ impl ScanPlaceSensor {
     /// and the way ahead is free.
     fn hidden_hallway(&self, scan: &Scan, odometry: &Odometry) -> Option<HallwayView> {
         let SensedHallway { odometry: then, view, width } =
-            self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < PLACE.hidden)?;
+            self.hallway.filter(|hallway| hallway.odometry.distance(odometry) < HIDDEN)?;
         let heading = wrapped(view.heading + then.heading - odometry.heading);
         // How far the robot has come to the left.
         let aside =
             across(from_robot(&then).inverse() * Point2::from(odometry.position), view.heading);
         let (left, right) = (view.left - aside, view.right + aside);
-        let slack = PLACE.wall_slack + width - view.left - view.right;
+        let slack = WALL_SLACK + width - view.left - view.right;
         let mut beside = [0, 0];
         for (bearing, range) in scan.ranges_hit() {
             let aside = wrapped(bearing - heading);
@@ -139,8 +164,7 @@ impl ScanPlaceSensor {
             let Some(range) = range else { continue };
             let point = scan.point(bearing, range);
             let (ahead, across) = (unit(heading).dot(&point.coords), across(point, heading));
-            let is_in_way =
-                (0.0..PLACE.free_ahead).contains(&ahead) && across.abs() < PLACE.free_aside;
+            let is_in_way = (0.0..FREE_AHEAD).contains(&ahead) && across.abs() < FREE_ASIDE;
             let is_open = is_beside && (across > left + slack || -across > right + slack);
             if is_in_way || is_open {
                 return None;
@@ -152,7 +176,7 @@ impl ScanPlaceSensor {
             left,
             right,
             status: HallwayStatus::Unclear(Unclear::ClustersAhead),
-            confidence: PLACE.hidden_confidence,
+            confidence: HIDDEN_CONFIDENCE,
         })
     }
 
@@ -161,7 +185,7 @@ impl ScanPlaceSensor {
         let mut sights = vec![None; BEARINGS];
         for (at, pieces) in &self.last {
             let robot_from_odometry = from_robot(odometry).inverse();
-            let is_here = at.distance(odometry) < PLACE.look_again;
+            let is_here = at.distance(odometry) < LOOK_AGAIN;
             let mut add = |bearing: usize, range: f64| {
                 let known: &mut Option<f64> = &mut sights[bearing];
                 *known = match *known {
@@ -172,7 +196,7 @@ impl ScanPlaceSensor {
             };
             for piece in pieces {
                 let [(from, near), (to, far)] = piece.map(|end| polar(robot_from_odometry * end));
-                add(nearest_bearing(from), near);
+                add(bearing(from), near);
                 let turn = wrapped(to - from);
                 // The robot may see it from its other side.
                 let (from, near, far) =
@@ -182,7 +206,7 @@ impl ScanPlaceSensor {
                 }
             }
         }
-        let mut sights: Vec<Sight> = sights.into_iter().map(sight).collect();
+        let mut sights: Vec<Sight> = sights.into_iter().map(Sight::measured).collect();
         let seen_by_robot = |(bearing, range): (f64, Option<f64>)| match range {
             Some(range) => {
                 let (bearing, range) = polar(scan.point(bearing, range));
@@ -194,7 +218,7 @@ impl ScanPlaceSensor {
         let next = readings.iter().cycle().skip(1);
         for (&(from, near), &(to, far)) in readings.iter().zip(next) {
             let turn = wrapped(to - from);
-            if !(0.0..PLACE.next).contains(&turn) {
+            if !(0.0..NEXT).contains(&turn) {
                 continue;
             }
             for (bearing, share) in bearings_between(from, turn) {
@@ -205,10 +229,8 @@ impl ScanPlaceSensor {
     }
 
     fn remember_on_the_way(&mut self, scan: &Scan, odometry: &Odometry) {
-        let moved = self
-            .last
-            .back()
-            .is_none_or(|(last, _)| !is_near(last, odometry, PLACE.every, PLACE.every_turn));
+        let moved =
+            self.last.back().is_none_or(|(last, _)| !is_near(last, odometry, EVERY, EVERY_TURN));
         // What is seen all around needs no memory.
         if moved && !sees_all_round(scan) {
             self.remember(scan, odometry);
@@ -222,15 +244,15 @@ fn is_near(one: &Odometry, other: &Odometry, distance: f64, turn: f64) -> bool {
 }
 
 fn sees_all_round(scan: &Scan) -> bool {
-    scan.geometry().angle_increment * scan.ranges().len() as f64 > TAU - PLACE.next
+    scan.geometry().angle_increment * scan.ranges().len() as f64 > TAU - NEXT
 }
 
 /// The headings at which scans with this field of view, in radians, cover a full circle: to the left and back, to the
 /// right and back. The errors of turns to both sides cancel.
 fn headings_all_round(field_of_view: f64) -> Vec<f64> {
-    let farthest = PI - field_of_view / 2.0 + PLACE.overlap;
+    let farthest = PI - field_of_view / 2.0 + OVERLAP;
     // A scan that covers next to nothing never makes a circle.
-    let step = (field_of_view - PLACE.overlap).max(PLACE.overlap);
+    let step = (field_of_view - OVERLAP).max(OVERLAP);
     let steps = (farthest / step).ceil().max(1.0);
     let one_side =
         |side: f64| (1..=steps as u32).map(move |index| side * farthest * f64::from(index) / steps);
@@ -241,7 +263,7 @@ fn headings_all_round(field_of_view: f64) -> Vec<f64> {
 /// Whether a robot at a junction would stand behind its wall: furniture along a corridor looks like the end of a
 /// narrow one.
 fn is_behind_its_wall(junction: &JunctionView) -> bool {
-    junction.doors.len() == 1 && junction.distance() < -PLACE.past_dead_end
+    junction.doors.len() == 1 && junction.distance() < -PAST_DEAD_END
 }
 
 /// The pieces of wall that a scan has hit, in the robot's frame.
@@ -269,12 +291,8 @@ fn bearings_between(from: f64, turn: f64) -> impl Iterator<Item = (usize, f64)> 
     })
 }
 
-fn nearest_bearing(direction: f64) -> usize {
-    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
-}
-
 fn are_on_one_wall(one: f64, other: f64) -> bool {
-    (one - other).abs() < PLACE.step + PLACE.step_part * one.min(other)
+    (one - other).abs() < STEP + STEP_PART * one.min(other)
 }
 
 /// The range between two hits on one wall. Its inverse hardly bends in a small angle.
@@ -291,11 +309,7 @@ fn between(near: Option<f64>, far: Option<f64>, share: f64) -> Sight {
         }
         _ => nearest,
     };
-    sight(range)
-}
-
-fn sight(range: Option<f64>) -> Sight {
-    range.map_or_else(Sight::default, Sight::measured)
+    Sight::measured(range)
 }
 
 /// How far a point is to the left of a direction.
@@ -357,7 +371,7 @@ mod tests {
             let place = sensor.sense(&scan, &odometry);
             let is_hidden = matches!(
                 place,
-                Place::Hallway(hallway) if hallway.confidence == PLACE.hidden_confidence
+                Place::Hallway(hallway) if hallway.confidence == HIDDEN_CONFIDENCE
             );
             (odometry.position[0], place, is_hidden)
         };
@@ -379,10 +393,9 @@ mod tests {
     fn a_door_beside_the_robot_and_what_is_in_its_way_end_a_hidden_hallway() {
         let crate_ahead = [[[3.4, -0.45], [3.4, 0.1]]];
         let in_way = [&cabinet(2.0, 4.0)[..], &crate_ahead].concat();
-        for (others, until, end) in [
-            (&cabinet(5.0, 9.5)[..], 9.0, 7.0..9.0),
-            (&in_way, 3.3, 3.4 - PLACE.free_ahead..f64::MAX),
-        ] {
+        for (others, until, end) in
+            [(&cabinet(5.0, 9.5)[..], 9.0, 7.0..9.0), (&in_way, 3.3, 3.4 - FREE_AHEAD..f64::MAX)]
+        {
             let places = sensed(others, until);
             let hidden: Vec<f64> =
                 places.iter().filter(|place| place.2).map(|place| place.0).collect();

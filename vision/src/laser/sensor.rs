@@ -8,7 +8,6 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     clearances::Clearances,
-    grid::Grid,
     matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
     ray_counts::{RayCounts, Rays},
@@ -31,11 +30,9 @@ pub struct LaserSensor {
     frame: Option<Isometry2<f64>>,
     /// Where rays passed and ended, once for each place of the corners of cells; empty before the first scan.
     counts: Vec<RayCounts>,
-    /// The number of views so far.
     views: usize,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
-    /// Where they were taken, in the same order.
     viewpoints: VecDeque<Viewpoint>,
     /// The length of the robot's way, in metres.
     way: f64,
@@ -48,7 +45,6 @@ pub struct LaserSensor {
 /// The local map, and the ways on it.
 #[derive(Clone, Debug)]
 pub struct LocalMap {
-    pub grid: Grid,
     pub clearances: Clearances,
     /// The middle lines of its ways; `None` if the robot has no way.
     pub skeleton: Option<Skeleton>,
@@ -65,13 +61,10 @@ const CORNERS: [Vector2<f64>; 2] = [Vector2::new(0.0, 0.0), Vector2::new(0.5, 0.
 const MARGIN: usize = 3;
 
 impl LaserSensor {
-    #[must_use]
     pub fn new(params: LaserParams) -> Self {
         Self { params, matcher: ScanMatcher::new(params.matching), ..Self::default() }
     }
 
-    /// The map of the last view.
-    #[must_use]
     pub fn map(&self) -> Option<&LocalMap> {
         self.map.as_ref()
     }
@@ -130,14 +123,13 @@ impl PlaceSensor for LaserSensor {
         self.views += 1;
         let mut grid = counts.window(position, side, &params);
         grid.clean(&params);
-        let clearances = Clearances::new(&grid);
-        let skeleton = Skeleton::new(&grid, &clearances, position, &self.params);
-        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &grid, &clearances));
+        let clearances = Clearances::new(grid);
+        let skeleton = Skeleton::new(&clearances, position, &self.params);
+        let ways = skeleton.as_ref().map(|ways| WayGraph::new(ways, &clearances));
         let ways = ways.unwrap_or_default();
         let judge = ArmJudge {
             robot: position,
-            grid: &grid,
-            clearances: &clearances,
+            map: &clearances,
             viewpoints: self.viewpoints.make_contiguous(),
             params: &self.params.arm,
         };
@@ -148,7 +140,7 @@ impl PlaceSensor for LaserSensor {
         } else {
             places.clone()
         };
-        self.map = Some(LocalMap { grid, clearances, skeleton, graph });
+        self.map = Some(LocalMap { clearances, skeleton, graph });
         Some(PlaceView {
             robot,
             odometry_from_map: (self.matcher.correction() * frame).inverse(),
@@ -161,11 +153,10 @@ impl PlaceSensor for LaserSensor {
 
     fn sight(&self, from: Point2<f64>, direction: f64, limit: f64) -> f64 {
         let map = self.map.as_ref();
-        map.map_or(0.0, |map| map.clearances.sight(&map.grid, from, direction, limit).0)
+        map.map_or(0.0, |map| map.clearances.sight(from, direction, limit).0)
     }
 }
 
-/// The rays of a scan.
 fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
     let map_from_robot = from_robot(robot);
     let mut rays = Rays { from: map_from_robot * scan.scanner(), ..Rays::default() };
@@ -204,19 +195,14 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
             continue;
         }
         let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
-        let [before, Some(one), Some(two), after] = four else { continue };
+        let [Some(before), Some(one), Some(two), Some(after)] = four else { continue };
         let gap = distance(one, two);
-        let on_line = |line: Option<Point2<f64>>, from, to, range: f64| {
-            let met = met(rays.from, to, line?, from)?;
-            Some((met - range).abs() < 0.3 * gap.max(0.3))
+        let on_line = |line: [Point2<f64>; 2], towards: Point2<f64>, range: f64| {
+            met(rays.from, towards, line)
+                .is_some_and(|met| (met - range).abs() < 0.3 * gap.max(0.3))
         };
-        let straight = on_line(before, one, two, other).unwrap_or(false)
-            || on_line(after, two, one, range).unwrap_or(false);
-        if (params.cell..=params.bridge).contains(&gap)
-            && before.is_some()
-            && after.is_some()
-            && straight
-        {
+        let is_straight = on_line([before, one], two, other) || on_line([after, two], one, range);
+        if (params.cell..=params.bridge).contains(&gap) && is_straight {
             rays.walls.push([one, two]);
         }
     }
@@ -224,12 +210,7 @@ fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
 }
 
 /// The range at which the ray from one point towards another meets the line through two points.
-fn met(
-    from: Point2<f64>,
-    towards: Point2<f64>,
-    one: Point2<f64>,
-    other: Point2<f64>,
-) -> Option<f64> {
+fn met(from: Point2<f64>, towards: Point2<f64>, [one, other]: [Point2<f64>; 2]) -> Option<f64> {
     let (ray, line) = ((towards - from).normalize(), other - one);
     let met = (one - from).perp(&line) / ray.perp(&line);
     (met.is_finite() && met > 0.0).then_some(met)
@@ -252,7 +233,7 @@ mod tests {
     fn cells(scan: &Scan, points: &[Point2<f64>]) -> Vec<Cell> {
         let mut sensor = LaserSensor::new(LaserParams::default());
         assert!(sensor.view(scan, &Odometry::default()).is_some());
-        let grid = &sensor.map().unwrap().grid;
+        let grid = &sensor.map().unwrap().clearances.grid;
         points.iter().map(|&point| grid.cells[grid.index(point).unwrap()]).collect()
     }
 

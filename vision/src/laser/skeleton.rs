@@ -16,28 +16,22 @@ use super::{
 pub struct Skeleton {
     /// Whether each cell belongs to it.
     pub cells: Vec<bool>,
-    /// Where ways end.
     pub ends: Vec<End>,
 }
 
 impl Skeleton {
     /// The skeleton of the ways from a robot at a point; `None` if there is none.
-    pub(super) fn new(
-        grid: &Grid,
-        clearances: &Clearances,
-        robot: Point2<f64>,
-        params: &LaserParams,
-    ) -> Option<Self> {
+    pub(super) fn new(map: &Clearances, robot: Point2<f64>, params: &LaserParams) -> Option<Self> {
+        let grid = &map.grid;
         let radius = params.map.min_width / 2.0 / grid.cell;
-        let is_way = |at: usize| {
-            grid.cells[at] == Cell::Free && f64::from(clearances.wall[at]) >= radius * radius
-        };
+        let is_way =
+            |at: usize| grid.cells[at] == Cell::Free && f64::from(map.wall[at]) >= radius * radius;
         let mut cells: Vec<bool> = (0..grid.cells.len()).map(is_way).collect();
         let start = nearest(&cells, grid, robot, params.map.beside_robot)?;
         let lengths = way_lengths(&mut cells, grid, start);
         let ways: Vec<usize> = (0..cells.len()).filter(|&at| cells[at]).collect();
-        let ends = ends(&ways, &lengths, clearances, grid, params);
-        thin(&mut cells, &ways, clearances, &ends, grid);
+        let ends = ends(&ways, &lengths, map, params);
+        thin(&mut cells, &ways, &ends, map);
         Some(Self { cells, ends })
     }
 }
@@ -54,14 +48,14 @@ fn nearest(set: &[bool], grid: &Grid, point: Point2<f64>, within: f64) -> Option
 }
 
 /// Removes cells whose removal does not change the topology, those nearest to a wall or to the unknown first.
-fn thin(cells: &mut [bool], ways: &[usize], clearances: &Clearances, ends: &[End], grid: &Grid) {
+fn thin(cells: &mut [bool], ways: &[usize], ends: &[End], map: &Clearances) {
     let is_end = |at: usize| ends.iter().any(|end| end.cell == at);
     let mut left = ways.to_vec();
-    left.sort_by_key(|&at| clearances.border[at]);
+    left.sort_by_key(|&at| map.border[at]);
     loop {
         let before = left.len();
         left.retain(|&at| {
-            let keep = !is_simple(cells, at, grid) || is_end(at);
+            let keep = !is_simple(cells, at, &map.grid) || is_end(at);
             cells[at] = keep;
             keep
         });

@@ -6,12 +6,11 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
     clearances::Clearances,
-    grid::{Cell, Grid},
+    grid::Cell,
     scan::{Reading, Scan},
 };
 use crate::geometry::{direction, distance, from_robot, unit};
 
-/// Where a scan was taken, and the sector that it covers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Viewpoint {
     /// The place of the scanner, in metres in the frame of the local map.
@@ -24,7 +23,6 @@ pub(super) struct Viewpoint {
     blind: Vec<bool>,
     /// The angle from one ray to the next, in radians.
     step: f64,
-    /// The range of the scanner, in metres.
     range: f64,
 }
 
@@ -63,12 +61,12 @@ impl Viewpoint {
 
     /// Whether the scan looked at a point. What is unknown hides nothing: a surface that reflects no ray back may be
     /// why it is unknown.
-    pub(super) fn look(&self, point: Point2<f64>, grid: &Grid, clearances: &Clearances) -> Look {
+    pub(super) fn look(&self, point: Point2<f64>, map: &Clearances) -> Look {
         let off = distance(self.point, point);
         // Farther away, rays are wider apart than cells.
-        let range = FARTHEST.min(self.range).min(grid.cell / self.step);
+        let range = FARTHEST.min(self.range).min(map.grid.cell / self.step);
         let towards = direction(self.point, point);
-        if off > range || is_wall_within(off - grid.cell, self.point, towards, grid, clearances) {
+        if off > range || is_wall_within(off - map.grid.cell, self.point, towards, map) {
             return Look::Hidden;
         }
         let ray = ((wrapped(towards - self.middle) + self.half) / self.step).round();
@@ -77,37 +75,26 @@ impl Viewpoint {
     }
 
     /// How far a point lies beyond the edge of the sector, in radians, if nothing hides it from here.
-    pub(super) fn turn_to(
-        &self,
-        point: Point2<f64>,
-        grid: &Grid,
-        clearances: &Clearances,
-    ) -> Option<f64> {
+    pub(super) fn turn_to(&self, point: Point2<f64>, map: &Clearances) -> Option<f64> {
         let towards = direction(self.point, point);
         let turn = wrapped(towards - self.middle).abs() - self.half;
         let range = distance(self.point, point);
-        let is_free = || clearances.sight(grid, self.point, towards, range).0 >= range - grid.cell;
+        let is_free = || map.sight(self.point, towards, range).0 >= range - map.grid.cell;
         (turn > 0.0 && is_free()).then_some(turn)
     }
 }
 
 /// Whether there is a wall on the map within so many metres of a point in a direction.
-fn is_wall_within(
-    length: f64,
-    from: Point2<f64>,
-    direction: f64,
-    grid: &Grid,
-    clearances: &Clearances,
-) -> bool {
+fn is_wall_within(length: f64, from: Point2<f64>, direction: f64, map: &Clearances) -> bool {
     let ray = unit(direction);
     let mut at = 0.0;
     while at < length {
-        let (free, cell) = clearances.sight(grid, from + at * ray, direction, length - at);
+        let (free, cell) = map.sight(from + at * ray, direction, length - at);
         at += free;
         if cell == Cell::Occupied {
             return at < length;
         }
-        at += grid.cell / 2.0;
+        at += map.grid.cell / 2.0;
     }
     false
 }
@@ -117,6 +104,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_4;
 
     use super::*;
+    use crate::laser::grid::Grid;
 
     /// The viewpoint of a robot that looks east, with so many readings, from the middle of a free square of 10 m.
     fn viewpoint(readings: u16, range: impl Fn(f64) -> f64) -> (Viewpoint, Grid) {
@@ -130,7 +118,7 @@ mod tests {
     #[test]
     fn what_is_behind_the_edge_of_the_sector_is_beyond_it_unless_it_is_hidden() {
         let turn_to = |viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid| {
-            viewpoint.turn_to(point.into(), grid, &Clearances::new(grid))
+            viewpoint.turn_to(point.into(), &Clearances::new(grid.clone()))
         };
         let (half, mut grid) = viewpoint(181, |_| 1.0);
         assert_eq!(turn_to(&half, [6.05, 6.05], &grid), None, "ahead");
@@ -149,7 +137,7 @@ mod tests {
     fn a_scan_looks_at_what_is_in_its_sector_and_neither_behind_a_wall_nor_too_far_away() {
         let (viewpoint, mut grid) = viewpoint(181, |_| 1.0);
         let look = |viewpoint: &Viewpoint, point: [f64; 2], grid: &Grid| {
-            viewpoint.look(point.into(), grid, &Clearances::new(grid))
+            viewpoint.look(point.into(), &Clearances::new(grid.clone()))
         };
         let ahead = [8.05, 5.05];
         assert_eq!(look(&viewpoint, ahead, &grid), Look::At);
@@ -173,7 +161,7 @@ mod tests {
                 |bearing: f64| invalid.contains(&((bearing.to_degrees() + 90.0).round() as i32));
             let range = |bearing| if is_invalid(bearing) { 0.0 } else { f64::INFINITY };
             let (viewpoint, grid) = viewpoint(181, range);
-            let look = viewpoint.look([8.05, 5.05].into(), &grid, &Clearances::new(&grid));
+            let look = viewpoint.look([8.05, 5.05].into(), &Clearances::new(grid));
             assert_eq!(look, expected);
         }
     }

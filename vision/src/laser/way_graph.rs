@@ -14,7 +14,7 @@ use super::{
     skeleton::Skeleton,
     viewpoint::{Look, Viewpoint},
 };
-use crate::geometry::distance;
+use crate::{geometry::distance, least_squares::median};
 
 /// A meet point, or the end of a way. Lengths are in metres on the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,6 @@ pub struct WayNode {
     pub end: Option<End>,
 }
 
-/// A way between two nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
     pub nodes: [usize; 2],
@@ -70,9 +69,7 @@ enum ArmStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ArmJudge<'a> {
     pub robot: Point2<f64>,
-    pub grid: &'a Grid,
-    pub clearances: &'a Clearances,
-    /// Where the scans were taken.
+    pub map: &'a Clearances,
     pub viewpoints: &'a [Viewpoint],
     pub params: &'a ArmParams,
 }
@@ -92,8 +89,8 @@ struct UnseenBorder {
 
 impl ArmJudge<'_> {
     fn unseen_border(&self, end: Point2<f64>) -> UnseenBorder {
-        let Self { grid, clearances, params, .. } = *self;
-        let is_border = |&at: &usize| clearances.is_unknown_border(grid, at);
+        let (grid, params) = (&self.map.grid, self.params);
+        let is_border = |&at: &usize| self.map.is_unknown_border(at);
         let mut unseen = UnseenBorder::default();
         for at in grid.cells_near(end, params.border_near).filter(is_border) {
             let direct = grid.neighbours(at).into_iter().skip(1).step_by(2);
@@ -111,7 +108,7 @@ impl ArmJudge<'_> {
     fn look(&self, point: Point2<f64>) -> Look {
         let (mut at, mut aside) = (0, false);
         for viewpoint in self.viewpoints {
-            match viewpoint.look(point, self.grid, self.clearances) {
+            match viewpoint.look(point, self.map) {
                 Look::At => at += 1,
                 Look::Aside => aside = true,
                 Look::Hidden => {}
@@ -131,9 +128,9 @@ fn length(line: &[(Point2<f64>, f64)]) -> f64 {
 }
 
 impl WayGraph {
-    #[must_use]
-    pub fn new(skeleton: &Skeleton, grid: &Grid, clearances: &Clearances) -> Self {
-        let clearance = |at: usize| f64::from(clearances.wall[at]).sqrt() * grid.cell;
+    pub fn new(skeleton: &Skeleton, map: &Clearances) -> Self {
+        let grid = &map.grid;
+        let clearance = |at: usize| f64::from(map.wall[at]).sqrt() * grid.cell;
         let on_line = |at: usize| (grid.point(at), clearance(at));
         let mut nodes = Vec::new();
         let mut node_at = BTreeMap::new();
@@ -168,7 +165,6 @@ impl WayGraph {
     }
 
     /// The indices of the ways at a node; a loop is there twice.
-    #[must_use]
     pub fn at(&self, node: usize) -> Vec<usize> {
         let ends = |(index, way): (usize, &Way)| way.nodes.map(|end| (end, index));
         let all = self.ways.iter().enumerate().flat_map(ends);
@@ -237,7 +233,7 @@ impl WayGraph {
         let Some(way) = self.ways.iter().position(is_alcove) else { return false };
         let Way { nodes: [node, _], length, .. } = self.ways.swap_remove(way);
         degrees[node] = 1;
-        let cell = judge.grid.index(self.nodes[node].point).unwrap_or_default();
+        let cell = judge.map.grid.index(self.nodes[node].point).unwrap_or_default();
         self.nodes[node].end =
             Some(End { cell, kind: WayEnd::Closed, gap: 0.0, beyond: length / 2.0 });
         true
@@ -254,7 +250,7 @@ impl WayGraph {
 
     /// Whether a way from a meet point to an end is an arm, and no alcove.
     fn arm_status(&self, way: usize, [meet, leaf]: [usize; 2], judge: &ArmJudge<'_>) -> ArmStatus {
-        let ArmJudge { robot, grid, clearances, viewpoints, params } = *judge;
+        let ArmJudge { robot, map, viewpoints, params } = *judge;
         let way = &self.ways[way];
         let (meet_node, leaf, meet) = (meet, &self.nodes[leaf], &self.nodes[meet]);
         let Some(end) = leaf.end else { return ArmStatus::Certain };
@@ -273,7 +269,6 @@ impl WayGraph {
             return ArmStatus::None;
         }
         let way = way.clone().from_node(meet_node);
-        let map = (grid, clearances);
         let ArmView::Near { depth, walled } =
             ArmView::new(&way.line, (meet.point, meet.clearance), map, params.sight)
         else {
@@ -282,18 +277,13 @@ impl WayGraph {
         if end.kind == WayEnd::Closed {
             return ArmStatus::None;
         }
-        let mut widths: Vec<f64> = way
-            .line
-            .iter()
-            .filter(|(point, _)| {
-                distance(*point, meet.point) > meet.clearance
-                    && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
-            })
-            .map(|&(_, clearance)| 2.0 * clearance)
-            .collect();
-        widths.sort_by(f64::total_cmp);
-        let width = widths.get(widths.len() / 2).copied().unwrap_or(2.0 * leaf.clearance);
-        let widest = widths.last().copied().unwrap_or(width);
+        let is_between = |(point, _): &&(Point2<f64>, f64)| {
+            distance(*point, meet.point) > meet.clearance
+                && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
+        };
+        let widths = way.line.iter().filter(is_between).map(|&(_, clearance)| 2.0 * clearance);
+        let width = median(widths.clone()).unwrap_or(2.0 * leaf.clearance);
+        let widest = widths.fold(width, f64::max);
         let [less, more] = walled;
         let is_walled = more >= params.min_wall || less >= params.min_walls;
         let is_arm = depth >= params.min_sight
@@ -303,7 +293,7 @@ impl WayGraph {
             && widest <= params.max_width
             && (params.min_gap..=params.max_gap).contains(&(end.gap / width));
         let is_unseen = || {
-            let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, grid, clearances);
+            let turn = |viewpoint: &Viewpoint| viewpoint.turn_to(leaf.point, map);
             viewpoints.iter().filter_map(turn).any(|turn| turn >= params.unseen_turn)
         };
         if is_arm {
@@ -415,11 +405,10 @@ mod tests {
     fn degrees(viewpoints: &[Viewpoint], counted: CountedArms, grid: &Grid) -> Vec<usize> {
         let robot = Point2::new(10.0, 2.4);
         let params = LaserParams::default();
-        let clearances = Clearances::new(grid);
-        let skeleton = Skeleton::new(grid, &clearances, robot, &params).unwrap();
-        let judge =
-            ArmJudge { robot, grid, clearances: &clearances, viewpoints, params: &params.arm };
-        let ways = WayGraph::new(&skeleton, grid, &clearances);
+        let map = Clearances::new(grid.clone());
+        let skeleton = Skeleton::new(&map, robot, &params).unwrap();
+        let judge = ArmJudge { robot, map: &map, viewpoints, params: &params.arm };
+        let ways = WayGraph::new(&skeleton, &map);
         let (graph, _) = ways.pruned(&judge, counted);
         graph.places(&params).iter().map(|place| place.arms.len()).collect()
     }

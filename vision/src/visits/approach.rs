@@ -12,23 +12,15 @@ use toposlam_model::driving::{
 use super::visit::{UndecidedCause, Visit, VisitExit, VisitLog};
 use crate::{
     geometry::{distance, unit},
-    params,
     place::{PlaceArm, PlaceView, SeenPlace, nearest_direction},
 };
 
-params! {
-    /// Visits by the scenes of a camera.
-    ApproachParams {
-        /// A junction is visited if its turning point comes this near, in metres.
-        near: f64 = 0.3,
-        /// A turning point this far from the last one is of another junction, in metres.
-        another: f64 = 1.5,
-        /// A robot this far from the turning point has left the junction, in metres. Nearer, a hallway is ignored.
-        away: f64 = 0.6,
-    }
-}
-
-const PARAMS: ApproachParams = ApproachParams::DEFAULT;
+/// A junction is visited if its turning point comes this near, in metres.
+pub const APPROACH_RANGE: f64 = 0.3;
+/// A turning point this far from the last one is of another junction, in metres.
+const ANOTHER: f64 = 1.5;
+/// A robot this far from the turning point has left the junction, in metres. Nearer, a hallway is ignored.
+const AWAY: f64 = 0.6;
 
 #[derive(Clone, Debug)]
 pub(super) struct ApproachRule<S> {
@@ -58,7 +50,7 @@ struct Approach<S> {
     onwards: WayLength,
 }
 
-impl<S: Copy> ApproachRule<S> {
+impl<S: Copy + Default> ApproachRule<S> {
     pub(super) fn new(marked: bool) -> Self {
         let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
         Self { approach: None, seen, hallway: None, way: WayLength::default() }
@@ -73,9 +65,8 @@ impl<S: Copy> ApproachRule<S> {
         match (&scene.place, &view.places[..]) {
             (Place::Hallway(_), _) => self.in_hallway(log, at, scene, &view.robot),
             (Place::Junction(junction), [place]) => {
-                let is_other = |it: &mut Approach<S>| {
-                    distance(it.turning_point, place.centre) > PARAMS.another
-                };
+                let is_other =
+                    |it: &mut Approach<S>| distance(it.turning_point, place.centre) > ANOTHER;
                 if let Some(approach) = self.approach.take_if(is_other) {
                     self.leave(log, at, &approach, view.robot.heading);
                     self.hallway = Some(view.robot.heading);
@@ -182,9 +173,9 @@ impl<S: Copy> ApproachRule<S> {
     }
 }
 
-impl<S: Copy> Approach<S> {
+impl<S: Copy + Default> Approach<S> {
     fn is_visit(&self) -> bool {
-        self.nearest <= PARAMS.near
+        self.nearest <= APPROACH_RANGE
     }
 
     /// Whether a robot in a hallway has left this junction: it is away from it after a visit, has passed it
@@ -193,7 +184,7 @@ impl<S: Copy> Approach<S> {
         let off = Point2::from(robot.position) - self.turning_point;
         let inwards = -off.dot(&unit(self.entry));
         let looks_back = wrapped(robot.heading - self.entry).abs() < FRAC_PI_2;
-        off.norm() >= PARAMS.away && (self.is_visit() || looks_back || inwards >= PARAMS.away)
+        off.norm() >= AWAY && (self.is_visit() || looks_back || inwards >= AWAY)
     }
 
     /// The arms of a shape, clockwise from the entry door.
@@ -207,16 +198,10 @@ impl<S: Copy> Approach<S> {
         Visit {
             at,
             centre: self.turning_point,
-            clearance: 0.0,
-            extent: PARAMS.near,
-            arms: Vec::new(),
+            extent: APPROACH_RANGE,
             least_degree: 1,
-            exit: None,
             doubt: Some(UndecidedCause::Unclear),
-            shape: None,
-            sighting: None,
-            turned_back: Vec::new(),
-            hallway: None,
+            ..Visit::default()
         }
     }
 }

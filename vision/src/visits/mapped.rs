@@ -187,7 +187,6 @@ impl<S: Copy + Default> MappedRule<S> {
         }
     }
 
-    /// A stay that begins now.
     fn begin(&self, kind: StayKind, centre: Point2<f64>, clearance: f64) -> Stay<S> {
         let Now { at, odometry_from_map, .. } = self.now;
         Stay {
@@ -333,17 +332,13 @@ impl<S: Copy + Default> MappedRule<S> {
         let visit = &self.params.visit;
         let is_possible = stay.kind == StayKind::PossibleJunction;
         let seen = self.seen(stay);
-        if let Some(seen) = &seen {
-            let is_bend = matches!(stay.kind, StayKind::Bend { .. });
-            match (stay.kind, seen.doubt) {
-                (StayKind::PossibleJunction, Some(_)) => return None,
-                (_, Some(_)) => return Some(seen.clone()),
-                _ if is_bend && !seen.is_vertex() => return Some(seen.clone()),
-                _ => {}
-            }
-        }
-        if matches!(stay.kind, StayKind::DeadEnd | StayKind::UnseenWay) {
-            return seen;
+        let is_settled = match stay.kind {
+            StayKind::DeadEnd | StayKind::UnseenWay => true,
+            StayKind::Bend { .. } if seen.as_ref().is_some_and(|seen| !seen.is_vertex()) => true,
+            _ => seen.as_ref().is_some_and(|seen| seen.doubt.is_some()),
+        };
+        if is_settled {
+            return seen.filter(|_| !is_possible);
         }
         let doors: Vec<f64> = seen.iter().flat_map(Estimate::doors).collect();
         let possible = self.possible_junctions.at(stay.centre);
@@ -492,9 +487,8 @@ impl<S: Copy + Default> MappedRule<S> {
 
     /// Adds a visit, with its arms clockwise from the entry.
     fn push(&self, log: &mut VisitLog<S>, stay: &Stay<S>, estimate: Estimate, entry: Option<f64>) {
+        let doors: Vec<f64> = estimate.doors().collect();
         let Estimate { mut arms, mut doubt, .. } = estimate;
-        let doors = arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction);
-        let doors: Vec<f64> = doors.collect();
         if let Some((exit, _)) = stay.exit
             && doubt.is_none()
             && !doors.iter().any(|&door| self.is_same(door, exit))
@@ -527,10 +521,7 @@ impl<S: Copy + Default> MappedRule<S> {
             least_degree: if self.params.corner.corners { 1 } else { 3 },
             exit,
             doubt,
-            shape: None,
-            sighting: None,
-            turned_back: Vec::new(),
-            hallway: None,
+            ..Visit::default()
         };
         let centre = visit.centre;
         log.push(visit, |before| Some(distance(before.centre, centre)));

@@ -23,7 +23,7 @@ mod way;
 use toposlam_model::driving::odometry::Odometry;
 
 pub use self::{
-    approach::ApproachParams,
+    approach::APPROACH_RANGE,
     visit::{UndecidedCause, Visit, VisitExit, VisitLog, VisitPercept},
 };
 use self::{approach::ApproachRule, mapped::MappedRule};
@@ -49,7 +49,6 @@ enum VisitRule<S> {
 
 impl<S: Copy + Default> Visits<LaserSensor, S> {
     /// The visits of a robot with a laser scanner.
-    #[must_use]
     pub fn by_laser(params: LaserParams) -> Self {
         let rule = VisitRule::Mapped(Box::new(MappedRule::new(&params)));
         Self { sensor: LaserSensor::new(params), rule, log: VisitLog::default() }
@@ -58,7 +57,6 @@ impl<S: Copy + Default> Visits<LaserSensor, S> {
 
 impl<S: Copy + Default> Visits<SceneSensor, S> {
     /// The visits of a robot with a camera; if it is `marked`, it puts its marker down at its start.
-    #[must_use]
     pub fn by_camera(marked: bool) -> Self {
         let rule = VisitRule::Approach(Box::new(ApproachRule::new(marked)));
         Self { sensor: SceneSensor, rule, log: VisitLog::default() }
@@ -76,14 +74,12 @@ impl<P: PlaceSensor, S: Copy + Default> Visits<P, S> {
         Some(view)
     }
 
-    #[must_use]
     pub fn sensor(&self) -> &P {
         &self.sensor
     }
 
     /// The place in which the robot is now, in the frame of the map: a junction, or what looked like one in some view;
     /// `None` within a corridor. It has no arms if it is none, and possible ones if the views do not decide.
-    #[must_use]
     pub fn status(&self) -> Option<SeenPlace> {
         match &self.rule {
             VisitRule::Approach(rule) => rule.status(),

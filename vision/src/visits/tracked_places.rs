@@ -5,14 +5,12 @@ use toposlam_model::driving::scene::wrapped;
 
 use crate::{geometry::distance, laser::params::VisitParams, place::SeenPlace};
 
-/// The places that were seen lately.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TrackedPlaces {
     params: VisitParams,
     places: Vec<TrackedPlace>,
 }
 
-/// A place in several views.
 #[derive(Clone, Debug)]
 pub(super) struct TrackedPlace {
     /// The mean of its centre, in metres.

@@ -20,10 +20,9 @@ pub struct VisitLog<S> {
 }
 
 /// A robot's stay at a place. Points and directions are in the frame of odometry at that time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Visit<S> {
     pub at: S,
-    /// In metres.
     pub centre: Point2<f64>,
     /// The distance from the centre to the nearest wall, in metres; 0 by a camera.
     pub clearance: f64,
@@ -35,7 +34,6 @@ pub struct Visit<S> {
     pub least_degree: usize,
     /// How the robot left; `None` if the log ends there.
     pub exit: Option<VisitExit<S>>,
-    /// Why it is undecided.
     pub doubt: Option<UndecidedCause>,
     /// `None` if the sensor sees any shape.
     pub shape: Option<JunctionShape>,
@@ -51,7 +49,6 @@ pub struct Visit<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisitExit<S> {
     pub at: S,
-    /// In radians.
     pub direction: f64,
     /// The angle between the door and the direction of the hallway that the robot is in, in radians; `None` if the sensor
     /// does not measure it.
@@ -66,7 +63,6 @@ pub struct VisitPercept {
     pub door: Option<u32>,
 }
 
-/// Why a visit is undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UndecidedCause {
     /// Its images or scans do not show the junction clearly.
@@ -101,7 +97,6 @@ const MOST_POSSIBLE_ARMS: usize = 8;
 
 impl<S> Visit<S> {
     /// The percepts that the views cannot exclude, of which `None` is no junction; empty if nothing is known.
-    #[must_use]
     pub fn alternatives(&self) -> Vec<Option<VisitPercept>> {
         let possible = self.arms.iter().filter(|arm| arm.certainty == Certainty::Possible).count();
         if self.arms.is_empty() || possible > MOST_POSSIBLE_ARMS {
@@ -128,7 +123,6 @@ impl<S> Visit<S> {
     }
 
     /// The percept of the arms that are certain, and the door that was taken.
-    #[must_use]
     pub fn percept(&self) -> VisitPercept {
         self.percept_with(&self.doors())
     }
@@ -139,13 +133,10 @@ impl<S> Visit<S> {
     }
 
     /// The directions of the arms that are certain, clockwise from the entry door.
-    #[must_use]
     pub fn doors(&self) -> Vec<f64> {
         self.arms.iter().filter(|arm| arm.is_certain()).map(|arm| arm.direction).collect()
     }
 
-    /// The direction of the entry door.
-    #[must_use]
     pub fn entry(&self) -> Option<f64> {
         self.arms.first().map(|arm| arm.direction)
     }
@@ -168,10 +159,6 @@ mod tests {
         let arm = |direction, certainty| PlaceArm { direction, certainty };
         let (north, south) = (FRAC_PI_2, -FRAC_PI_2);
         Visit {
-            at: (),
-            centre: Point2::origin(),
-            clearance: 1.0,
-            extent: 1.0,
             arms: vec![
                 arm(PI, Certainty::Certain),
                 arm(north, Certainty::Possible),
@@ -181,10 +168,7 @@ mod tests {
             least_degree,
             exit: Some(VisitExit { at: (), direction: 0.1, off: None }),
             doubt: Some(UndecidedCause::UnseenArm),
-            shape: None,
-            sighting: None,
-            turned_back: Vec::new(),
-            hallway: None,
+            ..Visit::default()
         }
     }
 

@@ -20,11 +20,9 @@ pub(super) struct PassedBend<S> {
     pub arms: [f64; 2],
     /// The length of the robot's way to the bend, in metres.
     pub way: f64,
-    /// When the robot was there.
     pub at: S,
 }
 
-/// Finds the bends of a way.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bends<S> {
     params: CornerParams,

@@ -350,7 +350,7 @@ impl<'w> LaserRobot<'w> {
         }
         let Some(map) = self.visits.sensor().map() else { return false };
         let Some(skeleton) = &map.skeleton else { return false };
-        let ways = WayGraph::new(skeleton, &map.grid, &map.clearances);
+        let ways = WayGraph::new(skeleton, &map.clearances);
         let is_meet = |&node: &usize| ways.at(node).len() >= 3;
         let near = |node: &usize| distance(ways.nodes[*node].point, robot) < ROBOT.opening;
         (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))

@@ -2,7 +2,10 @@
 
 use nalgebra::{Point2, Vector3, distance};
 
-use crate::{camera::scaled_place, least_squares::NormalEquations};
+use crate::{
+    camera::scaled_place,
+    least_squares::{NormalEquations, median},
+};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Circle {
@@ -31,9 +34,8 @@ impl Circle {
     pub(super) fn through(self, places: &[Point2<f64>]) -> Self {
         let mut circle = self;
         for _ in 0..30 {
-            let mut sizes: Vec<f64> = places.iter().map(|&place| circle.off(place).abs()).collect();
-            sizes.sort_by(f64::total_cmp);
-            let Some(median) = sizes.get(sizes.len() / 2) else { return self };
+            let sizes = places.iter().map(|&place| circle.off(place).abs());
+            let Some(median) = median(sizes) else { return self };
             let far = (4.685 * 1.4826 * median).max(0.5);
             let mut equations = NormalEquations::<3>::with_pull(0.0);
             for &place in places {

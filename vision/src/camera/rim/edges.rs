@@ -5,7 +5,15 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Point2, UnitComplex, Vector2};
 
-use super::{RIM, brightness::Brightness, circle::Circle};
+use super::{brightness::Brightness, circle::Circle};
+
+/// On bearings, an edge is the difference between means over this number of half units, inside and outside. Geometry:
+/// the blur of an edge.
+const WIDE: usize = 5;
+/// The least height of an edge. Views: less is noise.
+const LEAST_EDGE: f64 = 3.0;
+/// The radius at which a unit is a pixel. Geometry: the rim in images of 1280 by 960 pixels.
+const UNIT_RADIUS: f64 = 450.0;
 
 /// The number of bearings on which edges are searched for.
 pub(super) const BEARINGS: usize = 1440;
@@ -25,14 +33,14 @@ pub(super) struct CircleEdges {
 }
 
 pub(super) fn unit(circle: &Circle) -> f64 {
-    (circle.radius / RIM.unit_radius).max(1.0)
+    (circle.radius / UNIT_RADIUS).max(1.0)
 }
 
 impl CircleEdges {
     /// On one bearing in `every`, the steepest edge at most `reach` units from a circle.
     pub(super) fn near(image: &Brightness, circle: &Circle, reach: f64, every: usize) -> Self {
         let unit = unit(circle);
-        let steps = (2.0 * reach) as usize + RIM.wide;
+        let steps = (2.0 * reach) as usize + WIDE;
         let (mut edges, mut visible) = (Vec::new(), 0);
         for bearing in (0..BEARINGS).step_by(every) {
             let turn = UnitComplex::new(TAU * bearing as f64 / BEARINGS as f64);
@@ -55,21 +63,20 @@ impl CircleEdges {
                 sum.map(|sum| sum / ARC.len() as f64)
             };
             let profile: Vec<Option<f64>> = (0..=2 * steps).map(ring).collect();
-            visible += usize::from(
-                profile[steps - RIM.wide..=steps + RIM.wide].iter().all(Option::is_some),
-            );
+            visible +=
+                usize::from(profile[steps - WIDE..=steps + WIDE].iter().all(Option::is_some));
             let mean = |from: usize| {
-                let sum: Option<f64> = profile[from..from + RIM.wide].iter().copied().sum();
-                sum.map(|sum| sum / RIM.wide as f64)
+                let sum: Option<f64> = profile[from..from + WIDE].iter().copied().sum();
+                sum.map(|sum| sum / WIDE as f64)
             };
-            let fall = |at: usize| Some(mean(at - RIM.wide)? - mean(at + 1)?);
+            let fall = |at: usize| Some(mean(at - WIDE)? - mean(at + 1)?);
             let height = |at: usize| fall(at).map_or(0.0, f64::abs);
-            let steepest = (RIM.wide..profile.len() - RIM.wide)
+            let steepest = (WIDE..profile.len() - WIDE)
                 .max_by(|&one, &other| height(one).total_cmp(&height(other)));
-            let Some(steepest) = steepest.filter(|&at| height(at) >= RIM.least_edge) else {
+            let Some(steepest) = steepest.filter(|&at| height(at) >= LEAST_EDGE) else {
                 continue;
             };
-            if steepest == RIM.wide || steepest + RIM.wide + 1 == profile.len() {
+            if steepest == WIDE || steepest + WIDE + 1 == profile.len() {
                 continue;
             }
             // Interpolated between the half units: the top of a parabola.

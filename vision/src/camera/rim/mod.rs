@@ -3,6 +3,9 @@
 //! The images are averaged, which leaves little of the scene; the edge may be of either sign. Of a dark ring around
 //! the mirror, the rim is the inner border. No circle is better than a wrong one: the rim must be seen on enough
 //! bearings, no other circle may be seen about as well, and it must stay the same if any part of it is left out.
+//!
+//! Lengths are in pixels. A *unit* is a pixel in a circle of radius 450, and more in a larger one. Brightness is that of
+//! images whose mean is 64.
 
 mod brightness;
 mod circle;
@@ -19,14 +22,41 @@ use brightness::Brightness;
 use circle::Circle;
 use edges::{BEARINGS, CircleEdge, CircleEdges, unit};
 
-use super::params::RimParams;
-use crate::geometry;
+use crate::{geometry, least_squares::median};
+
+/// Edges are searched for up to this many units from a circle, ... Views.
+const REACH: f64 = 8.0;
+/// ... and the steepest one must be within this many. Views.
+const NEAR: f64 = 1.0;
+/// The least part of the full circle that must be seen. Views.
+const LEAST_SEEN: f64 = 0.14;
+/// The least part of the circle in the image that must be seen. Views.
+const LEAST_OF_VISIBLE: f64 = 0.45;
+/// The least part of the edges that must be brighter inside than outside. Views.
+const LEAST_FALLS: f64 = 0.15;
+/// Another circle must have less than this part of the rim's score. Views.
+const LEAD: f64 = 0.6;
+/// Circles that differ by less, as a part of the radius, are the same. Geometry: a calibration allows the rim to be off
+/// by 2 %.
+const SAME: f64 = 0.02;
+/// The greatest change of centre and radius if a part of what is seen is left out, as a part of the radius. Views.
+const CERTAIN: f64 = 0.01;
+/// The number of parts of which each is left out once. Views.
+const PARTS: usize = 8;
+/// The number of directions in which other circles that share an arc are tried. Views.
+const SIDES: usize = 12;
+/// A dark ring around the mirror is at most this part of the outer radius wide. Views.
+const WIDEST_RING: f64 = 0.12;
+/// The inner border of a dark ring is seen on at least this part of the bearings of the outer one. Views.
+const LEAST_INNER: f64 = 0.25;
+/// Smaller differences of brightness are noise. Views.
+const NOISE: f64 = 6.0;
+/// Many circles are compared on one bearing in this many. Views: faster, with the same results.
+const EVERY: usize = 4;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
-    /// Its centre, in pixels.
     pub centre: Point2<f64>,
-    /// Its radius, in pixels.
     pub radius: f64,
     /// The share of the full circle that was seen.
     pub seen: f64,
@@ -58,12 +88,10 @@ pub enum RimError {
     Ambiguous { best: [f64; 3], other: [f64; 3] },
     #[error(
         "the rim is not certain: an edge is seen along {:.0} % of a circle of radius {:.0}, which does \
-         not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * RIM.certain
+         not give its radius within {} %", 100.0 * .seen, .radius, 100.0 * CERTAIN
     )]
     Uncertain { radius: f64, seen: f64 },
 }
-
-const RIM: RimParams = RimParams::DEFAULT;
 
 /// The rim in images of one camera.
 ///
@@ -73,30 +101,30 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     let mean = Brightness::mean(images)?;
     let mut fits: Vec<CircleFit> = search::candidates(&mean)
         .into_iter()
-        .map(|circle| CircleFit::near(&mean, circle))
+        .map(|circle| CircleFit::fitted(&mean, circle, EVERY))
         .collect();
     fits.retain(|fit| fit.is_plausible(&mean));
     fits.sort_by(|one, other| other.score().total_cmp(&one.score()));
     let first = fits.first().ok_or(RimError::NoRim)?.circle;
-    let best = CircleFit::exact(&mean, first);
+    let best = CircleFit::fitted(&mean, first, 1);
     if !best.is_seen() {
         return Err(RimError::NoRim);
     }
     let rim = best.inside_of_ring(&mean).unwrap_or_else(|| best.clone());
-    if rim.falls() < RIM.least_falls {
+    if rim.falls() < LEAST_FALLS {
         return Err(RimError::NoRim);
     }
     let is_ring = rim.circle != best.circle;
     // The inner border of a ring must be seen as well as any rim: dark furniture has an edge, too.
     // Of a narrow ring, both borders are near enough.
-    let is_narrow = rim.circle.is_near(&best.circle, RIM.same);
-    if is_ring && !is_narrow && rim.seen < RIM.least_seen {
+    let is_narrow = rim.circle.is_near(&best.circle, SAME);
+    if is_ring && !is_narrow && rim.seen < LEAST_SEEN {
         return Err(ambiguous(&best.circle, &rim.circle));
     }
     let is_other = |fit: &CircleFit| {
-        !fit.circle.is_near(&rim.circle, RIM.same)
-            && !fit.circle.is_near(&best.circle, RIM.same)
-            && fit.score() > RIM.lead * best.score()
+        !fit.circle.is_near(&rim.circle, SAME)
+            && !fit.circle.is_near(&best.circle, SAME)
+            && fit.score() > LEAD * best.score()
             && !fit.is_outside_of_ring(&mean, &rim.circle)
     };
     if let Some(other) = fits.iter().find(|fit| is_other(fit)) {
@@ -127,9 +155,11 @@ pub fn given(images: &[GrayImage], centre: Point2<f64>, radius: f64) -> Result<R
     let circle = Circle { centre, radius };
     // What is given by hand is not exact.
     let near = 0.01 * radius;
-    let edges = CircleEdges::near(&mean, &circle, (near / unit(&circle)).max(RIM.reach), 1);
-    let seen = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
-    Ok(CircleFit::of(circle, seen.collect()).rim())
+    let edges = CircleEdges::near(&mean, &circle, (near / unit(&circle)).max(REACH), 1);
+    let on = edges.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near.max(1.5));
+    let edges: Vec<CircleEdge> = on.collect();
+    let seen = edges.len() as f64 / BEARINGS as f64;
+    Ok(CircleFit { circle, edges, seen, visible: 1.0 }.rim())
 }
 
 #[derive(Clone, Debug)]
@@ -142,20 +172,7 @@ struct CircleFit {
 }
 
 impl CircleFit {
-    fn of(circle: Circle, edges: Vec<CircleEdge>) -> Self {
-        let seen = edges.len() as f64 / BEARINGS as f64;
-        Self { circle, edges, seen, visible: 1.0 }
-    }
-
-    /// The circle through the edges near a circle; on some of the bearings only.
-    fn near(image: &Brightness, circle: Circle) -> Self {
-        Self::fitted(image, circle, RIM.every)
-    }
-
-    fn exact(image: &Brightness, circle: Circle) -> Self {
-        Self::fitted(image, circle, 1)
-    }
-
+    /// The circle through the edges near a circle, on one bearing in `every`.
     fn fitted(image: &Brightness, mut circle: Circle, every: usize) -> Self {
         for reach in [6.0, 4.0, 4.0] {
             let places = CircleEdges::near(image, &circle, reach, every).places();
@@ -164,7 +181,7 @@ impl CircleFit {
         let mut fit = Self::on(image, circle, every);
         // Once more, without the edges that are not on the circle.
         let places: Vec<_> = fit.edges.iter().map(|edge| edge.at).collect();
-        if places.len() >= RIM.parts {
+        if places.len() >= PARTS {
             fit = Self::on(image, circle.through(&places), every);
         }
         fit
@@ -172,8 +189,8 @@ impl CircleFit {
 
     /// A circle and the edges on it, on one bearing in `every`.
     fn on(image: &Brightness, circle: Circle, every: usize) -> Self {
-        let found = CircleEdges::near(image, &circle, RIM.reach, every);
-        let near = RIM.near * unit(&circle);
+        let found = CircleEdges::near(image, &circle, REACH, every);
+        let near = NEAR * unit(&circle);
         let on = found.edges.into_iter().filter(|edge| circle.off(edge.at).abs() < near);
         let edges: Vec<CircleEdge> = on.collect();
         let all = (BEARINGS / every) as f64;
@@ -191,12 +208,12 @@ impl CircleFit {
     }
 
     fn is_seen(&self) -> bool {
-        self.seen >= RIM.least_seen && self.seen >= RIM.least_of_visible * self.visible
+        self.seen >= LEAST_SEEN && self.seen >= LEAST_OF_VISIBLE * self.visible
     }
 
     /// How well it is seen: on many bearings, and on most of those on which it is in the image.
     fn score(&self) -> f64 {
-        self.seen * self.seen / self.visible.max(RIM.least_seen)
+        self.seen * self.seen / self.visible.max(LEAST_SEEN)
     }
 
     /// The part of its edges that are brighter inside than outside.
@@ -211,21 +228,16 @@ impl CircleFit {
     fn inside_of_ring(&self, image: &Brightness) -> Option<Self> {
         let outer = self.circle.radius;
         let widths =
-            (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= RIM.widest_ring);
+            (1..).map(|step| f64::from(step) * 0.004).take_while(|&part| part <= WIDEST_RING);
         let inner = widths.filter_map(|part| {
             let circle = Circle { radius: outer * (1.0 - part), ..self.circle };
-            let edges = CircleEdges::near(image, &circle, 3.0, RIM.every).edges;
-            let mut off: Vec<f64> = edges
-                .iter()
-                .filter(|edge| edge.fall > 0.0)
-                .map(|edge| circle.off(edge.at))
-                .collect();
-            off.sort_by(f64::total_cmp);
-            let radius = circle.radius + off.get(off.len() / 2)?;
-            let fit = Self::on(image, Circle { radius, ..circle }, RIM.every);
+            let edges = CircleEdges::near(image, &circle, 3.0, EVERY).edges;
+            let falls = edges.iter().filter(|edge| edge.fall > 0.0);
+            let radius = circle.radius + median(falls.map(|edge| circle.off(edge.at)))?;
+            let fit = Self::on(image, Circle { radius, ..circle }, EVERY);
             let apart = outer - radius > 4.0 * unit(&circle);
             let is_inner = apart
-                && fit.seen >= RIM.least_inner * self.seen
+                && fit.seen >= LEAST_INNER * self.seen
                 && fit.falls() >= 0.6
                 && is_dark_between(image, &fit.circle, &self.circle);
             is_inner.then_some(fit)
@@ -237,9 +249,9 @@ impl CircleFit {
     /// Whether this is the outer border of a dark ring around a circle.
     fn is_outside_of_ring(&self, image: &Brightness, inner: &Circle) -> bool {
         let width = self.circle.radius - inner.radius;
-        distance(&self.circle.centre, &inner.centre) <= RIM.same * inner.radius
+        distance(&self.circle.centre, &inner.centre) <= SAME * inner.radius
             && width > 0.0
-            && width <= RIM.widest_ring * self.circle.radius
+            && width <= WIDEST_RING * self.circle.radius
             && is_dark_between(image, inner, &self.circle)
     }
 
@@ -248,19 +260,15 @@ impl CircleFit {
     fn beside(&self, image: &Brightness) -> Vec<Self> {
         let Circle { centre, radius } = self.circle;
         let mut fits = Vec::new();
-        for side in 0..RIM.sides {
-            let towards = geometry::unit(TAU * side as f64 / RIM.sides as f64);
+        for side in 0..SIDES {
+            let towards = geometry::unit(TAU * side as f64 / SIDES as f64);
             for step in 1..=6 {
                 for sign in [-1.0, 1.0] {
                     // Half of the difference between the borders, and the same arc on this side.
                     let shift = 0.01 * f64::from(step) * radius * sign;
                     let centre = centre - shift * towards;
                     let circle = Circle { centre, radius: radius + shift };
-                    fits.push(Self::on(
-                        image,
-                        Self::fitted(image, circle, RIM.every).circle,
-                        RIM.every,
-                    ));
+                    fits.push(Self::on(image, Self::fitted(image, circle, EVERY).circle, EVERY));
                 }
             }
         }
@@ -270,11 +278,11 @@ impl CircleFit {
     /// Whether centre and radius stay the same if any part of the edges is left out.
     fn is_certain(&self) -> bool {
         let count = self.edges.len();
-        (0..RIM.parts).all(|part| {
-            let (from, to) = (part * count / RIM.parts, (part + 1) * count / RIM.parts);
+        (0..PARTS).all(|part| {
+            let (from, to) = (part * count / PARTS, (part + 1) * count / PARTS);
             let rest = self.edges[..from].iter().chain(&self.edges[to..]);
             let places: Vec<_> = rest.map(|edge| edge.at).collect();
-            self.circle.through(&places).is_near(&self.circle, RIM.certain)
+            self.circle.through(&places).is_near(&self.circle, CERTAIN)
         })
     }
 
@@ -295,19 +303,18 @@ impl CircleFit {
 /// dark, and not brighter than what is outside of it.
 fn is_dark_between(image: &Brightness, inner: &Circle, outer: &Circle) -> bool {
     let (mut rings, mut darker) = (Vec::new(), 0_usize);
-    for bearing in (0..BEARINGS).step_by(RIM.every) {
+    for bearing in (0..BEARINGS).step_by(EVERY) {
         let towards = geometry::unit(TAU * bearing as f64 / BEARINGS as f64);
         let at = |radius: f64| image.at(outer.centre + radius * towards);
         let width = outer.radius - inner.radius;
         let samples = [0.5, 1.5].map(|part| at(inner.radius + part * width));
         if let [Some(ring), Some(outside)] = samples {
             rings.push(ring);
-            darker += usize::from(ring < outside + RIM.noise);
+            darker += usize::from(ring < outside + NOISE);
         }
     }
-    rings.sort_by(f64::total_cmp);
-    let median = rings.get(rings.len() / 2).copied().unwrap_or_default();
-    let even = |ring: &&f64| (**ring - median).abs() < RIM.noise + 0.25 * median;
+    let median = median(rings.iter().copied()).unwrap_or_default();
+    let even = |ring: &&f64| (**ring - median).abs() < NOISE + 0.25 * median;
     let most = |count: usize| count as f64 > 0.75 * rings.len() as f64;
     most(darker) && most(rings.iter().filter(even).count())
 }

@@ -7,8 +7,21 @@ use std::{f64::consts::TAU, sync::LazyLock};
 
 use nalgebra::{Point2, Vector2};
 
-use super::{RIM, brightness::Brightness, circle::Circle};
+use super::{brightness::Brightness, circle::Circle};
 use crate::geometry::unit;
+
+/// The longest side of the image in which all circles are compared. Geometry: time grows with its third power.
+const COARSE: usize = 160;
+/// The number of circles of that image that are followed in larger ones. Views.
+const FOLLOWED: usize = 40;
+/// The number of circles that are then fitted. Views.
+const KEPT: usize = 20;
+/// The greatest difference of brightness that counts, over two pixels. Views.
+const STEEP: f32 = 24.0;
+/// Edges of this height count half. Views.
+const HALF: f32 = 6.0;
+/// The least part of a circle that must be in the image. Geometry.
+const LEAST_INSIDE: f32 = 0.2;
 
 /// The number of bearings on which circles of larger images are compared.
 const BEARINGS: usize = 240;
@@ -17,7 +30,7 @@ static DIRECTIONS: LazyLock<[Vector2<f64>; BEARINGS]> =
     LazyLock::new(|| std::array::from_fn(|bearing| unit(TAU * bearing as f64 / BEARINGS as f64)));
 
 pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
-    let mut factor = image.width.max(image.height).div_ceil(RIM.coarse);
+    let mut factor = image.width.max(image.height).div_ceil(COARSE);
     let mut slopes = Slopes::of(&image.shrunk(factor));
     let mut circles = slopes.circles();
     for circle in &mut circles {
@@ -33,7 +46,7 @@ pub(super) fn candidates(image: &Brightness) -> Vec<Circle> {
     }
     circles.sort_by(|one, other| slopes.score(other).total_cmp(&slopes.score(one)));
     circles.dedup_by(|one, other| one.is_near(other, 1e-3));
-    circles.truncate(RIM.kept);
+    circles.truncate(KEPT);
     circles
 }
 
@@ -74,7 +87,7 @@ impl Slopes {
                 let size = right.hypot(down);
                 if size > 2.0 {
                     let fall = [right / size, down / size];
-                    let weights = [size.min(RIM.steep), size / (size + RIM.half)];
+                    let weights = [size.min(STEEP), size / (size + HALF)];
                     edges.push(([u as f32, v as f32], fall, weights));
                 }
             }
@@ -114,7 +127,7 @@ impl Slopes {
                 if !kept.iter().any(is_near) {
                     kept.push(at);
                 }
-                if kept.len() == RIM.followed / 2 {
+                if kept.len() == FOLLOWED / 2 {
                     break;
                 }
             }
@@ -139,7 +152,7 @@ impl Slopes {
             let inside = self.share_inside([u, v], radius);
             let sum: f32 = (radius - 1..=radius + 1).map(&ring).sum();
             // Scaled to the whole circle, but with a preference for whole circles over arcs.
-            if inside < RIM.least_inside { 0.0 } else { sum / (radius as f32 * inside.sqrt()) }
+            if inside < LEAST_INSIDE { 0.0 } else { sum / (radius as f32 * inside.sqrt()) }
         };
         let scores: Vec<f32> = (least..most).map(score).collect();
         for (number, &score) in scores.iter().enumerate() {
@@ -192,7 +205,7 @@ impl Slopes {
             }
             let [right, down] = self.falls[v as usize * self.width + u as usize];
             let fall = (right * out.x as f32 + down * out.y as f32).abs();
-            sum += f64::from(fall / (fall + RIM.half));
+            sum += f64::from(fall / (fall + HALF));
             visible += 1;
         }
         sum / f64::from(visible).max(0.1 * BEARINGS as f64).sqrt()
