@@ -10,9 +10,11 @@ use toposlam_logs::{
     messages,
     reader::Log,
     record::{EventKind, Frame, FrameSensor, SensingError},
-    topic_map::{BoundTopicMap, Role, TopicMap, TopicMapError},
+    topic_map::{BoundTopicMap, Role, TopicMap},
 };
-use toposlam_model::{enumerate::Watch, measurement::MeasurementNoise};
+use toposlam_model::{
+    enumerate::Watch, format::document::DocumentError, measurement::MeasurementNoise,
+};
 use toposlam_robot::measured_hallway::log_noise;
 use toposlam_vision::{
     laser::{
@@ -34,7 +36,6 @@ use super::{
     visit_events::visit_events,
 };
 
-/// The source of events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Evidence {
     /// Recorded percepts and doors.
@@ -42,7 +43,6 @@ pub enum Evidence {
     Recorded,
     Scenes,
     Images,
-    /// Laser scans.
     Laser,
 }
 
@@ -57,7 +57,6 @@ pub struct ExtractConfig<'s> {
     pub laser: LaserParams,
 }
 
-/// The events of a log.
 #[derive(Clone, Debug, Default)]
 pub struct ExtractedRun {
     pub events: RunEvents,
@@ -92,13 +91,12 @@ pub struct SkippedMessages {
     pub scans_without_odometry: u64,
 }
 
-/// Why events cannot be extracted.
 #[derive(Debug, Error)]
 pub enum ExtractError {
     #[error(transparent)]
     Log(#[from] LogError),
     #[error(transparent)]
-    TopicMap(#[from] TopicMapError),
+    TopicMap(#[from] DocumentError),
     #[error(
         "no topics are known for percepts and doors, nor for scenes, images or laser scans with odometry; \
          `toposlam info` lists the topics"
@@ -107,7 +105,6 @@ pub enum ExtractError {
     /// Images must be sensed without a calibration or colours.
     #[error("its events must be inferred from its images: this needs --calibration and --colours")]
     NoSensor,
-    /// There are laser scans, and no odometry.
     #[error("no odometry is recorded with its {scans} laser scans")]
     NoOdometry { scans: u64 },
     /// An image is not of the calibrated camera.

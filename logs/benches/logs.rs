@@ -1,4 +1,4 @@
-//! Benchmark of log readers: `cargo bench -p toposlam-robot --bench logs`.
+//! Benchmark of log readers: `cargo bench -p toposlam-logs --bench logs`.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -49,32 +49,21 @@ fn read(bencher: Bencher<'_, '_>, messages: u64, data: u32, compression: Option<
     let counted = bencher.counter(ItemsCount::new(messages)).counter(BytesCount::new(log.size()));
     counted.bench(|| {
         let definition = log.topics()[0].definition.as_ref().unwrap();
-        let mut read = 0;
-        for message in log.read_all() {
-            let message = message.unwrap();
-            black_box(decode(definition, &message.bytes).unwrap());
-            read += 1;
-        }
-        assert_eq!(read, messages);
+        let decoded = log.read_all().map(|message| {
+            black_box(decode(definition, &message.unwrap().bytes).unwrap());
+        });
+        assert_eq!(decoded.count() as u64, messages);
     });
 }
 
-#[divan::bench]
-fn small_messages(bencher: Bencher<'_, '_>) {
-    read(bencher, 300_000, 20, None);
+const COMPRESSIONS: [Option<Compression>; 2] = [None, Some(Compression::Zstd)];
+
+#[divan::bench(args = COMPRESSIONS)]
+fn small_messages(bencher: Bencher<'_, '_>, compression: Option<Compression>) {
+    read(bencher, 300_000, 20, compression);
 }
 
-#[divan::bench]
-fn small_messages_by_zstd(bencher: Bencher<'_, '_>) {
-    read(bencher, 300_000, 20, Some(Compression::Zstd));
-}
-
-#[divan::bench]
-fn pictures(bencher: Bencher<'_, '_>) {
-    read(bencher, 1000, 150_000, None);
-}
-
-#[divan::bench]
-fn pictures_by_zstd(bencher: Bencher<'_, '_>) {
-    read(bencher, 1000, 150_000, Some(Compression::Zstd));
+#[divan::bench(args = COMPRESSIONS)]
+fn pictures(bencher: Bencher<'_, '_>, compression: Option<Compression>) {
+    read(bencher, 1000, 150_000, compression);
 }

@@ -325,13 +325,4 @@ mod tests {
         }
         assert_eq!(scene_of(&Scene::default()), None);
     }
-
-    #[test]
-    fn only_minus_one_is_no_marker() {
-        assert_eq!(sighting_of(-1), Ok(Sighting::Nothing));
-        assert_eq!(sighting_of(2), Ok(Sighting::Pointing(percept::Door(2))));
-        for wrong in [-9, -2, i64::MIN, 1 << 32, 99_999_999_999] {
-            assert!(sighting_of(wrong).unwrap_err().starts_with("its marker is "), "{wrong}");
-        }
-    }
 }

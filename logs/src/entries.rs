@@ -106,10 +106,7 @@ impl Entries<'_> {
             return Ok(());
         }
         let Some(value) = topic.decode(&message.bytes) else { return Ok(()) };
-        let value = value.map_err(|error| {
-            let topic = topic.name.clone();
-            file.error(LogErrorKind::Message { number, topic, error: Box::new(error) }, offset)
-        })?;
+        let value = value.map_err(|error| wrong(error.to_string()))?;
         let stamp = stamp(&value, time);
         let since_start = stamp.nanoseconds().saturating_sub(log.start().unwrap_or(0));
         let taken = since_start as f64 / 1e9;
@@ -119,8 +116,8 @@ impl Entries<'_> {
             let frame = Frame { id: number, taken, odometry: self.odometry, ..Frame::default() };
             match (carried.role, &*carried.type_name) {
                 (Role::Scan, "sensor_msgs/LaserScan") => {
-                    let mount =
-                        self.mounts.of(&value.text_at("header.frame_id").unwrap_or_default())?;
+                    let frame_id: String = value.get("header.frame_id").unwrap_or_default();
+                    let mount = self.mounts.of(&frame_id)?;
                     let scan = mount.and_then(|mount| sensor_data::scan_of(&value, &mount));
                     let scan = Some(Arc::new(scan.map_err(wrong)?));
                     self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
@@ -209,7 +206,7 @@ fn is_carmen(topic: &Topic) -> bool {
 }
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
-    let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.stamp_at(path));
+    let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.get(path));
     found.unwrap_or(Stamp::of(time))
 }
 

@@ -1,12 +1,10 @@
 //! Errors in logs, with their offsets.
 
-use std::{fmt, io};
+use std::io;
 
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 use toposlam_model::counts::grouped;
-
-use super::decode::DecodeError;
 
 #[derive(Debug, Error)]
 #[error("{}{cause}", self.place())]
@@ -52,27 +50,6 @@ impl OffsetUnit {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CheckedPart {
-    Chunk,
-    Attachment,
-    /// The data section of an MCAP file: everything before its summary.
-    DataSection,
-    /// The summary section of an MCAP file, with most of the footer.
-    SummarySection,
-}
-
-impl fmt::Display for CheckedPart {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Chunk => "chunk",
-            Self::Attachment => "attachment",
-            Self::DataSection => "data section",
-            Self::SummarySection => "summary section",
-        })
-    }
-}
-
 #[derive(Debug, Error)]
 pub enum LogErrorKind {
     #[error("cannot be read: {0}")]
@@ -97,7 +74,7 @@ pub enum LogErrorKind {
     #[error("the chunk has {found} bytes and claims {claimed}")]
     Size { claimed: u64, found: u64 },
     #[error("the checksum of the {0} is wrong")]
-    Checksum(CheckedPart),
+    Checksum(&'static str),
     #[error("the index counts {indexed} messages, and there are {found}, or on other topics")]
     Count { indexed: u64, found: u64 },
     #[error("the time of a message is outside of the times of its chunk")]
@@ -124,8 +101,6 @@ pub enum LogErrorKind {
     UnknownConnection(u32),
     #[error("a message has an earlier time than its chunk")]
     TooOld,
-    #[error("message {number}, on {topic}: {error}")]
-    Message { number: u64, topic: String, error: Box<DecodeError> },
     #[error("message {number}, on {topic}: {what}")]
     Content { number: u64, topic: String, what: String },
 }
@@ -166,12 +141,6 @@ pub struct Truncation {
 
 fn as_text<S: Serializer>(cause: &TruncationKind, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(cause)
-}
-
-impl Truncation {
-    pub(super) fn at_byte(offset: u64, cause: TruncationKind) -> Self {
-        Self { offset, unit: OffsetUnit::Byte, file: None, cause }
-    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -4,7 +4,7 @@
 //! `apriltag_msgs` has no poses: the pose of a tag is a transform with the stamp of the detection, from the frame
 //! of the camera to that of the tag, which is called `tag36h11:3` for the tag 3 of the family `tag36h11`.
 
-use std::{borrow::Cow, collections::VecDeque};
+use std::collections::VecDeque;
 
 use nalgebra::{Isometry3, Vector3};
 use toposlam_model::driving::odometry::Odometry;
@@ -116,13 +116,12 @@ impl Fiducials {
 
 /// The stamps and the frames of the tags in a message of `apriltag_msgs`.
 fn detected_tags(carried: &Carried, message: &Value<'_>) -> Result<Vec<(Stamp, String)>, String> {
-    let stamp = message.stamp_at("header.stamp");
-    let stamp = stamp.ok_or("it has no `header.stamp`")?;
+    let stamp: Stamp = message.get("header.stamp").ok_or("it has no `header.stamp`")?;
     let mut tags = Vec::new();
     for tag in message.list_at("detections") {
-        let id = tag.at("id").and_then(|id| id.i64()).ok_or("a detection in it has no `id`")?;
-        let family = tag.text_at("family");
-        let name = format!("{}:{id}", family.unwrap_or_default());
+        let id: i64 = tag.get("id").ok_or("a detection in it has no `id`")?;
+        let family: String = tag.get("family").unwrap_or_default();
+        let name = format!("{family}:{id}");
         let wanted = carried.id.as_ref();
         if wanted.is_none_or(|wanted| *wanted == id.to_string() || *wanted == name) {
             tags.push((stamp, carried.frame.as_ref().map_or(name, |frame| frame_name(frame))));
@@ -137,21 +136,20 @@ fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed
     for object in message.list_at("detections") {
         let results = object.list_at("results");
         let score = |result: &Value<'_>| {
-            result.f64_at("hypothesis.score").or(result.f64_at("score")).unwrap_or_default()
+            result.get("hypothesis.score").or(result.get("score")).unwrap_or(0.0)
         };
         let best = results
             .into_iter()
             .reduce(|best, other| if score(&other) > score(&best) { other } else { best });
         let Some(best) = best else { continue };
         let name = ["hypothesis.class_id", "id"].into_iter().find_map(|path| {
-            let name = best.at(path)?;
-            name.text().map(Cow::into_owned).or(name.i64().map(|id| id.to_string()))
+            best.get(path).or_else(|| best.get::<i64>(path).map(|id| id.to_string()))
         });
         if carried.id.is_some() && carried.id != name {
             continue;
         }
-        let frames = [&object, message].map(|value| value.text_at("header.frame_id"));
-        let frame = frames.into_iter().flatten().find(|frame| !frame.is_empty());
+        let frames = [&object, message].map(|value| value.get("header.frame_id"));
+        let frame = frames.into_iter().flatten().find(|frame: &String| !frame.is_empty());
         let pose = pose_at(&best, "pose.pose")?;
         found.push(Placed { frame: frame.unwrap_or_default(), pose });
     }
@@ -159,7 +157,7 @@ fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed
 }
 
 fn posed(message: &Value<'_>) -> Result<Placed, String> {
-    let frame = message.text_at("header.frame_id").unwrap_or_default();
+    let frame = message.get("header.frame_id").unwrap_or_default();
     let nested = message.at("pose.pose").is_some();
     let pose = pose_at(message, if nested { "pose.pose" } else { "pose" })?;
     Ok(Placed { frame, pose })

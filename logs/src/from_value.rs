@@ -3,14 +3,14 @@
 
 use super::{stamp::Stamp, value::Value};
 
-pub(super) trait FieldValue: Sized {
-    fn of(value: &Value<'_>) -> Option<Self>;
+pub(super) trait FromField: Sized {
+    fn from_field(value: &Value<'_>) -> Option<Self>;
 }
 
 macro_rules! fields {
     ($($type:ty: $value:ident => $read:expr;)*) => {$(
-        impl FieldValue for $type {
-            fn of($value: &Value<'_>) -> Option<Self> {
+        impl FromField for $type {
+            fn from_field($value: &Value<'_>) -> Option<Self> {
                 $read
             }
         }
@@ -24,31 +24,19 @@ fields! {
     f64: value => value.f64();
     u64: value => value.u64();
     u32: value => value.u64()?.try_into().ok();
+    i64: value => value.i64();
     i32: value => value.i64()?.try_into().ok();
 }
 
-impl<T: FieldValue> FieldValue for Vec<T> {
-    fn of(value: &Value<'_>) -> Option<Self> {
-        match value {
-            Value::Numbers(numbers) => numbers.iter().map(|value| T::of(&value)).collect(),
-            Value::List(list) => list.iter().map(T::of).collect(),
-            _ => None,
-        }
+impl<T: FromField> FromField for Vec<T> {
+    fn from_field(value: &Value<'_>) -> Option<Self> {
+        value.elements()?.iter().map(T::from_field).collect()
     }
 }
 
-impl<T: FieldValue, const MANY: usize> FieldValue for [T; MANY] {
-    fn of(value: &Value<'_>) -> Option<Self> {
-        Vec::of(value)?.try_into().ok()
-    }
-}
-
-impl Value<'_> {
-    /// The field of a message with this name.
-    pub(super) fn field<T: FieldValue>(&self, name: &str) -> Option<T> {
-        let Value::Struct(made, values) = self else { return None };
-        let (index, _) = made.field(name)?;
-        T::of(values.get(index)?)
+impl<T: FromField, const MANY: usize> FromField for [T; MANY] {
+    fn from_field(value: &Value<'_>) -> Option<Self> {
+        Vec::from_field(value)?.try_into().ok()
     }
 }
 

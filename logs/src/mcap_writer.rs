@@ -72,15 +72,14 @@ impl<W: Write> McapWriter<W> {
         Ok(writer)
     }
 
-    /// Adds a schema and a channel that uses it, both with the same number, counted from 1.
-    pub(super) fn add_channel(&mut self, topic: &str, schema: &Schema<'_>) -> u16 {
+    /// Adds a schema of ROS 2 and a channel that uses it, both with the same number, counted from 1.
+    pub(super) fn add_channel(&mut self, topic: &str, type_name: &str, schema: &str) -> u16 {
         let id = self.counts.len() as u16 + 1;
-        let record = Fields::new().u16(id).text(schema.name).text(schema.encoding);
-        let record = record.text(&schema.text).record(SCHEMA);
+        let record = Fields::new().u16(id).text(type_name).text("ros2msg").text(schema);
+        let record = record.record(SCHEMA);
         self.chunk.records.extend(&record);
         self.schemas.extend(record);
-        let record = Fields::new().u16(id).u16(id).text(topic).text(schema.message_encoding);
-        let record = record.map(&[]).record(CHANNEL);
+        let record = Fields::new().u16(id).u16(id).text(topic).text("cdr").map(&[]).record(CHANNEL);
         self.chunk.records.extend(&record);
         self.channels.extend(record);
         self.counts.insert(id, 0);
@@ -88,11 +87,13 @@ impl<W: Write> McapWriter<W> {
     }
 
     /// Adds a message to the present chunk, at a time in nanoseconds.
-    pub(super) fn add_message(&mut self, channel: u16, sequence: u32, time: u64, body: &[u8]) {
+    pub(super) fn add_message(&mut self, channel: u16, time: u64, body: &[u8]) {
         let chunk = &mut self.chunk;
         let place = chunk.records.len() as u64;
         chunk.messages.entry(channel).or_default().push([time, place]);
-        let head = Fields::new().u16(channel).u32(sequence).u64(time).u64(time).0;
+        let count = self.counts.entry(channel).or_default();
+        let head = Fields::new().u16(channel).u32(*count as u32).u64(time).u64(time).0;
+        *count += 1;
         chunk.records.push(MESSAGE);
         chunk.records.extend((head.len() as u64 + body.len() as u64).to_le_bytes());
         chunk.records.extend(head);
@@ -101,7 +102,6 @@ impl<W: Write> McapWriter<W> {
             let [first, last] = times.unwrap_or([time; 2]);
             *times = Some([first.min(time), last.max(time)]);
         }
-        *self.counts.entry(channel).or_default() += 1;
     }
 
     pub(super) fn write_metadata(
@@ -219,13 +219,6 @@ impl<W: Write> Drop for McapWriter<W> {
     fn drop(&mut self) {
         let _ = self.finish();
     }
-}
-
-pub(super) struct Schema<'a> {
-    pub(super) name: &'a str,
-    pub(super) encoding: &'a str,
-    pub(super) text: String,
-    pub(super) message_encoding: &'a str,
 }
 
 fn compressed(bytes: &[u8]) -> io::Result<Vec<u8>> {

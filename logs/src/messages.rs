@@ -38,10 +38,10 @@ macro_rules! own {
 
             impl FromValue for $name {
                 fn from_value(value: &Value<'_>) -> Result<Self, &'static str> {
-                    let stamp = value.field("stamp").ok_or("stamp")?;
+                    let stamp = value.get("stamp").ok_or("stamp")?;
                     $(
                         let name = stringify!($field).trim_start_matches("r#");
-                        let $field = value.field(name)$(.or(Some($older)))?.ok_or(name)?;
+                        let $field = value.get(name)$(.or(Some($older)))?.ok_or(name)?;
                     )*
                     Ok(Self { stamp, $($field,)* })
                 }

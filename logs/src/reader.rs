@@ -9,7 +9,7 @@ use super::{
         TEXT_HEAD, TextState,
     },
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
-    rosbag2::{self, BagFile},
+    rosbag2,
     skipped_lines::SkippedLines,
     source::Source,
     topic::{Topic, Topics},
@@ -37,17 +37,14 @@ impl Log {
     /// As [`Log::new`].
     pub fn open(path: &Path) -> Result<Self, LogError> {
         if path.is_dir() {
-            let files = rosbag2::open(path)?.into_iter().map(|BagFile { name, path, storage }| {
-                let opened = open(storage, Some(&path));
-                let (source, format, database) =
-                    opened.map_err(|error| LogError { file: Some(name.clone()), ..error })?;
-                let (name, text) = (Some(name), TextState::default());
-                Ok(LogFile { name, format, source, database, text })
-            });
+            let open = |name: String| match open_file(&path.join(&name)) {
+                Ok(file) => Ok(LogFile { name: Some(name), ..file }),
+                Err(error) => Err(LogError { file: Some(name), ..error }),
+            };
+            let files = rosbag2::names(path)?.into_iter().map(open);
             return Self::of_files(files.collect::<Result<_, _>>()?, Format::Folder);
         }
-        let file = File::open(path).map_err(|error| LogErrorKind::from(error).at(0))?;
-        Self::of_file(Box::new(file), Some(path))
+        Self::of_file(open_file(path)?)
     }
 
     /// A log that is in memory.
@@ -67,12 +64,11 @@ impl Log {
     /// Returns an error if the file is not a log, cannot be read, or is damaged. A truncated log is not an
     /// error.
     pub fn new(storage: impl Storage + 'static) -> Result<Self, LogError> {
-        Self::of_file(Box::new(storage), None)
+        Self::of_file(open(Box::new(storage), None)?)
     }
 
-    fn of_file(storage: Box<dyn Storage>, path: Option<&Path>) -> Result<Self, LogError> {
-        let (source, format, database) = open(storage, path)?;
-        let file = LogFile { name: None, format, source, database, text: TextState::default() };
+    fn of_file(file: LogFile) -> Result<Self, LogError> {
+        let format = file.format;
         Self::of_files(vec![file], format)
     }
 
@@ -83,12 +79,13 @@ impl Log {
         let mut indexed = true;
         for (index, file) in files.iter_mut().enumerate() {
             let topics = topics.in_file(index);
-            let scanned = container::scan(file, &mut |record| topics.add_record(record));
-            let (scan, text) = scanned.map_err(|error| file.in_file(error))?;
+            let (scan, text) = container::scan(file, &mut |record| topics.add_record(record))?;
             file.text = text;
             // An index is at the end of its file.
             indexed &= file.format.unit() != OffsetUnit::Line && scan.truncation.is_none();
-            let ended = scan.truncation.map(|end| Truncation { file: file.name.clone(), ..end });
+            let (unit, name) = (file.format.unit(), file.name.clone());
+            let ended = scan.truncation;
+            let ended = ended.map(|(offset, cause)| Truncation { offset, unit, file: name, cause });
             truncation = truncation.or(ended);
             for mut section in scan.sections {
                 section.file = index;
@@ -189,10 +186,12 @@ impl Log {
     }
 }
 
-fn open(
-    storage: Box<dyn Storage>,
-    path: Option<&Path>,
-) -> Result<(Source, Format, Option<Database>), LogError> {
+fn open_file(path: &Path) -> Result<LogFile, LogError> {
+    let file = File::open(path).map_err(|error| LogErrorKind::from(error).at(0))?;
+    open(Box::new(file), Some(path))
+}
+
+fn open(storage: Box<dyn Storage>, path: Option<&Path>) -> Result<LogFile, LogError> {
     let wrong = |cause: LogErrorKind| cause.at(0);
     let source = Source::new(storage).map_err(|error| wrong(error.into()))?;
     let format = format(&source)?;
@@ -203,7 +202,7 @@ fn open(
         Format::Database => Some(Database::open(&source, path).map_err(wrong)?),
         _ => None,
     };
-    Ok((source, format, database))
+    Ok(LogFile { name: None, format, source, database, text: TextState::default() })
 }
 
 fn format(source: &Source) -> Result<Format, LogError> {

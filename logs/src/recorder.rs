@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, io::Write};
 
 use image::codecs::jpeg::JpegEncoder;
+use serde_json::Value;
 use toposlam_vision::{annotate, camera::Camera};
 
 use super::{
@@ -147,18 +148,13 @@ impl<W: Write> RunObserver for Recorder<W> {
     }
 }
 
+/// The fields of a head as texts, without its stamp.
 fn entries(run: &messages::Run) -> BTreeMap<String, String> {
-    let entries = [
-        ("version", run.version.clone()),
-        ("world", run.world.clone()),
-        ("world_hash", run.world_hash.clone()),
-        ("start", run.start.clone()),
-        ("marker", run.marker.clone()),
-        ("seed", run.seed.to_string()),
-        ("calibration", run.calibration.clone()),
-        ("colours", run.colours.clone()),
-        ("command", run.command.clone()),
-        ("algorithm", run.algorithm.clone()),
-    ];
-    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    let Ok(Value::Object(fields)) = serde_json::to_value(run) else { return BTreeMap::new() };
+    let fields = fields.into_iter().filter(|(name, _)| name != "stamp");
+    let entry = |(name, value): (String, Value)| match value {
+        Value::String(text) => (name, text),
+        number => (name, number.to_string()),
+    };
+    fields.map(entry).collect()
 }

@@ -1,19 +1,12 @@
 //! Folders of rosbag2: `metadata.yaml` names the files of a log, in their order.
 
-use std::{
-    fs::{self, File},
-    io,
-    path::{Path, PathBuf},
-};
+use std::{fs, io, path::Path};
 
 use saphyr_parser::{Event, Parser};
 
-use super::{
-    compressed::Storage,
-    error::{LogError, LogErrorKind},
-};
+use super::error::{LogError, LogErrorKind};
 
-pub const METADATA: &str = "metadata.yaml";
+const METADATA: &str = "metadata.yaml";
 
 /// The most files that a log may have.
 const MOST_FILES: usize = 10_000;
@@ -22,35 +15,18 @@ const MOST_FILES: usize = 10_000;
 const ENDINGS: [&str; 2] = [".db3", ".mcap"];
 const COMPRESSED: &str = ".zstd";
 
-pub(super) struct BagFile {
-    pub(super) name: String,
-    pub(super) path: PathBuf,
-    pub(super) storage: Box<dyn Storage>,
-}
-
-/// Opens the files of a folder. Without `metadata.yaml`, which a recorder writes last, these are all files
+/// The names of the files of a folder. Without `metadata.yaml`, which a recorder writes last, these are all files
 /// with a known ending.
-pub(super) fn open(folder: &Path) -> Result<Vec<BagFile>, LogError> {
+pub(super) fn names(folder: &Path) -> Result<Vec<String>, LogError> {
     let unreadable = |error: io::Error| LogErrorKind::from(error).at(0);
-    let names = match fs::read(folder.join(METADATA)) {
-        Ok(bytes) => file_names(&bytes)?,
+    match fs::read(folder.join(METADATA)) {
+        Ok(bytes) => file_names(&bytes),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let found = all_names(folder).map_err(unreadable)?;
-            if found.is_empty() {
-                return Err(LogErrorKind::NoBagFiles.at(0));
-            }
-            found
+            if found.is_empty() { Err(LogErrorKind::NoBagFiles.at(0)) } else { Ok(found) }
         }
-        Err(error) => return Err(in_metadata(unreadable(error))),
-    };
-    let open = |name: String| {
-        let path = folder.join(&name);
-        match File::open(&path) {
-            Ok(file) => Ok(BagFile { name, path, storage: Box::new(file) }),
-            Err(error) => Err(LogError { file: Some(name), ..unreadable(error) }),
-        }
-    };
-    names.into_iter().map(open).collect()
+        Err(error) => Err(in_metadata(unreadable(error))),
+    }
 }
 
 /// The names of the files with a known ending. Numbers in names are compared as numbers.
@@ -81,32 +57,31 @@ pub fn file_names(metadata: &[u8]) -> Result<Vec<String>, LogError> {
     let Ok(text) = std::str::from_utf8(metadata) else {
         return Err(at_line("this is not UTF-8 text".to_owned(), 1));
     };
-    let mut reading = Reading::default();
+    let mut names = Vec::new();
+    // Whether the last word was the key of the list, and how many collections are open in the list.
+    let (mut is_key, mut depth) = (false, 0);
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
             at_line(error.info().replace(char::is_control, " "), error.marker().line())
         })?;
-        let line = span.start.line();
         match event {
-            Event::Scalar(word, ..) => reading.word(&word),
-            Event::MappingStart(..) => reading.begin(true),
-            Event::SequenceStart(..) => reading.begin(false),
-            Event::MappingEnd | Event::SequenceEnd => reading.end(),
-            Event::Alias(_) => {
-                reading.begin(false);
-                reading.end();
-            }
+            Event::SequenceStart(..) if is_key && depth == 0 => depth = 1,
+            Event::SequenceStart(..) | Event::MappingStart(..) if depth > 0 => depth += 1,
+            Event::SequenceEnd | Event::MappingEnd if depth > 0 => depth -= 1,
+            Event::Scalar(ref name, ..) if depth == 1 => names.push(name.to_string()),
             Event::DocumentEnd => break,
             _ => {}
         }
-        if reading.names.len() > MOST_FILES {
-            return Err(at_line(format!("it has more than {MOST_FILES} files"), line));
+        is_key = matches!(event, Event::Scalar(ref word, ..) if word == FILES);
+        if names.len() > MOST_FILES {
+            let what = format!("it has more than {MOST_FILES} files");
+            return Err(at_line(what, span.start.line()));
         }
     }
-    if reading.names.is_empty() {
+    if names.is_empty() {
         return Err(at_line(format!("it has no {FILES}"), 1));
     }
-    reading.names.into_iter().map(|path| base(&path).map_err(|what| at_line(what, 1))).collect()
+    names.iter().map(|path| base(path).map_err(|what| at_line(what, 1))).collect()
 }
 
 fn base(path: &str) -> Result<String, String> {
@@ -126,48 +101,6 @@ fn in_metadata(error: LogError) -> LogError {
 
 const FILES: &str = "relative_file_paths";
 
-#[derive(Default)]
-struct Reading {
-    /// Of each mapping the key that was read last; of each list nothing.
-    path: Vec<Option<Key>>,
-    names: Vec<String>,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Key {
-    None,
-    Files,
-    Other,
-}
-
-impl Reading {
-    fn begin(&mut self, is_mapping: bool) {
-        self.path.push(is_mapping.then_some(Key::None));
-    }
-
-    fn end(&mut self) {
-        self.path.pop();
-        self.value_ended();
-    }
-
-    fn value_ended(&mut self) {
-        if let Some(Some(key)) = self.path.last_mut() {
-            *key = Key::None;
-        }
-    }
-
-    fn word(&mut self, word: &str) {
-        if let Some(Some(key @ Key::None)) = self.path.last_mut() {
-            *key = if word == FILES { Key::Files } else { Key::Other };
-            return;
-        }
-        if matches!(self.path[..], [.., Some(Key::Files), None]) {
-            self.names.push(word.to_owned());
-        }
-        self.value_ended();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,11 +114,8 @@ mod tests {
         let error = |text: &[u8]| file_names(text).unwrap_err().to_string();
         assert_eq!(error(b"a: 1"), "metadata.yaml: line 1: it has no relative_file_paths");
         assert_eq!(error(b"\xff"), "metadata.yaml: line 1: this is not UTF-8 text");
-        assert!(
-            error(b"a: [1\nb: }").starts_with("metadata.yaml: line 2: "),
-            "{}",
-            error(b"a: [1\nb: }")
-        );
+        let syntax = error(b"a: [1\nb: }");
+        assert!(syntax.starts_with("metadata.yaml: line 2: "), "{syntax}");
         assert_eq!(
             error(b"relative_file_paths: [a/..]"),
             "metadata.yaml: line 1: \"a/..\" is not the name of a file"

@@ -72,10 +72,18 @@ pub(super) struct Topics {
     file: usize,
 }
 
+/// A type, the language of its definition, and its definition.
+#[derive(Clone, Default)]
 struct Schema {
     name: String,
     encoding: String,
     text: Vec<u8>,
+}
+
+impl Schema {
+    fn new(name: &[u8], encoding: &[u8], text: &[u8]) -> Self {
+        Self { name: lossy(name), encoding: lossy(encoding), text: text.to_owned() }
+    }
 }
 
 impl Topics {
@@ -95,56 +103,34 @@ impl Topics {
     pub(super) fn add_record(&mut self, record: &Record<'_>) {
         match *record {
             Record::Connection { id, topic, type_name, encoding, schema, definition } => {
-                if !self.connections.contains_key(&(self.file, id)) {
-                    self.add(id, lossy(topic), lossy(type_name), definition, |name, text| {
-                        defined(lossy(encoding), lossy(schema), name, text)
-                    });
-                }
+                let schema = Schema::new(type_name, schema, definition);
+                self.add(id, lossy(topic), lossy(encoding), schema);
             }
             Record::Schema { id, name, encoding, text } => {
-                self.schemas.entry(id).or_insert_with(|| Schema {
-                    name: lossy(name),
-                    encoding: lossy(encoding),
-                    text: text.to_owned(),
-                });
+                self.schemas.entry(id).or_insert_with(|| Schema::new(name, encoding, text));
             }
             Record::Channel { id, schema, topic, encoding } => {
-                if self.connections.contains_key(&(self.file, id.into())) {
-                    return;
-                }
-                let messages = lossy(encoding);
-                let Some(Schema { name, encoding, text }) = self.schemas.get(&schema) else {
-                    self.add(id.into(), lossy(topic), String::new(), &[], |_, _| {
-                        (Encoding::Other(messages), Err(Undecodable::NoSchema))
-                    });
-                    return;
-                };
-                let (name, schema, text) = (name.clone(), encoding.clone(), text.clone());
-                self.add(id.into(), lossy(topic), name, &text, |name, text| {
-                    defined(messages, schema, name, text)
-                });
+                let schema = self.schemas.get(&schema).cloned().unwrap_or_default();
+                self.add(id.into(), lossy(topic), lossy(encoding), schema);
             }
             Record::Message { .. } | Record::Other => {}
         }
     }
 
     /// Connections with the same topic, type and definition share one entry.
-    fn add(
-        &mut self,
-        id: u32,
-        name: String,
-        type_name: String,
-        text: &[u8],
-        read: impl FnOnce(&str, &str) -> (Encoding, Result<Definition, Undecodable>),
-    ) {
+    fn add(&mut self, id: u32, name: String, encoding: String, schema: Schema) {
+        if self.connections.contains_key(&(self.file, id)) {
+            return;
+        }
+        let Schema { name: type_name, encoding: language, text } = schema;
         let mut known = self.list.iter().zip(&self.texts);
         let same = known.position(|(topic, known_text)| {
-            topic.name == name && topic.type_name == type_name && known_text == text
+            topic.name == name && topic.type_name == type_name && *known_text == text
         });
         let index = same.unwrap_or_else(|| {
-            let (encoding, definition) = read(&type_name, &String::from_utf8_lossy(text));
+            let (encoding, definition) = defined(encoding, language, &type_name, &lossy(&text));
             self.list.push(Topic { name, type_name, encoding, definition, messages: 0 });
-            self.texts.push(text.to_owned());
+            self.texts.push(text);
             self.list.len() - 1
         });
         self.connections.insert((self.file, id), index);

@@ -10,14 +10,7 @@ use nalgebra::{Isometry2, Isometry3, UnitQuaternion, Vector3};
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_vision::geometry::angle;
 
-use super::{
-    container::{PlacedRecord, Record},
-    error::LogError,
-    messages::Stamp,
-    reader::Log,
-    standard::Quaternion,
-    value::Value,
-};
+use super::{error::LogError, messages::Stamp, reader::Log, standard::Quaternion, value::Value};
 
 pub(super) const TYPE: &str = "tf2_msgs/TFMessage";
 pub(super) const OLD_TYPE: &str = "tf/tfMessage";
@@ -66,13 +59,13 @@ pub(super) struct FrameTransform {
 /// The transforms in a message, without those that are no rigid transforms.
 pub(super) fn transforms(message: &Value<'_>) -> Vec<FrameTransform> {
     let one = |transform: &Value<'_>| {
-        let part = |name| transform.f64_at(&format!("transform.translation.{name}"));
+        let part = |name| transform.get(&format!("transform.translation.{name}"));
         let translation = [part("x")?, part("y")?, part("z")?];
         let rotation = transform.quaternion_at("transform.rotation", Value::number_at).ok()?;
         Some(FrameTransform {
-            parent: frame_name(&transform.text_at("header.frame_id")?),
-            child: frame_name(&transform.text_at("child_frame_id")?),
-            stamp: transform.stamp_at("header.stamp"),
+            parent: frame_name(&transform.get::<String>("header.frame_id")?),
+            child: frame_name(&transform.get::<String>("child_frame_id")?),
+            stamp: transform.get("header.stamp"),
             parent_from_child: isometry(translation, rotation)?,
         })
     };
@@ -117,26 +110,18 @@ pub(super) struct Mount {
 /// The mounts of the scanners in a log, by their frames.
 pub(super) struct Mounts<'l> {
     log: &'l Log,
-    known: BTreeMap<String, Result<Mount, String>>,
     frames: BTreeMap<String, Result<Isometry3<f64>, String>>,
 }
 
 impl<'l> Mounts<'l> {
     pub(super) fn new(log: &'l Log) -> Self {
-        Self { log, known: BTreeMap::new(), frames: BTreeMap::new() }
+        Self { log, frames: BTreeMap::new() }
     }
 
     /// The mount of the scanner of a frame. In a log without transforms it is that of the robot's centre.
     pub(super) fn of(&mut self, frame: &str) -> Result<Result<Mount, String>, LogError> {
         let frame = frame_name(frame);
-        if let Some(known) = self.known.get(&frame) {
-            return Ok(known.clone());
-        }
-        let found = self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame));
-        if self.known.len() < MOST_FRAMES {
-            self.known.insert(frame, found.clone());
-        }
-        Ok(found)
+        Ok(self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame)))
     }
 
     /// The pose of a frame in that of the robot. In a log without transforms it is that of the robot's centre.
@@ -197,30 +182,17 @@ struct Tree {
 impl Tree {
     /// Adds the transforms on some topics until a frame is connected to the robot; whether it is.
     fn read(&mut self, log: &Log, topics: &[usize], frame: &str) -> Result<bool, LogError> {
-        for (index, section) in log.sections.iter().enumerate() {
-            let Some((_, file)) = log.section(index) else { continue };
-            let topic_of = |id: u32| log.connections.get(&(section.file, id));
-            let wanted = |id: u32| topic_of(id).is_some_and(|topic| topics.contains(topic));
-            if !section.counts.iter().flatten().any(|(id, _)| wanted(*id)) {
+        for message in log.read(topics) {
+            let message = message?;
+            let topic = log.topics().get(message.topic);
+            let Some(Ok(value)) = topic.and_then(|topic| topic.decode(&message.bytes)) else {
                 continue;
+            };
+            for FrameTransform { parent, child, parent_from_child, .. } in transforms(&value) {
+                self.parents.entry(child).or_insert((parent, parent_from_child));
             }
-            let bytes = section.load(file)?;
-            for read in section.records(file, &bytes) {
-                let PlacedRecord { at, record, .. } = read?;
-                let Record::Message { connection, bytes: within, .. } = record else { continue };
-                let topic = topic_of(connection).filter(|topic| topics.contains(topic));
-                let Some(topic) = topic.and_then(|topic| log.topics().get(*topic)) else {
-                    continue;
-                };
-                let message = bytes.get(at + within.start..at + within.end).unwrap_or_default();
-                let Ok(message) = file.message(message.to_vec()) else { continue };
-                let Some(Ok(value)) = topic.decode(&message) else { continue };
-                for FrameTransform { parent, child, parent_from_child, .. } in transforms(&value) {
-                    self.parents.entry(child).or_insert((parent, parent_from_child));
-                }
-                if self.in_base(frame).is_some() {
-                    return Ok(true);
-                }
+            if self.in_base(frame).is_some() {
+                return Ok(true);
             }
         }
         Ok(self.in_base(frame).is_some())

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use super::{
     definition::{FieldType, Struct},
+    from_value::FromField,
     stamp::Stamp,
     standard::Quaternion,
 };
@@ -174,16 +175,9 @@ impl<'a> Value<'a> {
         Some(Stamp { sec: sec? as i32, nanosec: nanosec?.try_into().ok()? })
     }
 
-    pub(super) fn f64_at(&self, path: &str) -> Option<f64> {
-        self.at(path)?.f64()
-    }
-
-    pub(super) fn text_at(&self, path: &str) -> Option<String> {
-        self.at(path)?.text().map(Cow::into_owned)
-    }
-
-    pub(super) fn stamp_at(&self, path: &str) -> Option<Stamp> {
-        self.at(path)?.stamp()
+    /// The value at a path, if it is one of this type.
+    pub(super) fn get<T: FromField>(&self, path: &str) -> Option<T> {
+        T::from_field(&self.at(path)?)
     }
 
     pub(super) fn list_at(&self, path: &str) -> Vec<Value<'a>> {
@@ -191,11 +185,11 @@ impl<'a> Value<'a> {
     }
 
     pub(super) fn number_at(&self, path: &str) -> Result<f64, String> {
-        self.f64_at(path).ok_or_else(|| format!("it has no number `{path}`"))
+        self.get(path).ok_or_else(|| format!("it has no number `{path}`"))
     }
 
     pub(super) fn finite_at(&self, path: &str) -> Result<f64, String> {
-        match self.f64_at(path) {
+        match self.get::<f64>(path) {
             Some(number) if number.is_finite() => Ok(number),
             Some(number) => Err(format!("its `{path}` is {number}")),
             None => Err(format!("it has no `{path}`")),

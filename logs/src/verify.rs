@@ -58,8 +58,7 @@ impl Verifier<'_> {
     fn run(&mut self, watch: &dyn Watch) -> Result<(), LogError> {
         for (index, file) in self.log.files.iter().enumerate() {
             let topics = self.topics.in_file(index);
-            let scanned = container::scan(file, &mut |record| topics.add_record(record));
-            let (scan, _) = scanned.map_err(|error| file.in_file(error))?;
+            let (scan, _) = container::scan(file, &mut |record| topics.add_record(record))?;
             watch.parts(scan.sections.len());
             let before = self.found.messages;
             for mut section in scan.sections {
@@ -130,22 +129,22 @@ impl Verifier<'_> {
     /// The checksums of an MCAP file outside of its chunks, and its statistics.
     fn mcap_end(&mut self, file: &LogFile, before: u64) -> Result<(), LogError> {
         let source = &file.source;
-        let wrong = |error| file.error(LogErrorKind::Unreadable(error), 0);
-        let description = describe(source).map_err(wrong)?;
+        let unreadable = |error| file.error(LogErrorKind::Unreadable(error), 0);
+        let placed = |(cause, offset)| file.error(cause, offset);
+        let description = describe(source).map_err(unreadable)?;
         for checksum in description.checksums {
-            let error = checksum.error(source).map_err(wrong)?;
-            self.found.damage.extend(error.map(|error| file.in_file(error)));
+            let error = checksum.error(source).map_err(unreadable)?;
+            self.found.damage.extend(error.map(placed));
             self.covered.push((self.topics.present_file(), checksum.bytes));
         }
         let whole = self.found.damage.is_empty();
-        let damage = description.damage.into_iter().map(|error| file.in_file(error));
-        self.found.damage.extend(damage);
+        self.found.damage.extend(description.damage.into_iter().map(placed));
         let found = self.found.messages - before;
-        match description.messages {
-            Some((offset, indexed)) if whole && indexed != found => {
-                self.found.damage.push(file.error(LogErrorKind::Count { indexed, found }, offset));
-            }
-            _ => {}
+        if let Some((offset, indexed)) = description.messages
+            && whole
+            && indexed != found
+        {
+            self.found.damage.push(file.error(LogErrorKind::Count { indexed, found }, offset));
         }
         Ok(())
     }

@@ -4,6 +4,11 @@
 //! its last chunk: a chunk is written whole, and holds at most [`CHUNK_TIME`] of messages and, unless
 //! one message is larger, [`CHUNK_BYTES`].
 
+#![expect(
+    clippy::missing_errors_doc,
+    reason = "each function returns an error if the file cannot be written"
+)]
+
 use std::{
     collections::BTreeMap,
     io::{self, Write},
@@ -14,7 +19,7 @@ use cdr::Serializer;
 use thiserror::Error;
 
 use super::{
-    mcap_writer::{McapWriter, Schema},
+    mcap_writer::McapWriter,
     message::{Message, schema},
 };
 
@@ -38,16 +43,11 @@ pub enum LogWriteError {
 /// only a process that is killed leaves a part of one.
 pub struct LogWriter<W: Write> {
     out: McapWriter<W>,
-    topics: BTreeMap<String, Topic>,
+    /// The channels of the topics.
+    topics: BTreeMap<String, u16>,
     /// The present message; its memory serves the next.
     body: Vec<u8>,
     chunk: Option<Chunk>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Topic {
-    channel: u16,
-    sequence: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -58,18 +58,12 @@ struct Chunk {
 
 impl<W: Write> LogWriter<W> {
     /// Begins a log.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be written.
     pub fn new(out: W) -> Result<Self, LogWriteError> {
         let out = McapWriter::new(out, "ros2", "toposlam")?;
         Ok(Self { out, topics: BTreeMap::new(), body: Vec::new(), chunk: None })
     }
 
     /// Writes something that is known of the whole log, under a name.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be written.
     pub fn note(
         &mut self,
         name: &str,
@@ -100,46 +94,31 @@ impl<W: Write> LogWriter<W> {
         {
             self.flush()?;
         }
-        let (channel, sequence) = self.next_of::<M>(topic);
-        self.out.add_message(channel, sequence, time, &self.body);
+        let channel = self.channel::<M>(topic);
+        self.out.add_message(channel, time, &self.body);
         self.chunk.get_or_insert(Chunk { begun: time, bytes: 0 }).bytes += bytes;
         Ok(())
     }
 
     /// Ends the chunk: what was written so far is in the file.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be written.
     pub fn flush(&mut self) -> Result<(), LogWriteError> {
         self.chunk = None;
         Ok(self.out.flush()?)
     }
 
     /// Ends the log.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be written.
     pub fn finish(mut self) -> Result<W, LogWriteError> {
         let closed = || io::Error::other("the log is closed");
         Ok(self.out.finish()?.ok_or_else(closed)?)
     }
 
-    fn next_of<M: Message>(&mut self, topic: &str) -> (u16, u32) {
-        let known = if let Some(known) = self.topics.get_mut(topic) {
-            known
-        } else {
-            let schema = Schema {
-                name: M::TYPE,
-                encoding: "ros2msg",
-                text: schema(M::DEFINITION),
-                message_encoding: "cdr",
-            };
-            let channel = self.out.add_channel(topic, &schema);
-            self.topics.entry(topic.to_owned()).or_insert(Topic { channel, sequence: 0 })
-        };
-        let sequence = known.sequence;
-        known.sequence = sequence.wrapping_add(1);
-        (known.channel, sequence)
+    fn channel<M: Message>(&mut self, topic: &str) -> u16 {
+        if let Some(known) = self.topics.get(topic) {
+            return *known;
+        }
+        let channel = self.out.add_channel(topic, M::TYPE, &schema(M::DEFINITION));
+        self.topics.insert(topic.to_owned(), channel);
+        channel
     }
 }
 
@@ -231,17 +210,16 @@ mod tests {
 
     #[test]
     fn a_chunk_is_full_at_a_mebibyte_and_one_message_may_be_larger() {
-        let image = |bytes| vec![7_u8; bytes];
+        let sizes = [600_000, 500_000, 3_000_000, 1000];
         let file = written(|log| {
-            for bytes in [600_000, 500_000, 3_000_000, 1000] {
-                let data = image(bytes);
+            for bytes in sizes {
+                let data = vec![7; bytes];
                 let image = crate::standard::CompressedImage::new(Stamp::default(), &data);
                 log.write("/camera", 0, &image).unwrap();
             }
         });
-        assert_eq!(Summary::read(&file).unwrap().unwrap().chunk_indexes.len(), 4);
-        let lengths: Vec<_> = bodies(&file).iter().map(Vec::len).collect();
-        assert!(lengths.iter().zip([600_000, 500_000, 3_000_000, 1000]).all(|(&l, n)| l == n + 36));
+        assert_eq!(Summary::read(&file).unwrap().unwrap().chunk_indexes.len(), sizes.len());
+        assert!(bodies(&file).iter().map(Vec::len).eq(sizes.map(|bytes| bytes + 36)));
     }
 
     struct Full(usize);
@@ -268,16 +246,14 @@ mod tests {
             }
             log.finish()
         };
-        let needed = written(|log| {
-            log.note("n", &BTreeMap::new()).unwrap();
-            (0..20).for_each(|t| log.write(Door::TOPIC, t * SECOND, &Door::default()).unwrap());
-        });
-        for bytes in 0..needed.len() {
+        let most = 1 << 20;
+        let needed = most - fill(most).unwrap().0;
+        for bytes in 0..needed {
             let Err(LogWriteError::File(error)) = fill(bytes) else {
                 panic!("{bytes} bytes are enough")
             };
             assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{bytes}");
         }
-        assert!(fill(needed.len()).is_ok());
+        assert!(fill(needed).is_ok());
     }
 }

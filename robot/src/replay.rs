@@ -9,10 +9,11 @@ use toposlam_logs::{
     error::LogError,
     reader::Log,
     record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
-    topic_map::{Role, TopicMap, TopicMapError},
+    topic_map::{Role, TopicMap},
 };
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
+    format::document::DocumentError,
     mapping::{MapWalk, MappingError},
     percept::{Door, Percept},
 };
@@ -84,7 +85,7 @@ pub enum ReplayError {
     #[error(transparent)]
     Log(#[from] LogError),
     #[error(transparent)]
-    TopicMap(#[from] TopicMapError),
+    TopicMap(#[from] DocumentError),
     #[error("the calibration is not that of its camera: {0}")]
     Calibration(#[from] WrongSize),
     #[error("sensing its images needs --calibration and --colours: the log does not have both")]

@@ -9,8 +9,9 @@ use toposlam_logs::{
     reader::Log,
     record::{EventId, EventKind},
     recorder::ANNOTATED,
-    topic_map::{Role, TopicMap, TopicMapError},
+    topic_map::{Role, TopicMap},
 };
+use toposlam_model::format::document::DocumentError;
 use toposlam_vision::{
     annotate,
     camera::{Camera, calibration},
@@ -142,7 +143,7 @@ impl OpenLog {
     }
 
     /// The error for a topic map that does not fit its log.
-    pub(super) fn wrong_topics(&self, log: &Path, error: &TopicMapError) -> CliError {
+    pub(super) fn wrong_topics(&self, log: &Path, error: &DocumentError) -> CliError {
         match &self.options.topics {
             Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
             None => CliError::in_file(log, error),

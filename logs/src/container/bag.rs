@@ -6,9 +6,11 @@
 
 use std::{collections::BTreeMap, ops::Range};
 
-use super::{Compression, FileStructure, Listener, Record, Section, u32_at, u64_at, unreadable};
+use super::{
+    Compression, Failure, FileStructure, Listener, Record, Section, u32_at, u64_at, unreadable,
+};
 use crate::{
-    error::{LogError, LogErrorKind, Truncation, TruncationKind},
+    error::{LogErrorKind, TruncationKind},
     source::{Source, Window},
 };
 
@@ -113,20 +115,16 @@ struct Head {
     chunks: u32,
 }
 
-pub(super) fn scan(
-    source: &Source,
-    listener: &mut Listener<'_>,
-) -> Result<FileStructure, LogError> {
+pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileStructure, Failure> {
     let mut scan = FileStructure::default();
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
     let mut head = None;
     let [mut connections, mut chunks] = [0, 0];
     while at < source.length() {
-        let truncated = |cause| Truncation::at_byte(at, cause);
         // Lengths that go beyond the end of the file.
         let Some((header, body)) = lengths(&mut window, at).map_err(unreadable(at))? else {
-            return Ok(scan.truncated(truncated(TruncationKind::RestOfRecord)));
+            return Ok(scan.truncated(at, TruncationKind::RestOfRecord));
         };
         match read_record(&mut window, at, header, body.clone(), &mut scan, listener) {
             Ok(CONNECTION) if head.as_ref().is_some_and(|head: &Head| at >= head.index) => {
@@ -137,9 +135,9 @@ pub(super) fn scan(
             Ok(_) => {}
             // A recorder that crashed has not written the length of its last chunk.
             Err(LogErrorKind::Malformed(what)) if matches!(head, Some(Head { index: 0, .. })) => {
-                return Ok(scan.truncated(truncated(TruncationKind::Malformed(what))));
+                return Ok(scan.truncated(at, TruncationKind::Malformed(what)));
             }
-            Err(cause) => return Err(cause.at(at)),
+            Err(cause) => return Err((cause, at)),
         }
         at = body.end;
     }
@@ -154,7 +152,7 @@ pub(super) fn scan(
             return Ok(scan);
         }
     };
-    Ok(scan.truncated(Truncation::at_byte(at, cause)))
+    Ok(scan.truncated(at, cause))
 }
 
 /// The length of a record's header, and the place of its body; `None` if the file ends before it.

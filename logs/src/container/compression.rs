@@ -5,7 +5,7 @@ use std::io::Read;
 use lz4_flex::frame::FrameDecoder as Lz4Decoder;
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
-use crate::error::{CheckedPart, LogErrorKind};
+use crate::error::LogErrorKind;
 
 pub const MOST_GROWTH: u64 = 1000;
 
@@ -93,7 +93,7 @@ pub(super) fn decompress(
         return Err(LogErrorKind::Size { claimed: size, found });
     }
     if checksum != 0 && crc32fast::hash(&whole) != checksum {
-        return Err(LogErrorKind::Checksum(CheckedPart::Chunk));
+        return Err(LogErrorKind::Checksum("chunk"));
     }
     Ok(whole)
 }

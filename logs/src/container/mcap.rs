@@ -3,10 +3,11 @@
 use std::{collections::BTreeMap, ops::Range};
 
 use super::{
-    Compression, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at, unreadable,
+    Compression, Failure, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at,
+    unreadable,
 };
 use crate::{
-    error::{LogError, LogErrorKind, Truncation, TruncationKind},
+    error::{LogErrorKind, TruncationKind},
     source::{Source, Window},
 };
 
@@ -72,10 +73,7 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
     Ok((record.ok_or("it is shorter than its length field")?, end))
 }
 
-pub(super) fn scan(
-    source: &Source,
-    listener: &mut Listener<'_>,
-) -> Result<FileStructure, LogError> {
+pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<FileStructure, Failure> {
     let mut scan = FileStructure::default();
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
@@ -93,12 +91,12 @@ pub(super) fn scan(
             } else {
                 TruncationKind::RestOfRecord
             };
-            return Ok(scan.truncated(Truncation::at_byte(at, cause)));
+            return Ok(scan.truncated(at, cause));
         };
         let record = at..content.end;
         let taken =
             read_record(&mut window, op, &record, &content, &mut scan, listener, &mut total);
-        taken.map_err(|cause| cause.at(at))?;
+        taken.map_err(|cause| (cause, at))?;
         at = content.end;
         if op == FOOTER {
             break;
@@ -106,7 +104,7 @@ pub(super) fn scan(
     }
     let end = window.get(at, MAGIC.len() as u64).map_err(unreadable(at))?;
     if end != Some(MAGIC) {
-        return Ok(scan.truncated(Truncation::at_byte(at, TruncationKind::End)));
+        return Ok(scan.truncated(at, TruncationKind::End));
     }
     scan.end_loose();
     // An incomplete index is not used.

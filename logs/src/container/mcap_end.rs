@@ -5,11 +5,12 @@ use std::{io, ops::Range};
 use crc32fast::Hasher;
 
 use super::{
+    Failure,
     mcap::{DATA_END, FOOTER, HEAD, MAGIC, STATISTICS},
     u32_at, u64_at,
 };
 use crate::{
-    error::{CheckedPart, LogError, LogErrorKind},
+    error::LogErrorKind,
     source::{Source, Window},
 };
 
@@ -19,7 +20,7 @@ const ATTACHMENT: u8 = 9;
 pub(crate) struct SelfDescription {
     pub(crate) checksums: Vec<StoredChecksum>,
     pub(crate) messages: Option<(u64, u64)>,
-    pub(crate) damage: Vec<LogError>,
+    pub(crate) damage: Vec<Failure>,
 }
 
 pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
@@ -38,11 +39,11 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
             ATTACHMENT if length >= 4 => {
                 let covered = content..end - 4;
                 let value = window.u32(covered.end)?.unwrap_or_default();
-                found.add(at, CheckedPart::Attachment, covered, value);
+                found.add(at, "attachment", covered, value);
             }
             DATA_END if length >= 4 => {
                 let value = window.u32(content)?.unwrap_or_default();
-                found.add(at, CheckedPart::DataSection, 0..at, value);
+                found.add(at, "data section", 0..at, value);
                 data_end = Some(end);
             }
             STATISTICS if length >= 8 => {
@@ -54,12 +55,12 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
                 if let (Some(summary), Some(value)) = (u64_at(fields, 0), u32_at(fields, 16)) {
                     let start = if summary == 0 { at } else { summary };
                     let covered = start.min(content)..content + 16;
-                    found.add(at, CheckedPart::SummarySection, covered, value);
+                    found.add(at, "summary section", covered, value);
                 }
                 let rest = end + MAGIC.len() as u64;
                 if rest < source.length() {
                     let extra = "it stands after the end of the log";
-                    found.damage.push(LogErrorKind::Malformed(extra).at(rest));
+                    found.damage.push((LogErrorKind::Malformed(extra), rest));
                 }
                 break;
             }
@@ -69,14 +70,14 @@ pub(crate) fn describe(source: &Source) -> io::Result<SelfDescription> {
     }
     if data_end.is_none() {
         let missing = "no record before it ends the data section";
-        found.damage.push(LogErrorKind::Malformed(missing).at(at));
+        found.damage.push((LogErrorKind::Malformed(missing), at));
     }
     Ok(found)
 }
 
 impl SelfDescription {
     /// Adds a checksum. The value 0 means that there is none.
-    fn add(&mut self, offset: u64, part: CheckedPart, bytes: Range<u64>, value: u32) {
+    fn add(&mut self, offset: u64, part: &'static str, bytes: Range<u64>, value: u32) {
         if value != 0 {
             self.checksums.push(StoredChecksum { offset, part, bytes, value });
         }
@@ -85,7 +86,7 @@ impl SelfDescription {
 
 pub(crate) struct StoredChecksum {
     offset: u64,
-    part: CheckedPart,
+    part: &'static str,
     pub(crate) bytes: Range<u64>,
     value: u32,
 }
@@ -93,7 +94,7 @@ pub(crate) struct StoredChecksum {
 const PIECE: u64 = 1 << 16;
 
 impl StoredChecksum {
-    pub(crate) fn error(&self, source: &Source) -> io::Result<Option<LogError>> {
+    pub(crate) fn error(&self, source: &Source) -> io::Result<Option<Failure>> {
         let mut hasher = Hasher::new();
         let mut at = self.bytes.start;
         while at < self.bytes.end {
@@ -102,6 +103,6 @@ impl StoredChecksum {
             at = end;
         }
         let right = hasher.finalize() == self.value;
-        Ok((!right).then(|| LogErrorKind::Checksum(self.part).at(self.offset)))
+        Ok((!right).then_some((LogErrorKind::Checksum(self.part), self.offset)))
     }
 }

@@ -24,7 +24,7 @@ pub(super) use mcap_end::describe;
 pub(super) use text::{EVENT, HEAD as TEXT_HEAD, TextState, recognise};
 
 use super::{
-    error::{LogError, LogErrorKind, OffsetUnit, Truncation},
+    error::{LogError, LogErrorKind, OffsetUnit, TruncationKind},
     source::Source,
 };
 
@@ -60,10 +60,6 @@ pub(super) struct LogFile {
 impl LogFile {
     pub(super) fn error(&self, cause: LogErrorKind, offset: u64) -> LogError {
         LogError { offset, unit: self.format.unit(), file: self.name.clone(), cause }
-    }
-
-    pub(super) fn in_file(&self, error: LogError) -> LogError {
-        LogError { file: self.name.clone(), ..error }
     }
 
     /// The bytes of a message. rosbag2 may compress each; CDR never begins as a compressed message does.
@@ -128,7 +124,8 @@ pub(super) struct Section {
 #[derive(Default)]
 pub(super) struct FileStructure {
     pub(super) sections: Vec<Section>,
-    pub(super) truncation: Option<Truncation>,
+    /// Where the file ends too early, and why.
+    pub(super) truncation: Option<(u64, TruncationKind)>,
     loose: Option<Section>,
 }
 
@@ -140,15 +137,21 @@ pub(super) fn scan(
     listener: &mut Listener<'_>,
 ) -> Result<(FileStructure, TextState), LogError> {
     let LogFile { format, source, database, .. } = file;
+    let wrong = |(cause, offset)| file.error(cause, offset);
     let scan = match (format, database) {
-        (Format::Bag, _) => bag::scan(source, listener)?,
-        (Format::Mcap, _) => mcap::scan(source, listener)?,
-        (Format::Carmen | Format::Events, _) => return text::scan(*format, source, listener),
-        (Format::Database | Format::Folder, Some(database)) => database.scan(listener)?,
-        (Format::Database | Format::Folder, None) => FileStructure::default(),
+        (Format::Bag, _) => bag::scan(source, listener),
+        (Format::Mcap, _) => mcap::scan(source, listener),
+        (Format::Carmen | Format::Events, _) => {
+            return text::scan(*format, source, listener).map_err(wrong);
+        }
+        (Format::Database | Format::Folder, Some(database)) => database.scan(listener),
+        (Format::Database | Format::Folder, None) => Ok(FileStructure::default()),
     };
-    Ok((scan, TextState::default()))
+    Ok((scan.map_err(wrong)?, TextState::default()))
 }
+
+/// An error and its offset in a file.
+type Failure = (LogErrorKind, u64);
 
 /// The largest size of a section outside of chunks.
 const LOOSE: u64 = 1 << 20;
@@ -169,13 +172,13 @@ impl FileStructure {
         self.sections.extend(self.loose.take().filter(|section| section.times.is_some()));
     }
 
-    fn truncated(mut self, truncation: Truncation) -> Self {
+    fn truncated(mut self, offset: u64, cause: TruncationKind) -> Self {
         self.end_loose();
         // Some of its index may be missing.
         if let Some(last) = self.sections.last_mut() {
             last.counts = None;
         }
-        self.truncation = Some(truncation);
+        self.truncation = Some((offset, cause));
         self
     }
 }
@@ -239,8 +242,8 @@ impl Section {
         if file.database.is_some() {
             return Ok(None);
         }
-        let head =
-            source.read(start..end.min(start.saturating_add(5))).map_err(unreadable(start))?;
+        let head = source.read(start..end.min(start.saturating_add(5)));
+        let head = head.map_err(|error| file.error(error.into(), start))?;
         let covers = self.checksum != 0 || self.compression.has_checksum(&head);
         Ok(covers.then(|| self.bytes.clone()))
     }
@@ -318,6 +321,6 @@ fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
     bytes.get(at..at.checked_add(2)?)?.try_into().ok().map(u16::from_le_bytes)
 }
 
-fn unreadable(offset: u64) -> impl Fn(io::Error) -> LogError {
-    move |error| LogErrorKind::Unreadable(error).at(offset)
+fn unreadable(offset: u64) -> impl Fn(io::Error) -> Failure {
+    move |error| (error.into(), offset)
 }

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::{Clock, FileStructure, Format, Listener, Record, Section};
+use super::{Clock, Failure, FileStructure, Format, Listener, Record, Section};
 use crate::{
     carmen::{self, Parameters},
     definition::{Definition, Dialect},
-    error::{LogError, LogErrorKind, OffsetUnit, Truncation, TruncationKind},
+    error::{LogErrorKind, TruncationKind},
     event_line::{self, Columns, Parsed},
     skipped_lines::SkippedLines,
     source::Source,
@@ -81,7 +81,7 @@ pub(super) fn scan(
     format: Format,
     source: &Source,
     listener: &mut Listener<'_>,
-) -> Result<(FileStructure, TextState), LogError> {
+) -> Result<(FileStructure, TextState), Failure> {
     let mut scan = FileStructure::default();
     let mut state = TextState::default();
     let mut lines = Lines::new(source);
@@ -89,17 +89,16 @@ pub(super) fn scan(
     let (mut number, mut seen) = (0, 0_u32);
     loop {
         number += 1;
-        let Some(line) = lines.next().map_err(|cause| at_line(cause, number))? else { break };
-        let truncated = |cause| truncation(number, cause);
+        let Some(line) = lines.next().map_err(|cause| (cause, number))? else { break };
         if line.is_last && source.is_cut {
-            return Ok((scan.truncated(truncated(TruncationKind::Compressed)), state));
+            return Ok((scan.truncated(number, TruncationKind::Compressed), state));
         }
         let is_first = seen == 0;
         if format == Format::Events && is_first && state.columns.is_none() {
             state.columns = Columns::read(line.bytes);
             if let Some(name) = state.columns.as_ref().and_then(Columns::repeated) {
                 let what = format!("the column {name} is there twice");
-                return Err(at_line(LogErrorKind::Line(what), number));
+                return Err((LogErrorKind::Line(what), number));
             }
         }
         let found = content(format, state.columns.as_ref(), line.bytes);
@@ -112,9 +111,9 @@ pub(super) fn scan(
         let before = clock;
         let message = match found {
             Err(_) if line.is_last => {
-                return Ok((scan.truncated(truncated(TruncationKind::RestOfRecord)), state));
+                return Ok((scan.truncated(number, TruncationKind::RestOfRecord), state));
             }
-            Err(what) => return Err(at_line(LogErrorKind::Line(what), number)),
+            Err(what) => return Err((LogErrorKind::Line(what), number)),
             Ok(Content::Nothing) => None,
             Ok(Content::Parameter) => {
                 state.parameters.read(line.bytes);
@@ -128,23 +127,22 @@ pub(super) fn scan(
         };
         if let Some([from, to]) = clock.jump() {
             let first = number + 1 - u64::from(Clock::MOST_OFF);
-            return Err(at_line(LogErrorKind::ClockJump { from, to }, first));
+            return Err((LogErrorKind::ClockJump { from, to }, first));
         }
-        match message {
-            Some((kind, _)) if seen & (1 << kind) == 0 => {
-                seen |= 1 << kind;
-                if format == Format::Events {
-                    state.first_event = first_index(line.bytes, state.columns.as_ref());
-                }
-                listener(&topic(format, kind));
+        if let Some((kind, _)) = message
+            && seen & (1 << kind) == 0
+        {
+            seen |= 1 << kind;
+            if format == Format::Events {
+                state.first_event = first_index(line.bytes, state.columns.as_ref());
             }
-            _ => {}
+            listener(&topic(format, kind));
         }
         add(&mut scan, line.start..line.end, (number, before), message);
     }
     state.skipped.off_clock = clock.off_total;
     if source.is_cut {
-        return Ok((scan.truncated(truncation(number, TruncationKind::Compressed)), state));
+        return Ok((scan.truncated(number, TruncationKind::Compressed), state));
     }
     scan.end_loose();
     Ok((scan, state))
@@ -213,14 +211,6 @@ pub(super) fn record<'a>(
         _ => None,
     };
     (record.unwrap_or(Record::Other), next)
-}
-
-fn truncation(line: u64, cause: TruncationKind) -> Truncation {
-    Truncation { unit: OffsetUnit::Line, ..Truncation::at_byte(line, cause) }
-}
-
-fn at_line(cause: LogErrorKind, line: u64) -> LogError {
-    LogError { unit: OffsetUnit::Line, ..cause.at(line) }
 }
 
 struct Lines<'s> {

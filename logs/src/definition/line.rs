@@ -10,7 +10,7 @@ pub(super) enum DefinitionLine<'t> {
     Empty,
     Separator,
     Field { type_name: &'t str, count: Count, name: &'t str },
-    Constant { type_name: &'t str, name: &'t str, value: &'t str },
+    Constant { type_name: &'t str },
 }
 
 pub(super) fn line(
@@ -35,16 +35,11 @@ pub(super) fn line(
         return Err(DefinitionErrorKind::NotAName(quoted(name)));
     }
     let after = after.trim_start();
-    if let Some(value) = after.strip_prefix('=') {
-        if count != Count::One {
-            return Err(DefinitionErrorKind::ConstantType(quoted(written)));
-        }
-        // A text of ROS 1 is all that follows, `#` and all.
-        let value = match (dialect, type_name) {
-            (Dialect::Ros1, "string") => trimmed.split_once('=').map_or(value, |(_, all)| all),
-            _ => value,
+    if after.starts_with('=') {
+        return match count {
+            Count::One => Ok(DefinitionLine::Constant { type_name }),
+            _ => Err(DefinitionErrorKind::ConstantType(quoted(written))),
         };
-        return Ok(DefinitionLine::Constant { type_name, name, value: value.trim() });
     }
     match dialect {
         Dialect::Ros1 if !after.is_empty() => Err(malformed()),

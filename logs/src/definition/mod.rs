@@ -35,10 +35,12 @@ pub struct Struct {
     /// Its type, as `package/Type`.
     pub name: String,
     pub fields: Vec<Field>,
-    /// Its constants: the name, and the value as it is written.
-    pub constants: Vec<(String, String)>,
     /// The fewest bytes that a message of it can have, padding not counted.
     least: usize,
+    /// The number of its fields and of those of the messages in it.
+    width: usize,
+    /// The number of levels of messages in it, with its own; 0 before it is resolved.
+    depth: usize,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -139,7 +141,7 @@ fn least(kind: FieldType, structs: &[Struct]) -> usize {
 
 impl Struct {
     const fn empty(name: String) -> Self {
-        Self { name, fields: Vec::new(), constants: Vec::new(), least: 0 }
+        Self { name, fields: Vec::new(), least: 0, width: 0, depth: 0 }
     }
 
     pub fn field(&self, name: &str) -> Option<(usize, &Field)> {

@@ -48,15 +48,11 @@ pub(super) fn resolve(
         }
     }
     let resolver = Resolver { dialect, sections: &sections, names, last_parts };
-    let mut structs: Vec<_> = sections.iter().map(|_| None).collect();
-    let mut sizes = vec![Size::default(); sections.len()];
-    resolver.add(0, 1, &mut structs, &mut sizes, &mut BTreeSet::new())?;
     // Those that nothing uses stay empty.
-    let structs = structs
-        .into_iter()
-        .zip(&sections)
-        .map(|(made, section)| made.unwrap_or_else(|| Struct::empty(section.name.clone())));
-    Ok(Definition { dialect, structs: structs.collect() })
+    let mut structs: Vec<_> =
+        sections.iter().map(|section| Struct::empty(section.name.clone())).collect();
+    resolver.add(0, 1, &mut structs, &mut BTreeSet::new())?;
+    Ok(Definition { dialect, structs })
 }
 
 fn last_part(name: &str) -> &str {
@@ -91,12 +87,6 @@ fn sections<'t>(
     Ok(sections)
 }
 
-#[derive(Clone, Copy, Default)]
-struct Size {
-    fields: usize,
-    depth: usize,
-}
-
 struct Resolver<'t> {
     dialect: Dialect,
     sections: &'t [Section<'t>],
@@ -109,8 +99,7 @@ impl Resolver<'_> {
         &self,
         index: usize,
         depth: usize,
-        structs: &mut [Option<Struct>],
-        sizes: &mut [Size],
+        structs: &mut [Struct],
         within: &mut BTreeSet<usize>,
     ) -> Result<(), DefinitionError> {
         let Some(section) = self.sections.get(index) else { return Ok(()) };
@@ -118,51 +107,40 @@ impl Resolver<'_> {
             return Err(DefinitionErrorKind::TooDeep.at(section.line));
         }
         within.insert(index);
-        let mut made = Struct::empty(section.name.clone());
+        let mut made = Struct { depth: 1, ..Struct::empty(section.name.clone()) };
         let mut names = BTreeSet::new();
-        let mut size = Size { fields: 0, depth: 1 };
         for (number, parsed) in &section.lines {
             let (type_name, count, name) = match *parsed {
-                DefinitionLine::Constant { type_name, name, value } => {
-                    if self.primitive(type_name).is_none() {
-                        return Err(
-                            DefinitionErrorKind::ConstantType(quoted(type_name)).at(*number)
-                        );
-                    }
-                    made.constants.push((name.to_owned(), value.to_owned()));
-                    continue;
+                DefinitionLine::Constant { type_name } if self.primitive(type_name).is_none() => {
+                    return Err(DefinitionErrorKind::ConstantType(quoted(type_name)).at(*number));
                 }
                 DefinitionLine::Field { type_name, count, name } => (type_name, count, name),
-                DefinitionLine::Empty | DefinitionLine::Separator => continue,
+                _ => continue,
             };
             let kind = self.kind(type_name, &section.name).map_err(|cause| cause.at(*number))?;
-            size.fields += 1;
+            made.width += 1;
             if let FieldType::Struct(part) = kind {
                 if within.contains(&part) {
                     return Err(DefinitionErrorKind::PartOfItself(quoted(type_name)).at(*number));
                 }
-                if structs.get(part).is_none_or(Option::is_none) {
-                    self.add(part, depth + 1, structs, sizes, within)?;
+                if structs.get(part).is_some_and(|part| part.depth == 0) {
+                    self.add(part, depth + 1, structs, within)?;
                 }
-                let part = sizes.get(part).copied().unwrap_or_default();
-                size.fields += part.fields;
-                size.depth = size.depth.max(part.depth + 1);
+                if let Some(part) = structs.get(part) {
+                    made.width += part.width;
+                    made.depth = made.depth.max(part.depth + 1);
+                }
             }
-            if size.depth > MOST_DEPTH {
+            if made.depth > MOST_DEPTH {
                 return Err(DefinitionErrorKind::TooDeep.at(*number));
             }
-            if size.fields > MOST_FIELDS {
+            if made.width > MOST_FIELDS {
                 return Err(DefinitionErrorKind::TooManyFields.at(*number));
             }
             if !names.insert(name) {
                 return Err(DefinitionErrorKind::TwoFields(quoted(name)).at(*number));
             }
-            let one = match kind {
-                FieldType::Struct(part) => {
-                    structs.get(part).and_then(Option::as_ref).map_or(0, |s| s.least)
-                }
-                primitive => least(primitive, &[]),
-            };
+            let one = least(kind, structs);
             if one == 0 && count != Count::One {
                 return Err(DefinitionErrorKind::ListOfNothing(quoted(type_name)).at(*number));
             }
@@ -180,11 +158,8 @@ impl Resolver<'_> {
             made.least = 1;
         }
         within.remove(&index);
-        if let Some(place) = sizes.get_mut(index) {
-            *place = size;
-        }
         if let Some(place) = structs.get_mut(index) {
-            *place = Some(made);
+            *place = made;
         }
         Ok(())
     }

@@ -22,10 +22,6 @@ fn a_message_of_ros_1_is_resolved_through_its_sections() {
     assert_eq!(root.name, "a/A");
     let names: Vec<_> = root.fields.iter().map(|field| field.name.as_str()).collect();
     assert_eq!(names, ["header", "parts", "K"]);
-    assert_eq!(
-        root.constants,
-        [("LEFT", "1"), ("WORD", "a # b")].map(|(a, b)| (a.into(), b.into()))
-    );
     assert_eq!(root.field("K").unwrap().1.count, Count::Fixed(9));
     let FieldType::Struct(header) = root.fields[0].kind else { panic!() };
     let header = definition.get(header).unwrap();
@@ -50,7 +46,7 @@ fn a_message_of_ros_2_has_bounds_and_defaults() {
     assert_eq!(root.fields[3].kind, FieldType::Unsigned(1));
     assert_eq!(root.fields[5].kind, FieldType::WideText);
     assert_eq!(root.fields[6].count, Count::Fixed(2));
-    assert_eq!(root.constants, [("MOST".to_owned(), "4".to_owned())]);
+    assert_eq!(root.fields.len(), 7);
     let FieldType::Struct(stamp) = root.fields[0].kind else { panic!() };
     assert_eq!(definition.get(stamp).unwrap().fields[1].name, "nanosec");
     // A message without fields takes a byte.

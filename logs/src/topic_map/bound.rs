@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use toposlam_model::format::document::DocumentError;
+
 use super::{
-    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
-    role::APRIL_TAGS,
+    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, invalid, role::APRIL_TAGS,
 };
 use crate::{
     definition::{Count, Definition, FieldType},
@@ -42,7 +43,7 @@ impl BoundTopicMap {
     }
 }
 
-pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap, TopicMapError> {
+pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap, DocumentError> {
     let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
     let mut carried = carried.collect::<Result<Vec<_>, _>>()?;
     // The poses of these tags are transforms.
@@ -58,17 +59,17 @@ pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap
     Ok(BoundTopicMap { carried })
 }
 
-fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
-    let wrong = |cause: TopicMapErrorKind| cause.at(carrier.place.clone());
+fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, DocumentError> {
+    let wrong = |why: String| invalid(&carrier.place, why);
     let (index, topic) = named(&carrier.topic, topics).map_err(wrong)?;
-    let definition = topic.definition.as_ref().map_err(|why| {
-        wrong(TopicMapErrorKind::Undecodable { topic: carrier.topic.clone(), why: why.to_string() })
-    })?;
+    let definition = topic.definition.as_ref();
+    let definition = definition.map_err(|why| wrong(format!("on {:?}: {why}", carrier.topic)))?;
     let type_name = topic.short_type();
     let usual = role.usual(&type_name);
     let own = usual.is_some_and(<[_]>::is_empty) && carrier.paths.is_empty();
     if usual.is_none() && role.parts().is_empty() {
-        return Err(wrong(TopicMapErrorKind::WrongType { role, type_name }));
+        let why = format!("messages of type {type_name:?} do not carry {}", role.name());
+        return Err(wrong(why));
     }
     let mut paths = carrier.paths.clone();
     if !own {
@@ -83,7 +84,10 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
         }
         for part in needed(role, &paths) {
             if !paths.contains_key(&part) {
-                return Err(wrong(TopicMapErrorKind::NoPath { part, type_name }));
+                let key = part.name();
+                return Err(wrong(format!(
+                    "for messages of type {type_name:?} the key `{key}` must give a path"
+                )));
             }
         }
     }
@@ -91,10 +95,8 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
         let place = carrier.places.get(part).unwrap_or(&carrier.place);
         let expected = if *part == MessagePart::Quaternion { "a quaternion" } else { "a number" };
         if !leads(definition, path, *part) {
-            let (path, type_name) = (path.clone(), type_name.clone());
-            return Err(
-                TopicMapErrorKind::WrongPath { path, expected, type_name }.at(place.clone())
-            );
+            let why = format!("{path:?} does not lead to {expected} in a {type_name}");
+            return Err(invalid(place, why));
         }
     }
     let Carrier { length, angle, ref id, ref frame, .. } = *carrier;
@@ -116,18 +118,18 @@ fn needed(role: Role, paths: &BTreeMap<MessagePart, String>) -> Vec<MessagePart>
     }
 }
 
-fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), TopicMapErrorKind> {
+fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), String> {
     let mut found = topics.iter().enumerate().filter(|(_, topic)| topic.name == name);
     let Some(first) = found.next() else {
         const SHOWN: usize = 12;
         let names = topics.iter().take(SHOWN).map(|topic| topic.name.escape_debug().to_string());
         let more = (topics.len() > SHOWN).then(|| "...".to_owned());
         let known: Vec<_> = names.chain(more).collect();
-        return Err(TopicMapErrorKind::NoTopic { topic: name.to_owned(), known: known.join(", ") });
+        return Err(format!("the log has no topic {name:?}; it has: {}", known.join(", ")));
     };
     match found.next() {
         None => Ok(first),
-        Some(_) => Err(TopicMapErrorKind::TwoTopics(name.to_owned())),
+        Some(_) => Err(format!("the log has messages of several types on {name:?}")),
     }
 }
 

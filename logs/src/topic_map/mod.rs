@@ -10,13 +10,11 @@
 //! ```
 
 mod bound;
-mod error;
 mod read;
 mod role;
 
 pub use bound::BoundTopicMap;
 pub(super) use bound::Carried;
-pub use error::{TopicMapError, TopicMapErrorKind};
 pub(super) use role::{APRIL_TAGS, DETECTIONS};
 pub use role::{AngleUnit, LengthUnit, MessagePart, Role};
 
@@ -25,7 +23,7 @@ use std::{
     fmt::{self, Write},
 };
 
-use toposlam_model::format::document::TextPosition;
+use toposlam_model::format::document::{DocumentError, DocumentErrorKind, TextPosition};
 
 use super::{reader::Log, topic::Topic};
 
@@ -35,7 +33,7 @@ pub struct TopicMap {
     assumed: Option<MarkerPlace>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Carrier {
     pub topic: String,
     /// Where in its messages each part stands; what is usual for its type is left out.
@@ -50,16 +48,7 @@ pub struct Carrier {
 
 impl Carrier {
     pub fn usual(topic: &str) -> Self {
-        Self {
-            topic: topic.to_owned(),
-            paths: BTreeMap::new(),
-            length: LengthUnit::Metres,
-            angle: AngleUnit::Radians,
-            id: None,
-            frame: None,
-            place: TextPosition::default(),
-            places: BTreeMap::new(),
-        }
+        Self { topic: topic.to_owned(), ..Self::default() }
     }
 }
 
@@ -89,7 +78,7 @@ impl TopicMap {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place. No bytes make it panic.
-    pub fn read(bytes: &[u8]) -> Result<Self, TopicMapError> {
+    pub fn read(bytes: &[u8]) -> Result<Self, DocumentError> {
         read::read(bytes)
     }
 
@@ -97,14 +86,18 @@ impl TopicMap {
     ///
     /// # Errors
     /// If several topics could carry the same: which.
-    pub fn from_log(log: &Log) -> Result<Self, TopicMapError> {
+    pub fn from_log(log: &Log) -> Result<Self, DocumentError> {
         let guesses = guess(log.topics());
         if let Some(RoleGuess { role, topics }) =
             guesses.iter().find(|guess| guess.topics.len() > 1)
         {
             let names = topics.iter().filter_map(|topic| log.topics().get(*topic));
-            let topics = names.map(|topic| topic.name.clone()).collect();
-            return Err(TopicMapErrorKind::Several { role: *role, topics }.in_file());
+            let names: Vec<_> = names.map(|topic| &*topic.name).collect();
+            let (count, role, names) = (names.len(), role.name(), names.join(", "));
+            let why = format!(
+                "{count} topics could carry {role}: {names}; a mapping file must choose one"
+            );
+            return Err(invalid(&TextPosition::default(), why));
         }
         Ok(Self::unambiguous(log))
     }
@@ -164,7 +157,7 @@ impl TopicMap {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place in the mapping file.
-    pub fn bind(&self, log: &Log) -> Result<BoundTopicMap, TopicMapError> {
+    pub fn bind(&self, log: &Log) -> Result<BoundTopicMap, DocumentError> {
         bound::bind(self, log.topics())
     }
 
@@ -199,6 +192,10 @@ impl TopicMap {
         }
         text
     }
+}
+
+fn invalid(position: &TextPosition, why: String) -> DocumentError {
+    DocumentError { position: position.clone(), kind: DocumentErrorKind::Invalid(why) }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]

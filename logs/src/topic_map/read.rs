@@ -4,12 +4,9 @@ use std::collections::BTreeMap;
 
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
-use super::{
-    AngleUnit, Carrier, LengthUnit, MarkerPlace, MessagePart, Role, TopicMap, TopicMapError,
-    TopicMapErrorKind,
-};
+use super::{AngleUnit, Carrier, LengthUnit, MarkerPlace, MessagePart, Role, TopicMap, invalid};
 
-pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
+pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, DocumentError> {
     let document = Document::parse_toml(bytes)?;
     let file = document.root().table(&Role::ALL.map(Role::name))?;
     let mut carriers = BTreeMap::new();
@@ -22,7 +19,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
         }
     }
     if carriers.is_empty() && assumed.is_none() {
-        return Err(TopicMapErrorKind::Empty.at(file.position()));
+        return Err(invalid(&file.position(), "no topic is mapped".to_owned()));
     }
     Ok(TopicMap { carriers, assumed })
 }
@@ -48,7 +45,7 @@ fn place<'d>(
     }
 }
 
-fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapError> {
+fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, DocumentError> {
     let parts = role.parts().iter().map(|part| part.name());
     let units: &[_] = match role {
         Role::Odometry | Role::Motion => &["length", "angle"],
@@ -83,7 +80,8 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
     }
     match carrier.places.get(&MessagePart::Quaternion) {
         Some(place) if carrier.paths.contains_key(&MessagePart::Heading) => {
-            Err(TopicMapErrorKind::TwoHeadings.at(place.clone()))
+            let why = "there are both `heading` and `quaternion`; the file needs only one of them";
+            Err(invalid(place, why.to_owned()))
         }
         _ => Ok(carrier),
     }

@@ -68,12 +68,16 @@ words! {
         Move = "move",
     }
 
+    #[derive(Default)]
     LengthUnit {
+        #[default]
         Metres = "metres",
         Inches = "inches",
     }
 
+    #[derive(Default)]
     AngleUnit {
+        #[default]
         Radians = "radians",
         Degrees = "degrees",
     }
@@ -110,27 +114,18 @@ impl Role {
         }
     }
 
-    /// The type of the project's own messages of it, if they have one.
-    pub(super) fn own(self) -> Option<&'static str> {
-        match self {
-            Self::Percept => Some("toposlam_msgs/Percept"),
-            Self::Door => Some("toposlam_msgs/Door"),
-            Self::Run => Some("toposlam_msgs/Run"),
-            Self::Scene => Some("toposlam_msgs/Scene"),
-            Self::Command => Some("toposlam_msgs/Command"),
-            Self::Hypothesis => Some("toposlam_msgs/Hypothesis"),
-            Self::Map => Some("toposlam_msgs/Map"),
-            Self::End => Some("toposlam_msgs/End"),
-            Self::Image | Self::Scan | Self::Odometry | Self::Motion | Self::Marker => None,
-        }
-    }
-
+    /// Where its parts stand in messages of a type; nothing for a type that is read as a whole, as those of the project.
     pub(super) fn usual(self, type_name: &str) -> Option<&'static [(MessagePart, &'static str)]> {
-        if self.own() == Some(type_name) {
-            return Some(&[]);
-        }
         Some(match (self, type_name) {
-            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
+            (Self::Percept, "toposlam_msgs/Percept")
+            | (Self::Door, "toposlam_msgs/Door")
+            | (Self::Run, "toposlam_msgs/Run")
+            | (Self::Scene, "toposlam_msgs/Scene")
+            | (Self::Command, "toposlam_msgs/Command")
+            | (Self::Hypothesis, "toposlam_msgs/Hypothesis")
+            | (Self::Map, "toposlam_msgs/Map")
+            | (Self::End, "toposlam_msgs/End")
+            | (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
             | (Self::Scan, "sensor_msgs/LaserScan")
             | (Self::Scan | Self::Odometry, CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT)
             | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)

@@ -29,7 +29,7 @@ impl AbsentDatabase {
     pub(super) fn scan(
         &self,
         _: &mut super::Listener<'_>,
-    ) -> Result<super::FileStructure, crate::error::LogError> {
+    ) -> Result<super::FileStructure, super::Failure> {
         match *self {}
     }
 

@@ -13,14 +13,10 @@ use std::{
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
 use super::{
-    super::{FileStructure, Listener, Section},
+    super::{Failure, FileStructure, Listener, Section},
     HEAD, Record,
 };
-use crate::{
-    error::{LogError, LogErrorKind, OffsetUnit},
-    messages::published_schema,
-    source::Source,
-};
+use crate::{error::LogErrorKind, messages::published_schema, source::Source};
 
 /// The largest size of a section, in bytes, unless it is one row.
 const SECTION: u64 = 1 << 20;
@@ -74,7 +70,7 @@ impl Database {
     pub(in super::super) fn scan(
         &self,
         listener: &mut Listener<'_>,
-    ) -> Result<FileStructure, LogError> {
+    ) -> Result<FileStructure, Failure> {
         for (topic, id) in self.list.iter().zip(0..) {
             listener(&Record::Connection {
                 id,
@@ -87,8 +83,7 @@ impl Database {
         }
         let mut scan = FileStructure::default();
         let mut last = 0;
-        let found = self.rows(&mut scan, &mut last);
-        found.map_err(|cause| LogError { unit: OffsetUnit::Row, ..cause.at(last) })?;
+        self.rows(&mut scan, &mut last).map_err(|cause| (cause, last))?;
         scan.end_loose();
         Ok(scan)
     }

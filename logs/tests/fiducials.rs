@@ -3,106 +3,76 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_logs::{
-    entries::Content,
+    entries::{Content, Entry},
     fiducials::FiducialSighting,
     reader::Log,
     topic_map::{Role, TopicMap},
 };
 
 use super::{
-    roles::{Topic, header_in, log_of, numbers, text},
+    entries_of, map,
+    ros1::{
+        self, HEADER, LEFT, LEVEL, Topic, header, log_of, numbers, odometry, posed, text,
+        transforms, whole,
+    },
     rosbags,
-    scans::{LEVEL, ODOMETRY, transforms},
 };
-
-const HEADER: &str = "===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
-const POSE: &str = "===\nMSG: geometry_msgs/Pose\nPoint position\nQuaternion orientation\n===\n\
-    MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n===\nMSG: geometry_msgs/Quaternion\n\
-    float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
-
-const LEFT: [f64; 4] = [0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2];
 
 /// A robot at (1, 2) that looks along y, with a camera half a metre ahead.
 fn robot() -> Vec<Topic> {
-    let [x, y, z, w] = LEFT;
-    let pose = numbers([1.0, 2.0, 0.0, x, y, z, w]);
-    let odometry = [header_in(8, "odom"), pose].concat();
-    vec![
-        ("/odom", "nav_msgs/Odometry", ODOMETRY, vec![odometry]),
-        transforms("/tf_static", &[("base_link", "camera", [0.5, 0.0, 1.0], LEVEL)]),
-    ]
+    vec![odometry(), transforms("/tf_static", &[("base_link", "camera", [0.5, 0.0, 1.0], LEVEL)])]
 }
 
-fn tags(all: &[(&str, i32)]) -> Topic {
-    let definition = "Header header\nAprilTagDetection[] detections\n===\nMSG: std_msgs/Header\n\
-        uint32 seq\ntime stamp\nstring frame_id\n===\nMSG: apriltag_msgs/AprilTagDetection\n\
-        string family\nint32 id\nint32 hamming\nfloat32 goodness\nfloat32 decision_margin\n\
-        Point centre\nPoint[4] corners\nfloat64[9] homography\n===\nMSG: apriltag_msgs/Point\n\
-        float64 x\nfloat64 y\n";
-    let mut message = [header_in(9, "camera"), (all.len() as u32).to_le_bytes().to_vec()].concat();
+fn tags(all: &[(&str, u32)]) -> Topic {
+    let definition = "Header header\nAprilTagDetection[] detections\n===\n\
+        MSG: apriltag_msgs/AprilTagDetection\nstring family\nint32 id\nint32 hamming\n\
+        float32 goodness\nfloat32 decision_margin\nPoint centre\nPoint[4] corners\n\
+        float64[9] homography\n===\nMSG: apriltag_msgs/Point\nfloat64 x\nfloat64 y\n";
+    let mut message = [header(9, "camera"), whole([all.len() as u32])].concat();
     for (family, id) in all {
-        message.extend([text(family), id.to_le_bytes().to_vec(), vec![0; 12]].concat());
-        message.extend(numbers([0.0; 19]));
+        message.extend([text(family), whole([*id, 0, 0, 0]), numbers([0.0; 19])].concat());
     }
+    let definition = [definition, HEADER].concat();
     ("/detections", "apriltag_msgs/AprilTagDetectionArray", definition, vec![message])
 }
 
 /// Objects of these classes at (2, 1) of the camera, turned to the left; the second hypothesis is better.
 fn objects(classes: &[[&str; 2]]) -> Topic {
-    let definition: String = [
-        "Header header\nDetection3D[] detections\n",
-        HEADER,
-        "===\nMSG: vision_msgs/Detection3D\nHeader header\nObjectHypothesisWithPose[] results\n\
-         string id\n===\nMSG: vision_msgs/ObjectHypothesisWithPose\nObjectHypothesis hypothesis\n\
-         geometry_msgs/PoseWithCovariance pose\n===\nMSG: vision_msgs/ObjectHypothesis\n\
-         string class_id\nfloat64 score\n===\nMSG: geometry_msgs/PoseWithCovariance\nPose pose\n\
-         float64[36] covariance\n",
-        POSE,
-    ]
-    .concat();
-    let mut message =
-        [header_in(9, "camera"), (classes.len() as u32).to_le_bytes().to_vec()].concat();
-    let [x, y, z, w] = LEFT;
+    let definition = "Header header\nDetection3D[] detections\n===\nMSG: vision_msgs/Detection3D\n\
+        Header header\nObjectHypothesisWithPose[] results\nstring id\n===\n\
+        MSG: vision_msgs/ObjectHypothesisWithPose\nObjectHypothesis hypothesis\n\
+        geometry_msgs/PoseWithCovariance pose\n===\nMSG: vision_msgs/ObjectHypothesis\n\
+        string class_id\nfloat64 score\n===\nMSG: geometry_msgs/PoseWithCovariance\nPose pose\n\
+        float64[36] covariance\n";
+    let mut message = [header(9, "camera"), whole([classes.len() as u32])].concat();
     for hypotheses in classes {
-        message.extend([header_in(9, ""), 2_u32.to_le_bytes().to_vec()].concat());
+        message.extend([header(9, ""), whole([2])].concat());
         for (class, score) in hypotheses.iter().zip([0.25, 0.75]) {
-            message.extend(
-                [text(class), numbers([score]), numbers([2.0, 1.0, 0.0, x, y, z, w])].concat(),
-            );
-            message.extend(numbers([0.0; 36]));
+            let pose = [ros1::pose([2.0, 1.0, 0.0], LEFT), numbers([0.0; 36])].concat();
+            message.extend([text(class), numbers([score]), pose].concat());
         }
         message.extend(text(""));
     }
-    (
-        "/objects",
-        "vision_msgs/Detection3DArray",
-        Box::leak(definition.into_boxed_str()),
-        vec![message],
-    )
+    ("/objects", "vision_msgs/Detection3DArray", posed(definition), vec![message])
 }
 
-fn pose(frame: &str, position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Topic {
-    let definition: String = ["Header header\nPose pose\n", HEADER, POSE].concat();
-    let [px, py, pz] = position;
-    let message = [header_in(9, frame), numbers([px, py, pz, x, y, z, w])].concat();
-    ("/tag", "geometry_msgs/PoseStamped", Box::leak(definition.into_boxed_str()), vec![message])
+fn pose(frame: &str, position: [f64; 3], turn: [f64; 4]) -> Topic {
+    let message = [header(9, frame), ros1::pose(position, turn)].concat();
+    let definition = posed("Header header\nPose pose\n");
+    ("/tag", "geometry_msgs/PoseStamped", definition, vec![message])
 }
 
 fn sightings(topics: &[Topic], mapping: &str) -> Result<Vec<FiducialSighting>, String> {
-    let log = Log::of_bytes(log_of(topics)).unwrap();
-    sightings_in(&log, mapping)
+    sightings_in(&Log::of_bytes(log_of(topics)).unwrap(), mapping)
 }
 
 fn sightings_in(log: &Log, mapping: &str) -> Result<Vec<FiducialSighting>, String> {
-    let mapping = TopicMap::read(mapping.as_bytes()).unwrap().completed(log);
-    let bound = mapping.only(&[Role::Marker, Role::Odometry]).bind(log).unwrap();
-    let mut found = Vec::new();
-    for entry in log.entries(&bound) {
-        if let Content::Fiducial(sighting) = entry.map_err(|error| error.to_string())?.content {
-            found.push(sighting);
-        }
-    }
-    Ok(found)
+    let mapping = map(mapping).completed(log).only(&[Role::Marker, Role::Odometry]);
+    let sighting = |entry: Entry| match entry.content {
+        Content::Fiducial(sighting) => Some(sighting),
+        _ => None,
+    };
+    Ok(entries_of(log, &mapping)?.into_iter().filter_map(sighting).collect())
 }
 
 /// A marker 2 m ahead of the camera and 1 m to its left is 2.5 m along y of the robot and 1 m against x; it
@@ -162,12 +132,9 @@ fn a_pose_is_in_the_frame_of_odometry_or_of_the_robot() {
     let wall = [sine, 0.0, 0.0, cosine];
     let found = sightings(&with(pose("odom", [0.0, 4.5, 1.0], wall)), mapping).unwrap();
     assert!(found[0].heading.abs() < 1e-9);
+    let apart = "its frame \"elsewhere\" is not connected to the robot: no transform leads";
     for (frame, turn, message) in [
-        (
-            "elsewhere",
-            LEFT,
-            "its frame \"elsewhere\" is not connected to the robot: no transform leads",
-        ),
+        ("elsewhere", LEFT, apart),
         ("odom", [0.0, -sine, 0.0, cosine], "the x axis of the marker points up or down"),
         ("odom", [0.0; 4], "its `pose` is no pose"),
     ] {
@@ -181,9 +148,8 @@ fn only_a_mapping_file_says_what_the_marker_is() {
     let log = Log::of_bytes(log_of(&[tags(&[]), pose("odom", [0.0; 3], LEVEL)])).unwrap();
     assert!(TopicMap::unambiguous(&log).carrier(Role::Marker).is_none());
     let mapping = "[marker]\ntopic = \"/detections\"\nid = 3\nframe = \"a\"\n";
-    let read = TopicMap::read(mapping.as_bytes()).unwrap();
-    assert_eq!(TopicMap::read(read.to_toml().as_bytes()), Ok(read));
-    let read = TopicMap::read(b"[marker]\nat = [1, -2.5, 0.5]\n").unwrap();
+    assert_eq!(map(mapping), map(&map(mapping).to_toml()));
+    let read = map("[marker]\nat = [1, -2.5, 0.5]\n");
     let place = read.assumed_marker().unwrap();
     assert_eq!((place.position, place.heading), ([1.0, -2.5], Some(0.5)));
     assert_eq!(read.to_toml(), "[marker]\nat = [1.0, -2.5, 0.5]\n");

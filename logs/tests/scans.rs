@@ -11,53 +11,29 @@ use toposlam_logs::{
 };
 use toposlam_vision::laser::scan::Reading;
 
-use super::roles::{Topic, header_in, log_of, numbers, text};
-
-const SCAN: &str = "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n\
-    float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n\
-    float32[] ranges\nfloat32[] intensities\n===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\n\
-    string frame_id\n";
-const TRANSFORMS: &str = "TransformStamped[] transforms\n===\nMSG: geometry_msgs/TransformStamped\n\
-    Header header\nstring child_frame_id\nTransform transform\n===\nMSG: std_msgs/Header\nuint32 seq\n\
-    time stamp\nstring frame_id\n===\nMSG: geometry_msgs/Transform\nVector3 translation\n\
-    Quaternion rotation\n===\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n===\n\
-    MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
-pub(super) const ODOMETRY: &str = "Header header\nPoseWithCovariance pose\n===\nMSG: std_msgs/Header\nuint32 seq\n\
-    time stamp\nstring frame_id\n===\nMSG: geometry_msgs/PoseWithCovariance\nPose pose\n===\n\
-    MSG: geometry_msgs/Pose\nPoint position\nQuaternion orientation\n===\nMSG: geometry_msgs/Point\n\
-    float64 x\nfloat64 y\nfloat64 z\n===\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\n\
-    float64 z\nfloat64 w\n";
+use super::{
+    entries, entries_of,
+    ros1::{HEADER, LEFT, LEVEL, Topic, header, log_of, odometry, transforms, whole},
+};
 
 /// First angle, increment, least and largest range, ranges.
 fn scan(numbers: [f32; 4], ranges: &[f32]) -> Topic {
+    let definition = "Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n\
+        float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n\
+        float32[] ranges\nfloat32[] intensities\n";
     let [first, increment, least, most] = numbers;
     let body = [first, 0.0, increment, 0.0, 0.0, least, most].map(f32::to_le_bytes).concat();
     let list: Vec<u8> = ranges.iter().flat_map(|range| range.to_le_bytes()).collect();
-    let length = (ranges.len() as u32).to_le_bytes().to_vec();
-    let message = [header_in(7, "laser"), body, length, list, vec![0; 4]].concat();
-    ("/scan", "sensor_msgs/LaserScan", SCAN, vec![message])
+    let message =
+        [header(7, "laser"), body, whole([ranges.len() as u32]), list, vec![0; 4]].concat();
+    ("/scan", "sensor_msgs/LaserScan", [definition, HEADER].concat(), vec![message])
 }
-
-/// Parent, child, translation and quaternion of each.
-pub(super) type Transform<'t> = (&'t str, &'t str, [f64; 3], [f64; 4]);
-
-pub(super) fn transforms(name: &'static str, all: &[Transform]) -> Topic {
-    let mut message = (all.len() as u32).to_le_bytes().to_vec();
-    for (parent, child, translation, rotation) in all {
-        message.extend(header_in(9, parent));
-        message.extend([text(child), numbers(*translation), numbers(*rotation)].concat());
-    }
-    (name, "tf2_msgs/TFMessage", TRANSFORMS, vec![message])
-}
-
-pub(super) const LEVEL: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 fn read(topics: &[Topic]) -> Result<Frame, String> {
     let log = Log::of_bytes(log_of(topics)).unwrap();
-    let mapping = TopicMap::from_log(&log).unwrap().only(&[Role::Scan]);
-    let entry = log.entries(&mapping.bind(&log).unwrap()).next().unwrap();
-    match entry.map_err(|error| error.to_string())?.content {
-        Content::Event(EventKind::Frame(frame)) => Ok(frame),
+    let entries = entries_of(&log, &TopicMap::from_log(&log).unwrap().only(&[Role::Scan]))?;
+    match &entries[0].content {
+        Content::Event(EventKind::Frame(frame)) => Ok(frame.clone()),
         other => panic!("{other:?}"),
     }
 }
@@ -90,18 +66,15 @@ fn a_scanner_is_where_the_transforms_of_its_frame_place_it() {
 
 #[test]
 fn a_scanner_that_is_not_connected_or_not_level_is_an_error() {
-    let half = 0.5_f64.sqrt();
-    for (transform, message) in [
-        (
-            ("map", "laser", [0.0; 3], LEVEL),
-            "its frame \"laser\" is not connected to the robot: no transform leads from it to base_link, base_footprint, base",
-        ),
-        (
-            ("base_link", "laser", [0.0; 3], [half, 0.0, 0.0, half]),
-            "its frame \"laser\" is not level",
-        ),
+    let [_, _, half, _] = LEFT;
+    let apart = "its frame \"laser\" is not connected to the robot: no transform leads from it to base_link, \
+        base_footprint, base";
+    for (parent, turn, message) in [
+        ("map", LEVEL, apart),
+        ("base_link", [half, 0.0, 0.0, half], "its frame \"laser\" is not level"),
     ] {
-        let error = read(&[scan(USUAL, &[1.0]), transforms("/tf", &[transform])]).unwrap_err();
+        let transforms = transforms("/tf", &[(parent, "laser", [0.0; 3], turn)]);
+        let error = read(&[scan(USUAL, &[1.0]), transforms]).unwrap_err();
         assert!(error.ends_with(&format!(": message 1, on /scan: {message}")), "{error}");
     }
 }
@@ -123,21 +96,16 @@ fn impossible_angles_and_limits_are_errors_and_a_clockwise_scan_is_reversed() {
 
 #[test]
 fn odometry_is_preferred_to_transforms() {
-    let half = 0.5_f64.sqrt();
-    let pose = numbers([1.0, 2.0, 0.0, 0.0, 0.0, half, half]);
-    let message = [header_in(8, "odom"), pose].concat();
-    let odometry = ("/odom", "nav_msgs/Odometry", ODOMETRY, vec![message]);
-    let place = ("odom", "base_footprint", [3.0, 4.0, 0.0], [0.0, 0.0, half, half]);
+    let place = ("odom", "base_footprint", [3.0, 4.0, 0.0], LEFT);
     let wheel = ("base_footprint", "wheel", [9.0; 3], LEVEL);
     let tf = || transforms("/tf", &[wheel, place]);
     for (topics, carrier, position, second) in
-        [(vec![odometry, tf()], "/odom", [1.0, 2.0], 8), (vec![tf()], "/tf", [3.0, 4.0], 9)]
+        [(vec![odometry(), tf()], "/odom", [1.0, 2.0], 8), (vec![tf()], "/tf", [3.0, 4.0], 9)]
     {
         let log = Log::of_bytes(log_of(&topics)).unwrap();
         let mapping = TopicMap::from_log(&log).unwrap();
         assert_eq!(mapping.carrier(Role::Odometry).unwrap().topic, carrier);
-        let entries: Vec<_> =
-            log.entries(&mapping.bind(&log).unwrap()).map(Result::unwrap).collect();
+        let entries = entries(&log);
         let [entry] = &entries[..] else { panic!("{entries:?}") };
         let Content::Event(EventKind::Odometry(at)) = &entry.content else { panic!() };
         assert_eq!((at.position, entry.stamp.sec), (position, second));
@@ -145,6 +113,5 @@ fn odometry_is_preferred_to_transforms() {
     }
     // Transforms between other frames are no odometry.
     let log = Log::of_bytes(log_of(&[transforms("/tf", &[wheel])])).unwrap();
-    let mapping = TopicMap::from_log(&log).unwrap();
-    assert_eq!(log.entries(&mapping.bind(&log).unwrap()).count(), 0);
+    assert_eq!(entries(&log), []);
 }

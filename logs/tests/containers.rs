@@ -1,11 +1,13 @@
 //! Bags and MCAP files, whole and truncated.
 
-use std::{collections::BTreeMap, io::Cursor};
+use std::collections::BTreeMap;
 
+use mcap::WriteOptions;
 use toposlam_logs::{Format, error::TruncationKind, reader::Log};
 
-use super::written::{
-    COMPRESSIONS, Closed, Said, bag, crashed_bag, files, in_order, mcap_file, said, ways,
+use super::{
+    position,
+    written::{Closed, Said, add_message, bag, bags, files, in_order, mcap, mcap_file, said, ways},
 };
 
 #[test]
@@ -31,10 +33,9 @@ fn a_file_is_read_with_any_options() {
 #[test]
 fn a_bag_without_an_index_is_read_and_reported_as_not_closed() {
     let all = in_order(40);
-    for compression in COMPRESSIONS {
-        let bytes = bag(&[&all[..15], &all[15..]], compression, Closed::No);
-        let length = bytes.len() as u64;
-        let log = Log::of_bytes(bytes).unwrap();
+    for file in bags(&[&all[..15], &all[15..]], Closed::No) {
+        let length = file.bytes.len() as u64;
+        let log = Log::of_bytes(file.bytes).unwrap();
         let truncation = log.truncation().unwrap();
         assert_eq!((truncation.offset, &truncation.cause), (length, &TruncationKind::Index));
         assert_eq!(log.messages_total(), 40);
@@ -61,7 +62,7 @@ fn messages_come_in_order_of_time_for_any_order_in_the_file() {
 fn a_truncated_file_is_read_up_to_the_cut() {
     let all = in_order(12);
     let chunks: [&[Said]; 3] = [&all[..4], &all[4..8], &all[8..]];
-    let crashed = COMPRESSIONS.map(|compression| (crashed_bag(&chunks, compression), 8));
+    let crashed = bags(&chunks, Closed::No).map(|file| (file, 8));
     for (file, expected) in files(&chunks).into_iter().map(|file| (file, 12)).chain(crashed) {
         let name = file.name;
         let magic = if file.format == Format::Bag { 13 } else { 8 };
@@ -89,16 +90,13 @@ fn a_chunk_of_a_crashed_recorder_is_read() {
     // The placeholder that rosbag writes as the length of a chunk before the length is known.
     let all = in_order(8);
     let mut bytes = bag(&[&all], "none", Closed::No);
-    let find = |bytes: &[u8], what: &[u8]| {
-        bytes.windows(what.len()).position(|part| part == what).unwrap()
-    };
-    let size = find(&bytes, b"size=") + 5;
+    let size = position(&bytes, b"size=") + 5;
     bytes[size..size + 8].fill(0);
     assert_eq!(said(&Log::of_bytes(bytes.clone()).unwrap()), all);
     // The compressed rest is lost.
     let mut bytes = bag(&[&all[..4], &all[4..]], "bz2", Closed::No);
-    let first = find(&bytes, b"BZh");
-    let second = first + 3 + find(&bytes[first + 3..], b"BZh");
+    let first = position(&bytes, b"BZh");
+    let second = first + 3 + position(&bytes[first + 3..], b"BZh");
     bytes[second - 8..second].fill(0);
     let log = Log::of_bytes(bytes).unwrap();
     assert_eq!(said(&log), all[..4]);
@@ -107,60 +105,46 @@ fn a_chunk_of_a_crashed_recorder_is_read() {
 
 #[test]
 fn topics_that_cannot_be_decoded_are_still_listed() {
-    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
-    for (name, schema, encoding, text) in [
-        ("/json", "jsonschema", "json", "{}"),
-        ("/wrong", "ros2msg", "cdr", "int32"),
-        ("/idl", "ros2idl", "cdr", "module a {};"),
-    ] {
-        let schema = writer.add_schema("a/msg/A", schema, text.as_bytes()).unwrap();
-        writer.add_channel(schema, name, encoding, &BTreeMap::new()).unwrap();
+    let bytes = mcap(WriteOptions::new(), |writer| {
+        for (name, schema, encoding, text) in [
+            ("/json", "jsonschema", "json", "{}"),
+            ("/wrong", "ros2msg", "cdr", "int32"),
+            ("/idl", "ros2idl", "cdr", "module a {};"),
+        ] {
+            let schema = writer.add_schema("a/msg/A", schema, text.as_bytes()).unwrap();
+            writer.add_channel(schema, name, encoding, &BTreeMap::new()).unwrap();
+        }
+        writer.add_channel(0, "/none", "cdr", &BTreeMap::new()).unwrap();
+    });
+    let log = Log::of_bytes(bytes).unwrap();
+    for (topic, why) in log.topics().iter().zip([
+        "/json: messages in \"json\" by a schema in \"jsonschema\" cannot be read",
+        "/wrong: line 1 of the definition: `int32` is neither a field nor a constant",
+        "/idl: messages in \"cdr\" by a schema in \"ros2idl\" cannot be read",
+        "/none: the log does not define its messages",
+    ]) {
+        assert_eq!(format!("{}: {}", topic.name, topic.definition.as_ref().unwrap_err()), why);
     }
-    writer.add_channel(0, "/none", "cdr", &BTreeMap::new()).unwrap();
-    writer.finish().unwrap();
-    let log = Log::of_bytes(writer.into_inner().into_inner()).unwrap();
-    let why: Vec<_> = log
-        .topics()
-        .iter()
-        .map(|topic| format!("{}: {}", topic.name, topic.definition.as_ref().unwrap_err()))
-        .collect();
-    assert_eq!(
-        why,
-        [
-            "/json: messages in \"json\" by a schema in \"jsonschema\" cannot be read",
-            "/wrong: line 1 of the definition: `int32` is neither a field nor a constant",
-            "/idl: messages in \"cdr\" by a schema in \"ros2idl\" cannot be read",
-            "/none: the log does not define its messages",
-        ]
-    );
+    assert_eq!(log.topics().len(), 4);
     assert_eq!((log.messages_total(), log.start()), (0, None));
 }
 
 #[test]
 fn overlapping_chunks_beyond_the_memory_limit_are_read_again() {
     // Ten chunks of 10 MB with the same times.
-    let mut writer =
-        mcap::WriteOptions::new().compression(None).create(Cursor::new(Vec::new())).unwrap();
-    let channel_id = writer.add_channel(0, "/large", "x", &BTreeMap::new()).unwrap();
-    for chunk in 0..10_u32 {
-        for nth in 0..5_u32 {
-            let header = mcap::records::MessageHeader {
-                channel_id,
-                sequence: 0,
-                log_time: u64::from(10 * nth + chunk),
-                publish_time: 0,
-            };
-            let mut body = vec![0; 2_000_000];
-            body[..4].copy_from_slice(&(10 * nth + chunk).to_le_bytes());
-            writer.write_to_known_channel(&header, &body).unwrap();
+    let bytes = mcap(WriteOptions::new().compression(None), |writer| {
+        let channel = writer.add_channel(0, "/large", "x", &BTreeMap::new()).unwrap();
+        let mut body = vec![0; 2_000_000];
+        for chunk in 0..10_u64 {
+            for time in (chunk..50).step_by(10) {
+                body[..8].copy_from_slice(&time.to_le_bytes());
+                add_message(writer, channel, time, &body);
+            }
+            writer.flush().unwrap();
         }
-        writer.flush().unwrap();
-    }
-    writer.finish().unwrap();
-    let log = Log::of_bytes(writer.into_inner().into_inner()).unwrap();
-    for (nth, message) in log.read_all().enumerate() {
+    });
+    for (time, message) in (0_u64..).zip(Log::of_bytes(bytes).unwrap().read_all()) {
         let message = message.unwrap();
-        assert_eq!(message.time, nth as u64);
-        assert_eq!(message.bytes[..4], (nth as u32).to_le_bytes());
+        assert_eq!((message.time, &message.bytes[..8]), (time, &time.to_le_bytes()[..]));
     }
 }

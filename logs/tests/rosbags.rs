@@ -16,6 +16,8 @@ use toposlam_logs::{
 };
 use toposlam_vision::laser::scan::Reading;
 
+use super::entries;
+
 fn written(name: &str) -> Option<PathBuf> {
     written_by("write_scans.py", name)
 }
@@ -45,8 +47,7 @@ fn read(log: &Log) -> Found {
     let topic = |role| &*mapping.carrier(role).unwrap().topic;
     assert_eq!((topic(Role::Scan), topic(Role::Odometry)), ("/scan", "/tf"));
     let (mut scans, mut odometry) = (Vec::new(), Vec::new());
-    for entry in log.entries(&mapping.bind(log).unwrap()) {
-        let entry = entry.unwrap();
+    for entry in entries(log) {
         let stamp = entry.stamp.nanoseconds();
         match entry.content {
             Content::Event(EventKind::Frame(frame)) => {
@@ -71,33 +72,32 @@ fn read(log: &Log) -> Found {
 #[test]
 fn the_same_scans_are_read_from_every_format() {
     let Some(folder) = written("rosbags_scans") else { return };
-    let mut logs = vec![("mcap", Format::Folder), ("ros1.bag", Format::Bag)];
-    logs.push(("mcap/mcap.mcap", Format::Mcap));
-    logs.push(("mcap-file-compressed", Format::Folder));
+    let mut logs = vec![
+        ("mcap", Format::Folder),
+        ("ros1.bag", Format::Bag),
+        ("mcap/mcap.mcap", Format::Mcap),
+        ("mcap-file-compressed", Format::Folder),
+    ];
     if cfg!(feature = "sqlite") {
-        logs.extend(
-            ["database", "file-compressed", "message-compressed"].map(|it| (it, Format::Folder)),
-        );
-        logs.push(("database/database.db3", Format::Database));
-        logs.push(("file-compressed/file-compressed.db3.zstd", Format::Database));
+        logs.extend([
+            ("database", Format::Folder),
+            ("file-compressed", Format::Folder),
+            ("message-compressed", Format::Folder),
+            ("database/database.db3", Format::Database),
+            ("file-compressed/file-compressed.db3.zstd", Format::Database),
+        ]);
     }
-    let logs: Vec<_> = logs
-        .into_iter()
-        .map(|(name, format)| {
-            let log = Log::open(&folder.join(name)).unwrap();
-            assert_eq!(
-                (log.format(), log.truncation(), log.messages_total()),
-                (format, None, 15),
-                "{name}"
-            );
-            (name, read(&log))
-        })
-        .collect();
-    let (_, (scans, odometry)) = &logs[0];
+    let found = logs.into_iter().map(|(name, format)| {
+        let log = Log::open(&folder.join(name)).unwrap();
+        let found = (log.format(), log.truncation(), log.messages_total());
+        assert_eq!(found, (format, None, 15), "{name}");
+        read(&log)
+    });
+    let found: Vec<Found> = found.collect();
+    let (scans, odometry) = &found[0];
     assert_eq!((scans.len(), odometry.len()), (7, 7));
-    for (index, ((stamp, ranges, [x, y, heading]), (time, at))) in
-        scans.iter().zip(odometry).enumerate()
-    {
+    let both = scans.iter().zip(odometry).enumerate();
+    for (index, ((stamp, ranges, [x, y, heading]), (time, at))) in both {
         let nanoseconds = (index as u64 + 1) * 1_000_000_000;
         assert_eq!((*stamp, *time), (nanoseconds + 5, nanoseconds));
         assert_eq!(f32::from_bits(ranges[0]), 1.5 + index as f32);
@@ -108,9 +108,7 @@ fn the_same_scans_are_read_from_every_format() {
         assert_eq!(at[..2], [index / 2.0, -index / 4.0]);
         assert!((at[2] - index / 8.0).abs() < 1e-12);
     }
-    for (name, found) in &logs {
-        assert_eq!(found, &logs[0].1, "{name}");
-    }
+    assert!(found.iter().all(|other| *other == found[0]), "{found:?}");
     fs::remove_dir_all(folder).unwrap();
 }
 

@@ -20,20 +20,12 @@ use toposlam_logs::{
 };
 use toposlam_vision::laser::scan::{Reading, Scan};
 
-use super::recorded_logs;
-
-fn entries(log: &Log) -> Vec<Entry> {
-    let bound = TopicMap::from_log(log).unwrap().bind(log).unwrap();
-    log.entries(&bound).map(Result::unwrap).collect()
-}
+use super::{entries, entries_of, map, recorded_logs};
 
 fn error(text: &str) -> String {
     match Log::of_bytes(text.as_bytes().to_vec()) {
         Err(error) => error.to_string(),
-        Ok(log) => {
-            let bound = TopicMap::from_log(&log).unwrap().bind(&log).unwrap();
-            log.entries(&bound).find_map(Result::err).unwrap().to_string()
-        }
+        Ok(log) => entries_of(&log, &TopicMap::from_log(&log).unwrap()).unwrap_err(),
     }
 }
 
@@ -74,12 +66,10 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
     for bytes in [SMALL.as_bytes().to_vec(), gzip(SMALL.as_bytes())] {
         let log = Log::of_bytes(bytes).unwrap();
         assert_eq!((log.format(), log.truncation()), (Format::Carmen, None));
-        let topics: Vec<_> =
-            log.topics().iter().map(|topic| (&*topic.name, topic.messages)).collect();
-        assert_eq!(topics, [("ODOM", 2), ("FLASER", 1), ("RLASER", 1)]);
+        let topics = log.topics().iter().map(|topic| (&*topic.name, topic.messages));
+        assert!(topics.eq([("ODOM", 2), ("FLASER", 1), ("RLASER", 1)]));
         let skipped = log.skipped().unwrap();
-        let unknown: Vec<_> = skipped.unknown.iter().collect();
-        assert_eq!(unknown, [(&"NEFF".to_owned(), &1), (&"SYNC".to_owned(), &1)]);
+        assert_eq!(skipped.unknown, ["NEFF", "SYNC"].map(|kind| (kind.to_owned(), 1)).into());
         assert_eq!(skipped.off_clock, 2);
         assert_eq!((log.start(), log.end()), (Some(10_500_000_000), Some(12_000_000_000)));
         // The front scanner is preferred.
@@ -97,17 +87,13 @@ fn the_lines_of_a_carmen_log_are_scans_and_odometry() {
             assert_eq!(*reading, expected);
         }
         // The odometry of the scan is among that of the other lines.
-        let odometry: Vec<_> = entries(&log)
-            .into_iter()
-            .filter_map(|entry| match entry.content {
-                Content::Event(EventKind::Odometry(odometry)) => Some(odometry.position[0]),
-                _ => None,
-            })
-            .collect();
-        assert_eq!(odometry, [1.0, 1.0, 4.0]);
-        let rear = TopicMap::read(b"[scan]\ntopic = \"RLASER\"").unwrap().bind(&log).unwrap();
-        let rear = log.entries(&rear).next().unwrap().unwrap();
-        let Content::Event(EventKind::Frame(frame)) = rear.content else { panic!() };
+        let x = |entry: Entry| match entry.content {
+            Content::Event(EventKind::Odometry(odometry)) => Some(odometry.position[0]),
+            _ => None,
+        };
+        assert!(entries(&log).into_iter().filter_map(x).eq([1.0, 1.0, 4.0]));
+        let rear = entries_of(&log, &map("[scan]\ntopic = \"RLASER\"")).unwrap();
+        let Content::Event(EventKind::Frame(frame)) = &rear[0].content else { panic!() };
         let scan = frame.scan.as_ref().unwrap();
         assert_eq!((scan.scanner(), scan.heading()), (Point2::new(-0.5, 0.0), PI));
         assert_eq!(frame.odometry.position, [4.0, 5.0]);
@@ -133,20 +119,18 @@ fn the_newer_message_records_its_angles_and_the_pose_of_its_scanner() {
 #[test]
 fn a_wrong_line_is_an_error_with_its_number() {
     let odom = "ODOM 1 2 0 0 0 0 5 h 5\n";
+    let ranges =
+        "message 2, on FLASER: byte 31 of the message, `ranges`: \"h\" is not a number of its kind";
+    let left = "message 2, on ODOM: byte 22 of the message: 1 words are left over";
     for (lines, message) in [
-        (
-            "FLASER 180 1 2 3 0 0 0 0 0 0 5 h 5",
-            "line 2: message 2, on FLASER: byte 31 of the message, `ranges`: \"h\" is not a number of its kind",
-        ),
-        ("ODOM 1 2 0 0 0 0 5 h five", "line 2: its last word is not the time of the logger"),
-        ("ODOM 1 2 nan 0 0 0 5 h 5", "line 2: message 2, on ODOM: its `theta` is NaN"),
-        (
-            "ODOM 1 2 0 0 0 0 5 h 5 5",
-            "line 2: message 2, on ODOM: byte 22 of the message: 1 words are left over",
-        ),
-        ("FLASER 0 0 0 0 0 0 0 5 h 5", "line 2: message 2, on FLASER: the scan has no readings"),
+        ("FLASER 180 1 2 3 0 0 0 0 0 0 5 h 5", ranges),
+        ("ODOM 1 2 0 0 0 0 5 h five", "its last word is not the time of the logger"),
+        ("ODOM 1 2 nan 0 0 0 5 h 5", "message 2, on ODOM: its `theta` is NaN"),
+        ("ODOM 1 2 0 0 0 0 5 h 5 5", left),
+        ("FLASER 0 0 0 0 0 0 0 5 h 5", "message 2, on FLASER: the scan has no readings"),
     ] {
-        assert_eq!(error(&format!("{odom}{lines}\n{odom}")), message, "{lines}");
+        let found = error(&format!("{odom}{lines}\n{odom}"));
+        assert_eq!(found, format!("line 2: {message}"), "{lines}");
     }
     let jump = "ODOM 1 2 0 0 0 0 5 h 8000.25\n".repeat(10);
     assert_eq!(
