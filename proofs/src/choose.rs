@@ -17,7 +17,10 @@ pub trait Choose {
     fn below(&mut self, n: u8) -> u8;
 
     /// Whether to go on with this case; the lemma says nothing about the others.
-    fn assume(&mut self, condition: bool) -> bool;
+    #[inline]
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
 
     /// Shows a person what was chosen. Only a [`CaseReplay`](crate::CaseReplay) keeps it.
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {

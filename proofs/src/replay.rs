@@ -103,10 +103,6 @@ impl Choose for CaseReplay {
         }
     }
 
-    fn assume(&mut self, condition: bool) -> bool {
-        condition
-    }
-
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {
         self.exhibits.push(exhibit());
     }

@@ -5,23 +5,22 @@
 //! the map, the walks in it and the hypotheses are written separately, and stateright explores the states.
 //! The way back is not: after a rejection the robot is where it was.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
-
 use std::{
     collections::VecDeque,
     hash::{Hash, Hasher},
-    ops::ControlFlow,
 };
 
 use stateright::{Checker, Model, Property};
 use toposlam_model::{
     check::{DEFAULT_STATE_BUDGET, every_way},
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    enumerate::{Class, Each, Enumeration},
+    enumerate::Class,
     isomorphism::Bijection,
     mapping::Algorithm1Run,
     percept::{Door, Percept, Sighting},
 };
+
+use crate::starts;
 
 /// An edge end of the map: a vertex, in the order of discovery, and a place clockwise from the dart
 /// by which it was first entered; at the start vertex, from the facing dart.
@@ -335,22 +334,11 @@ fn orders(ends: &[End]) -> Vec<Vec<End>> {
     (0..ends.len()).flat_map(first).collect()
 }
 
-/// Every start of a size.
-fn starts(edges: usize) -> Vec<EmbeddedGraph> {
-    let mut starts = Vec::new();
-    let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
-    let _ = all.for_each(&mut |found| {
-        starts.push(found.graph.clone());
-        ControlFlow::Continue(())
-    });
-    starts
-}
-
 /// The numbers of starts are OEIS A000698; those of states come from an independent computation.
 #[test]
 fn stateright_finds_the_states_of_every_way_and_no_wrong_map() {
     for (edges, count, states) in [(1, 2, 4), (2, 10, 43), (3, 74, 725), (4, 706, 16471)] {
-        let starts = starts(edges);
+        let starts = starts(Class::Multigraph, edges..=edges);
         assert_eq!(starts.len(), count);
         let mut total = 0;
         for world in starts {
@@ -373,7 +361,7 @@ fn stateright_finds_the_states_of_every_way_and_no_wrong_map() {
 fn hypotheses_that_are_confirmed_blindly_make_wrong_maps() {
     for (edges, wrong) in [(1, 0), (2, 0), (3, 14), (4, 267)] {
         let mut discovered = 0;
-        for world in starts(edges) {
+        for world in starts(Class::Multigraph, edges..=edges) {
             let mapping = Mapping { world, facing: Dart(0), validation: Validation::Blind };
             let checker = mapping.checker().threads(1).spawn_dfs().join();
             if let Some(path) = checker.discovery(EMBEDS) {

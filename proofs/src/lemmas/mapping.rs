@@ -154,14 +154,16 @@ fn run<'g, C: Choose>(
     };
     let mut truth = Truth { graph, pose: FACING, image: Vec::new(), doors: Vec::new() };
     let mut verdict = Ok(());
+    // The map never needs more darts than the world has.
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
+    let bound = exploration.move_bound(graph.edge_count(), graph.vertex_count());
     let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
+        assert!(journey.moves() <= bound, "a run ends");
         truth.event(journey, event);
         if verdict.is_ok() {
             verdict = heeded(event).and_then(|()| judge(&truth, journey, event));
         }
     };
-    // The map never needs more darts than the world has.
-    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let observed = &mut Observed::new(&mut world, &mut watch);
     let ended = explore_with(&mut exploration, observed, |run| {
@@ -338,7 +340,9 @@ fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> CaseResult {
 }
 
 // paper: alg1.isomorphic, alg1.terminates, cost.bound
-fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
+pub(crate) fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (exploration, truth) = run(choose, &graph, |_, _, _| Ok(()))?;
     let Some(map) = exploration.map().complete() else {

@@ -12,9 +12,10 @@ use toposlam_model::{
 };
 
 use super::{
-    comparison::{Case, assert_same, difference, extracted, known, listed, starts},
+    comparison::{Case, assert_same, difference, extracted, known, listed},
     compiled, source,
 };
+use crate::starts;
 
 /// What the folding explorer did.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,11 +101,8 @@ impl Run {
         let mut world = GraphWorld::new(&start, Dart(0));
         let mut exploration = FoldingRun::new(start.dart_count());
         let mut recorded = Recorded::default();
-        let known = explore(&mut exploration, &mut Observed::new(&mut world, &mut recorded))
-            .map_or_else(
-                |error| error.to_string(),
-                |()| known(exploration.map(), exploration.robot()),
-            );
+        let ended = explore(&mut exploration, &mut Observed::new(&mut world, &mut recorded));
+        let known = ended.map_or_else(|error| error.to_string(), |()| known(&exploration));
         let moves = listed("moves", iter::once(exploration.moves()));
         let did = listed("did", recorded.did.iter());
         let line = [did, "chose".to_owned(), known, moves].join("; ");
@@ -140,8 +138,8 @@ fn cases(runs: &[Run]) -> Vec<Case> {
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn the_running_folding_explorer_takes_allowed_actions_in_every_small_start() {
     let compiled = compiled();
-    let multigraphs = starts(Class::Multigraph, 5);
-    let simple = starts(Class::Simple, 7);
+    let multigraphs = starts(Class::Multigraph, 1..=5);
+    let simple = starts(Class::Simple, 1..=7);
     assert_eq!((multigraphs.len(), simple.len()), (8954, 4526));
     let runs = runs([multigraphs, simple].concat());
     assert_same(&compiled.copy("folding"), &cases(&runs));
@@ -191,7 +189,7 @@ fn stopped(given: &[Given]) -> Option<Vec<Given>> {
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn what_a_flawed_explorer_does_is_not_allowed() {
     let compiled = compiled();
-    let runs = runs(starts(Class::Multigraph, 4));
+    let runs = runs(starts(Class::Multigraph, 1..=4));
     let not_predicted = "a test does not predict where the robot comes in";
     let flaws: [(&str, Flawed, &[&str]); 5] = [
         ("not tested", not_tested, &["this is not allowed: add "]),
@@ -218,7 +216,7 @@ fn what_a_flawed_explorer_does_is_not_allowed() {
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn another_folding_explorer_is_detected() {
     let compiled = compiled();
-    let cases = cases(&runs(starts(Class::Multigraph, 4)));
+    let cases = cases(&runs(starts(Class::Multigraph, 1..=4)));
     let own = "\n    || has (fun p => same (from_dart (trail K) p) (to_dart (trail K) p)) (passages (trail K))";
     for (change, from, to) in [
         ("own opposite", own, ""),

@@ -3,8 +3,6 @@
 //!
 //! `cargo test` ignores these tests: `.ci/run` runs them after a change of what they depend on, and `.ci/run --all`.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 mod broken;
 mod comparison;
 mod figures;
