@@ -5,7 +5,6 @@
 mod argument;
 mod coq;
 mod harnesses;
-mod stateright;
 
 use std::ops::{ControlFlow, RangeInclusive};
 
