@@ -120,14 +120,11 @@ fn roomiest(
     own: Option<usize>,
     places: impl IntoIterator<Item = Label>,
 ) -> Option<Label> {
-    let mut best: Option<(f64, Label)> = None;
-    for (rank, label) in places.into_iter().enumerate() {
+    let costs = places.into_iter().enumerate().map(|(rank, label)| {
         let cost = covered(drawing, signs, taken, own, &label) + 0.1 * rank as f64;
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            best = Some((cost, label));
-        }
-    }
-    best.map(|(_, label)| label)
+        (cost, label)
+    });
+    costs.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, label)| label)
 }
 
 /// The cost of what the label covers.

@@ -40,6 +40,8 @@ mod ways;
 
 #[cfg(test)]
 mod gallery;
+#[cfg(test)]
+mod reading;
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
@@ -47,6 +49,7 @@ use toposlam_model::{
     marker::{Directional, Marker, MarkerLook, MarkerPart},
 };
 
+pub(crate) use geometry::Point;
 pub use growth::open_svg;
 pub(crate) use growth::{growth, open_layout};
 pub use laser_run::{DrawnVisit, LaserRunPicture, ScanHits, laser_run_svg};

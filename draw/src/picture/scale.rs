@@ -110,20 +110,15 @@ fn usual(graph: &EmbeddedGraph, places: &[Point], size: &DrawingSize, lines: &[[
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::gallery::worlds::simple, *};
 
     #[test]
     fn the_nearest_junctions_decide() {
-        let graph = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b"]),
-        ]);
-        let graph = graph.unwrap();
-        let size = DrawingSize::of(&graph, &["a", "b", "c"].map(str::to_owned));
+        let world = simple("chain", "a: b, b: a c, c: b");
+        let size = DrawingSize::of(&world.graph, &world.vertex_names);
         let metre = |far: f64| {
             let places = [0.0, 4.0, far].map(|x| Point::new(x, 0.0));
-            scale(&graph, &places, &size, ScalePurpose::FloorPlan)
+            scale(&world.graph, &places, &size, ScalePurpose::FloorPlan)
         };
         assert_eq!(metre(40.0).to_bits(), metre(80.0).to_bits());
         assert!((4.0 * metre(40.0) - (2.0 * (size.discs[0] + size.knob) + 24.0)).abs() < 1e-9);

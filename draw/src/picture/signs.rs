@@ -112,17 +112,6 @@ impl Sign {
         }
     }
 
-    /// The same sign, moved by a step.
-    pub(super) fn moved(self, step: Point) -> Self {
-        match self {
-            Self::Ring { centre, radius, look } => {
-                Self::Ring { centre: centre + step, radius, look }
-            }
-            Self::Arrow { at, direction, scale } => Self::Arrow { at: at + step, direction, scale },
-            Self::Bar { at, direction, scale } => Self::Bar { at: at + step, direction, scale },
-        }
-    }
-
     /// The same sign for a legend.
     pub(super) fn small(self, at: Point) -> Self {
         let right = Point::new(6.0, 0.0);
@@ -136,11 +125,12 @@ impl Sign {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{
-        embedded_graph::EmbeddedGraph, format::named_world::NamedWorld, marker::named,
-    };
+    use toposlam_model::{format::named_world::NamedWorld, marker::named};
 
-    use super::*;
+    use super::{
+        super::gallery::worlds::{multigraph, simple},
+        *,
+    };
 
     /// The signs of a marker, one letter each, and its text.
     fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
@@ -157,12 +147,8 @@ mod tests {
 
     #[test]
     fn each_marker_has_its_signs_and_its_words() {
-        let lists = [("a", vec!["b", "c"]), ("b", vec!["a", "c"]), ("c", vec!["a", "b"])];
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        let simple = NamedWorld::numbered("", "", graph, Some(Dart(0)));
-        let lists = [("u", vec!["e", "e", "f"]), ("v", vec!["f"])];
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        let with_loop = NamedWorld::numbered("", "", graph, Some(Dart(0)));
+        let simple = simple("triangle", "v0: v1 v2, v1: v0 v2, v2: v0 v1");
+        let with_loop = multigraph("loop", "v0: e0 e0 e1, v1: e1");
         for (marker, signs, words, of_loop) in [
             ("none", "", "", ""),
             ("undirected", "o", "the marker lies at v0", "the marker lies at v0"),

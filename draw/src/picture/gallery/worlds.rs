@@ -7,35 +7,26 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 
-fn world(name: &str, graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {
-    NamedWorld {
-        name: name.to_owned(),
-        about: String::new(),
-        graph,
-        start: Some(Dart(0)),
-        marker: None,
-        vertex_names,
-        edge_names: None,
-        positions: None,
-        plan: None,
-    }
-}
-
 /// A simple world: `"x: a b d c, a: b x c"`.
-fn simple(name: &str, text: &str) -> NamedWorld {
+pub(in super::super) fn simple(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
-    world(name, EmbeddedGraph::from_neighbour_lists(&lists).unwrap(), names)
+    let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+    NamedWorld { edge_names: None, ..of_lists(name, graph, lists) }
 }
 
 /// A world whose edges have names.
-fn multigraph(name: &str, text: &str) -> NamedWorld {
+pub(in super::super) fn multigraph(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
-    let edges = lists.iter().flat_map(|(_, edges)| edges.clone()).collect();
+    of_lists(name, EmbeddedGraph::from_edge_lists(&lists).unwrap(), lists)
+}
+
+/// A world with the names of its lists.
+fn of_lists(name: &str, graph: EmbeddedGraph, lists: Vec<(String, Vec<String>)>) -> NamedWorld {
+    let (vertex_names, edges): (_, Vec<_>) = lists.into_iter().unzip();
     NamedWorld {
-        edge_names: Some(edges),
-        ..world(name, EmbeddedGraph::from_edge_lists(&lists).unwrap(), names)
+        vertex_names,
+        edge_names: Some(edges.concat()),
+        ..NamedWorld::numbered(name, "", graph, Some(Dart(0)))
     }
 }
 
@@ -76,15 +67,8 @@ fn file(text: &str) -> NamedWorld {
 }
 
 pub(super) fn cycle(edges: usize) -> NamedWorld {
-    let lists: Vec<_> = (0..edges)
-        .map(|at| {
-            let near = [(at + edges - 1) % edges, (at + 1) % edges];
-            (at.to_string(), near.map(|n| n.to_string()).to_vec())
-        })
-        .collect();
-    let names = (0..edges).map(|at| at.to_string()).collect();
-    let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-    world(&format!("cycle-{edges}"), graph, names)
+    let list = |at| format!("{at}: {} {}", (at + edges - 1) % edges, (at + 1) % edges);
+    simple(&format!("cycle-{edges}"), &(0..edges).map(list).collect::<Vec<_>>().join(","))
 }
 
 /// Random numbers of a fixed seed.
@@ -114,13 +98,9 @@ pub(super) fn random(seed: u64, vertices: usize, edges: usize) -> NamedWorld {
             lists[end].1.insert(place, format!("e{edge}"));
         }
     }
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
     let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
     let name = format!("random-{vertices}-{edges}-{seed} (genus {})", graph.genus());
-    NamedWorld {
-        edge_names: Some(lists.into_iter().flat_map(|(_, edges)| edges).collect()),
-        ..world(&name, graph, names)
-    }
+    of_lists(&name, graph, lists)
 }
 
 fn tree(vertices: usize) -> NamedWorld {

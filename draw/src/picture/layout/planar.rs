@@ -54,18 +54,10 @@ pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Poin
 fn largest(web: &Subdivision, faces: &[Vec<usize>]) -> usize {
     let rank = |face: &[usize]| {
         let real = face.iter().filter(|&&dart| web.node[dart] < web.vertices);
-        let mut nodes: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        (real.count(), nodes.len())
+        (real.count(), web.different_nodes(face))
     };
-    let mut best = 0;
-    for number in 1..faces.len() {
-        if rank(&faces[number]) > rank(&faces[best]) {
-            best = number;
-        }
-    }
-    best
+    let last_first = (0..faces.len()).rev();
+    last_first.max_by_key(|&number| rank(&faces[number])).unwrap_or(0)
 }
 
 /// The graph with its faces filled.
@@ -110,13 +102,11 @@ impl Filled {
         if face.len() == 3 {
             return;
         }
-        let mut corners: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
-        let mut different = corners.clone();
-        different.sort_unstable();
-        different.dedup();
-        if different.len() < corners.len() {
-            corners = self.ring(web, face);
-        }
+        let corners = if web.different_nodes(face) < face.len() {
+            self.ring(web, face)
+        } else {
+            face.iter().map(|&dart| web.node[dart]).collect()
+        };
         let centre = self.node(None);
         for corner in corners {
             self.join(centre, corner);

@@ -16,8 +16,7 @@ use super::{
     signs::{Sign, signs},
 };
 
-pub(super) use figure::FLOOR;
-pub(super) use page::{FAINT, INK, MARKER, Page, short};
+pub(super) use page::{FAINT, INK, MARKER, PAPER, Page, short};
 pub(super) use sheet::{NORTH, Sheet};
 
 /// Whether the picture has a legend.
@@ -44,11 +43,11 @@ pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend
         Legend::Below => sheet.legend(says(picture, drawing)),
         Legend::Elsewhere => Vec::new(),
     };
-    sheet.document(&says, signs.first(), |page, shift| {
-        page.drawing(picture, drawing, &signs, shift);
+    sheet.document(&says, signs.first(), |page| {
+        page.drawing(picture, drawing, &signs);
         page.line("<g class=\"names\">");
         for label in &labels {
-            page.label(label, shift);
+            page.label(label);
         }
         page.line("</g>");
     })
