@@ -3,7 +3,6 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{Algorithm1Run, Explorer, InvalidStep, MappingChoice},
     percept::Door,
 };
 
@@ -176,19 +175,6 @@ pub fn number<const NIBBLES: u32>(choose: &mut impl Choose) -> u32 {
 /// A byte.
 pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
-}
-
-/// An open choice of Algorithm 1: any edge at line 5, any hypothesis at line 9; `None` if the run has ended. The map has
-/// at most 127 edges.
-///
-/// # Errors
-/// Returns none: Algorithm 1 always knows its choices.
-pub fn open_choice(
-    choose: &mut impl Choose,
-    run: &mut Algorithm1Run,
-) -> Result<Option<MappingChoice>, InvalidStep> {
-    let open = run.choices()?;
-    Ok(if open.is_empty() { None } else { Some(open[usize::from(choose.below(open.len() as u8))]) })
 }
 
 #[cfg(test)]
