@@ -195,7 +195,6 @@ impl Story {
         ));
     }
 
-    /// A candidate is rejected.
     fn add_rejected(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.rejected += 1;
         if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
@@ -207,7 +206,6 @@ impl Story {
         self.add_line(format!("Candidate {what}: rejected {why}{moves}."));
     }
 
-    /// A candidate is confirmed.
     fn add_confirmed(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.add_omitted();
         let moves = self.take_moves(journey);
@@ -241,7 +239,6 @@ impl Story {
         self.add_line(format!("Known: {vertices}, {edges}. Unexplored: {unexplored}."));
     }
 
-    /// A line of a round.
     fn add_line(&mut self, text: impl Display) {
         self.lines.push(StoryLine { head: "  ".to_owned(), indent: 4, text: text.to_string() });
     }

@@ -81,9 +81,7 @@ impl PathDriver for PathExecution<'static> {
 pub struct PathJunction {
     /// Its shape from the door by which the path comes in.
     pub form: JunctionShape,
-    /// Its turning point.
     at: [f64; 2],
-    /// The direction of that door.
     entry: f64,
 }
 
@@ -161,7 +159,6 @@ pub enum ImageEvidence {
 /// A robot on a path of junctions.
 #[derive(Clone, Debug)]
 pub struct HallwayDrive {
-    /// The junctions of its path, in their order.
     junctions: Vec<PathJunction>,
     /// The pose of the robot, and its pose by odometry.
     pub robot: Odometry,

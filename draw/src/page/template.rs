@@ -29,7 +29,6 @@ pub(super) mod checks {
     /// A name that would break a page if it were inserted as it is.
     pub(crate) const NASTY: &str = "</script><!--<i>&\"{{data}}";
 
-    /// The data of a page.
     pub(crate) fn data_of(document: &str) -> Value {
         let (_, from) =
             document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();

@@ -18,9 +18,7 @@ use super::{
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
     pub(super) size: DrawingSize,
-    /// The centre of each vertex's disc.
     pub(super) centres: Vec<Point>,
-    /// The direction of each dart's door.
     pub(super) doors: Vec<f64>,
     /// The darts and the curve of each edge, from its first dart.
     pub(super) edges: Vec<(Dart, Dart, Curve)>,
@@ -36,7 +34,6 @@ pub(super) struct Drawing {
     pub(super) room: Extent,
 }
 
-/// The scale of a floor plan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloorScale {
     /// Units of the picture in a metre.

@@ -64,7 +64,6 @@ pub(crate) struct OpenLayout {
     pub(crate) stubs: Vec<[Point; 2]>,
     /// The radius of the circle in which it ends.
     pub(crate) open: f64,
-    /// The box around the drawing.
     pub(crate) extent: Extent,
 }
 

@@ -19,11 +19,9 @@ pub struct LaserRunPicture {
     pub title: String,
     /// Below it.
     pub caption: String,
-    /// What the scans hit.
     pub hits: ScanHits,
     /// The robot's positions, in metres.
     pub way: Vec<[f64; 2]>,
-    /// The visits of junctions, in order.
     pub visits: Vec<DrawnVisit>,
     /// The position of a marker in metres, and the direction in which it points in radians.
     pub marker: Option<([f64; 2], Option<f64>)>,
@@ -80,7 +78,6 @@ impl ScanHits {
     }
 }
 
-/// The longer side of the drawing, in units.
 const SIDE: f64 = 600.0;
 /// The bounds of the scale, in units per metre.
 const METRE: [f64; 2] = [1.0, 40.0];
@@ -92,7 +89,6 @@ const DEGREE: f64 = 12.0;
 const NUMBER: f64 = 11.0;
 /// Visits of junctions with centres nearer than this, in metres, and with the same doors are drawn as one.
 const SAME: f64 = 3.0;
-/// The colour of walls.
 const WALL: &str = "#9aa1ab";
 
 /// Visits of one junction.
@@ -165,7 +161,6 @@ fn places(visits: &[DrawnVisit]) -> Vec<VisitedPlace<'_>> {
     places
 }
 
-/// The meaning of the signs.
 fn legend(picture: &LaserRunPicture) -> Vec<String> {
     let mut lines = vec![
         "grey: what the scans hit; line: the robot's way, from light to dark".to_owned(),

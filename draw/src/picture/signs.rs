@@ -25,7 +25,6 @@ pub(super) enum Sign {
 /// The length of a triangle at scale 1.
 pub(super) const ARROW: f64 = 12.0;
 
-/// The signs of the marker of a picture.
 pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
     let mut signs: Vec<Sign> = Vec::new();
     let scale = if drawing.size.knob > 0.0 { 1.35 } else { 0.9 };
@@ -100,7 +99,6 @@ fn on_edge(picture: &WorldPicture, drawing: &Drawing, dart: Dart) -> Option<(Poi
 }
 
 impl Sign {
-    /// The box of the sign.
     pub(super) fn extent(&self) -> Extent {
         match *self {
             Self::Ring { centre, radius, .. } => Extent::around(centre, radius + 1.5, radius + 1.5),

@@ -20,7 +20,6 @@ pub(super) enum Names {
     Nowhere,
 }
 
-/// The sizes that fit one graph and its names.
 #[derive(Clone, Debug)]
 pub(super) struct DrawingSize {
     /// The radius of a usual disc; other lengths are measured by it.
@@ -31,7 +30,6 @@ pub(super) struct DrawingSize {
     pub(super) knob: f64,
     /// The font size of the names of vertices.
     pub(super) name: f64,
-    /// The place of these names.
     pub(super) names: Names,
 }
 

@@ -185,7 +185,6 @@ impl Case {
         Self { algorithm: mapping.name(), start, given: "choices default".to_owned(), lines }
     }
 
-    /// Every run.
     fn with_all_choices(mapping: Mapping, start: EmbeddedGraph) -> Self {
         let mut lines = Vec::new();
         let run = |choose: &mut ChoiceOdometer| {
@@ -196,7 +195,6 @@ impl Case {
         Self { algorithm: mapping.name(), start, given: "choices all".to_owned(), lines }
     }
 
-    /// A run with random choices.
     fn at_random(mapping: Mapping, start: EmbeddedGraph, random: &mut Random) -> Self {
         let mut chosen = Vec::new();
         let mut choose = |of| {

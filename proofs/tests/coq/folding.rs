@@ -89,7 +89,6 @@ impl<W: ?Sized> Observer<W> for Recorded {
     }
 }
 
-/// The run of the running explorer.
 struct Run {
     start: EmbeddedGraph,
     given: Vec<Given>,

@@ -18,7 +18,6 @@ use crate::{moment::grouped, picture::escaped, text::counted};
 /// How reports were made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReportOrigin {
-    /// The version of the program.
     pub version: String,
     /// The command, as a shell reads it.
     pub command: String,
@@ -54,7 +53,6 @@ pub fn conform_page(reports: &ConformReports, origin: &ReportOrigin) -> String {
     )
 }
 
-/// The level of a heading.
 #[derive(Clone, Copy)]
 enum Level {
     First = 1,

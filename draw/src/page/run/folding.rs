@@ -22,7 +22,6 @@ use crate::{
 /// How far a layer is to the right of the one before, and above it, in radii of a disc.
 const LAYER: [f64; 2] = [1.0, 1.7];
 
-/// A vertex of the trail.
 struct TrailVertex {
     /// The dart by which the robot came in first.
     entry: Dart,

@@ -24,9 +24,7 @@ pub struct WalkPage<'a> {
     pub title: &'a str,
     /// A sentence or two beneath it; may be empty.
     pub about: &'a str,
-    /// The two worlds.
     pub worlds: [&'a NamedWorld; 2],
-    /// The comparison of these two worlds.
     pub comparison: &'a Comparison<'a>,
     /// The initial poses of the two robots: the darts by which they came in.
     pub poses: [Dart; 2],

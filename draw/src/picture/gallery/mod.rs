@@ -115,7 +115,6 @@ fn doors_stand_in_clockwise_order_whatever_the_world() {
     }
 }
 
-/// The number of crossings of the curves.
 fn crossings(drawing: &Drawing) -> usize {
     let mut count = 0;
     for (at, (.., one)) in drawing.edges.iter().enumerate() {

@@ -14,7 +14,6 @@ pub(in super::super) fn simple(name: &str, text: &str) -> NamedWorld {
     NamedWorld { edge_names: None, ..of_lists(name, graph, lists) }
 }
 
-/// A world whose edges have names.
 pub(in super::super) fn multigraph(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
     of_lists(name, EmbeddedGraph::from_edge_lists(&lists).unwrap(), lists)
@@ -40,7 +39,6 @@ fn lists(text: &str) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// A floor plan.
 fn plan(name: &str, junctions: &[(&str, f64, f64)], hallways: &[(&str, &str)]) -> NamedWorld {
     let places = junctions.iter().map(|(name, x, y)| format!("{name} = [{x}, {y}]\n"));
     let places: String = places.collect();

@@ -20,7 +20,6 @@ use super::geometry::Point;
 /// The most vertices of a polished layout; larger ones are plain.
 pub(super) const POLISHED: usize = 120;
 
-/// A layout.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// One point a vertex.
@@ -32,7 +31,6 @@ pub(super) struct Layout {
 /// The most nodes, with bends, for which a planar layout is affordable.
 const PLANAR: usize = 6000;
 
-/// A layout of the graph.
 pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     let mut layout = if graph.edge_count() > 2 * POLISHED {
         large(graph)

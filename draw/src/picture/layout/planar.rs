@@ -19,7 +19,6 @@ const ROUNDS: usize = 12;
 /// Sweeps of each of these rounds.
 const ROUND_SWEEPS: usize = 250;
 
-/// The weights of segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Weights {
     /// All segments weigh the same.

@@ -9,7 +9,6 @@ use toposlam_model::embedded_graph::EmbeddedGraph;
 pub(super) struct Subdivision {
     /// The number of nodes: vertices, then bends.
     pub(super) nodes: usize,
-    /// The number of vertices.
     pub(super) vertices: usize,
     /// The node of each dart.
     pub(super) node: Vec<usize>,

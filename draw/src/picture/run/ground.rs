@@ -39,7 +39,6 @@ impl<'a> Ground<'a> {
         Point::new(x * self.metre, -y * self.metre)
     }
 
-    /// The turning point of a junction.
     pub(super) fn turning_point(&self, vertex: Vertex) -> Point {
         self.at(self.plan.junction(vertex).position)
     }
@@ -134,7 +133,6 @@ impl<'a> Ground<'a> {
 /// A junction's name, beside its wall.
 struct Name<'a> {
     text: &'a str,
-    /// Its anchor.
     at: Point,
     /// The unit vector away from the wall.
     out: Point,

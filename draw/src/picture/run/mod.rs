@@ -46,9 +46,7 @@ pub(crate) fn run_drawing(run_data: &RunPageData) -> Drawn {
     Drawn { svg, places, metre: drawing.ground.metre }
 }
 
-/// A drawing of a run.
 pub(crate) struct Drawn {
-    /// The SVG document.
     pub(crate) svg: String,
     /// The position of each frame, in units of the drawing, x to the right and y down.
     pub(crate) places: Vec<Point>,
@@ -92,7 +90,6 @@ impl<'a> RunDrawing<'a> {
     }
 }
 
-/// The meaning of the signs.
 fn legend(run_data: &RunPageData) -> Vec<String> {
     let mut lines = vec![
         "line: the robot's path, from light at the start to dark at the end".to_owned(),

@@ -24,7 +24,6 @@ const EDGES: [&str; INKS + 1] =
     ["#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c"];
 
 impl Page {
-    /// The whole drawing.
     pub(super) fn drawing(&mut self, picture: &WorldPicture, drawing: &Drawing, signs: &[Sign]) {
         self.floor(drawing);
         self.edges(drawing);
