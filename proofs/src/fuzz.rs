@@ -22,8 +22,11 @@ use crate::{
     odometer::listed,
 };
 
-/// All bodies, each with the name of its target in `fuzz/` and of the folder of its seeds.
-pub const TARGETS: &[(&str, fn(&[u8]))] = &[
+/// The name of a target in `fuzz/` and of the folder of its seeds, and its body.
+pub type FuzzTarget = (&'static str, fn(&[u8]));
+
+/// All targets.
+pub const TARGETS: &[FuzzTarget] = &[
     ("world_file", world_file),
     ("planar_code", planar_code),
     ("edge_code", edge_code),

@@ -72,10 +72,7 @@ pub enum LemmaFailure {
     /// The lemma fails in a case.
     Case(Counterexample),
     /// The number of cases is wrong.
-    Cases {
-        pinned: u64,
-        found: u64,
-    },
+    Cases { pinned: u64, found: u64 },
 }
 
 impl Lemma {

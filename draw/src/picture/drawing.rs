@@ -9,7 +9,7 @@ use super::{
     geometry::{Extent, Point},
     layout::{self, Layout},
     routes::{self, Crossings},
-    scale::{ScalePurpose, scale},
+    scale::scale,
     size::DrawingSize,
     ways::UnroutedEdge,
 };
@@ -58,12 +58,7 @@ impl Drawing {
             Some(positions) => layout::given(graph, positions),
             None => layout::lay_out(graph),
         };
-        let purpose = match place {
-            Placement::Free => ScalePurpose::Usual,
-            Placement::At(_) => ScalePurpose::Given,
-            Placement::FloorPlan { .. } => ScalePurpose::FloorPlan,
-        };
-        let unit = scale(graph, &layout.vertices, &size, purpose);
+        let unit = scale(graph, &layout.vertices, &size, place);
         for point in layout.vertices.iter_mut().chain(layout.bends.iter_mut().flatten()) {
             *point = *point * unit;
         }
@@ -117,18 +112,12 @@ impl Drawing {
 
     /// The box around the drawing without labels.
     pub(super) fn extent(&self) -> Extent {
-        let mut extent = self.room;
-        for (centre, disc) in self.centres.iter().zip(&self.size.discs) {
+        let discs = self.centres.iter().zip(&self.size.discs).map(|(&centre, disc)| {
             let radius = disc + self.size.knob + 1.0;
-            extent.join(Extent::around(*centre, radius, radius));
-        }
-        for hallway in self.hallways() {
-            extent.join(hallway);
-        }
-        for (_, _, curve) in &self.edges {
-            extent.join(curve.extent.widened(3.0));
-        }
-        extent
+            Extent::around(centre, radius, radius)
+        });
+        let curves = self.edges.iter().map(|(_, _, curve)| curve.extent.widened(3.0));
+        self.room.joined(discs.chain(self.hallways()).chain(curves))
     }
 }
 

@@ -142,9 +142,13 @@ impl Extent {
         self.most.y = self.most.y.max(point.y);
     }
 
-    pub(super) fn join(&mut self, other: Self) {
-        self.include(other.least);
-        self.include(other.most);
+    /// The box around this one and others.
+    pub(super) fn joined(mut self, others: impl IntoIterator<Item = Self>) -> Self {
+        for other in others {
+            self.include(other.least);
+            self.include(other.most);
+        }
+        self
     }
 
     pub(super) fn contains(&self, point: Point) -> bool {

@@ -28,10 +28,8 @@ pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
     let maps: Vec<OpenGraph> = maps.iter().map(OpenGraph::from).collect();
     let last = maps.last().and_then(Whole::new);
     let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
-    let mut room = Extent::EMPTY;
-    for (_, drawing) in stages.iter().flatten() {
-        room.join(drawing.extent());
-    }
+    let drawings = stages.iter().flatten().map(|(_, drawing)| drawing.extent());
+    let room = Extent::EMPTY.joined(drawings);
     let svg = |(stage, map): (&mut Option<(EmbeddedGraph, Drawing)>, &OpenGraph)| {
         let Some((graph, drawing)) = stage else {
             return String::new();
@@ -192,10 +190,9 @@ fn picture<'a>(
 
 #[cfg(test)]
 mod tests {
-    use std::{collections::HashMap, f64::consts::TAU, fs};
+    use std::{collections::HashMap, f64::consts::TAU};
 
     use resvg::usvg::roxmltree::{Document, Node};
-    use toposlam_model::format::world_file;
 
     use super::{
         super::{
@@ -207,8 +204,7 @@ mod tests {
 
     /// The stages of the map of a world of this repository.
     fn stages(world: &str) -> Vec<PartialMap> {
-        let path = format!("{}/../worlds/{world}.toml", env!("CARGO_MANIFEST_DIR"));
-        let world = world_file::read(&fs::read(path).unwrap()).unwrap();
+        let world = example::world(world);
         example::maps(&world.plan.unwrap(), world.start.unwrap())
     }
 

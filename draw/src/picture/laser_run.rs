@@ -106,11 +106,10 @@ pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
     let metre = (SIDE / sides.x.max(sides.y).max(1e-3)).clamp(METRE[0], METRE[1]);
     let at = |[x, y]: [f64; 2]| Point::new(x * metre, -y * metre);
     let places = places(&picture.visits);
-    let mut extent = Extent { least: metres.least * metre, most: metres.most * metre }.widened(2.0);
-    for place in &places {
-        let room = DISC + ARM + 2.0 * NUMBER;
-        extent.join(Extent::around(at(place.visit.centre), room, room));
-    }
+    let room = DISC + ARM + 2.0 * NUMBER;
+    let discs = places.iter().map(|place| Extent::around(at(place.visit.centre), room, room));
+    let drawn = Extent { least: metres.least * metre, most: metres.most * metre };
+    let extent = drawn.widened(2.0).joined(discs);
     let sheet = Sheet {
         title: &picture.title,
         caption: &picture.caption,

@@ -26,8 +26,7 @@ use toposlam_model::{
 };
 use toposlam_proofs::{choose::Choose, draw, odometer::ChoiceOdometer};
 
-use super::{OCAMLOPT, compiled, printed, source};
-use crate::starts;
+use super::{OCAMLOPT, compiled, printed, source, starts};
 
 /// A line of a run: the name of what is listed, and the numbers.
 pub(super) fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
@@ -230,7 +229,7 @@ pub(super) fn extracted(folder: &Path, cases: &[Case]) -> String {
 }
 
 /// The first case with different runs, and the difference.
-pub(super) fn difference(cases: &[Case], proved: &str) -> Option<String> {
+fn difference(cases: &[Case], proved: &str) -> Option<String> {
     let running = cases.iter().flat_map(|case| case.lines.iter().map(move |line| (case, line)));
     let lines = proved.lines().chain(iter::repeat("nothing"));
     let ((case, running), proved) =
@@ -252,6 +251,16 @@ pub(super) fn assert_same(folder: &Path, cases: &[Case]) {
     }
     let runs: usize = cases.iter().map(|case| case.lines.len()).sum();
     assert_eq!(proved.lines().count(), runs);
+}
+
+/// With a change in a file, some of these cases are different.
+pub(super) fn assert_detected(name: &str, cases: &[Case], file: &str, [from, to]: [&str; 2]) {
+    let folder = compiled().copy(name);
+    let text = fs::read_to_string(source(file)).unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{file}");
+    fs::write(folder.join(file), text.replace(from, to)).unwrap();
+    let difference = difference(cases, &extracted(&folder, cases)).unwrap();
+    assert!(difference.contains("[start]\n"), "{difference}");
 }
 
 fn by_default(mapping: Mapping, starts: Vec<EmbeddedGraph>) -> Vec<Case> {
@@ -321,7 +330,6 @@ fn both_do_the_same_with_random_choices_in_random_starts() {
 #[test]
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn another_algorithm_is_detected() {
-    let compiled = compiled();
     let multigraphs = starts(Class::Multigraph, 1..=3);
     let directional = |start| Case::with_all_choices(Mapping::Directional, start);
     let all_choices: Vec<_> = multigraphs.iter().cloned().map(directional).collect();
@@ -333,12 +341,6 @@ fn another_algorithm_is_detected() {
         ("removed", &all_choices, "Algorithm1.v", "turned' (rem h H)", "turned' (behead H)"),
         ("search", &simple, "MovableMarker.v", "(d < d') ||", "(d > d') ||"),
     ] {
-        let folder = compiled.copy(&format!("another/{change}"));
-        let text = fs::read_to_string(source(file)).unwrap();
-        assert_eq!(text.matches(from).count(), 1, "{file}");
-        fs::write(folder.join(file), text.replace(from, to)).unwrap();
-        let proved = extracted(&folder, cases);
-        let difference = difference(cases, &proved).unwrap();
-        assert!(difference.contains("[start]\n"), "{difference}");
+        assert_detected(&format!("another/{change}"), cases, file, [from, to]);
     }
 }

@@ -93,8 +93,11 @@ fn colours_do_not_matter() {
     assert_eq!(refusal(&VERIFIED.replace("VERIFICATION:- SUCCESSFUL", coloured)), None);
 }
 
-/// What Kani may say instead, as changes of [`VERIFIED`], and why the gate refuses it.
-const REFUSED: [(&[[&str; 2]], &[&str]); 10] = [
+/// Changes of [`VERIFIED`], and why the gate then refuses it.
+type Refused = (&'static [[&'static str; 2]], &'static [&'static str]);
+
+/// What Kani may say instead.
+const REFUSED: [Refused; 10] = [
     // The harness fails.
     (
         &[

@@ -163,29 +163,25 @@ impl Stage {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{
-        format::world_file,
-        mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, explore},
-        world::GraphWorld,
-    };
+    use toposlam_model::mapping::MappingEvent;
 
     use super::*;
     use crate::picture::example;
 
     /// The percepts and doors of a run of Algorithm 1 in a world of this repository.
     fn run(world: &str) -> (Vec<Percept>, Vec<Door>) {
-        let path = format!("{}/../worlds/{world}.toml", env!("CARGO_MANIFEST_DIR"));
-        let world = world_file::read(&std::fs::read(path).unwrap()).unwrap();
-        let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
-        let (mut percepts, mut doors) = (vec![robot.sensed()], Vec::new());
-        let mut watch = |_: &mut _, _: &MapWalk, event: MappingEvent| {
-            if let MappingEvent::Moved { door, percept } = event {
-                doors.push(door);
-                percepts.push(percept);
+        let world = example::world(world);
+        let (mut percepts, mut doors) = (Vec::new(), Vec::new());
+        for step in example::steps(&world.plan.unwrap(), world.start.unwrap()) {
+            match step.event {
+                MappingEvent::Started { percept } => percepts.push(percept),
+                MappingEvent::Moved { door, percept } => {
+                    doors.push(door);
+                    percepts.push(percept);
+                }
+                _ => {}
             }
-        };
-        let mut exploration = Algorithm1Run::new(1000);
-        explore(&mut exploration, &mut Observed::new(&mut robot, &mut watch)).unwrap();
+        }
         (percepts, doors)
     }
 

@@ -7,6 +7,8 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 
+use super::super::example;
+
 /// A simple world: `"x: a b d c, a: b x c"`.
 pub(in super::super) fn simple(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
@@ -57,11 +59,6 @@ fn on_a_circle(name: &str, world: NamedWorld) -> NamedWorld {
     let at = |vertex| f64::sin_cos(TAU * vertex as f64 / count as f64);
     let positions = (0..count).map(|vertex| <[f64; 2]>::from(at(vertex))).collect();
     NamedWorld { name: name.to_owned(), positions: Some(positions), ..world }
-}
-
-/// A world of the repository.
-fn file(text: &str) -> NamedWorld {
-    world_file::read(text.as_bytes()).unwrap()
 }
 
 pub(super) fn cycle(edges: usize) -> NamedWorld {
@@ -146,10 +143,10 @@ pub(super) fn gallery() -> Vec<NamedWorld> {
             "cube",
             "0: 1 4 3, 1: 2 5 0, 2: 3 6 1, 3: 0 7 2, 4: 0 5 7, 5: 1 6 4, 6: 2 7 5, 7: 3 4 6",
         ),
-        file(include_str!("../../../../worlds/shape-6.toml")),
-        file(include_str!("../../../../worlds/shape-8.toml")),
-        file(include_str!("../../../../worlds/building-12.toml")),
-        file(include_str!("../../../../worlds/building-25.toml")),
+        example::world("shape-6"),
+        example::world("shape-8"),
+        example::world("building-12"),
+        example::world("building-25"),
         tree(14),
         tree(38),
         random(1, 4, 7),

@@ -10,7 +10,6 @@ mod stress;
 mod subdivision;
 mod upright;
 
-use planar::Weights;
 use refine::Keep;
 use subdivision::Subdivision;
 use toposlam_model::embedded_graph::EmbeddedGraph;
@@ -53,7 +52,7 @@ fn large(graph: &EmbeddedGraph) -> Layout {
     if graph.genus() == 0 {
         let subdivision = Subdivision::of(graph);
         if subdivision.nodes <= PLANAR {
-            let points = planar::without_crossings(&subdivision, Weights::Evening);
+            let points = planar::without_crossings(&subdivision, planar::EVENING);
             return layout_of(graph, &subdivision, &points);
         }
     }
@@ -68,7 +67,7 @@ pub(super) fn given(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
 
 fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
     let subdivision = Subdivision::of(graph);
-    let mut points = planar::without_crossings(&subdivision, Weights::Same);
+    let mut points = planar::without_crossings(&subdivision, 0);
     refine::refine(&subdivision, &mut points, Keep::Embedding);
     layout_of(graph, &subdivision, &points)
 }

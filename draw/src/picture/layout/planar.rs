@@ -14,21 +14,13 @@ const SWEEPS: usize = 4000;
 /// A sweep that moves no node farther than this is the last.
 const STILL: f64 = 1e-10;
 
-/// Rounds in which the weights are computed again.
-const ROUNDS: usize = 12;
-/// Sweeps of each of these rounds.
+/// Enough rounds for the segments of a large graph to become even.
+pub(super) const EVENING: usize = 12;
+/// Sweeps of each round.
 const ROUND_SWEEPS: usize = 250;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Weights {
-    /// All segments weigh the same.
-    Same,
-    /// Long segments weigh more.
-    Evening,
-}
-
-/// One point a node, scaled so that the mean segment has length 1.
-pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Point> {
+/// One point a node, scaled so that the mean segment has length 1. In each round, longer segments get more weight.
+pub(super) fn without_crossings(web: &Subdivision, rounds: usize) -> Vec<Point> {
     let faces = web.faces();
     let outer = largest(web, &faces);
     let mut filled = Filled::new(web);
@@ -39,7 +31,7 @@ pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Poin
             filled.fill(web, face);
         }
     }
-    let mut points = filled.relax(weights);
+    let mut points = filled.relax(rounds);
     points.truncate(web.nodes);
     let lengths = (0..web.node.len()).map(|dart| {
         let segment = points[web.far(dart)] - points[web.node[dart]];
@@ -123,20 +115,18 @@ impl Filled {
         ring
     }
 
-    fn relax(self, weights: Weights) -> Vec<Point> {
+    fn relax(self, rounds: usize) -> Vec<Point> {
         let mut points: Vec<_> = self.fixed.iter().map(|at| at.unwrap_or_default()).collect();
         let mut pulls: Vec<Vec<f64>> =
             self.neighbours.iter().map(|near| vec![1.0; near.len()]).collect();
         self.settle(&mut points, &pulls, SWEEPS);
-        if weights == Weights::Evening {
-            for _ in 0..ROUNDS {
-                for (node, near) in self.neighbours.iter().enumerate() {
-                    for (pull, &other) in pulls[node].iter_mut().zip(near) {
-                        *pull *= points[node].distance(points[other]).max(1e-9).sqrt();
-                    }
+        for _ in 0..rounds {
+            for (node, near) in self.neighbours.iter().enumerate() {
+                for (pull, &other) in pulls[node].iter_mut().zip(near) {
+                    *pull *= points[node].distance(points[other]).max(1e-9).sqrt();
                 }
-                self.settle(&mut points, &pulls, ROUND_SWEEPS);
             }
+            self.settle(&mut points, &pulls, ROUND_SWEEPS);
         }
         points
     }

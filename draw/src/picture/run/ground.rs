@@ -84,19 +84,11 @@ impl<'a> Ground<'a> {
 
     /// The bounding box of the floor.
     fn floor(&self) -> Extent {
-        let mut extent = Extent::EMPTY;
-        for hallway in self.hallways() {
-            extent.join(hallway);
-        }
-        extent
+        Extent::EMPTY.joined(self.hallways())
     }
 
     pub(super) fn extent(&self) -> Extent {
-        let mut extent = self.floor();
-        for name in self.names() {
-            extent.join(name.extent());
-        }
-        extent.widened(2.0)
+        self.floor().joined(self.names().map(|name| name.extent())).widened(2.0)
     }
 
     pub(super) fn write(&self, page: &mut Page) {

@@ -69,10 +69,7 @@ impl<'a> RunDrawing<'a> {
     }
 
     fn extent(&self) -> Extent {
-        let mut extent = self.ground.extent();
-        for badge in self.badges.extents() {
-            extent.join(badge);
-        }
+        let mut extent = self.ground.extent().joined(self.badges.extents());
         for round in &self.run_data.rounds {
             extent.include(self.ground.at(round.pose.position));
         }

@@ -32,10 +32,8 @@ pub(super) enum Legend {
 pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend) -> String {
     let signs = signs(picture, drawing);
     let labels = labels(drawing, picture, &signs);
-    let mut extent = drawing.extent();
-    for each in labels.iter().map(Label::extent).chain(signs.iter().map(Sign::extent)) {
-        extent.join(each);
-    }
+    let added = labels.iter().map(Label::extent).chain(signs.iter().map(Sign::extent));
+    let extent = drawing.extent().joined(added);
     let metre = drawing.floor.map(|floor| floor.metre);
     let WorldPicture { title, caption, .. } = *picture;
     let sheet = Sheet { title, caption, extent, metre, up: NORTH };

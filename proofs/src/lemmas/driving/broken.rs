@@ -75,8 +75,11 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
     }
 }
 
+/// A lemma on a broken variant.
+type BrokenLemma = fn(&mut ChoiceOdometer) -> CaseResult;
+
 /// What is broken, in a lemma, and the claim that then does not hold.
-const NOTICED: [(fn(&mut ChoiceOdometer) -> CaseResult, &str); 11] = [
+const NOTICED: [(BrokenLemma, &str); 11] = [
     (no_command_exceeds_a_unit::<_, Broken<FARTHER>, 1>, "it goes ahead by at most a unit"),
     (arrives::<_, Broken<FARTHER>, 0>, "it goes ahead by at most a unit"),
     (no_false_arrival::<_, Broken<ONE_IMAGE>, 1, 1>, "two images agree"),
