@@ -30,7 +30,7 @@ type FuzzTarget = (&'static str, fn(&[u8]), &'static str);
 /// Every target: worlds and choices, sensing, logs.
 fn targets() -> Vec<FuzzTarget> {
     let proofs = toposlam_proofs::fuzz::TARGETS.iter();
-    let proofs = proofs.map(|target| (target.name, target.body, "toposlam_proofs"));
+    let proofs = proofs.map(|&(name, body)| (name, body, "toposlam_proofs"));
     let vision = toposlam_vision::fuzz::TARGETS.iter();
     let vision = vision.map(|&(name, body)| (name, body, "toposlam_vision"));
     let logs = toposlam_conform::fuzz::TARGETS.iter();

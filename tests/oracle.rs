@@ -43,7 +43,7 @@ fn oracle_objects(command: &str) -> Vec<Value> {
 fn the_moves_the_runs_and_the_certificates_are_the_same() {
     for (second, check) in [
         ("algorithm1.py default 5", "check --edges 1..=5"),
-        ("algorithm1.py all 3", "check --edges 1..=3 --choices all"),
+        ("algorithm1.py all 4", "check --edges 1..=4 --choices all"),
         ("movable_marker.py 6", "check --edges 1..=6 --marker movable"),
         ("folding.py certificates 5", "check --edges 1..=5"),
     ] {

@@ -168,12 +168,15 @@ impl Story {
 
     /// A round begins: the robot has followed an unexplored dart.
     fn add_round(&mut self, journey: &MapWalk, edge: Dart, with: &str, percept: Percept) {
+        let (edge, moves) = (dart(journey.map(), edge), self.take_moves(journey));
+        self.begin_round(format!("the robot takes {edge}{with}{moves} and senses {percept}."));
+    }
+
+    fn begin_round(&mut self, text: String) {
         self.round += 1;
-        let (round, edge) = (grouped(self.round.into()), dart(journey.map(), edge));
-        let moves = self.take_moves(journey);
         self.lines.push(StoryLine::default());
-        let text = format!("the robot takes {edge}{with}{moves} and senses {percept}.");
-        self.lines.push(StoryLine::hanging(format!("Round {round}: "), text));
+        let head = format!("Round {}: ", grouped(self.round.into()));
+        self.lines.push(StoryLine::hanging(head, text));
     }
 
     /// How many unexplored darts may be the other end of the edge that was just taken.
@@ -195,7 +198,6 @@ impl Story {
         ));
     }
 
-    /// A candidate is rejected.
     fn add_rejected(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.rejected += 1;
         if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
@@ -207,7 +209,6 @@ impl Story {
         self.add_line(format!("Candidate {what}: rejected {why}{moves}."));
     }
 
-    /// A candidate is confirmed.
     fn add_confirmed(&mut self, journey: &MapWalk, what: &str, why: &str) {
         self.add_omitted();
         let moves = self.take_moves(journey);
@@ -241,7 +242,6 @@ impl Story {
         self.add_line(format!("Known: {vertices}, {edges}. Unexplored: {unexplored}."));
     }
 
-    /// A line of a round.
     fn add_line(&mut self, text: impl Display) {
         self.lines.push(StoryLine { head: "  ".to_owned(), indent: 4, text: text.to_string() });
     }

@@ -35,12 +35,6 @@ pub const fn cover(_cond: bool, _msg: &'static str) {}
 /// Asks for an execution in which the condition holds.
 #[macro_export]
 macro_rules! cover {
-    () => {
-        kani::cover(true, "cover location");
-    };
-    ($cond:expr $(,)?) => {
-        kani::cover($cond, concat!("cover condition: ", stringify!($cond)));
-    };
     ($cond:expr, $msg:literal) => {
         kani::cover($cond, $msg);
     };

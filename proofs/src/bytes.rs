@@ -31,8 +31,4 @@ impl Choose for Bytes {
         self.choices.push(choice);
         choice
     }
-
-    fn assume(&mut self, condition: bool) -> bool {
-        condition
-    }
 }

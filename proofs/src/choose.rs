@@ -17,7 +17,10 @@ pub trait Choose {
     fn below(&mut self, n: u8) -> u8;
 
     /// Whether to go on with this case; the lemma says nothing about the others.
-    fn assume(&mut self, condition: bool) -> bool;
+    #[inline]
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
 
     /// Shows a person what was chosen. Only a [`CaseReplay`](crate::CaseReplay) keeps it.
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {
@@ -64,14 +67,10 @@ pub(crate) fn unless_it_panics(lemma: impl FnOnce() -> CaseResult) -> CaseResult
 /// Something that was chosen, shown to a person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Exhibit {
-    /// A start.
     World {
-        /// The embedded graph.
         graph: EmbeddedGraph,
-        /// The facing dart.
         facing: Dart,
     },
-    /// A robot's walk in one of the worlds.
     Walk {
         /// The place of the world among those shown, from 0.
         world: usize,
@@ -79,14 +78,11 @@ pub enum Exhibit {
         marker: &'static dyn Marker,
         /// The robot's entry dart at the beginning.
         pose: Dart,
-        /// The doors that it takes.
         doors: Vec<Door>,
     },
     /// Anything else: what it is, and what it was.
     Value {
-        /// What it is.
         name: &'static str,
-        /// What it was.
         value: String,
     },
 }

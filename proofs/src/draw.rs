@@ -3,7 +3,6 @@
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{Algorithm1Run, Explorer, InvalidStep, MappingChoice},
     percept::Door,
 };
 
@@ -43,14 +42,7 @@ pub fn start<const MOST: usize>(
         // nothing is left to be reached.
         let joins = if free == 0 || (free == 2 && unmet > 0) { 0 } else { free - 1 };
         if joins > 0 && (unmet == 0 || choose.below(2) == 0) {
-            let mut pass = choose.below(joins as u8);
-            let mut other = this + 1;
-            while opposite[other] != FREE || pass > 0 {
-                if opposite[other] == FREE {
-                    pass -= 1;
-                }
-                other += 1;
-            }
+            let other = later_free(opposite, this, choose.below(joins as u8));
             opposite[this] = other as u32;
             opposite[other] = this as u32;
             free -= 2;
@@ -76,6 +68,18 @@ pub fn start<const MOST: usize>(
     let graph = world(opposite, clockwise)?;
     choose.show(|| Exhibit::World { graph: graph.clone(), facing: Dart(0) });
     Ok(graph)
+}
+
+/// The free one after `this` that `pass` free ones precede.
+fn later_free(partner: &[u32], this: usize, mut pass: u8) -> usize {
+    let mut other = this + 1;
+    while partner[other] != FREE || pass > 0 {
+        if partner[other] == FREE {
+            pass -= 1;
+        }
+        other += 1;
+    }
+    other
 }
 
 /// A degree from `least`, which is at most 4, to `most`. One of more than 4 is a choice among the small
@@ -146,14 +150,7 @@ pub fn pairing<const MOST: usize>(choose: &mut impl Choose, n: usize) -> [u32; M
     let mut this = 0;
     while this < n {
         if partner[this] == FREE {
-            let mut pass = choose.below((left - 1) as u8);
-            let mut other = this + 1;
-            while partner[other] != FREE || pass > 0 {
-                if partner[other] == FREE {
-                    pass -= 1;
-                }
-                other += 1;
-            }
+            let other = later_free(&partner, this, choose.below((left - 1) as u8));
             partner[this] = other as u32;
             partner[other] = this as u32;
             left -= 2;
@@ -180,19 +177,6 @@ pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
 }
 
-/// An open choice of Algorithm 1: any edge at line 5, any hypothesis at line 9; `None` if the run has ended. The map has
-/// at most 127 edges.
-///
-/// # Errors
-/// Returns none: Algorithm 1 always knows its choices.
-pub fn open_choice(
-    choose: &mut impl Choose,
-    run: &mut Algorithm1Run,
-) -> Result<Option<MappingChoice>, InvalidStep> {
-    let open = run.choices()?;
-    Ok(if open.is_empty() { None } else { Some(open[usize::from(choose.below(open.len() as u8))]) })
-}
-
 #[cfg(test)]
 mod tests {
     use toposlam_model::isomorphism::code;
@@ -200,70 +184,40 @@ mod tests {
     use super::*;
     use crate::odometer::ChoiceOdometer;
 
+    /// What is drawn in all cases; no two are the same.
+    fn drawn<T: Clone + Ord>(mut draw: impl FnMut(&mut ChoiceOdometer) -> T) -> Vec<T> {
+        let mut drawn = Vec::new();
+        let lemma = |choose: &mut ChoiceOdometer| {
+            drawn.push(draw(choose));
+            Ok(())
+        };
+        ChoiceOdometer::exhaust(lemma, &mut |_| {}).unwrap();
+        let mut different = drawn.clone();
+        different.sort_unstable();
+        different.dedup();
+        assert_eq!(different.len(), drawn.len());
+        drawn
+    }
+
     /// OEIS A000698, shifted by one, as in the model's own enumeration.
     #[test]
     fn every_start_is_drawn_once() {
         for (edges, count) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {
-            let mut codes = Vec::new();
-            let drawn = ChoiceOdometer::exhaust(
-                |choose| {
-                    let graph = start::<5>(choose, edges)?;
-                    codes.push(code(&graph, Dart(0)));
-                    Ok(())
-                },
-                &mut |_| {},
-            );
-            assert_eq!(drawn, Ok(count));
-            codes.sort_unstable();
-            codes.dedup();
-            assert_eq!(codes.len() as u64, count);
+            let starts = drawn(|choose| code(&start::<5>(choose, edges).unwrap(), Dart(0)));
+            assert_eq!(starts.len(), count);
         }
     }
 
     #[test]
-    fn every_permutation_is_drawn_once() {
-        let mut drawn = Vec::new();
-        let count = ChoiceOdometer::exhaust(
-            |choose| {
-                drawn.push(permutation::<5>(choose, 5));
-                Ok(())
-            },
-            &mut |_| {},
-        );
-        assert_eq!(count, Ok(120));
-        drawn.sort_unstable();
-        drawn.dedup();
-        assert_eq!(drawn.len(), 120);
-    }
-
-    #[test]
-    fn every_pairing_is_drawn_once() {
-        let mut drawn = Vec::new();
-        let count = ChoiceOdometer::exhaust(
-            |choose| {
-                drawn.push(pairing::<8>(choose, 8));
-                Ok(())
-            },
-            &mut |_| {},
-        );
-        // 7 * 5 * 3
-        assert_eq!(count, Ok(105));
-        drawn.sort_unstable();
-        drawn.dedup();
-        assert_eq!(drawn.len(), 105);
+    fn every_permutation_and_every_pairing_is_drawn_once() {
+        assert_eq!(drawn(|choose| permutation::<5>(choose, 5)).len(), 120);
+        assert_eq!(drawn(|choose| pairing::<8>(choose, 8)).len(), 7 * 5 * 3);
     }
 
     #[test]
     fn numbers_are_drawn_from_both_ends() {
-        let mut drawn = Vec::new();
-        let count = ChoiceOdometer::exhaust(
-            |choose| {
-                drawn.push(number::<1>(choose));
-                Ok(())
-            },
-            &mut |_| {},
-        );
-        assert_eq!(count, Ok(32));
+        let drawn = drawn(number::<1>);
+        assert_eq!(drawn.len(), 32);
         assert_eq!(drawn[..16], std::array::from_fn::<u32, 16, _>(|n| n as u32));
         assert_eq!(drawn[31], u32::MAX);
     }

@@ -81,9 +81,7 @@ impl PathDriver for PathExecution<'static> {
 pub struct PathJunction {
     /// Its shape from the door by which the path comes in.
     pub form: JunctionShape,
-    /// Its turning point.
     at: [f64; 2],
-    /// The direction of that door.
     entry: f64,
 }
 
@@ -106,9 +104,7 @@ impl PathJunction {
 
     /// The view of a robot with a door behind it.
     fn seen(&self, robot: &Odometry) -> JunctionView {
-        let [x, y] = [0, 1].map(|axis| self.at[axis] - robot.position[axis]);
-        let (sine, cosine) = robot.heading.sin_cos();
-        let through = [x * cosine + y * sine, y * cosine - x * sine];
+        let through = seen_from(robot, self.at);
         let doors = self.doors();
         let line = |door| CentreLine { through, direction: robot.seen(door) };
         let doors = doors.map(line).collect();
@@ -129,6 +125,13 @@ impl PathJunction {
         let percept = Percept { degree: self.form.degree(), sighting: Sighting::Nothing };
         Standing { form: self.form, percept, entry: self.entry }
     }
+}
+
+/// A place, in metres ahead and to the left of a pose.
+fn seen_from(pose: &Odometry, place: [f64; 2]) -> [f64; 2] {
+    let [x, y] = [0, 1].map(|axis| place[axis] - pose.position[axis]);
+    let (sine, cosine) = pose.heading.sin_cos();
+    [x * cosine + y * sine, y * cosine - x * sine]
 }
 
 /// The number of surprises that are left.
@@ -156,7 +159,6 @@ pub enum ImageEvidence {
 /// A robot on a path of junctions.
 #[derive(Clone, Debug)]
 pub struct HallwayDrive {
-    /// The junctions of its path, in their order.
     junctions: Vec<PathJunction>,
     /// The pose of the robot, and its pose by odometry.
     pub robot: Odometry,
@@ -299,19 +301,13 @@ impl HallwayDrive {
         })
     }
 
-    /// The distance of the robot along a hallway, and to the left of its middle.
-    fn along(&self, from: [f64; 2], direction: f64) -> (f64, f64) {
-        let [x, y] = [0, 1].map(|axis| self.robot.position[axis] - from[axis]);
-        let (sine, cosine) = direction.sin_cos();
-        (x * cosine + y * sine, y * cosine - x * sine)
-    }
-
     /// The distance of the robot to the left of the middle of its hallway, and the hallway's direction out
     /// of a junction.
     fn lane(&self) -> (f64, f64) {
         let mut lane = (f64::INFINITY, 0.0);
         for (from, direction, length) in self.hallways() {
-            let (way, left) = self.along(from, direction);
+            let start = Odometry { position: from, heading: direction };
+            let [way, left] = seen_from(&start, self.robot.position);
             if (-FREE..=length + FREE).contains(&way) && left.abs() < lane.0.abs() {
                 lane = (left, direction);
             }

@@ -12,7 +12,6 @@ use crate::{
 /// A lemma: a statement, and the engines that check it. `toposlam proofs --json` prints it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Lemma {
-    /// Its name.
     #[serde(rename = "lemma")]
     pub name: &'static str,
     /// Its statement, a sentence.
@@ -64,7 +63,6 @@ pub struct Kani {
     pub bound: &'static str,
     /// The number of times that a loop is unwound.
     pub unwind: u32,
-    /// The name of the harness.
     pub harness: &'static str,
 }
 
@@ -74,12 +72,7 @@ pub enum LemmaFailure {
     /// The lemma fails in a case.
     Case(Counterexample),
     /// The number of cases is wrong.
-    Cases {
-        /// The expected number.
-        pinned: u64,
-        /// The number of cases.
-        found: u64,
-    },
+    Cases { pinned: u64, found: u64 },
 }
 
 impl Lemma {

@@ -49,7 +49,7 @@ const fn no_robot(
     classes: &'static [Class],
     theorem: &'static str,
 ) -> MarkerTheorem {
-    MarkerTheorem { marker, classes, suffices: false, theorem }
+    MarkerTheorem { suffices: false, ..one_robot(marker, classes, theorem) }
 }
 
 /// The theorem about this kind of marker in this class of worlds, if there is one.

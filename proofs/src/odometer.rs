@@ -83,11 +83,6 @@ impl Choose for ChoiceOdometer {
         self.made += 1;
         choice
     }
-
-    #[inline]
-    fn assume(&mut self, condition: bool) -> bool {
-        condition
-    }
 }
 
 /// A case in which a lemma fails.

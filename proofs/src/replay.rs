@@ -21,7 +21,6 @@ pub enum ChoicesError {
     TooHigh {
         /// Its place in the list, from 1.
         place: usize,
-        /// The choice there.
         choice: u8,
         /// The number of possibilities at this place.
         of: u8,
@@ -61,7 +60,6 @@ impl fmt::Display for ChoicesError {
 /// A case, made again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReplayedCase {
-    /// The result of the lemma.
     pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
     pub exhibits: Vec<Exhibit>,
@@ -101,10 +99,6 @@ impl Choose for CaseReplay {
             }
             None => 0,
         }
-    }
-
-    fn assume(&mut self, condition: bool) -> bool {
-        condition
     }
 
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {

@@ -4,7 +4,6 @@
 /// A theorem that is proved in Coq.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Theorem {
-    /// Its name.
     pub name: &'static str,
     /// Its statement in words.
     pub sentence: String,

@@ -5,4 +5,3 @@
 mod argument;
 mod coq;
 mod harnesses;
-mod stateright;

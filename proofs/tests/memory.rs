@@ -29,24 +29,24 @@ struct Stated {
     besides: usize,
 }
 
-const WORLD_FILE: Stated =
-    Stated { parser: "world_file", read: read_world_file, multiple: 512, besides: 4096 };
-const PLANAR_CODE: Stated =
-    Stated { parser: "planar_code", read: read_planar_code, multiple: 128, besides: 0 };
-const EDGE_CODE: Stated =
-    Stated { parser: "edge_code", read: read_edge_code, multiple: 128, besides: 0 };
-
-fn read_world_file(bytes: &[u8]) {
-    keep(world_file::read(bytes));
-}
-
-fn read_planar_code(bytes: &[u8]) {
-    plantri::read_headerless(bytes, PlantriCode::Planar).for_each(keep);
-}
-
-fn read_edge_code(bytes: &[u8]) {
-    plantri::read_headerless(bytes, PlantriCode::Edge).for_each(keep);
-}
+const WORLD_FILE: Stated = Stated {
+    parser: "world_file",
+    read: |bytes| keep(world_file::read(bytes)),
+    multiple: 512,
+    besides: 4096,
+};
+const PLANAR_CODE: Stated = Stated {
+    parser: "planar_code",
+    read: |bytes| plantri::read_headerless(bytes, PlantriCode::Planar).for_each(keep),
+    multiple: 128,
+    besides: 0,
+};
+const EDGE_CODE: Stated = Stated {
+    parser: "edge_code",
+    read: |bytes| plantri::read_headerless(bytes, PlantriCode::Edge).for_each(keep),
+    multiple: 128,
+    besides: 0,
+};
 
 /// Lets the compiler leave nothing out.
 fn keep<T, E: Display>(result: Result<T, E>) {
@@ -152,15 +152,7 @@ fn world_files(bytes: usize) -> Vec<String> {
     let plan = "[floor]\nhallway_width=0.1\n[junctions]\n";
     let junctions = numbered(|number| format!("{number:x}=[{number},0]\n"), bytes / 4);
     let count = junctions.matches('\n').count();
-    let hallway = |number| {
-        format!(
-            "[[hallways]]
-from='{number:x}'
-to='{:x}'
-",
-            number + 1
-        )
-    };
+    let hallway = |number| format!("[[hallways]]\nfrom='{number:x}'\nto='{:x}'\n", number + 1);
     let row = first(count - 1, hallway);
     files.push(format!("{plan}{junctions}{row}"));
     let hallways = again("[[hallways]]\nfrom='a'\nto='b'\n", bytes);

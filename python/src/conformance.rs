@@ -16,7 +16,7 @@ use toposlam_vision::{
 
 use crate::{
     error::{error, interrupted},
-    log::{LogReader, shown},
+    log::LogReader,
     long_work::{Watcher, run_watched},
     percept::Percept,
     world::{CoreWorld, named_marker},
@@ -69,7 +69,7 @@ pub(crate) fn conform<'py>(
         let report = checked(log, &mut check, watcher);
         (report, toposlam_model::enumerate::Watch::stop(watcher))
     })?;
-    let log_error = |cause: String| error(py, "LogError", format!("{}: {cause}", shown(&log.path)));
+    let log_error = |cause: String| log.error(py, &cause);
     match report {
         (_, true) => Err(interrupted()),
         (Ok((report, is_resumed)), false) => fields(py, &report, is_resumed),

@@ -1,8 +1,11 @@
 //! Recorded logs, for Python: the head, the topics, and what they record as columns.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fmt::Display,
+    path::{Path, PathBuf},
+};
 
-use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
+use pyo3::{prelude::*, types::PyDict};
 use toposlam_draw::picture::{LaserRunPicture, laser_run_svg};
 use toposlam_logs::{
     Format,
@@ -10,7 +13,7 @@ use toposlam_logs::{
     error::LogError,
     messages::Run,
     reader::Log,
-    record::{Arrival, EventKind, Frame, RunEnding},
+    record::{EventKind, Frame, RunEnding},
     topic_map::{Role, TopicMap},
 };
 use toposlam_model::{
@@ -19,7 +22,7 @@ use toposlam_model::{
         scene::{Place, Scene},
     },
     enumerate::Watch,
-    percept::{Door, Percept as ModelPercept},
+    percept::Door,
 };
 use toposlam_vision::geometry::from_robot;
 
@@ -38,49 +41,57 @@ pub(crate) struct LogReader {
     pub(crate) run: Option<Run>,
 }
 
-/// What a log records, line by line. The columns of a table have the same length.
-#[derive(Default)]
-struct Tables {
-    events: Vec<EventRow>,
-    scenes: Vec<SceneRow>,
-    poses: Vec<[f64; 4]>,
+/// What a log records: the columns of each table, which have the same length. Times are seconds since the first
+/// message.
+#[derive(Default, IntoPyObject)]
+pub(crate) struct Tables {
+    events: EventColumns,
+    scenes: SceneColumns,
+    poses: PoseColumns,
 }
 
-struct EventRow {
-    time: f64,
-    message: u64,
-    kind: &'static str,
-    percept: Option<ModelPercept>,
-    degree: Option<u32>,
-    door: Option<u32>,
-    text: String,
+#[derive(Default, IntoPyObject)]
+struct EventColumns {
+    time: Vec<f64>,
+    message: Vec<u64>,
+    kind: Vec<&'static str>,
+    degree: Vec<Option<u32>>,
+    percept: Vec<Option<Percept>>,
+    door: Vec<Option<u32>>,
+    text: Vec<String>,
 }
 
-struct SceneRow {
-    time: f64,
-    message: u64,
-    place: &'static str,
-    doors: Vec<f64>,
-    heading: Option<f64>,
-    left: Option<f64>,
-    right: Option<f64>,
-    marker: Option<[f64; 2]>,
+#[derive(Default, IntoPyObject)]
+struct SceneColumns {
+    time: Vec<f64>,
+    message: Vec<u64>,
+    place: Vec<&'static str>,
+    doors: Vec<Vec<f64>>,
+    heading: Vec<Option<f64>>,
+    left: Vec<Option<f64>>,
+    right: Vec<Option<f64>>,
+    marker: Vec<Option<[f64; 2]>>,
+}
+
+#[derive(Default, IntoPyObject)]
+struct PoseColumns {
+    time: Vec<f64>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    heading: Vec<f64>,
 }
 
 #[pymethods]
 impl LogReader {
     #[new]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let failed = |cause: &dyn std::fmt::Display| {
-            error(py, "LogError", format!("{}: {cause}", path.display()))
-        };
         let opened = run_watched(py, None, None, |_| {
             let log = Log::open(&path)?;
             let mapping = TopicMap::unambiguous(&log);
             let run = head(&log, &mapping)?;
             Ok::<_, LogError>((log, mapping, run))
         })?;
-        let (log, mapping, run) = opened.map_err(|cause| failed(&cause))?;
+        let (log, mapping, run) = opened.map_err(|cause| log_error(py, &path, &cause))?;
         Ok(Self { path, log, mapping, run })
     }
 
@@ -136,32 +147,11 @@ impl LogReader {
         Ok(head)
     }
 
-    /// The tables "events", "scenes" and "poses", each as its columns. Times are seconds since the first
-    /// message.
-    fn tables<'py>(
-        &self,
-        py: Python<'py>,
-        progress: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    /// Reads the tables.
+    fn tables(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<Tables> {
         let read = run_watched(py, progress, None, |watcher| self.read(watcher))?;
-        let tables = match read {
-            Ok(Some(tables)) => tables,
-            Ok(None) => return Err(interrupted()),
-            Err(cause) => {
-                let text = format!("{}: {cause}", self.path.display());
-                return Err(error(py, "LogError", text));
-            }
-        };
-        let all = PyDict::new(py);
-        all.set_item("events", tables.event_columns(py)?)?;
-        all.set_item("scenes", tables.scene_columns(py)?)?;
-        let poses = PyDict::new(py);
-        for (column, name) in ["time", "x", "y", "heading"].into_iter().enumerate() {
-            let values: Vec<f64> = tables.poses.iter().map(|pose| pose[column]).collect();
-            poses.set_item(name, values)?;
-        }
-        all.set_item("poses", poses)?;
-        Ok(all)
+        let read = read.map_err(|cause| self.error(py, &cause))?;
+        read.ok_or_else(interrupted)
     }
 }
 
@@ -177,6 +167,11 @@ fn head(log: &Log, mapping: &TopicMap) -> Result<Option<Run>, LogError> {
 }
 
 impl LogReader {
+    /// The exception for a log that cannot be read or checked.
+    pub(crate) fn error(&self, py: Python<'_>, cause: &dyn Display) -> PyErr {
+        log_error(py, &self.path, cause)
+    }
+
     /// Reads the tables; `None` if the reading was stopped.
     fn read(&self, watcher: &Watcher) -> Result<Option<Tables>, String> {
         let mut tables = Tables::default();
@@ -197,28 +192,15 @@ impl Tables {
     fn add(&mut self, entry: Entry, begun: u64) {
         let time = entry.time.saturating_sub(begun) as f64 / 1e9;
         let message = entry.id.0;
-        let event = |kind, text: String| {
-            let (percept, degree, door) = (None, None, None);
-            EventRow { time, message, kind, percept, degree, door, text }
-        };
-        match entry.content {
-            Content::TurnedBack => {
-                let row = event("turned-back", String::new());
-                self.events.push(row);
-            }
-            Content::Undecided => {
-                let row = event("undecided", String::new());
-                self.events.push(row);
-            }
+        let (kind, degree, percept, door, text) = match entry.content {
+            Content::TurnedBack => ("turned-back", None, None, None, String::new()),
+            Content::Undecided => ("undecided", None, None, None, String::new()),
             Content::Event(EventKind::Door { door: Door(door), .. }) => {
-                let row = EventRow { door: Some(door), ..event("door", String::new()) };
-                self.events.push(row);
+                ("door", None, None, Some(door), String::new())
             }
             Content::Event(EventKind::Arrival(arrival)) => {
-                let Arrival { degree, .. } = arrival;
-                let (percept, degree) = (arrival.percept(), Some(degree));
-                let row = EventRow { percept, degree, ..event("percept", String::new()) };
-                self.events.push(row);
+                let percept = arrival.percept().map(Percept);
+                ("percept", Some(arrival.degree), percept, None, String::new())
             }
             Content::Event(EventKind::End(end)) => {
                 let how = match end.ending {
@@ -227,78 +209,56 @@ impl Tables {
                     RunEnding::GaveUp(cause) => format!("gave up: {cause}"),
                     RunEnding::OutOfBudget(cause) => format!("out of budget: {cause}"),
                 };
-                let row = event("end", how);
-                self.events.push(row);
+                ("end", None, None, None, how)
             }
-            Content::Event(EventKind::Odometry(odometry)) => self.add_pose(time, odometry),
-            Content::Event(EventKind::Frame(frame)) => self.add_frame(time, message, &frame),
+            Content::Event(EventKind::Odometry(odometry)) => return self.poses.add(time, odometry),
+            Content::Event(EventKind::Frame(frame)) => return self.add_frame(time, message, frame),
             Content::Run(_) | Content::Hypothesis(_) | Content::Fiducial(_) | Content::Event(_) => {
+                return;
             }
-        }
+        };
+        self.events.time.push(time);
+        self.events.message.push(message);
+        self.events.kind.push(kind);
+        self.events.degree.push(degree);
+        self.events.percept.push(percept);
+        self.events.door.push(door);
+        self.events.text.push(text);
     }
 
-    /// Adds a pose, unless the last message recorded it already.
-    fn add_pose(&mut self, time: f64, Odometry { position: [x, y], heading }: Odometry) {
-        let pose = [time, x, y, heading];
-        if self.poses.last() != Some(&pose) {
-            self.poses.push(pose);
-        }
-    }
-
-    fn add_frame(&mut self, time: f64, message: u64, frame: &Frame) {
+    fn add_frame(&mut self, time: f64, message: u64, frame: Frame) {
         if frame.scan.is_some() {
-            self.add_pose(time, frame.odometry);
+            self.poses.add(time, frame.odometry);
         }
-        let Some(Scene { place, marker }) = &frame.scene else { return };
-        let marker = marker.map(|marker| marker.position);
-        let (doors, heading, left, right) = (Vec::new(), None, None, None);
-        let row = SceneRow { time, message, place: "unknown", doors, heading, left, right, marker };
-        self.scenes.push(match place {
-            Place::Hallway(view) => SceneRow {
-                place: "hallway",
-                heading: Some(view.heading),
-                left: Some(view.left),
-                right: Some(view.right),
-                ..row
-            },
-            Place::Junction(view) => SceneRow {
-                place: "junction",
-                doors: view.doors.iter().map(|door| door.direction).collect(),
-                ..row
-            },
-            Place::Unknown(_) => row,
-        });
-    }
-
-    fn event_columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let columns = PyDict::new(py);
-        let column = |get: &dyn Fn(&EventRow) -> PyResult<Py<PyAny>>| {
-            self.events.iter().map(get).collect::<PyResult<Vec<_>>>()
+        let Some(Scene { place, marker }) = frame.scene else { return };
+        let (place, hallway, doors) = match place {
+            Place::Hallway(view) => ("hallway", Some(view), Vec::new()),
+            Place::Junction(view) => {
+                ("junction", None, view.doors.iter().map(|door| door.direction).collect())
+            }
+            Place::Unknown(_) => ("unknown", None, Vec::new()),
         };
-        columns.set_item("time", column(&|row| row.time.into_py_any(py))?)?;
-        columns.set_item("message", column(&|row| row.message.into_py_any(py))?)?;
-        columns.set_item("kind", column(&|row| row.kind.into_py_any(py))?)?;
-        columns.set_item("degree", column(&|row| row.degree.into_py_any(py))?)?;
-        columns.set_item("percept", column(&|row| row.percept.map(Percept).into_py_any(py))?)?;
-        columns.set_item("door", column(&|row| row.door.into_py_any(py))?)?;
-        columns.set_item("text", column(&|row| row.text.as_str().into_py_any(py))?)?;
-        Ok(columns)
+        self.scenes.time.push(time);
+        self.scenes.message.push(message);
+        self.scenes.place.push(place);
+        self.scenes.doors.push(doors);
+        self.scenes.heading.push(hallway.as_ref().map(|view| view.heading));
+        self.scenes.left.push(hallway.as_ref().map(|view| view.left));
+        self.scenes.right.push(hallway.as_ref().map(|view| view.right));
+        self.scenes.marker.push(marker.map(|marker| marker.position));
     }
+}
 
-    fn scene_columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let columns = PyDict::new(py);
-        let column = |get: &dyn Fn(&SceneRow) -> PyResult<Py<PyAny>>| {
-            self.scenes.iter().map(get).collect::<PyResult<Vec<_>>>()
-        };
-        columns.set_item("time", column(&|row| row.time.into_py_any(py))?)?;
-        columns.set_item("message", column(&|row| row.message.into_py_any(py))?)?;
-        columns.set_item("place", column(&|row| row.place.into_py_any(py))?)?;
-        columns.set_item("doors", column(&|row| row.doors.clone().into_py_any(py))?)?;
-        columns.set_item("heading", column(&|row| row.heading.into_py_any(py))?)?;
-        columns.set_item("left", column(&|row| row.left.into_py_any(py))?)?;
-        columns.set_item("right", column(&|row| row.right.into_py_any(py))?)?;
-        columns.set_item("marker", column(&|row| row.marker.into_py_any(py))?)?;
-        Ok(columns)
+impl PoseColumns {
+    /// Adds a pose, unless the last message recorded it already.
+    fn add(&mut self, time: f64, Odometry { position: [x, y], heading }: Odometry) {
+        let last = [&self.time, &self.x, &self.y, &self.heading].map(|column| column.last());
+        if last != [Some(&time), Some(&x), Some(&y), Some(&heading)] {
+            self.time.push(time);
+            self.x.push(x);
+            self.y.push(y);
+            self.heading.push(heading);
+        }
     }
 }
 
@@ -317,9 +277,7 @@ pub(crate) fn log_picture(py: Python<'_>, reader: &LogReader, title: &str) -> Py
         }
         Ok::<_, String>(Some(laser_run_svg(&picture)))
     })?;
-    let drawn = drawn
-        .map_err(|cause| error(py, "LogError", format!("{}: {cause}", reader.path.display())))?;
-    drawn.ok_or_else(interrupted)
+    drawn.map_err(|cause| reader.error(py, &cause))?.ok_or_else(interrupted)
 }
 
 fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {
@@ -337,7 +295,6 @@ fn add_scan(picture: &mut LaserRunPicture, entry: Entry) {
     }
 }
 
-/// The path of a log, for messages.
-pub(crate) fn shown(path: &Path) -> String {
-    path.display().to_string()
+fn log_error(py: Python<'_>, path: &Path, cause: &dyn Display) -> PyErr {
+    error(py, "LogError", format!("{}: {cause}", path.display()))
 }

@@ -4,7 +4,7 @@ First written without sight of the Rust code, and tidied since; as literal as po
 for speed. `tests/oracle.rs` compares the totals of the two. Prints one JSON object for each number of edges:
 
     python3 tests/oracle/algorithm1.py default 5    the default choices, up to 5 edges
-    python3 tests/oracle/algorithm1.py all 3        every run, one by one, up to 3 edges
+    python3 tests/oracle/algorithm1.py all 4        every run, one by one, up to 4 edges
 """
 
 import json

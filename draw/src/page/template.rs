@@ -2,13 +2,15 @@
 
 use serde_json::Value;
 
-/// The template with each `{{place}}` replaced. The inserted text is not searched for places.
-pub(super) fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
+/// The template with each `{{place}}` replaced by its content. The inserted text is not searched for places.
+pub(super) fn filled(template: &str, contents: &[(&str, &str)]) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (place, rest) = part.split_once("}}").unwrap_or((part, ""));
-        filled.push_str(&content(place));
+        let content = contents.iter().find(|(known, _)| *known == place);
+        debug_assert!(content.is_some(), "the place {place} is not filled");
+        filled.push_str(content.map_or("", |(_, content)| content));
         filled.push_str(rest);
     }
     filled
@@ -22,24 +24,11 @@ pub(super) fn in_script(data: &Value) -> String {
 /// What the tests of all pages share.
 #[cfg(test)]
 pub(super) mod checks {
-    use std::{cell::RefCell, collections::BTreeSet};
-
     use super::*;
 
     /// A name that would break a page if it were inserted as it is.
     pub(crate) const NASTY: &str = "</script><!--<i>&\"{{data}}";
 
-    /// The places of a template, in alphabetical order.
-    pub(crate) fn places_of(template: &str) -> Vec<String> {
-        let places = RefCell::new(BTreeSet::new());
-        filled(template, |place| {
-            places.borrow_mut().insert(place.to_owned());
-            String::new()
-        });
-        places.into_inner().into_iter().collect()
-    }
-
-    /// The data of a page.
     pub(crate) fn data_of(document: &str) -> Value {
         let (_, from) =
             document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();

@@ -13,14 +13,12 @@ pub(super) struct Curve {
     pub(super) pieces: Vec<[Point; 3]>,
     /// Points along the curve, to measure with.
     pub(super) trace: Vec<Point>,
-    /// The box around the trace.
     pub(super) extent: Extent,
 }
 
 /// A place where a curve begins or ends: on the border of a disc, facing outwards.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DoorKnob {
-    /// The place on the border.
     pub(super) at: Point,
     /// The direction outwards, of length 1.
     pub(super) out: Point,

@@ -9,7 +9,7 @@ use super::{
     geometry::{Extent, Point},
     layout::{self, Layout},
     routes::{self, Crossings},
-    scale::{ScalePurpose, scale},
+    scale::scale,
     size::DrawingSize,
     ways::UnroutedEdge,
 };
@@ -18,9 +18,7 @@ use super::{
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
     pub(super) size: DrawingSize,
-    /// The centre of each vertex's disc.
     pub(super) centres: Vec<Point>,
-    /// The direction of each dart's door.
     pub(super) doors: Vec<f64>,
     /// The darts and the curve of each edge, from its first dart.
     pub(super) edges: Vec<(Dart, Dart, Curve)>,
@@ -36,7 +34,6 @@ pub(super) struct Drawing {
     pub(super) room: Extent,
 }
 
-/// The scale of a floor plan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloorScale {
     /// Units of the picture in a metre.
@@ -61,12 +58,7 @@ impl Drawing {
             Some(positions) => layout::given(graph, positions),
             None => layout::lay_out(graph),
         };
-        let purpose = match place {
-            Placement::Free => ScalePurpose::Usual,
-            Placement::At(_) => ScalePurpose::Given,
-            Placement::FloorPlan { .. } => ScalePurpose::FloorPlan,
-        };
-        let unit = scale(graph, &layout.vertices, &size, purpose);
+        let unit = scale(graph, &layout.vertices, &size, place);
         for point in layout.vertices.iter_mut().chain(layout.bends.iter_mut().flatten()) {
             *point = *point * unit;
         }
@@ -120,18 +112,12 @@ impl Drawing {
 
     /// The box around the drawing without labels.
     pub(super) fn extent(&self) -> Extent {
-        let mut extent = self.room;
-        for (centre, disc) in self.centres.iter().zip(&self.size.discs) {
+        let discs = self.centres.iter().zip(&self.size.discs).map(|(&centre, disc)| {
             let radius = disc + self.size.knob + 1.0;
-            extent.join(Extent::around(*centre, radius, radius));
-        }
-        for hallway in self.hallways() {
-            extent.join(hallway);
-        }
-        for (_, _, curve) in &self.edges {
-            extent.join(curve.extent.widened(3.0));
-        }
-        extent
+            Extent::around(centre, radius, radius)
+        });
+        let curves = self.edges.iter().map(|(_, _, curve)| curve.extent.widened(3.0));
+        self.room.joined(discs.chain(self.hallways()).chain(curves))
     }
 }
 

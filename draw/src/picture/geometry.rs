@@ -1,13 +1,17 @@
 //! Points of the picture: x to the right, y down, so that growing angles turn clockwise on screen.
 
-use std::f64::consts::{PI, TAU};
-use std::ops::{Add, Mul, Sub};
+use std::{
+    f64::consts::TAU,
+    ops::{Add, Mul, Sub},
+};
+
+pub(super) use toposlam_model::driving::scene::wrapped;
 
 /// A point, or a step from one point to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Point {
-    pub(super) x: f64,
-    pub(super) y: f64,
+pub(crate) struct Point {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
 }
 
 impl Point {
@@ -85,12 +89,6 @@ impl Mul<f64> for Point {
     }
 }
 
-/// The angle in `(-pi, pi]` that is the same direction.
-pub(super) fn wrapped(angle: f64) -> f64 {
-    let rest = angle.rem_euclid(TAU);
-    if rest > PI { rest - TAU } else { rest }
-}
-
 /// The clockwise turn from one direction to another, in `[0, 2 pi)`.
 pub(super) fn turn(from: f64, to: f64) -> f64 {
     let rest = (to - from).rem_euclid(TAU);
@@ -112,8 +110,8 @@ pub(super) fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> 
 
 /// An upright box, initially empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent {
-    pub(super) least: Point,
+pub(crate) struct Extent {
+    pub(crate) least: Point,
     pub(super) most: Point,
 }
 
@@ -144,9 +142,13 @@ impl Extent {
         self.most.y = self.most.y.max(point.y);
     }
 
-    pub(super) fn join(&mut self, other: Self) {
-        self.include(other.least);
-        self.include(other.most);
+    /// The box around this one and others.
+    pub(super) fn joined(mut self, others: impl IntoIterator<Item = Self>) -> Self {
+        for other in others {
+            self.include(other.least);
+            self.include(other.most);
+        }
+        self
     }
 
     pub(super) fn contains(&self, point: Point) -> bool {
@@ -174,7 +176,7 @@ impl Extent {
         Self { least: self.least - margin, most: self.most + margin }
     }
 
-    pub(super) fn size(&self) -> Point {
+    pub(crate) fn size(&self) -> Point {
         self.most - self.least
     }
 

@@ -28,10 +28,8 @@ pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
     let maps: Vec<OpenGraph> = maps.iter().map(OpenGraph::from).collect();
     let last = maps.last().and_then(Whole::new);
     let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
-    let mut room = Extent::EMPTY;
-    for (_, drawing) in stages.iter().flatten() {
-        room.join(drawing.extent());
-    }
+    let drawings = stages.iter().flatten().map(|(_, drawing)| drawing.extent());
+    let room = Extent::EMPTY.joined(drawings);
     let svg = |(stage, map): (&mut Option<(EmbeddedGraph, Drawing)>, &OpenGraph)| {
         let Some((graph, drawing)) = stage else {
             return String::new();
@@ -57,36 +55,34 @@ pub fn open_svg(map: &OpenGraph) -> Option<String> {
 /// Where the parts of a graph with open darts are drawn.
 pub(crate) struct OpenLayout {
     /// Of each vertex: the centre of its disc, and the radius.
-    pub(crate) discs: Vec<([f64; 2], f64)>,
+    pub(crate) discs: Vec<(Point, f64)>,
     /// Points along the edge of each dart, from the dart to its other end.
-    pub(crate) curves: Vec<Vec<[f64; 2]>>,
+    pub(crate) curves: Vec<Vec<Point>>,
     /// The ends of each dart's edge as it is drawn if the dart is open.
-    pub(crate) stubs: Vec<[[f64; 2]; 2]>,
+    pub(crate) stubs: Vec<[Point; 2]>,
     /// The radius of the circle in which it ends.
     pub(crate) open: f64,
-    /// The corners of the drawing.
-    pub(crate) corners: [[f64; 2]; 2],
+    pub(crate) extent: Extent,
 }
 
 /// The layout of a graph with open darts; `None` of an empty one.
 pub(crate) fn open_layout(map: &OpenGraph) -> Option<OpenLayout> {
     let whole = Whole::new(map)?;
     let (_, drawing) = stage(map, Some(&whole))?;
-    let pair = |point: Point| [point.x, point.y];
-    let discs = drawing.centres.iter().zip(&drawing.size.discs).take(map.vertex_count());
+    let extent = drawing.extent();
+    let discs = drawing.centres.into_iter().zip(drawing.size.discs).take(map.vertex_count());
     let curves = (0..map.dart_count()).map(|dart| whole.curve(Dart(dart as u32)));
     let stub = |curve: &Curve| {
         let trace = whole.beginning(curve).trace;
-        [trace.first(), trace.last()].map(|end| end.map_or([0.0; 2], |&end| pair(end)))
+        [trace.first(), trace.last()].map(|end| end.copied().unwrap_or_default())
     };
     let curves: Vec<Curve> = curves.collect();
-    let extent = drawing.extent();
     Some(OpenLayout {
-        discs: discs.map(|(&centre, &radius)| (pair(centre), radius)).collect(),
+        discs: discs.collect(),
         stubs: curves.iter().map(stub).collect(),
-        curves: curves.into_iter().map(|it| it.trace.into_iter().map(pair).collect()).collect(),
+        curves: curves.into_iter().map(|curve| curve.trace).collect(),
         open: OPEN,
-        corners: [extent.least, extent.least + extent.size()].map(pair),
+        extent,
     })
 }
 
@@ -194,27 +190,26 @@ fn picture<'a>(
 
 #[cfg(test)]
 mod tests {
-    use std::{collections::HashMap, f64::consts::TAU, fs};
+    use std::{collections::HashMap, f64::consts::TAU};
 
     use resvg::usvg::roxmltree::{Document, Node};
-    use toposlam_model::format::world_file;
 
-    use super::{super::example, *};
+    use super::{
+        super::{
+            example,
+            reading::{number, of_class},
+        },
+        *,
+    };
 
     /// The stages of the map of a world of this repository.
     fn stages(world: &str) -> Vec<PartialMap> {
-        let path = format!("{}/../worlds/{world}.toml", env!("CARGO_MANIFEST_DIR"));
-        let world = world_file::read(&fs::read(path).unwrap()).unwrap();
+        let world = example::world(world);
         example::maps(&world.plan.unwrap(), world.start.unwrap())
     }
 
-    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
-        let is = |node: &Node| node.attribute("class") == Some(class);
-        document.descendants().filter(is).collect()
-    }
-
     fn attributes<const N: usize>(node: Node, names: [&str; N]) -> [f64; N] {
-        names.map(|name| node.attribute(name).unwrap().parse().unwrap())
+        names.map(|name| number(node, name))
     }
 
     #[test]

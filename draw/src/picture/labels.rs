@@ -12,7 +12,6 @@ use super::{
     text,
 };
 
-/// What a label names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LabelKind {
     /// A vertex, inside its disc.
@@ -29,7 +28,6 @@ pub(super) struct Label {
     pub(super) lines: Vec<String>,
     /// The middle of the text.
     pub(super) centre: Point,
-    /// The font size.
     pub(super) size: f64,
     pub(super) kind: LabelKind,
 }
@@ -54,7 +52,6 @@ const AWAY: [f64; 5] = [3.0, 8.0, 16.0, 28.0, 44.0];
 /// The cost of covering any part of another name.
 const COVERED: f64 = 300.0;
 
-/// The labels of vertices and edges.
 pub(super) fn labels(drawing: &Drawing, picture: &WorldPicture, signs: &[Sign]) -> Vec<Label> {
     let mut labels = Vec::new();
     let size = &drawing.size;
@@ -120,14 +117,11 @@ fn roomiest(
     own: Option<usize>,
     places: impl IntoIterator<Item = Label>,
 ) -> Option<Label> {
-    let mut best: Option<(f64, Label)> = None;
-    for (rank, label) in places.into_iter().enumerate() {
+    let costs = places.into_iter().enumerate().map(|(rank, label)| {
         let cost = covered(drawing, signs, taken, own, &label) + 0.1 * rank as f64;
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            best = Some((cost, label));
-        }
-    }
-    best.map(|(_, label)| label)
+        (cost, label)
+    });
+    costs.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, label)| label)
 }
 
 /// The cost of what the label covers.

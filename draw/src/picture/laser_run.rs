@@ -9,7 +9,7 @@ use std::{
 use super::{
     geometry::{Extent, Point},
     run::{pieces, ramp},
-    svg::{FAINT, INK, MARKER, Page, Sheet, short},
+    svg::{FAINT, INK, MARKER, PAPER, Page, Sheet, short},
 };
 
 /// A recorded run, to be drawn.
@@ -19,11 +19,9 @@ pub struct LaserRunPicture {
     pub title: String,
     /// Below it.
     pub caption: String,
-    /// What the scans hit.
     pub hits: ScanHits,
     /// The robot's positions, in metres.
     pub way: Vec<[f64; 2]>,
-    /// The visits of junctions, in order.
     pub visits: Vec<DrawnVisit>,
     /// The position of a marker in metres, and the direction in which it points in radians.
     pub marker: Option<([f64; 2], Option<f64>)>,
@@ -34,8 +32,6 @@ pub struct LaserRunPicture {
 pub struct DrawnVisit {
     /// The centre of the junction, in metres.
     pub centre: [f64; 2],
-    /// The distance from the centre to the nearest wall, in metres.
-    pub clearance: f64,
     /// The directions of the doors, in radians; none if the visit is undecided.
     pub doors: Vec<f64>,
     /// The index of the door by which the robot left.
@@ -82,7 +78,6 @@ impl ScanHits {
     }
 }
 
-/// The longer side of the drawing, in units.
 const SIDE: f64 = 600.0;
 /// The bounds of the scale, in units per metre.
 const METRE: [f64; 2] = [1.0, 40.0];
@@ -94,9 +89,7 @@ const DEGREE: f64 = 12.0;
 const NUMBER: f64 = 11.0;
 /// Visits of junctions with centres nearer than this, in metres, and with the same doors are drawn as one.
 const SAME: f64 = 3.0;
-/// Walls, and paper behind numbers.
 const WALL: &str = "#9aa1ab";
-const PAPER: &str = "#fdfcf9";
 
 /// Visits of one junction.
 struct VisitedPlace<'v> {
@@ -113,11 +106,10 @@ pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
     let metre = (SIDE / sides.x.max(sides.y).max(1e-3)).clamp(METRE[0], METRE[1]);
     let at = |[x, y]: [f64; 2]| Point::new(x * metre, -y * metre);
     let places = places(&picture.visits);
-    let mut extent = Extent { least: metres.least * metre, most: metres.most * metre }.widened(2.0);
-    for place in &places {
-        let room = DISC + ARM + 2.0 * NUMBER;
-        extent.join(Extent::around(at(place.visit.centre), room, room));
-    }
+    let room = DISC + ARM + 2.0 * NUMBER;
+    let discs = places.iter().map(|place| Extent::around(at(place.visit.centre), room, room));
+    let drawn = Extent { least: metres.least * metre, most: metres.most * metre };
+    let extent = drawn.widened(2.0).joined(discs);
     let sheet = Sheet {
         title: &picture.title,
         caption: &picture.caption,
@@ -126,14 +118,14 @@ pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
         up: "the y axis of odometry is up",
     };
     let legend = sheet.legend(legend(picture));
-    sheet.document(&legend, None, |page, shift| {
-        write_walls(page, &walls, metre, shift);
-        write_way(page, &picture.way.iter().map(|&point| at(point) + shift).collect::<Vec<_>>());
+    sheet.document(&legend, None, |page| {
+        write_walls(page, &walls, metre);
+        write_way(page, &picture.way.iter().map(|&point| page.at(at(point))).collect::<Vec<_>>());
         for place in &places {
-            place.write(page, at(place.visit.centre) + shift);
+            place.write(page, at(place.visit.centre));
         }
         if let Some((position, heading)) = picture.marker {
-            write_marker(page, at(position) + shift, heading);
+            write_marker(page, at(position), heading);
         }
     })
 }
@@ -168,7 +160,6 @@ fn places(visits: &[DrawnVisit]) -> Vec<VisitedPlace<'_>> {
     places
 }
 
-/// The meaning of the signs.
 fn legend(picture: &LaserRunPicture) -> Vec<String> {
     let mut lines = vec![
         "grey: what the scans hit; line: the robot's way, from light to dark".to_owned(),
@@ -185,7 +176,7 @@ fn legend(picture: &LaserRunPicture) -> Vec<String> {
 }
 
 /// The cells, in runs along x.
-fn write_walls(page: &mut Page, walls: &BTreeSet<[i32; 2]>, metre: f64, shift: Point) {
+fn write_walls(page: &mut Page, walls: &BTreeSet<[i32; 2]>, metre: f64) {
     let mut rows: Vec<[i32; 2]> = walls.iter().map(|&[x, y]| [y, x]).collect();
     rows.sort_unstable();
     let mut path = String::new();
@@ -194,12 +185,10 @@ fn write_walls(page: &mut Page, walls: &BTreeSet<[i32; 2]>, metre: f64, shift: P
         // Writing to a string does not fail.
         let _ = write!(path, "M{x} {}h{length}v1h-{length}z", -1 - y);
     }
-    page.line(&format!(
-        "<path class=\"hits\" transform=\"translate({} {}) scale({})\" d=\"{path}\" fill=\"{WALL}\"/>",
-        short(shift.x),
-        short(shift.y),
-        (metre * ScanHits::CELL * 1e4).round() / 1e4,
-    ));
+    let scale = (metre * ScanHits::CELL * 1e4).round() / 1e4;
+    let origin = page.at(Point::default());
+    let class = format!("class=\"hits\" transform=\"translate({origin}) scale({scale})\"");
+    page.path(&class, &path, &format!("fill=\"{WALL}\""));
 }
 
 /// The robot's way: one piece for each colour, each from the end of the last.
@@ -230,14 +219,8 @@ fn write_way(page: &mut Page, points: &[Point]) {
 /// The marker: an arrow, or a ring if it points nowhere.
 fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
     let Some(heading) = heading else {
-        page.line(&format!(
-            "<circle class=\"marker\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{MARKER}\" \
-             stroke-width=\"2.6\"/>",
-            short(at.x),
-            short(at.y),
-            short(DISC + 3.5),
-        ));
-        return;
+        let stroke = format!("fill=\"none\" stroke=\"{MARKER}\" stroke-width=\"2.6\"");
+        return page.circle("class=\"marker\"", at, DISC + 3.5, &stroke);
     };
     let along = Point::polar(-heading, 1.0);
     let across = along.quarter_turn();
@@ -252,25 +235,16 @@ impl VisitedPlace<'_> {
         let Self { visit, numbers } = self;
         for &door in &visit.doors {
             let along = Point::polar(-door, 1.0);
-            let [from, to] = [DISC, DISC + ARM].map(|length| at + along * length);
-            page.line(&format!(
-                "<path class=\"arm\" d=\"M{} {}L{} {}\" stroke=\"{INK}\" stroke-width=\"2.4\"/>",
-                short(from.x),
-                short(from.y),
-                short(to.x),
-                short(to.y)
-            ));
+            let [from, to] = [DISC, DISC + ARM].map(|length| page.at(at + along * length));
+            let stroke = format!("stroke=\"{INK}\" stroke-width=\"2.4\"");
+            page.path("class=\"arm\"", &format!("M{from}L{to}"), &stroke);
         }
         let (sign, ink) = match visit.doors.len() {
             0 => ("?".to_owned(), MARKER),
             degree => (degree.to_string(), INK),
         };
-        page.line(&format!(
-            "<circle class=\"junction\" cx=\"{}\" cy=\"{}\" r=\"{DISC}\" fill=\"{PAPER}\" \
-             stroke=\"{ink}\" stroke-width=\"1.8\"/>",
-            short(at.x),
-            short(at.y)
-        ));
+        let look = format!("fill=\"{PAPER}\" stroke=\"{ink}\" stroke-width=\"1.8\"");
+        page.circle("class=\"junction\"", at, DISC, &look);
         page.text(&sign, at + Point::new(0.0, DEGREE * 0.36), DEGREE, ink, "degree");
         let ends =
             visit.doors.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
@@ -287,14 +261,8 @@ impl VisitedPlace<'_> {
             let off = along.x.abs() * half + along.y.abs() * NUMBER * 0.5 + 3.0;
             let middle = end + along * off;
             let room = Extent::around(middle, half + 1.5, NUMBER * 0.55);
-            page.line(&format!(
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"2\" fill=\"{PAPER}\" \
-                 fill-opacity=\"0.85\"/>",
-                short(room.least.x),
-                short(room.least.y),
-                short(room.size().x),
-                short(room.size().y)
-            ));
+            let look = format!("rx=\"2\" fill=\"{PAPER}\" fill-opacity=\"0.85\"");
+            page.rectangle("", room, &look);
             let fill = if door.is_some() { INK } else { FAINT };
             page.text(&text, middle + Point::new(0.0, NUMBER * 0.36), NUMBER, fill, "visits");
         }
@@ -314,7 +282,10 @@ mod tests {
 
     use resvg::usvg::roxmltree::{Document, Node};
 
-    use super::*;
+    use super::{
+        super::reading::{number, of_class},
+        *,
+    };
 
     /// A corridor along x with a T in its middle, driven there and into the stem and back.
     fn picture() -> LaserRunPicture {
@@ -328,12 +299,7 @@ mod tests {
         }
         // A person: nothing else was hit near them.
         hits.add([5.0, 0.0]);
-        let visit = |centre, exit| DrawnVisit {
-            centre,
-            clearance: 1.1,
-            doors: vec![PI, FRAC_PI_2, 0.0],
-            exit,
-        };
+        let visit = |centre, exit| DrawnVisit { centre, doors: vec![PI, FRAC_PI_2, 0.0], exit };
         LaserRunPicture {
             title: "a <log>".to_owned(),
             caption: "conforms".to_owned(),
@@ -346,11 +312,6 @@ mod tests {
             ],
             marker: Some(([10.0, 0.0], Some(PI))),
         }
-    }
-
-    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
-        let is = |node: &Node| node.attribute("class") == Some(class);
-        document.descendants().filter(is).collect()
     }
 
     #[test]
@@ -366,11 +327,10 @@ mod tests {
         assert_eq!(of_class(&document, "marker").len(), 1);
         assert_eq!(texts("title"), ["a <log>"]);
         // The first visit left by the stem, which is above the disc.
-        let number = |node: &Node, name| node.attribute(name).unwrap().parse::<f64>().unwrap();
         let disc = of_class(&document, "junction")[0];
         let first = of_class(&document, "visits")[0];
-        assert!(number(&first, "y") < number(&disc, "cy"));
-        assert!((number(&first, "x") - number(&disc, "cx")).abs() < 1.0);
+        assert!(number(first, "y") < number(disc, "cy"));
+        assert!((number(first, "x") - number(disc, "cx")).abs() < 1.0);
     }
 
     #[test]

@@ -40,6 +40,8 @@ mod ways;
 
 #[cfg(test)]
 mod gallery;
+#[cfg(test)]
+mod reading;
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
@@ -47,6 +49,7 @@ use toposlam_model::{
     marker::{Directional, Marker, MarkerLook, MarkerPart},
 };
 
+pub(crate) use geometry::Point;
 pub use growth::open_svg;
 pub(crate) use growth::{growth, open_layout};
 pub use laser_run::{DrawnVisit, LaserRunPicture, ScanHits, laser_run_svg};
@@ -64,17 +67,13 @@ pub(crate) use text::escaped;
 /// A picture of a world, to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPicture<'a> {
-    /// The world.
     pub graph: &'a EmbeddedGraph,
-    /// The name of each vertex.
     pub vertex_names: &'a [String],
     /// The name of each dart's edge, if edges have names.
     pub edge_names: Option<&'a [String]>,
     /// The facing dart, by which the marker is placed; without one, no marker is drawn.
     pub start: Option<Dart>,
-    /// The kind of marker.
     pub marker: &'a dyn Marker,
-    /// The positions of the vertices.
     pub placement: Placement<'a>,
     /// The text above the picture; may be empty.
     pub title: &'a str,
@@ -83,7 +82,6 @@ pub struct WorldPicture<'a> {
 }
 
 impl WorldPicture<'_> {
-    /// The parts of the marker.
     fn parts(&self) -> Vec<MarkerPart> {
         self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
     }

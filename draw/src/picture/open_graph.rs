@@ -14,7 +14,6 @@ pub struct OpenGraph {
     firsts: Vec<usize>,
     /// The opposite of each dart; `None` if it is open.
     opposite: Vec<Option<Dart>>,
-    /// The dart along which the marker points.
     marker: Option<Dart>,
 }
 

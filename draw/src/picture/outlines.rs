@@ -29,7 +29,6 @@ pub(super) fn with_outlines(svg: &str) -> Result<String, Error> {
     Ok(outlined)
 }
 
-/// The outlines of a text element.
 fn outline(text: Node<'_, '_>, face: &Face<'_>) -> String {
     let inherited = |name| text.ancestors().find_map(|node| node.attribute(name));
     let size = inherited("font-size").and_then(|size| size.parse().ok()).unwrap_or(16.0);

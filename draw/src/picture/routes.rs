@@ -81,7 +81,6 @@ pub(super) fn routes(
     chosen
 }
 
-/// The crossings of two curves.
 pub(super) fn crossings(one: &Curve, other: &Curve) -> Vec<Point> {
     let mut places = Vec::new();
     if !one.extent.meets(&other.extent) {

@@ -4,21 +4,11 @@
 use toposlam_model::embedded_graph::EmbeddedGraph;
 
 use super::{
+    Placement,
     geometry::{Extent, Point},
     layout,
     size::{DrawingSize, Names},
 };
-
-/// The kind of layout for which the scale is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ScalePurpose {
-    /// A layout whose usual edge has length 1.
-    Usual,
-    /// Given positions.
-    Given,
-    /// Given positions of junctions in a floor plan: no other hallway is near them.
-    FloorPlan,
-}
 
 /// The greatest longer side for given positions, in discs, even if two of them are near.
 const LONGEST: f64 = 600.0;
@@ -31,22 +21,30 @@ pub(super) fn scale(
     graph: &EmbeddedGraph,
     places: &[Point],
     size: &DrawingSize,
-    purpose: ScalePurpose,
+    placement: Placement,
 ) -> f64 {
     let lines: Vec<_> = graph
         .edges()
         .map(|(dart, other)| [graph.vertex(dart).at(), graph.vertex(other).at()])
         .filter(|[u, v]| u != v)
         .collect();
-    if purpose == ScalePurpose::Usual {
-        usual(graph, places, size, &lines)
-    } else {
-        given(places, size, purpose, &lines)
+    match placement {
+        Placement::Free => usual(graph, places, size, &lines),
+        Placement::At(_) => given(places, size, &lines, 1.2 * size.base, &[]),
+        // No disc lies on another hallway.
+        Placement::FloorPlan { .. } => given(places, size, &lines, 24.0, &lines),
     }
 }
 
-/// The scale that the nearest of the given positions need.
-fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[usize; 2]]) -> f64 {
+/// The scale that the nearest of the given positions need. `between`: the room between the doors along an edge, for
+/// the marker or for a bow. `clear`: the edges to which other vertices keep a distance.
+fn given(
+    places: &[Point],
+    size: &DrawingSize,
+    lines: &[[usize; 2]],
+    between: f64,
+    clear: &[[usize; 2]],
+) -> f64 {
     let reach = |vertex: usize| size.discs[vertex] + size.knob;
     let mut scale = 0.0_f64;
     let mut demand = |units: f64, distance: f64| {
@@ -58,18 +56,11 @@ fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[
         for (other, &there) in places.iter().enumerate().take(vertex) {
             demand(reach(vertex) + reach(other) + 4.0, place.distance(there));
         }
-        if purpose == ScalePurpose::FloorPlan {
-            for &[u, v] in lines.iter().filter(|ends| !ends.contains(&vertex)) {
-                let distance = place.distance_to_segment(places[u], places[v]);
-                demand(reach(vertex) + 2.0, distance);
-            }
+        for &[u, v] in clear.iter().filter(|ends| !ends.contains(&vertex)) {
+            let distance = place.distance_to_segment(places[u], places[v]);
+            demand(reach(vertex) + 2.0, distance);
         }
     }
-    // Along an edge: room for the marker between the doors, or for a bow.
-    let between = match purpose {
-        ScalePurpose::FloorPlan => 24.0,
-        _ => 1.2 * size.base,
-    };
     for &[u, v] in lines {
         demand(reach(u) + reach(v) + between, places[u].distance(places[v]));
     }
@@ -110,20 +101,16 @@ fn usual(graph: &EmbeddedGraph, places: &[Point], size: &DrawingSize, lines: &[[
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::gallery::worlds::simple, *};
 
     #[test]
     fn the_nearest_junctions_decide() {
-        let graph = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b"]),
-        ]);
-        let graph = graph.unwrap();
-        let size = DrawingSize::of(&graph, &["a", "b", "c"].map(str::to_owned));
+        let world = simple("chain", "a: b, b: a c, c: b");
+        let size = DrawingSize::of(&world.graph, &world.vertex_names);
         let metre = |far: f64| {
             let places = [0.0, 4.0, far].map(|x| Point::new(x, 0.0));
-            scale(&graph, &places, &size, ScalePurpose::FloorPlan)
+            let placement = Placement::FloorPlan { positions: &[], hallway_width: 1.6 };
+            scale(&world.graph, &places, &size, placement)
         };
         assert_eq!(metre(40.0).to_bits(), metre(80.0).to_bits());
         assert!((4.0 * metre(40.0) - (2.0 * (size.discs[0] + size.knob) + 24.0)).abs() < 1e-9);

@@ -25,7 +25,6 @@ pub(super) enum Sign {
 /// The length of a triangle at scale 1.
 pub(super) const ARROW: f64 = 12.0;
 
-/// The signs of the marker of a picture.
 pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
     let mut signs: Vec<Sign> = Vec::new();
     let scale = if drawing.size.knob > 0.0 { 1.35 } else { 0.9 };
@@ -100,7 +99,6 @@ fn on_edge(picture: &WorldPicture, drawing: &Drawing, dart: Dart) -> Option<(Poi
 }
 
 impl Sign {
-    /// The box of the sign.
     pub(super) fn extent(&self) -> Extent {
         match *self {
             Self::Ring { centre, radius, .. } => Extent::around(centre, radius + 1.5, radius + 1.5),
@@ -109,17 +107,6 @@ impl Sign {
                 Extent::around(middle, 6.7 * scale, 6.7 * scale)
             }
             Self::Bar { at, scale, .. } => Extent::around(at, 6.0 * scale, 6.0 * scale),
-        }
-    }
-
-    /// The same sign, moved by a step.
-    pub(super) fn moved(self, step: Point) -> Self {
-        match self {
-            Self::Ring { centre, radius, look } => {
-                Self::Ring { centre: centre + step, radius, look }
-            }
-            Self::Arrow { at, direction, scale } => Self::Arrow { at: at + step, direction, scale },
-            Self::Bar { at, direction, scale } => Self::Bar { at: at + step, direction, scale },
         }
     }
 
@@ -136,11 +123,12 @@ impl Sign {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{
-        embedded_graph::EmbeddedGraph, format::named_world::NamedWorld, marker::named,
-    };
+    use toposlam_model::{format::named_world::NamedWorld, marker::named};
 
-    use super::*;
+    use super::{
+        super::gallery::worlds::{multigraph, simple},
+        *,
+    };
 
     /// The signs of a marker, one letter each, and its text.
     fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
@@ -157,12 +145,8 @@ mod tests {
 
     #[test]
     fn each_marker_has_its_signs_and_its_words() {
-        let lists = [("a", vec!["b", "c"]), ("b", vec!["a", "c"]), ("c", vec!["a", "b"])];
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        let simple = NamedWorld::numbered("", "", graph, Some(Dart(0)));
-        let lists = [("u", vec!["e", "e", "f"]), ("v", vec!["f"])];
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
-        let with_loop = NamedWorld::numbered("", "", graph, Some(Dart(0)));
+        let simple = simple("triangle", "v0: v1 v2, v1: v0 v2, v2: v0 v1");
+        let with_loop = multigraph("loop", "v0: e0 e0 e1, v1: e1");
         for (marker, signs, words, of_loop) in [
             ("none", "", "", ""),
             ("undirected", "o", "the marker lies at v0", "the marker lies at v0"),

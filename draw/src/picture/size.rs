@@ -20,7 +20,6 @@ pub(super) enum Names {
     Nowhere,
 }
 
-/// The sizes that fit one graph and its names.
 #[derive(Clone, Debug)]
 pub(super) struct DrawingSize {
     /// The radius of a usual disc; other lengths are measured by it.
@@ -31,7 +30,6 @@ pub(super) struct DrawingSize {
     pub(super) knob: f64,
     /// The font size of the names of vertices.
     pub(super) name: f64,
-    /// The place of these names.
     pub(super) names: Names,
 }
 
@@ -117,26 +115,23 @@ fn room(disc: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::gallery::worlds::simple, *};
 
-    fn size(names: &[&str]) -> DrawingSize {
-        let lists = names.iter().enumerate().map(|(at, name)| {
-            let near = [at.wrapping_sub(1), at + 1];
-            (*name, near.iter().filter_map(|&at| names.get(at)).copied().collect())
-        });
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists.collect::<Vec<(_, Vec<_>)>>());
-        let names: Vec<_> = names.iter().map(|&name| name.to_owned()).collect();
-        DrawingSize::of(&graph.unwrap(), &names)
+    /// The sizes of a chain of vertices with these names.
+    fn size(names: [&str; 3]) -> DrawingSize {
+        let [a, b, c] = names;
+        let world = simple("chain", &format!("{a}: {b}, {b}: {a} {c}, {c}: {b}"));
+        DrawingSize::of(&world.graph, &world.vertex_names)
     }
 
     #[test]
     fn all_names_stand_inside_or_all_beside() {
-        let short = size(&["a", "v-1", "corner"]);
+        let short = size(["a", "v-1", "corner"]);
         assert_eq!((short.names, short.lines("v-1").len()), (Names::Inside, 1));
-        let long = size(&["a", "offices-west", "lift"]);
+        let long = size(["a", "offices-west", "lift"]);
         assert_eq!(long.names, Names::Broken);
         assert_eq!(long.lines("offices-west"), ["offices-", "west"]);
         assert_eq!(long.lines("lift"), ["lift"]);
-        assert_eq!(size(&["a", "b", "aNameWithoutAnyBreak"]).names, Names::Beside);
+        assert_eq!(size(["a", "b", "aNameWithoutAnyBreak"]).names, Names::Beside);
     }
 }

@@ -4,9 +4,10 @@ use image::{Rgb, RgbImage, imageops};
 use toposlam_vision::annotate::{LegendSign, StageLegend};
 
 use super::{
+    geometry::{Extent, Point},
     png::{PictureError, pixels},
-    svg::{INK, short},
-    text::{FAMILY, escaped, width},
+    svg::{INK, Page, short},
+    text::{FAMILY, width},
 };
 
 /// The font size of a legend, as a share of the picture's width, and its bounds.
@@ -35,41 +36,36 @@ fn strip(legend: &StageLegend, wide: u32) -> String {
     let scale = legend.metre.map(|metre| (None, metre, "1 m"));
     let entries = legend.entries.iter();
     let entries = entries.map(|(sign, words)| (Some(sign), length(sign, size), &**words));
-    let (mut x, mut y) = (margin, margin + 0.5 * row);
-    let mut parts: Vec<String> = Vec::new();
+    let mut at = Point::new(margin, margin + 0.5 * row);
+    let mut page = Page::default();
     for (sign, long, words) in scale.into_iter().chain(entries) {
         let wanted = long + 0.5 * size + width(words, size);
-        if x > margin && x + wanted > right - margin {
-            (x, y) = (margin, y + row);
+        if at.x > margin && at.x + wanted > right - margin {
+            at = Point::new(margin, at.y + row);
         }
-        parts
-            .push(sign.map_or_else(|| ruler([x, y], long, size), |sign| drawn(sign, [x, y], size)));
-        parts.push(format!(
-            "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{INK}\">{}</text>",
-            short(x + long + 0.5 * size),
-            short(y + 0.35 * size),
-            short(size),
-            escaped(words)
-        ));
-        x += wanted + 1.4 * size;
+        match sign {
+            Some(sign) => write_sign(&mut page, sign, at, size),
+            None => write_ruler(&mut page, at, long, size),
+        }
+        let baseline = at + Point::new(long + 0.5 * size, 0.35 * size);
+        page.anchored_text(words, baseline, size, INK, ["entry", "start"]);
+        at.x += wanted + 1.4 * size;
     }
-    let parts = parts.concat();
-    let high = (y + 0.5 * row + margin).ceil();
+    let high = (at.y + 0.5 * row + margin).ceil();
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
          viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}\"><rect width=\"100%\" \
-         height=\"100%\" fill=\"{PAPER}\"/>{parts}</svg>"
+         height=\"100%\" fill=\"{PAPER}\"/>{}</svg>",
+        page.text
     )
 }
 
 /// A metre.
-fn ruler([x, y]: [f64; 2], metre: f64, size: f64) -> String {
-    let [left, right, top, bottom] = [x, x + metre, y - 0.35 * size, y + 0.35 * size].map(short);
-    format!(
-        "<path d=\"M{left} {top}V{bottom}M{right} {top}V{bottom}M{left} {y}H{right}\" fill=\"none\" \
-         stroke=\"{INK}\" stroke-width=\"2\"/>",
-        y = short(y)
-    )
+fn write_ruler(page: &mut Page, at: Point, metre: f64, size: f64) {
+    let [left, right] = [at.x, at.x + metre].map(short);
+    let [top, y, bottom] = [at.y - 0.35 * size, at.y, at.y + 0.35 * size].map(short);
+    let ruler = format!("M{left} {top}V{bottom}M{right} {top}V{bottom}M{left} {y}H{right}");
+    page.path("", &ruler, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""));
 }
 
 /// The length of a sign.
@@ -82,46 +78,36 @@ fn length(sign: &LegendSign, size: f64) -> f64 {
     }
 }
 
-/// A sign as SVG. Its left end is at a point.
-fn drawn(sign: &LegendSign, [x, y]: [f64; 2], size: f64) -> String {
+/// A sign. Its left end is at a point.
+fn write_sign(page: &mut Page, sign: &LegendSign, at: Point, size: f64) {
     let long = length(sign, size);
-    let line = |colour, thick| {
-        let (from, to, y) = (short(x), short(x + long), short(y));
-        format!(
-            "<path d=\"M{from} {y}H{to}\" stroke=\"{}\" stroke-width=\"{thick}\"/>",
-            hex(colour)
-        )
-    };
-    let circle = |colours: &str| {
-        let [x, y, radius] = [x + long / 2.0, y, long / 2.0].map(short);
-        format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {colours}/>")
-    };
-    match sign {
-        LegendSign::Areas(colours) => (0_u32..)
-            .zip(colours)
-            .map(|(number, colour)| {
-                let [x, y, side] = [x + f64::from(number) * size, y - size / 2.0, size].map(short);
-                let fill = hex(*colour);
-                format!(
-                    "<rect x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" fill=\"{fill}\"/>"
-                )
-            })
-            .collect::<Vec<_>>()
-            .concat(),
-        LegendSign::Dot(colour) => circle(&format!("fill=\"{}\"", hex(*colour))),
-        LegendSign::Ring(colour) => {
-            circle(&format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2.5\"", hex(*colour)))
+    let middle = at + Point::new(long / 2.0, 0.0);
+    let stroke =
+        |colour, thick: f64| format!("stroke=\"{}\" stroke-width=\"{thick}\"", hex(colour));
+    match *sign {
+        LegendSign::Areas(ref colours) => {
+            for (number, &colour) in colours.iter().enumerate() {
+                let centre = at + Point::new((number as f64 + 0.5) * size, 0.0);
+                let area = Extent::around(centre, 0.5 * size, 0.5 * size);
+                page.rectangle("", area, &format!("fill=\"{}\"", hex(colour)));
+            }
         }
-        LegendSign::Line(colour) => line(*colour, 1.5),
-        LegendSign::Thick(colour) => line(*colour, 4.0),
+        LegendSign::Dot(colour) => {
+            page.circle("", middle, long / 2.0, &format!("fill=\"{}\"", hex(colour)));
+        }
+        LegendSign::Ring(colour) => {
+            let look = format!("fill=\"none\" {}", stroke(colour, 2.5));
+            page.circle("", middle, long / 2.0, &look);
+        }
+        LegendSign::Line(colour) | LegendSign::Thick(colour) => {
+            let thick = if matches!(sign, LegendSign::Thick(_)) { 4.0 } else { 1.5 };
+            page.path("", &format!("M{at}H{}", short(at.x + long)), &stroke(colour, thick));
+        }
         LegendSign::Robot { body, outline } => {
-            let outline = hex(*outline);
-            let disc = circle(&format!(
-                "fill=\"{}\" stroke=\"{outline}\" stroke-width=\"1.5\"",
-                hex(*body)
-            ));
-            let [x, y, top] = [x + long / 2.0, y, y - long / 2.0].map(short);
-            format!("{disc}<path d=\"M{x} {y}V{top}\" stroke=\"{outline}\" stroke-width=\"1.5\"/>")
+            let look = format!("fill=\"{}\" {}", hex(body), stroke(outline, 1.5));
+            page.circle("", middle, long / 2.0, &look);
+            let ahead = format!("M{middle}V{}", short(at.y - long / 2.0));
+            page.path("", &ahead, &stroke(outline, 1.5));
         }
     }
 }
@@ -173,7 +159,7 @@ mod tests {
         let last = svg.rsplit("<text ").next().unwrap();
         assert!(svg.matches("<text ").count() > 7 && !last.is_empty());
         let rows: std::collections::BTreeSet<_> =
-            svg.split("<text ").skip(1).map(|text| text.split('"').nth(3).unwrap()).collect();
+            svg.split("<text ").skip(1).map(|text| text.split('"').nth(5).unwrap()).collect();
         assert!(rows.len() > 1, "{rows:?}");
     }
 }

@@ -1,11 +1,8 @@
 //! The story of the folding explorer: the darts that it takes, its tests, and how the trail folds.
 
-use toposlam_model::{
-    embedded_graph::Dart,
-    mapping::{FoldingEvent, MapWalk, PartialMap},
-};
+use toposlam_model::mapping::{FoldingEvent, MapWalk};
 
-use super::{Story, StoryLine, dart, percept_text};
+use super::{Story, dart, percept_text};
 use crate::{
     moment::grouped,
     text::{counted, vertices},
@@ -19,7 +16,12 @@ impl Story {
                 self.add_round(journey, edge, "", percept);
             }
             FoldingEvent::Testing { edge, hypothesis, cost } => {
-                self.add_test(map, edge, hypothesis, cost);
+                let (edge, hypothesis) = (dart(map, edge), dart(map, hypothesis));
+                let moves = counted(cost, "move");
+                self.begin_round(format!(
+                    "may {edge} and {hypothesis} be the two ends of one edge? If so, a walk of \
+                     {moves} leads to the marker."
+                ));
             }
             FoldingEvent::Refuted { hypothesis, expected, perceived, .. } => {
                 let moves = self.take_moves(journey);
@@ -43,19 +45,5 @@ impl Story {
                 ));
             }
         }
-    }
-
-    /// A round begins with a test.
-    fn add_test(&mut self, map: &PartialMap, edge: Dart, hypothesis: Dart, cost: usize) {
-        self.round += 1;
-        let round = grouped(self.round.into());
-        let (edge, hypothesis) = (dart(map, edge), dart(map, hypothesis));
-        let moves = counted(cost, "move");
-        self.lines.push(StoryLine::default());
-        let text = format!(
-            "may {edge} and {hypothesis} be the two ends of one edge? If so, a walk of {moves} leads to \
-             the marker."
-        );
-        self.lines.push(StoryLine::hanging(format!("Round {round}: "), text));
     }
 }

@@ -5,7 +5,7 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     format::{
         named_world::NamedWorld,
-        plantri::{self, PlantriCode},
+        plantri::{self, PlantriCode, PlantriError},
         world_file,
     },
 };
@@ -96,38 +96,61 @@ fn bytes<const MOST: usize, const LETTERS: u8>(choose: &mut impl Choose, also: u
     bytes
 }
 
-/// The worlds read from some bytes, each of them valid; and whether they were read to the end.
-fn worlds(bytes: &[u8], code: PlantriCode) -> Result<(Vec<EmbeddedGraph>, bool), Stop> {
+/// The worlds read from some bytes, each of them valid, and the error after them, if there is one.
+pub(crate) fn worlds(
+    bytes: &[u8],
+    code: PlantriCode,
+) -> Result<(Vec<EmbeddedGraph>, Option<PlantriError>), Stop> {
     let mut worlds = Vec::with_capacity(bytes.len());
     let mut read = plantri::read_headerless(bytes, code);
     while let Some(world) = read.next() {
-        let Ok(world) = world else {
-            claim("nothing is read after an error", read.next().is_none())?;
-            return Ok((worlds, false));
-        };
-        claim("what is read is a world", is_world(&world))?;
-        worlds.push(world);
+        match world {
+            Ok(world) => {
+                claim("what is read is a world", is_world(&world))?;
+                worlds.push(world);
+            }
+            Err(error) => {
+                claim("the place of the error is there", error.offset <= bytes.len())?;
+                claim("the world with the error is counted", error.world == worlds.len() + 1)?;
+                claim("nothing is read after an error", read.next().is_none())?;
+                return Ok((worlds, Some(error)));
+            }
+        }
     }
     claim("there is a world, or an error", !worlds.is_empty())?;
-    Ok((worlds, true))
+    Ok((worlds, None))
 }
 
-/// The worlds, written and read again.
+/// A plantri file reads as these worlds.
+pub(crate) fn reads_as(file: &[u8], worlds: &[EmbeddedGraph]) -> CaseResult {
+    let read: Vec<_> = plantri::read(file).collect();
+    let same = read.len() == worlds.len()
+        && worlds.iter().zip(&read).all(|(world, read)| read.as_ref() == Ok(world));
+    claim("what is written reads as the same worlds", same)
+}
+
+/// The worlds, written, and read again.
 fn again(worlds: &[EmbeddedGraph], code: PlantriCode) -> Result<Vec<u8>, Stop> {
     let Ok(written) = plantri::write(worlds, code) else {
         return Err(Stop::Fails("what was read can be written"));
     };
-    let read: Vec<_> = plantri::read(&written).collect();
-    let same = read.len() == worlds.len()
-        && worlds.iter().zip(&read).all(|(world, read)| read.as_ref() == Ok(world));
-    claim("what is written reads as the same worlds", same)?;
+    reads_as(&written, worlds)?;
     Ok(written)
+}
+
+/// The world, written as TOML and as JSON, reads as the same world.
+pub(crate) fn is_read_as_written(world: &NamedWorld) -> CaseResult {
+    for file in [world_file::to_toml(world), world_file::to_json_text(world)] {
+        let read = world_file::read(file.as_bytes());
+        claim("a world file reads as the same world", read.as_ref() == Ok(world))?;
+    }
+    Ok(())
 }
 
 fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let bytes = bytes::<MOST, LETTERS>(choose, 0);
-    let (worlds, is_whole) = worlds(&bytes, PlantriCode::Planar)?;
-    if !is_whole {
+    let (worlds, error) = worlds(&bytes, PlantriCode::Planar)?;
+    if error.is_some() {
         return Ok(());
     }
     claim("the worlds are simple", worlds.iter().all(is_simple))?;
@@ -142,14 +165,14 @@ fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) 
 
 fn wide_planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let file = [b">>planar_code be<<", bytes::<MOST, LETTERS>(choose, 0).as_slice()].concat();
-    let (worlds, is_whole) = worlds(&file, PlantriCode::Planar)?;
+    let (worlds, error) = worlds(&file, PlantriCode::Planar)?;
     claim("the worlds are simple", worlds.iter().all(is_simple))?;
-    if is_whole { again(&worlds, PlantriCode::Planar).map(drop) } else { Ok(()) }
+    if error.is_none() { again(&worlds, PlantriCode::Planar).map(drop) } else { Ok(()) }
 }
 
 fn edge_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
-    let (worlds, is_whole) = worlds(&bytes::<MOST, LETTERS>(choose, 255), PlantriCode::Edge)?;
-    if is_whole { again(&worlds, PlantriCode::Edge).map(drop) } else { Ok(()) }
+    let (worlds, error) = worlds(&bytes::<MOST, LETTERS>(choose, 255), PlantriCode::Edge)?;
+    if error.is_none() { again(&worlds, PlantriCode::Edge).map(drop) } else { Ok(()) }
 }
 
 /// Any bytes are read without a panic, as no more worlds than bytes.
@@ -181,10 +204,7 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let world = NamedWorld::numbered("case", "", graph, None);
     let world = NamedWorld { start: Some(draw::dart(choose, &world.graph)), ..world };
-    for file in [world_file::to_toml(&world), world_file::to_json_text(&world)] {
-        let read = world_file::read(file.as_bytes());
-        claim("a world file reads as the same world", read.as_ref() == Ok(&world))?;
-    }
+    is_read_as_written(&world)?;
     let graph = &world.graph;
     let reads = |file: &[u8], code| {
         let read: Vec<_> = plantri::read_headerless(file, code).collect();
@@ -346,13 +366,7 @@ fn world_files<C: Choose>(choose: &mut C) -> CaseResult {
     choose.show(|| Exhibit::Value { name: "file", value: text.clone() });
     let Ok(world) = world_file::read(text.as_bytes()) else { return Ok(()) };
     claim("what is read is a world", is_world(&world.graph))?;
-    for written in [world_file::to_toml(&world), world_file::to_json_text(&world)] {
-        let read = world_file::read(written.as_bytes());
-        claim(
-            "what is written reads as the same world",
-            read.as_ref().is_ok_and(|read| *read == world),
-        )?;
-    }
+    is_read_as_written(&world)?;
     let again = world_file::read(world_file::to_json_text(&world).as_bytes());
     let same = again.is_ok_and(|again| world_file::to_toml(&again) == world_file::to_toml(&world));
     claim("it is written the same again", same)

@@ -154,24 +154,30 @@ fn run<'g, C: Choose>(
     };
     let mut truth = Truth { graph, pose: FACING, image: Vec::new(), doors: Vec::new() };
     let mut verdict = Ok(());
+    // The map never needs more darts than the world has.
+    let mut exploration = Algorithm1Run::new(graph.dart_count());
+    let bound = exploration.move_bound(graph.edge_count(), graph.vertex_count());
     let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
+        assert!(journey.moves() <= bound, "a run ends");
         truth.event(journey, event);
         if verdict.is_ok() {
             verdict = heeded(event).and_then(|()| judge(&truth, journey, event));
         }
     };
-    // The map never needs more darts than the world has.
-    let mut exploration = Algorithm1Run::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let observed = &mut Observed::new(&mut world, &mut watch);
+    // Any edge at line 5, any hypothesis at line 9. The map has at most 127 edges.
     let ended = explore_with(&mut exploration, observed, |run| {
-        let choice = draw::open_choice(choose, run)?;
-        match choice {
-            Some(MappingChoice::Edge(edge)) => latest.set(edge),
-            Some(MappingChoice::Hypothesis(index)) => latest.set(run.hypotheses()[index]),
-            None => {}
+        let open = run.choices()?;
+        if open.is_empty() {
+            return Ok(None);
         }
-        Ok(choice)
+        let choice = open[usize::from(choose.below(open.len() as u8))];
+        latest.set(match choice {
+            MappingChoice::Edge(edge) => edge,
+            MappingChoice::Hypothesis(index) => run.hypotheses()[index],
+        });
+        Ok(Some(choice))
     });
     choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;
@@ -182,6 +188,15 @@ fn run<'g, C: Choose>(
     Ok((exploration, truth))
 }
 
+/// Draws a start and a run on it, and judges each event.
+fn each_event<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+    judge: impl FnMut(&Truth, &MapWalk, MappingEvent) -> CaseResult,
+) -> CaseResult {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    run(choose, &graph, judge).map(|_| ())
+}
+
 /// Whether a round ends with this event.
 fn ends_round(event: MappingEvent) -> bool {
     matches!(event, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. })
@@ -189,15 +204,13 @@ fn ends_round(event: MappingEvent) -> bool {
 
 // paper: alg1.19, alg1.22, alg1.located
 fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
-    let graph = draw::start_of::<LEAST, MOST>(choose)?;
-    run(choose, &graph, |truth, journey, event| {
+    each_event::<C, LEAST, MOST>(choose, |truth, journey, event| {
         if ends_round(event) || matches!(event, MappingEvent::Started { .. }) {
             embeds(truth, journey)
         } else {
             Ok(())
         }
-    })?;
-    Ok(())
+    })
 }
 
 fn embeds(truth: &Truth, journey: &MapWalk) -> CaseResult {
@@ -223,9 +236,8 @@ fn embeds(truth: &Truth, journey: &MapWalk) -> CaseResult {
 fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(
     choose: &mut C,
 ) -> CaseResult {
-    let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut explored = FACING;
-    run(choose, &graph, |truth, journey, event| match event {
+    each_event::<C, LEAST, MOST>(choose, |truth, journey, event| match event {
         MappingEvent::Arrived { edge, .. } => {
             explored = edge;
             Ok(())
@@ -237,17 +249,15 @@ fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(
             claim("the robot knows its pose at the marker", believed == truth.pose)
         }
         _ => Ok(()),
-    })?;
-    Ok(())
+    })
 }
 
 // paper: alg1.7, alg1.13, alg1.hypotheses
 fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(
     choose: &mut C,
 ) -> CaseResult {
-    let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut truly = None;
-    run(choose, &graph, |truth, _, event| match event {
+    each_event::<C, LEAST, MOST>(choose, |truth, _, event| match event {
         MappingEvent::Arrived { edge, hypotheses, .. } => {
             truly = truth.known(truth.behind(edge));
             claim("there is a hypothesis if one is true", truly.is_none() || hypotheses > 0)
@@ -260,8 +270,7 @@ fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(
         }
         MappingEvent::VertexAdded { .. } => claim("the vertex is new", truly.is_none()),
         _ => Ok(()),
-    })?;
-    Ok(())
+    })
 }
 
 // paper: alg1.4, alg1.20, alg1.23
@@ -299,12 +308,10 @@ fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(
 
 // paper: cost.bound
 fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
-    let graph = draw::start_of::<LEAST, MOST>(choose)?;
-    let m = graph.edge_count() as u64;
     let mut round = 0;
     // What it was at line 4.
     let (mut moves, mut known, mut others) = (0, 0, 0);
-    run(choose, &graph, |_, journey, event| {
+    each_event::<C, LEAST, MOST>(choose, |truth, journey, event| {
         if ends_round(event) {
             let cost = journey.moves() - moves;
             claim("a round costs so much at most", cost <= known + 2 * others * (known - 1))?;
@@ -314,11 +321,11 @@ fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut 
         round += 1;
         moves = journey.moves();
         known = journey.map().vertex_count() as u64;
+        let m = truth.graph.edge_count() as u64;
         let unexplored = u64::from(journey.map().unexplored_count());
         others = unexplored.saturating_sub(1);
         claim("u is so high at most", unexplored == 0 || others + 2 * round <= 2 * m + 1)
-    })?;
-    Ok(())
+    })
 }
 
 fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> CaseResult {
@@ -338,7 +345,9 @@ fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> CaseResult {
 }
 
 // paper: alg1.isomorphic, alg1.terminates, cost.bound
-fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
+pub(crate) fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (exploration, truth) = run(choose, &graph, |_, _, _| Ok(()))?;
     let Some(map) = exploration.map().complete() else {

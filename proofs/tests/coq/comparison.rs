@@ -6,7 +6,6 @@
 use std::{
     fs::{self, File},
     iter,
-    ops::ControlFlow,
     path::Path,
     process::Command,
 };
@@ -17,30 +16,17 @@ use proptest::{
 };
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration},
+    enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     mapping::{
         Algorithm1Run, Explorer, MapWalk, MappingChoice, MappingEvent, MovableMarkerRun, Observed,
-        Observer, PartialMap, explore_with,
+        Observer, explore_with,
     },
-    marker::Movable,
     world::GraphWorld,
 };
 use toposlam_proofs::{choose::Choose, draw, odometer::ChoiceOdometer};
 
-use super::{OCAMLOPT, compiled, printed, source};
-
-/// Every start with up to so many edges; its facing dart is dart 0.
-pub(super) fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {
-    let mut starts = Vec::new();
-    for edges in 1..=most {
-        let _ = Enumeration::new(Each::Start, class, edges).unwrap().for_each(&mut |found| {
-            starts.push(found.graph.clone());
-            ControlFlow::Continue(())
-        });
-    }
-    starts
-}
+use super::{OCAMLOPT, compiled, printed, source, starts};
 
 /// A line of a run: the name of what is listed, and the numbers.
 pub(super) fn listed<T: ToString>(name: &str, numbers: impl Iterator<Item = T>) -> String {
@@ -66,49 +52,44 @@ impl Mapping {
     /// The run of the running algorithm from a start, in the format of `compare/main.ml`. Without options, the choices
     /// are the default ones, and are not recorded.
     fn run_line(self, start: &EmbeddedGraph, options: Option<&mut Options>) -> String {
-        let mut did = Actions(Vec::new());
-        let mut made = Vec::new();
-        let mut option = options.map(|choose| {
-            |of: usize| {
-                let of = u8::try_from(of).unwrap();
-                made.push((choose(of), of));
-                usize::from(made[made.len() - 1].0)
-            }
-        });
         let bound = start.dart_count();
-        let known = match self {
+        match self {
             Self::Directional => {
-                let mut world = GraphWorld::new(start, Dart(0));
-                let mut run = Algorithm1Run::new(bound);
-                let world = &mut Observed::new(&mut world, &mut did);
-                let ended = explore_with(&mut run, world, |run| {
-                    let Some(option) = &mut option else { return run.choose() };
-                    let mut open = run.choices()?;
-                    // Options are numbered as Coq lists them: in the order of the darts.
-                    open.sort_unstable_by_key(|&choice| match choice {
-                        MappingChoice::Edge(edge) => edge,
-                        MappingChoice::Hypothesis(index) => run.hypotheses()[index],
-                    });
-                    Ok(if open.is_empty() { None } else { Some(open[option(open.len())]) })
-                });
-                ended.map(|()| known(run.map(), run.robot()))
+                // Options are numbered as Coq lists them: in the order of the darts.
+                let number = |run: &Algorithm1Run, choice: &MappingChoice| match *choice {
+                    MappingChoice::Edge(edge) => edge,
+                    MappingChoice::Hypothesis(index) => run.hypotheses()[index],
+                };
+                run_line(Algorithm1Run::new(bound), start, options, number)
             }
-            Self::Movable => {
-                let mut world = GraphWorld::with_marker(start, Movable, Dart(0));
-                let mut run = MovableMarkerRun::new(bound);
-                let world = &mut Observed::new(&mut world, &mut did);
-                let ended = explore_with(&mut run, world, |run| {
-                    let Some(option) = &mut option else { return run.choose() };
-                    let open = run.choices()?;
-                    Ok(if open.is_empty() { None } else { Some(open[option(open.len())]) })
-                });
-                ended.map(|()| known(run.map(), run.robot()))
-            }
-        };
-        let known = known.unwrap_or_else(|error| error.to_string());
-        let chose = made.iter().map(|(choice, of)| format!("{choice}/{of}"));
-        [listed("did", did.0.into_iter()), listed("chose", chose), known].join("; ")
+            Self::Movable => run_line(MovableMarkerRun::new(bound), start, options, |_, _| Dart(0)),
+        }
     }
+}
+
+/// The same for one explorer. Its options are ordered by their numbers.
+fn run_line<E: Explorer>(
+    mut run: E,
+    start: &EmbeddedGraph,
+    mut options: Option<&mut Options>,
+    number: impl Fn(&E, &E::Choice) -> Dart,
+) -> String {
+    let (mut did, mut chose) = (Actions(Vec::new()), Vec::new());
+    let mut world = GraphWorld::with_marker(start, run.marker(), Dart(0));
+    let ended = explore_with(&mut run, &mut Observed::new(&mut world, &mut did), |run| {
+        let Some(choose) = &mut options else { return run.choose() };
+        let mut open = run.choices()?;
+        open.sort_by_key(|choice| number(run, choice));
+        if open.is_empty() {
+            return Ok(None);
+        }
+        let of = u8::try_from(open.len()).unwrap();
+        let choice = choose(of);
+        chose.push(format!("{choice}/{of}"));
+        Ok(Some(open[usize::from(choice)]))
+    });
+    let known = ended.map_or_else(|error| error.to_string(), |()| known(&run));
+    [listed("did", did.0.into_iter()), listed("chose", chose.into_iter()), known].join("; ")
 }
 
 /// Chooses one of a number of options.
@@ -124,14 +105,15 @@ impl<W: ?Sized> Observer<W> for Actions {
 }
 
 /// The map and the robot's pose in it.
-pub(super) fn known(map: &PartialMap, robot: Dart) -> String {
-    let map = map.complete().unwrap();
+pub(super) fn known(run: &impl Explorer) -> String {
+    let walk = run.map_walk().unwrap();
+    let map = walk.map().complete().unwrap();
     let first = |dart| map.darts_of(map.vertex(dart)).next().unwrap().0;
     let known = [
         listed("first", map.darts().map(first)),
         listed("degree", map.darts().map(|dart| map.degree_around(dart))),
         listed("other", map.darts().map(|dart| map.opposite(dart).0)),
-        listed("robot", iter::once(robot.0)),
+        listed("robot", iter::once(walk.robot().0)),
     ];
     known.join("; ")
 }
@@ -183,10 +165,6 @@ impl Choose for Random {
     fn below(&mut self, n: u8) -> u8 {
         (self.0.next_u32() % u32::from(n)) as u8
     }
-
-    fn assume(&mut self, condition: bool) -> bool {
-        condition
-    }
 }
 
 /// A start, the choices or actions as `compare/main.ml` reads them, and the lines of the running algorithm.
@@ -206,7 +184,6 @@ impl Case {
         Self { algorithm: mapping.name(), start, given: "choices default".to_owned(), lines }
     }
 
-    /// Every run.
     fn with_all_choices(mapping: Mapping, start: EmbeddedGraph) -> Self {
         let mut lines = Vec::new();
         let run = |choose: &mut ChoiceOdometer| {
@@ -217,7 +194,6 @@ impl Case {
         Self { algorithm: mapping.name(), start, given: "choices all".to_owned(), lines }
     }
 
-    /// A run with random choices.
     fn at_random(mapping: Mapping, start: EmbeddedGraph, random: &mut Random) -> Self {
         let mut chosen = Vec::new();
         let mut choose = |of| {
@@ -253,7 +229,7 @@ pub(super) fn extracted(folder: &Path, cases: &[Case]) -> String {
 }
 
 /// The first case with different runs, and the difference.
-pub(super) fn difference(cases: &[Case], proved: &str) -> Option<String> {
+fn difference(cases: &[Case], proved: &str) -> Option<String> {
     let running = cases.iter().flat_map(|case| case.lines.iter().map(move |line| (case, line)));
     let lines = proved.lines().chain(iter::repeat("nothing"));
     let ((case, running), proved) =
@@ -277,6 +253,16 @@ pub(super) fn assert_same(folder: &Path, cases: &[Case]) {
     assert_eq!(proved.lines().count(), runs);
 }
 
+/// With a change in a file, some of these cases are different.
+pub(super) fn assert_detected(name: &str, cases: &[Case], file: &str, [from, to]: [&str; 2]) {
+    let folder = compiled().copy(name);
+    let text = fs::read_to_string(source(file)).unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{file}");
+    fs::write(folder.join(file), text.replace(from, to)).unwrap();
+    let difference = difference(cases, &extracted(&folder, cases)).unwrap();
+    assert!(difference.contains("[start]\n"), "{difference}");
+}
+
 fn by_default(mapping: Mapping, starts: Vec<EmbeddedGraph>) -> Vec<Case> {
     starts.into_iter().map(|start| Case::by_default(mapping, start)).collect()
 }
@@ -287,8 +273,8 @@ fn by_default(mapping: Mapping, starts: Vec<EmbeddedGraph>) -> Vec<Case> {
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn the_proved_algorithm_1_and_the_running_one_do_the_same_in_every_small_start() {
     let compiled = compiled();
-    let multigraphs = starts(Class::Multigraph, 5);
-    let simple = starts(Class::Simple, 7);
+    let multigraphs = starts(Class::Multigraph, 1..=5);
+    let simple = starts(Class::Simple, 1..=7);
     assert_eq!((multigraphs.len(), simple.len()), (8954, 4526));
     let cases = by_default(Mapping::Directional, [multigraphs, simple].concat());
     assert_same(&compiled.copy("directional"), &cases);
@@ -298,7 +284,7 @@ fn the_proved_algorithm_1_and_the_running_one_do_the_same_in_every_small_start()
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn with_a_movable_marker_both_do_the_same_in_every_small_simple_start() {
     let compiled = compiled();
-    let simple = starts(Class::Simple, 7);
+    let simple = starts(Class::Simple, 1..=7);
     assert_eq!(simple.len(), 4526);
     assert_same(&compiled.copy("movable"), &by_default(Mapping::Movable, simple));
 }
@@ -312,7 +298,7 @@ fn both_do_the_same_with_all_choices() {
         ("directional", Mapping::Directional, Class::Multigraph, 3, 1825),
         ("movable", Mapping::Movable, Class::Simple, 5, 7365),
     ] {
-        let cases = starts(class, most).into_iter();
+        let cases = starts(class, 1..=most).into_iter();
         let cases: Vec<_> = cases.map(|start| Case::with_all_choices(mapping, start)).collect();
         assert_same(&compiled.copy(&format!("all-choices/{name}")), &cases);
         assert_eq!(cases.iter().map(|case| case.lines.len()).sum::<usize>(), runs);
@@ -344,24 +330,17 @@ fn both_do_the_same_with_random_choices_in_random_starts() {
 #[test]
 #[ignore = "it needs Coq: `.ci/run --all`"]
 fn another_algorithm_is_detected() {
-    let compiled = compiled();
-    let multigraphs = starts(Class::Multigraph, 3);
+    let multigraphs = starts(Class::Multigraph, 1..=3);
     let directional = |start| Case::with_all_choices(Mapping::Directional, start);
     let all_choices: Vec<_> = multigraphs.iter().cloned().map(directional).collect();
     let multigraphs = by_default(Mapping::Directional, multigraphs);
-    let simple = by_default(Mapping::Movable, starts(Class::Simple, 7));
+    let simple = by_default(Mapping::Movable, starts(Class::Simple, 1..=7));
     for (change, cases, file, from, to) in [
         ("ties", &multigraphs, "Algorithm1.v", "then d else best", "then best else d"),
         ("way back", &multigraphs, "Spec.v", "then 0 :: rev [", "then rev ["),
         ("removed", &all_choices, "Algorithm1.v", "turned' (rem h H)", "turned' (behead H)"),
         ("search", &simple, "MovableMarker.v", "(d < d') ||", "(d > d') ||"),
     ] {
-        let folder = compiled.copy(&format!("another/{change}"));
-        let text = fs::read_to_string(source(file)).unwrap();
-        assert_eq!(text.matches(from).count(), 1, "{file}");
-        fs::write(folder.join(file), text.replace(from, to)).unwrap();
-        let proved = extracted(&folder, cases);
-        let difference = difference(cases, &proved).unwrap();
-        assert!(difference.contains("[start]\n"), "{difference}");
+        assert_detected(&format!("another/{change}"), cases, file, [from, to]);
     }
 }

@@ -3,8 +3,6 @@
 //!
 //! `cargo test` ignores these tests: `.ci/run` runs them after a change of what they depend on, and `.ci/run --all`.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 mod broken;
 mod comparison;
 mod figures;
@@ -12,9 +10,15 @@ mod folding;
 
 use std::{
     fs,
+    ops::{ControlFlow, RangeInclusive},
     path::{Path, PathBuf},
     process::{Command, Output},
     sync::LazyLock,
+};
+
+use toposlam_model::{
+    embedded_graph::EmbeddedGraph,
+    enumerate::{Class, Each, Enumeration},
 };
 
 const OCAMLOPT: &str = "ocamlopt";
@@ -70,6 +74,18 @@ static COMPILED: LazyLock<Result<Compiled, String>> = LazyLock::new(|| {
 /// Panics where Coq, MathComp or OCaml is missing.
 fn compiled() -> &'static Compiled {
     COMPILED.as_ref().unwrap_or_else(|missing| panic!("nothing was checked in Coq: {missing}"))
+}
+
+/// Every start of these sizes; its facing dart is dart 0.
+fn starts(class: Class, sizes: RangeInclusive<usize>) -> Vec<EmbeddedGraph> {
+    let mut starts = Vec::new();
+    for edges in sizes {
+        let _ = Enumeration::new(Each::Start, class, edges).unwrap().for_each(&mut |found| {
+            starts.push(found.graph.clone());
+            ControlFlow::Continue(())
+        });
+    }
+    starts
 }
 
 fn text(bytes: &[u8]) -> String {

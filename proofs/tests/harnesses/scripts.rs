@@ -23,12 +23,12 @@ Runtime decision procedure: 0.0123s
 
 RESULTS:
 Check 1: lemmas::retracing::the_way_back_retraces_the_path::kani.assertion.1
-\t - HallwayStatus: SUCCESS
+\t - Status: SUCCESS
 \t - Description: \"assertion failed: holds\"
 \t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
 
 Check 2: lemmas::retracing::the_way_back_retraces_the_path::kani.cover.1
-\t - HallwayStatus: SATISFIED
+\t - Status: SATISFIED
 \t - Description: \"there is a case\"
 \t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
 
@@ -93,67 +93,63 @@ fn colours_do_not_matter() {
     assert_eq!(refusal(&VERIFIED.replace("VERIFICATION:- SUCCESSFUL", coloured)), None);
 }
 
-#[test]
-fn a_failed_harness_is_refused() {
-    let failed = VERIFIED
-        .replace("Status: SUCCESS\n", "Status: FAILURE\n")
-        .replace("0 of 98 failed (1 unreachable)", "1 of 98 failed")
-        .replace("- SUCCESSFUL", "- FAILED")
-        .replace("- 1 successfully", "- 0 successfully")
-        .replace("0 failures", "1 failures");
-    assert_refused(&failed, &[CHECKS, VERDICT, COMPLETE]);
-}
+/// Changes of [`VERIFIED`], and why the gate then refuses it.
+type Refused = (&'static [[&'static str; 2]], &'static [&'static str]);
+
+/// What Kani may say instead.
+const REFUSED: [Refused; 10] = [
+    // The harness fails.
+    (
+        &[
+            ["Status: SUCCESS\n", "Status: FAILURE\n"],
+            ["0 of 98 failed (1 unreachable)", "1 of 98 failed"],
+            ["- SUCCESSFUL", "- FAILED"],
+            ["- 1 successfully", "- 0 successfully"],
+            ["0 failures", "1 failures"],
+        ],
+        &[CHECKS, VERDICT, COMPLETE],
+    ),
+    // A cover is not satisfied, though the verdict is success.
+    (&[["SATISFIED", "UNSATISFIABLE"], ["1 of 1 cover", "0 of 1 cover"]], &[COVERS]),
+    (&[["1 of 1 cover", "1 of 2 cover"]], &[COVERS]),
+    (
+        &[
+            ["SATISFIED", "UNREACHABLE"],
+            ["1 of 1 cover", "0 of 1 cover"],
+            ["properties satisfied\n", "properties satisfied (1 unreachable)\n"],
+        ],
+        &[COVERS],
+    ),
+    (&[[" ** 1 of 1 cover properties satisfied\n", ""]], &[COVERS]),
+    // There are no checks, or open ones.
+    (&[["0 of 98 failed", "0 of 0 failed"]], &[CHECKS]),
+    (&[["1 unreachable", "1 undetermined"]], &[CHECKS]),
+    // A panic was expected.
+    (&[["SUCCESSFUL", "SUCCESSFUL (encountered one or more panics as expected)"]], &[VERDICT]),
+    // Another harness was checked.
+    (&[[NAME, "lemmas::other::kani"]], &[CHECKED]),
+    (&[["::kani...", "::kani_too..."]], &[CHECKED]),
+];
 
 #[test]
-fn a_cover_that_is_not_satisfied_is_refused_though_the_verdict_is_success() {
-    let unsatisfiable = VERIFIED
-        .replace("SATISFIED", "UNSATISFIABLE")
-        .replace("1 of 1 cover properties satisfied", "0 of 1 cover properties satisfied");
-    assert_refused(&unsatisfiable, &[COVERS]);
-    let one_of_two = VERIFIED.replace("1 of 1 cover", "1 of 2 cover");
-    assert_refused(&one_of_two, &[COVERS]);
-    let unreachable = VERIFIED.replace("SATISFIED", "UNREACHABLE").replace(
-        "1 of 1 cover properties satisfied",
-        "0 of 1 cover properties satisfied (1 unreachable)",
-    );
-    assert_refused(&unreachable, &[COVERS]);
-    let none = VERIFIED.replace(" ** 1 of 1 cover properties satisfied\n", "");
-    assert_refused(&none, &[COVERS]);
-}
-
-#[test]
-fn a_harness_without_checks_or_with_open_ones_is_refused() {
-    assert_refused(&VERIFIED.replace("0 of 98 failed", "0 of 0 failed"), &[CHECKS]);
-    assert_refused(&VERIFIED.replace("1 unreachable", "1 undetermined"), &[CHECKS]);
-}
-
-#[test]
-fn a_panic_that_was_expected_is_refused() {
-    let expected = "SUCCESSFUL (encountered one or more panics as expected)";
-    assert_refused(&VERIFIED.replace("SUCCESSFUL", expected), &[VERDICT]);
-}
-
-#[test]
-fn no_harness_is_refused() {
-    let all = [CHECKED, CHECKS, COVERS, VERDICT, COMPLETE];
-    let none = format!(
+fn the_gate_refuses_what_proves_nothing() {
+    for (changes, reasons) in REFUSED {
+        let said = changes.iter().fold(VERIFIED.to_owned(), |said, [from, to]| {
+            assert!(said.contains(from), "{from}");
+            said.replace(from, to)
+        });
+        assert_refused(&said, reasons);
+    }
+    let (one, end) = VERIFIED.split_once("Manual").unwrap();
+    let two = format!("{one}{one}Manual{end}").replace("Complete - 1 ", "Complete - 2 ");
+    let unmatched = format!(
         "Kani Rust Verifier 0.68.0 (cargo plugin)\nManual Harness Summary:\n\
          error: no harnesses matched the harness filter: `{NAME}`\n"
     );
-    assert_refused(&none, &all);
     let none = "No proof harnesses (functions with #[kani::proof]) were found to verify.\n";
-    assert_refused(none, &all);
-}
-
-#[test]
-fn another_harness_or_two_are_refused() {
-    let other = VERIFIED.replace(NAME, "lemmas::other::kani");
-    assert_refused(&other, &[CHECKED]);
-    let longer = VERIFIED.replace(NAME, &format!("{NAME}_too"));
-    assert_refused(&longer, &[CHECKED]);
-    let (one, end) = VERIFIED.split_once("Manual").unwrap();
-    let two = format!("{one}{one}Manual{end}").replace("Complete - 1 ", "Complete - 2 ");
-    assert_refused(&two, &[CHECKED, CHECKS, COVERS, VERDICT, COMPLETE]);
+    for said in [&two, &unmatched, none] {
+        assert_refused(said, &[CHECKED, CHECKS, COVERS, VERDICT, COMPLETE]);
+    }
 }
 
 #[test]
@@ -168,11 +164,10 @@ fn a_run_that_was_cut_short_is_refused_wherever_it_was_cut() {
 #[test]
 fn the_list_of_names_is_that_of_the_table() {
     let listed = fs::read_to_string(here("kani/harnesses.txt")).unwrap();
-    let table = table().into_iter().map(|row| row + "\n").collect::<String>();
-    assert!(listed == table, "kani/harnesses.txt must be:\n{table}");
+    let rows: String = table().iter().map(|(name, unwind)| format!("{name} {unwind}\n")).collect();
+    assert!(listed == rows, "kani/harnesses.txt must be:\n{rows}");
     let output = script("verify", &["--list"], "");
-    let names: Vec<_> = table.lines().map(|row| row.split_once(' ').unwrap().0).collect();
-    assert_eq!(String::from_utf8(output.stdout).unwrap().lines().collect::<Vec<_>>(), names);
+    assert!(String::from_utf8(output.stdout).unwrap().lines().eq(table().into_keys()));
 }
 
 /// What `cargo kani list --format json` writes of these harnesses.
@@ -192,8 +187,7 @@ fn list(names: &[&str]) -> String {
 #[test]
 fn kani_must_see_the_harnesses_of_the_table_and_no_others() {
     let accepted = |names: &[&str]| script("gate", &["names"], &list(names)).status.success();
-    let table = table();
-    let mut names: Vec<_> = table.iter().map(|row| row.split_once(' ').unwrap().0).collect();
+    let mut names: Vec<_> = table().into_keys().collect();
     assert!(accepted(&names));
     names.reverse();
     assert!(accepted(&names));
@@ -214,8 +208,7 @@ fn verify(name: &str, arguments: &[&str], said: &str, code: u8) -> (Option<i32>,
     for file in ["verify", "gate", "harnesses.txt"] {
         fs::copy(here("kani").join(file), folder.join("kani").join(file)).unwrap();
     }
-    let table = table();
-    let names: Vec<_> = table.iter().map(|row| row.split_once(' ').unwrap().0).collect();
+    let names: Vec<_> = table().into_keys().collect();
     let cargo = format!(
         "#!/usr/bin/env bash\n\
          case \"$*\" in\n\
@@ -243,7 +236,7 @@ fn verify(name: &str, arguments: &[&str], said: &str, code: u8) -> (Option<i32>,
 fn the_script_asks_kani_for_every_harness_and_accepts_its_result_only_through_the_gate() {
     let table = table();
     let count = table.len();
-    let one = table.first().unwrap().split_once(' ').unwrap().0;
+    let (&one, _) = table.first_key_value().unwrap();
     let (code, said) = verify("verified", &[], VERIFIED, 0);
     assert_eq!(code, Some(0), "{said}");
     assert!(said.ends_with(&format!("\n{count} of {count} harnesses verified\n")), "{said}");

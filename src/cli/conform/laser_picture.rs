@@ -78,12 +78,12 @@ fn scanned(path: &Path, judged: &JudgedLog) -> Result<LaserRunPicture, CliError>
 /// The visits, with the door of each.
 fn visits(events: &RunEvents, junctions: &[VisitedJunction]) -> Vec<DrawnVisit> {
     let visit = |junction: &VisitedJunction| {
-        let VisitedJunction { event, centre, clearance, ref doors, .. } = *junction;
+        let VisitedJunction { event, centre, ref doors, .. } = *junction;
         let exit = match events.events.get(event + 1).map(|event| &event.kind) {
             Some(CheckedKind::Door { door, .. }) => Some(door.0 as usize),
             _ => None,
         };
-        DrawnVisit { centre, clearance, doors: doors.clone(), exit }
+        DrawnVisit { centre, doors: doors.clone(), exit }
     };
     junctions.iter().map(visit).collect()
 }

@@ -61,7 +61,6 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     )
 }
 
-/// The verdict and why.
 fn verdict(report: &LogReport, log: usize, level: Level) -> String {
     let name = report.verdict.name();
     let heading = heading(

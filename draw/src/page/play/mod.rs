@@ -30,15 +30,17 @@ pub fn play_page(world: &NamedWorld, facing: Dart) -> String {
     let (title, caption, marker) = ("", "", &Directional as &dyn Marker);
     let start = Some(facing);
     let drawn = WorldPicture { start, marker, title, caption, ..WorldPicture::from(world) };
-    filled(PAGE, |place| match place {
-        "style" => PAGE_STYLE.to_owned(),
-        "name" => escaped(&world.name),
-        "picture" => svg(&drawn),
-        "marker" => escaped(&drawn.marker_place().unwrap_or_default()),
-        "data" => data::json(world, facing),
-        "script" => SCRIPT.concat(),
-        _ => String::new(),
-    })
+    filled(
+        PAGE,
+        &[
+            ("style", PAGE_STYLE),
+            ("name", &escaped(&world.name)),
+            ("picture", &svg(&drawn)),
+            ("marker", &escaped(&drawn.marker_place().unwrap_or_default())),
+            ("data", &data::json(world, facing)),
+            ("script", &SCRIPT.concat()),
+        ],
+    )
 }
 
 #[cfg(test)]
@@ -47,19 +49,13 @@ mod tests {
     use toposlam_model::{embedded_graph::EmbeddedGraph, folding};
 
     use super::*;
-    use crate::page::template::checks::{NASTY, assert_escaped, data_of, places_of};
+    use crate::page::template::checks::{NASTY, assert_escaped, data_of};
 
     /// An edge with a loop at its end; the start is the other end.
     fn world(name: &str) -> NamedWorld {
         let lists = [("a", vec!["e"]), ("b", vec!["e", "l", "l"])];
         let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
         NamedWorld::numbered(name, "", graph, Some(Dart(0)))
-    }
-
-    #[test]
-    fn every_place_of_the_template_is_filled() {
-        let known = ["data", "marker", "name", "picture", "script", "style"];
-        assert_eq!(places_of(PAGE), known);
     }
 
     #[test]

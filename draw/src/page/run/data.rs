@@ -9,7 +9,7 @@ use super::{folding, rounded, words};
 use crate::{
     moment::clock,
     page::template::in_script,
-    picture::Drawn,
+    picture::{Drawn, Point},
     run_page_data::{PageArrival, PageFrame, RunPageData},
     scene,
     story::{Story, StoryDetail},
@@ -62,14 +62,14 @@ impl<'a> Album<'a> {
 /// The lines of the story and the maps that are shown are counted.
 fn round<'a>(
     round: &'a PageFrame,
-    [x, y]: [f64; 2],
+    at: Point,
     [story, maps]: [usize; 2],
     album: &mut Album<'a>,
 ) -> Value {
     json!({
         "time": clock(round.time),
-        "x": rounded(x),
-        "y": rounded(y),
+        "x": rounded(at.x),
+        "y": rounded(at.y),
         // Clockwise on the screen, in degrees.
         "turn": rounded(-round.pose.heading.to_degrees()),
         "moves": round.moves,

@@ -15,14 +15,13 @@ use toposlam_model::{
 
 use super::rounded;
 use crate::{
-    picture::{OpenGraph, open_layout},
+    picture::{OpenGraph, Point, open_layout},
     run_page_data::RunPageData,
 };
 
 /// How far a layer is to the right of the one before, and above it, in radii of a disc.
 const LAYER: [f64; 2] = [1.0, 1.7];
 
-/// A vertex of the trail.
 struct TrailVertex {
     /// The dart by which the robot came in first.
     entry: Dart,
@@ -65,10 +64,10 @@ pub(super) fn json(run_data: &RunPageData) -> Value {
     let layers = stages.iter().flat_map(|stage| &stage.layers).max().copied().unwrap_or(0);
     let radius = layout.discs.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
     let aside = LAYER.map(|share| share * radius);
-    let [[left, top], [right, bottom]] = layout.corners;
+    let (corner, size) = (layout.extent.least, layout.extent.size());
     let [across, up] = aside.map(|aside| aside * layers as f64);
-    let point = |[x, y]: [f64; 2]| json!([rounded(x), rounded(y)]);
-    let curve = |points: &Vec<[f64; 2]>| {
+    let point = |Point { x, y }| json!([rounded(x), rounded(y)]);
+    let curve = |points: &Vec<Point>| {
         // Every other point is enough; the number of points is odd.
         points.iter().copied().step_by(2).map(point).collect::<Vec<_>>()
     };
@@ -92,7 +91,7 @@ pub(super) fn json(run_data: &RunPageData) -> Value {
     });
     let stubs: Vec<Value> =
         layout.stubs.iter().map(|ends| Value::from(ends.map(point).to_vec())).collect();
-    let corner_and_size = [left, top - up, right - left + across, bottom - top + up].map(rounded);
+    let corner_and_size = [corner.x, corner.y - up, size.x + across, size.y + up].map(rounded);
     json!({
         "box": corner_and_size,
         "radius": rounded(radius),
@@ -110,19 +109,11 @@ pub(super) fn json(run_data: &RunPageData) -> Value {
 
 /// The number of moves that some world explains; `None` if there is not even a start.
 fn explained_moves(percepts: &[Percept], doors: &[Door]) -> Option<usize> {
-    percepts.first()?;
-    let explains =
-        |moves: usize| fold(&percepts[..percepts.len().min(moves + 1)], &doors[..moves]).is_ok();
-    let (mut low, mut high) = (0, doors.len() + 1);
-    while low < high {
-        let middle = usize::midpoint(low, high);
-        if middle <= doors.len() && explains(middle) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    low.checked_sub(1)
+    let (&first, later) = percepts.split_first()?;
+    let mut trail = FoldedTrail::new(first).ok()?;
+    let mut steps = doors.iter().zip(later);
+    let contradiction = steps.position(|(&door, &percept)| trail.step(door, percept).is_err());
+    Some(contradiction.unwrap_or(doors.len()))
 }
 
 /// The vertices of the trail, the stages after each arrival, and the last folded trail.
@@ -172,29 +163,25 @@ impl Stage {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::{
-        format::world_file,
-        mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, explore},
-        world::GraphWorld,
-    };
+    use toposlam_model::mapping::MappingEvent;
 
     use super::*;
     use crate::picture::example;
 
     /// The percepts and doors of a run of Algorithm 1 in a world of this repository.
     fn run(world: &str) -> (Vec<Percept>, Vec<Door>) {
-        let path = format!("{}/../worlds/{world}.toml", env!("CARGO_MANIFEST_DIR"));
-        let world = world_file::read(&std::fs::read(path).unwrap()).unwrap();
-        let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
-        let (mut percepts, mut doors) = (vec![robot.sensed()], Vec::new());
-        let mut watch = |_: &mut _, _: &MapWalk, event: MappingEvent| {
-            if let MappingEvent::Moved { door, percept } = event {
-                doors.push(door);
-                percepts.push(percept);
+        let world = example::world(world);
+        let (mut percepts, mut doors) = (Vec::new(), Vec::new());
+        for step in example::steps(&world.plan.unwrap(), world.start.unwrap()) {
+            match step.event {
+                MappingEvent::Started { percept } => percepts.push(percept),
+                MappingEvent::Moved { door, percept } => {
+                    doors.push(door);
+                    percepts.push(percept);
+                }
+                _ => {}
             }
-        };
-        let mut exploration = Algorithm1Run::new(1000);
-        explore(&mut exploration, &mut Observed::new(&mut robot, &mut watch)).unwrap();
+        }
         (percepts, doors)
     }
 

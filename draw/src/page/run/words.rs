@@ -26,7 +26,6 @@ pub(super) fn state(state: PathState) -> &'static str {
     }
 }
 
-/// The robot's command.
 pub(super) fn command(command: Option<Command>) -> String {
     let Some(Command { turn, forward }) = command else {
         return "none: the path ends".to_owned();

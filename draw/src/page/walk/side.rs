@@ -18,7 +18,6 @@ pub(super) struct WalkSide<'a> {
     pub(super) robots: Vec<PlacedRobot<'a>>,
     /// The actions in each state, and the index of the state after each.
     pub(super) actions: Vec<Vec<(Action, usize)>>,
-    /// The index of each state.
     place: HashMap<State, usize>,
 }
 
@@ -62,7 +61,6 @@ impl<'a> WalkSide<'a> {
         })
     }
 
-    /// The place of the marker, in words.
     pub(super) fn marker_place(&self) -> String {
         let marker = *self.robots[0].marker();
         let picture =

@@ -1,7 +1,7 @@
 //! Pictures of many worlds, compared with their graphs. To look at them, name a directory:
 //! `PICTURES=some/directory cargo test --release gallery`.
 
-mod worlds;
+pub(super) mod worlds;
 
 use std::{f64::consts::TAU, path::Path, sync::LazyLock};
 
@@ -15,36 +15,22 @@ use super::{
     geometry::{Extent, Point},
     labels::{LabelKind, labels},
     png,
+    reading::{number, numbers, of_class},
     signs::signs,
     svg, text,
 };
 
-fn attribute(node: Node, name: &str) -> f64 {
-    node.attribute(name).unwrap().parse().unwrap()
-}
-
-/// The numbers in path data.
-fn numbers(path: &str) -> Vec<f64> {
-    path.split(|letter: char| letter.is_alphabetic() || letter == ' ')
-        .filter(|number| !number.is_empty())
-        .map(|number| number.parse().unwrap())
-        .collect()
-}
-
 /// Reads the order off the SVG and compares it with the graph.
 fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
     let document = Document::parse(svg).unwrap();
-    let of_class = |class: &'static str| {
-        document.descendants().filter(move |node| node.attribute("class") == Some(class))
-    };
-    let centres: Vec<[f64; 3]> = of_class("vertex")
-        .map(|node| ["cx", "cy", "r"].map(|name| attribute(node, name)))
-        .collect();
+    let discs = of_class(&document, "vertex").into_iter();
+    let centres: Vec<[f64; 3]> =
+        discs.map(|node| ["cx", "cy", "r"].map(|name| number(node, name))).collect();
     let graph = &world.graph;
     assert_eq!(centres.len(), graph.vertex_count());
     let mut angles = vec![None; graph.dart_count()];
     let mut paths = 0;
-    for node in of_class("edge") {
+    for node in of_class(&document, "edge") {
         paths += 1;
         let darts = numbers(node.attribute("data-darts").unwrap());
         let path = numbers(node.attribute("d").unwrap());
@@ -129,7 +115,6 @@ fn doors_stand_in_clockwise_order_whatever_the_world() {
     }
 }
 
-/// The number of crossings of the curves.
 fn crossings(drawing: &Drawing) -> usize {
     let mut count = 0;
     for (at, (.., one)) in drawing.edges.iter().enumerate() {
@@ -188,15 +173,14 @@ fn names_of_vertices_do_not_overlap_and_stand_on_the_canvas() {
     for Drawn { world, svg, .. } in GALLERY.iter() {
         let document = Document::parse(svg).unwrap();
         let root = document.root_element();
-        let canvas = [attribute(root, "width"), attribute(root, "height")];
+        let canvas = [number(root, "width"), number(root, "height")];
         let mut boxes: Vec<Extent> = Vec::new();
-        let names = document.descendants().filter(|node| node.attribute("class") == Some("name"));
-        for name in names {
-            let size = attribute(name, "font-size");
+        for name in of_class(&document, "name") {
+            let size = number(name, "font-size");
             let mut extent = Extent::EMPTY;
             for line in name.children().filter(Node::is_element) {
                 let half = text::width(line.text().unwrap(), size) / 2.0;
-                let at = Point::new(attribute(line, "x"), attribute(line, "y"));
+                let at = Point::new(number(line, "x"), number(line, "y"));
                 extent.include(at + Point::new(-half, -0.76 * size));
                 extent.include(at + Point::new(half, 0.24 * size));
             }

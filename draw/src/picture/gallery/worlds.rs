@@ -7,35 +7,27 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 
-fn world(name: &str, graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {
-    NamedWorld {
-        name: name.to_owned(),
-        about: String::new(),
-        graph,
-        start: Some(Dart(0)),
-        marker: None,
-        vertex_names,
-        edge_names: None,
-        positions: None,
-        plan: None,
-    }
-}
+use super::super::example;
 
 /// A simple world: `"x: a b d c, a: b x c"`.
-fn simple(name: &str, text: &str) -> NamedWorld {
+pub(in super::super) fn simple(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
-    world(name, EmbeddedGraph::from_neighbour_lists(&lists).unwrap(), names)
+    let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+    NamedWorld { edge_names: None, ..of_lists(name, graph, lists) }
 }
 
-/// A world whose edges have names.
-fn multigraph(name: &str, text: &str) -> NamedWorld {
+pub(in super::super) fn multigraph(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
-    let edges = lists.iter().flat_map(|(_, edges)| edges.clone()).collect();
+    of_lists(name, EmbeddedGraph::from_edge_lists(&lists).unwrap(), lists)
+}
+
+/// A world with the names of its lists.
+fn of_lists(name: &str, graph: EmbeddedGraph, lists: Vec<(String, Vec<String>)>) -> NamedWorld {
+    let (vertex_names, edges): (_, Vec<_>) = lists.into_iter().unzip();
     NamedWorld {
-        edge_names: Some(edges),
-        ..world(name, EmbeddedGraph::from_edge_lists(&lists).unwrap(), names)
+        vertex_names,
+        edge_names: Some(edges.concat()),
+        ..NamedWorld::numbered(name, "", graph, Some(Dart(0)))
     }
 }
 
@@ -49,7 +41,6 @@ fn lists(text: &str) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// A floor plan.
 fn plan(name: &str, junctions: &[(&str, f64, f64)], hallways: &[(&str, &str)]) -> NamedWorld {
     let places = junctions.iter().map(|(name, x, y)| format!("{name} = [{x}, {y}]\n"));
     let places: String = places.collect();
@@ -70,21 +61,9 @@ fn on_a_circle(name: &str, world: NamedWorld) -> NamedWorld {
     NamedWorld { name: name.to_owned(), positions: Some(positions), ..world }
 }
 
-/// A world of the repository.
-fn file(text: &str) -> NamedWorld {
-    world_file::read(text.as_bytes()).unwrap()
-}
-
 pub(super) fn cycle(edges: usize) -> NamedWorld {
-    let lists: Vec<_> = (0..edges)
-        .map(|at| {
-            let near = [(at + edges - 1) % edges, (at + 1) % edges];
-            (at.to_string(), near.map(|n| n.to_string()).to_vec())
-        })
-        .collect();
-    let names = (0..edges).map(|at| at.to_string()).collect();
-    let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-    world(&format!("cycle-{edges}"), graph, names)
+    let list = |at| format!("{at}: {} {}", (at + edges - 1) % edges, (at + 1) % edges);
+    simple(&format!("cycle-{edges}"), &(0..edges).map(list).collect::<Vec<_>>().join(","))
 }
 
 /// Random numbers of a fixed seed.
@@ -114,13 +93,9 @@ pub(super) fn random(seed: u64, vertices: usize, edges: usize) -> NamedWorld {
             lists[end].1.insert(place, format!("e{edge}"));
         }
     }
-    let names = lists.iter().map(|(name, _)| name.clone()).collect();
     let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
     let name = format!("random-{vertices}-{edges}-{seed} (genus {})", graph.genus());
-    NamedWorld {
-        edge_names: Some(lists.into_iter().flat_map(|(_, edges)| edges).collect()),
-        ..world(&name, graph, names)
-    }
+    of_lists(&name, graph, lists)
 }
 
 fn tree(vertices: usize) -> NamedWorld {
@@ -168,10 +143,10 @@ pub(super) fn gallery() -> Vec<NamedWorld> {
             "cube",
             "0: 1 4 3, 1: 2 5 0, 2: 3 6 1, 3: 0 7 2, 4: 0 5 7, 5: 1 6 4, 6: 2 7 5, 7: 3 4 6",
         ),
-        file(include_str!("../../../../worlds/shape-6.toml")),
-        file(include_str!("../../../../worlds/shape-8.toml")),
-        file(include_str!("../../../../worlds/building-12.toml")),
-        file(include_str!("../../../../worlds/building-25.toml")),
+        example::world("shape-6"),
+        example::world("shape-8"),
+        example::world("building-12"),
+        example::world("building-25"),
         tree(14),
         tree(38),
         random(1, 4, 7),

@@ -10,7 +10,6 @@ mod stress;
 mod subdivision;
 mod upright;
 
-use planar::Weights;
 use refine::Keep;
 use subdivision::Subdivision;
 use toposlam_model::embedded_graph::EmbeddedGraph;
@@ -20,7 +19,6 @@ use super::geometry::Point;
 /// The most vertices of a polished layout; larger ones are plain.
 pub(super) const POLISHED: usize = 120;
 
-/// A layout.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// One point a vertex.
@@ -32,7 +30,6 @@ pub(super) struct Layout {
 /// The most nodes, with bends, for which a planar layout is affordable.
 const PLANAR: usize = 6000;
 
-/// A layout of the graph.
 pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     let mut layout = if graph.edge_count() > 2 * POLISHED {
         large(graph)
@@ -55,7 +52,7 @@ fn large(graph: &EmbeddedGraph) -> Layout {
     if graph.genus() == 0 {
         let subdivision = Subdivision::of(graph);
         if subdivision.nodes <= PLANAR {
-            let points = planar::without_crossings(&subdivision, Weights::Evening);
+            let points = planar::without_crossings(&subdivision, planar::EVENING);
             return layout_of(graph, &subdivision, &points);
         }
     }
@@ -70,7 +67,7 @@ pub(super) fn given(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
 
 fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
     let subdivision = Subdivision::of(graph);
-    let mut points = planar::without_crossings(&subdivision, Weights::Same);
+    let mut points = planar::without_crossings(&subdivision, 0);
     refine::refine(&subdivision, &mut points, Keep::Embedding);
     layout_of(graph, &subdivision, &points)
 }

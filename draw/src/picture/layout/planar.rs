@@ -14,22 +14,13 @@ const SWEEPS: usize = 4000;
 /// A sweep that moves no node farther than this is the last.
 const STILL: f64 = 1e-10;
 
-/// Rounds in which the weights are computed again.
-const ROUNDS: usize = 12;
-/// Sweeps of each of these rounds.
+/// Enough rounds for the segments of a large graph to become even.
+pub(super) const EVENING: usize = 12;
+/// Sweeps of each round.
 const ROUND_SWEEPS: usize = 250;
 
-/// The weights of segments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Weights {
-    /// All segments weigh the same.
-    Same,
-    /// Long segments weigh more.
-    Evening,
-}
-
-/// One point a node, scaled so that the mean segment has length 1.
-pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Point> {
+/// One point a node, scaled so that the mean segment has length 1. In each round, longer segments get more weight.
+pub(super) fn without_crossings(web: &Subdivision, rounds: usize) -> Vec<Point> {
     let faces = web.faces();
     let outer = largest(web, &faces);
     let mut filled = Filled::new(web);
@@ -40,7 +31,7 @@ pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Poin
             filled.fill(web, face);
         }
     }
-    let mut points = filled.relax(weights);
+    let mut points = filled.relax(rounds);
     points.truncate(web.nodes);
     let lengths = (0..web.node.len()).map(|dart| {
         let segment = points[web.far(dart)] - points[web.node[dart]];
@@ -54,18 +45,10 @@ pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Poin
 fn largest(web: &Subdivision, faces: &[Vec<usize>]) -> usize {
     let rank = |face: &[usize]| {
         let real = face.iter().filter(|&&dart| web.node[dart] < web.vertices);
-        let mut nodes: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        (real.count(), nodes.len())
+        (real.count(), web.different_nodes(face))
     };
-    let mut best = 0;
-    for number in 1..faces.len() {
-        if rank(&faces[number]) > rank(&faces[best]) {
-            best = number;
-        }
-    }
-    best
+    let last_first = (0..faces.len()).rev();
+    last_first.max_by_key(|&number| rank(&faces[number])).unwrap_or(0)
 }
 
 /// The graph with its faces filled.
@@ -110,13 +93,11 @@ impl Filled {
         if face.len() == 3 {
             return;
         }
-        let mut corners: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
-        let mut different = corners.clone();
-        different.sort_unstable();
-        different.dedup();
-        if different.len() < corners.len() {
-            corners = self.ring(web, face);
-        }
+        let corners = if web.different_nodes(face) < face.len() {
+            self.ring(web, face)
+        } else {
+            face.iter().map(|&dart| web.node[dart]).collect()
+        };
         let centre = self.node(None);
         for corner in corners {
             self.join(centre, corner);
@@ -134,20 +115,18 @@ impl Filled {
         ring
     }
 
-    fn relax(self, weights: Weights) -> Vec<Point> {
+    fn relax(self, rounds: usize) -> Vec<Point> {
         let mut points: Vec<_> = self.fixed.iter().map(|at| at.unwrap_or_default()).collect();
         let mut pulls: Vec<Vec<f64>> =
             self.neighbours.iter().map(|near| vec![1.0; near.len()]).collect();
         self.settle(&mut points, &pulls, SWEEPS);
-        if weights == Weights::Evening {
-            for _ in 0..ROUNDS {
-                for (node, near) in self.neighbours.iter().enumerate() {
-                    for (pull, &other) in pulls[node].iter_mut().zip(near) {
-                        *pull *= points[node].distance(points[other]).max(1e-9).sqrt();
-                    }
+        for _ in 0..rounds {
+            for (node, near) in self.neighbours.iter().enumerate() {
+                for (pull, &other) in pulls[node].iter_mut().zip(near) {
+                    *pull *= points[node].distance(points[other]).max(1e-9).sqrt();
                 }
-                self.settle(&mut points, &pulls, ROUND_SWEEPS);
             }
+            self.settle(&mut points, &pulls, ROUND_SWEEPS);
         }
         points
     }

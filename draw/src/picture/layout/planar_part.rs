@@ -60,15 +60,12 @@ fn with_edges(graph: &EmbeddedGraph, kept: &[bool]) -> Option<EmbeddedGraph> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::super::gallery::worlds::multigraph, *};
 
     #[test]
     fn the_torus_loses_one_edge_of_three() {
-        let theta = EmbeddedGraph::from_edge_lists(&[
-            ("u", vec!["a", "b", "c"]),
-            ("v", vec!["a", "b", "c"]),
-        ]);
-        let part = planar_part(&theta.unwrap()).unwrap();
+        let theta = multigraph("theta", "u: a b c, v: a b c").graph;
+        let part = planar_part(&theta).unwrap();
         assert_eq!((part.edge_count(), part.genus()), (2, 0));
     }
 }

@@ -68,16 +68,11 @@ fn middle(graph: &EmbeddedGraph) -> Vertex {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::super::gallery::worlds::simple, *};
 
     #[test]
     fn a_chain_is_straight_and_its_middle_is_the_origin() {
-        let graph = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b"]),
-        ]);
-        let points = tree(&graph.unwrap());
+        let points = tree(&simple("chain", "a: b, b: a c, c: b").graph);
         assert_eq!(points[1], Point::default());
         assert!((points[0] + points[2]).length() < 1e-9);
         assert!((points[0].length() - 1.0).abs() < 1e-9);

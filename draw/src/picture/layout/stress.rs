@@ -63,12 +63,7 @@ pub(super) fn best(graph: &EmbeddedGraph, in_part: Option<Vec<Point>>) -> Vec<Po
 /// the middle of its neighbours.
 fn framed(web: &Subdivision) -> Vec<Vec<Point>> {
     let mut faces = web.faces();
-    faces.retain(|face| {
-        let mut nodes: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes.len() == face.len() && face.len() > 2
-    });
+    faces.retain(|face| web.different_nodes(face) == face.len() && face.len() > 2);
     faces.sort_by_key(|face| Reverse(face.len()));
     faces.truncate(FRAMES);
     let darts = web.darts_of_nodes();

@@ -1,6 +1,6 @@
 //! A graph whose loops and parallel edges get bends, which are further nodes, so that it is simple.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use toposlam_model::embedded_graph::EmbeddedGraph;
 
@@ -9,7 +9,6 @@ use toposlam_model::embedded_graph::EmbeddedGraph;
 pub(super) struct Subdivision {
     /// The number of nodes: vertices, then bends.
     pub(super) nodes: usize,
-    /// The number of vertices.
     pub(super) vertices: usize,
     /// The node of each dart.
     pub(super) node: Vec<usize>,
@@ -91,14 +90,8 @@ impl Subdivision {
         for first in 0..self.node.len() {
             let at = self.node[first];
             if darts[at].is_empty() {
-                let mut dart = first;
-                loop {
-                    darts[at].push(dart);
-                    dart = self.clockwise[dart];
-                    if dart == first {
-                        break;
-                    }
-                }
+                let next = |&dart: &usize| Some(self.clockwise[dart]).filter(|&next| next != first);
+                darts[at].extend(std::iter::successors(Some(first), next));
             }
         }
         darts
@@ -107,6 +100,11 @@ impl Subdivision {
     /// The node at the far end of the dart's segment.
     pub(super) fn far(&self, dart: usize) -> usize {
         self.node[self.opposite[dart]]
+    }
+
+    /// The number of different nodes on a face.
+    pub(super) fn different_nodes(&self, face: &[usize]) -> usize {
+        face.iter().map(|&dart| self.node[dart]).collect::<BTreeSet<_>>().len()
     }
 
     /// The faces, each as its darts, walked with the face on the left.
@@ -130,12 +128,11 @@ impl Subdivision {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::super::gallery::worlds::multigraph, *};
 
     #[test]
     fn a_loop_becomes_a_triangle_and_keeps_its_faces() {
-        let graph = EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "a", "b", "b"])]).unwrap();
-        let web = Subdivision::of(&graph);
+        let web = Subdivision::of(&multigraph("loops", "u: a a b b").graph);
         assert_eq!(web.nodes, 5);
         let mut sizes: Vec<_> = web.faces().iter().map(Vec::len).collect();
         sizes.sort_unstable();

@@ -8,7 +8,7 @@ use toposlam_model::embedded_graph::Vertex;
 use super::{
     super::{
         geometry::{Extent, Point},
-        svg::{INK, MARKER, Page, short},
+        svg::{INK, MARKER, Page},
     },
     ground::{Ground, along},
 };
@@ -56,22 +56,16 @@ impl Badges {
         self.0.iter().map(|badge| Extent::around(badge.at, BADGE + 1.0, BADGE + 1.0))
     }
 
-    pub(super) fn write(&self, page: &mut Page, shift: Point) {
-        for Badge { at, degree, conforms, rounds } in &self.0 {
-            let at = *at + shift;
-            let (class, fill, ink) = if *conforms {
-                ("badge", "#ffffff", INK)
+    pub(super) fn write(&self, page: &mut Page) {
+        for &Badge { at, degree, conforms, rounds } in &self.0 {
+            let (class, fill, edge, ink) = if conforms {
+                ("badge", "#ffffff", INK, INK)
             } else {
-                ("badge wrong", MARKER, "#ffffff")
+                ("badge wrong", MARKER, MARKER, "#ffffff")
             };
-            let edge = if *conforms { INK } else { MARKER };
             page.line(&format!("<g class=\"{class}\" data-rounds=\"{rounds}\">"));
-            page.line(&format!(
-                "<circle cx=\"{}\" cy=\"{}\" r=\"{BADGE}\" fill=\"{fill}\" stroke=\"{edge}\" \
-                 stroke-width=\"1.2\"/>",
-                short(at.x),
-                short(at.y)
-            ));
+            let look = format!("fill=\"{fill}\" stroke=\"{edge}\" stroke-width=\"1.2\"");
+            page.circle("", at, BADGE, &look);
             page.text(&degree.to_string(), at + Point::new(0.0, 4.0), 11.0, ink, "degree");
             page.line("</g>");
         }
@@ -79,22 +73,19 @@ impl Badges {
 }
 
 /// Draws where the robot stood at each call.
-pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[PageArrival], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[PageArrival]) {
     for call in calls {
-        let at = ground.at(call.pose.position) + shift;
-        let (x, y, rounds) = (short(at.x), short(at.y), call.rounds);
-        page.line(&if call.conforms {
-            format!(
-                "<circle class=\"call\" data-rounds=\"{rounds}\" cx=\"{x}\" cy=\"{y}\" r=\"2.4\" \
-                 fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"1.1\"/>"
-            )
+        let (at, rounds) = (ground.at(call.pose.position), call.rounds);
+        if call.conforms {
+            let class = format!("class=\"call\" data-rounds=\"{rounds}\"");
+            let look = format!("fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"1.1\"");
+            page.circle(&class, at, 2.4, &look);
         } else {
-            format!(
-                "<path class=\"call wrong\" data-rounds=\"{rounds}\" \
-                 d=\"M{x} {y}m-5 -5l10 10m0 -10l-10 10\" fill=\"none\" stroke=\"{MARKER}\" \
-                 stroke-width=\"2.6\"/>"
-            )
-        });
+            let class = format!("class=\"call wrong\" data-rounds=\"{rounds}\"");
+            let cross = format!("M{}m-5 -5l10 10m0 -10l-10 10", page.at(at));
+            let stroke = format!("fill=\"none\" stroke=\"{MARKER}\" stroke-width=\"2.6\"");
+            page.path(&class, &cross, &stroke);
+        }
     }
 }
 

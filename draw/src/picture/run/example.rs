@@ -11,7 +11,7 @@ use toposlam_model::{
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
-    format::named_world::NamedWorld,
+    format::{named_world::NamedWorld, world_file},
     mapping::{Algorithm1Run, MapWalk, MappingEvent, Observed, PartialMap, explore},
     percept::{Door, Percept, Sighting},
     world::GraphWorld,
@@ -57,8 +57,14 @@ pub(crate) fn run_page_data() -> RunPageData {
     }
 }
 
+/// A world of this repository.
+pub(crate) fn world(name: &str) -> NamedWorld {
+    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    world_file::read(&std::fs::read(path).unwrap()).unwrap()
+}
+
 /// The steps of Algorithm 1 in a plan.
-fn steps(plan: &FloorPlan, facing: Dart) -> Vec<MappingStep> {
+pub(crate) fn steps(plan: &FloorPlan, facing: Dart) -> Vec<MappingStep> {
     let mut steps = Vec::new();
     let mut watch = |_: &mut _, journey: &MapWalk, event: MappingEvent| {
         steps.push(MappingStep { walk: journey.clone(), event });

@@ -9,7 +9,7 @@ use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
 use super::super::{
     geometry::{Extent, Point},
     signs::{ARROW, Sign},
-    svg::{FLOOR, INK, Page, short},
+    svg::{INK, Page},
     text,
 };
 
@@ -39,7 +39,6 @@ impl<'a> Ground<'a> {
         Point::new(x * self.metre, -y * self.metre)
     }
 
-    /// The turning point of a junction.
     pub(super) fn turning_point(&self, vertex: Vertex) -> Point {
         self.at(self.plan.junction(vertex).position)
     }
@@ -85,56 +84,35 @@ impl<'a> Ground<'a> {
 
     /// The bounding box of the floor.
     fn floor(&self) -> Extent {
-        let mut extent = Extent::EMPTY;
-        for hallway in self.hallways() {
-            extent.join(hallway);
-        }
-        extent
+        Extent::EMPTY.joined(self.hallways())
     }
 
     pub(super) fn extent(&self) -> Extent {
-        let mut extent = self.floor();
-        for name in self.names() {
-            extent.join(name.extent());
-        }
-        extent.widened(2.0)
+        self.floor().joined(self.names().map(|name| name.extent())).widened(2.0)
     }
 
-    pub(super) fn write(&self, page: &mut Page, shift: Point) {
-        page.line(&format!("<g fill=\"{FLOOR}\">"));
-        for hallway in self.hallways() {
-            page.rectangle("class=\"hallway\"", hallway, shift);
-        }
-        page.line("</g>");
+    pub(super) fn write(&self, page: &mut Page) {
+        page.hallways(self.hallways());
         let walls = walls(self.plan);
-        let lines = walls.iter().map(|wall| wall.span.map(|end| self.at(wall.foot(end)) + shift));
-        let lines = lines.map(|[from, to]| {
-            format!("M{} {}L{} {}", short(from.x), short(from.y), short(to.x), short(to.y))
-        });
-        page.line(&format!(
-            "<path class=\"walls\" d=\"{}\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\" \
-             stroke-linecap=\"square\"/>",
-            lines.collect::<String>()
-        ));
+        let ends = walls.iter().map(|wall| wall.span.map(|end| page.at(self.at(wall.foot(end)))));
+        let lines: String = ends.map(|[from, to]| format!("M{from}L{to}")).collect();
+        let stroke =
+            format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\" stroke-linecap=\"square\"");
+        page.path("class=\"walls\"", &lines, &stroke);
         page.line("<g class=\"names\">");
         for name in self.names() {
-            name.write(page, shift);
+            name.write(page);
         }
         page.line("</g>");
     }
 
     /// The marker: a rectangle, centred on the turning point, that points along a hallway.
-    pub(super) fn write_marker(&self, page: &mut Page, facing: Dart, shift: Point) {
+    pub(super) fn write_marker(&self, page: &mut Page, facing: Dart) {
         let ahead = along(self.plan.direction(facing));
-        let middle = self.turning_point(self.plan.graph().vertex(facing)) + shift;
+        let middle = self.turning_point(self.plan.graph().vertex(facing));
         let length = ahead * (MARKER_LENGTH / 2.0 * self.metre);
         let width = ahead.quarter_turn() * (MARKER_WIDTH / 2.0 * self.metre);
-        page.marker(&[
-            middle + length + width,
-            middle - length + width,
-            middle - length - width,
-            middle + length - width,
-        ]);
+        page.bar(middle, width, length);
         let arrow = Sign::Arrow {
             at: middle + length,
             direction: ahead.angle(),
@@ -147,7 +125,6 @@ impl<'a> Ground<'a> {
 /// A junction's name, beside its wall.
 struct Name<'a> {
     text: &'a str,
-    /// Its anchor.
     at: Point,
     /// The unit vector away from the wall.
     out: Point,
@@ -161,21 +138,15 @@ impl Name<'_> {
         Extent::around(self.at + away, half.x, half.y)
     }
 
-    fn write(&self, page: &mut Page, shift: Point) {
+    fn write(&self, page: &mut Page) {
         let anchor = match self.out.x {
             x if x > 0.5 => "start",
             x if x < -0.5 => "end",
             _ => "middle",
         };
         let baseline = self.at.y + self.size * (0.36 + 0.5 * self.out.y);
-        page.line(&format!(
-            "<text class=\"name\" x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{INK}\" \
-             text-anchor=\"{anchor}\">{}</text>",
-            short(self.at.x + shift.x),
-            short(baseline + shift.y),
-            short(self.size),
-            text::escaped(self.text),
-        ));
+        let at = Point::new(self.at.x, baseline);
+        page.anchored_text(self.text, at, self.size, INK, ["name", anchor]);
     }
 }
 

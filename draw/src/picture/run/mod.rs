@@ -15,7 +15,7 @@ use super::{
     geometry::{Extent, Point},
     svg::{NORTH, Page, Sheet},
 };
-use crate::run_page_data::RunPageData;
+use crate::run_page_data::{PageFrame, RunPageData};
 pub(super) use trajectory::{pieces, ramp};
 
 use calls::Badges;
@@ -29,7 +29,7 @@ pub fn run_svg(run_data: &RunPageData) -> String {
     let (title, caption) = (&run_data.world.name, &run_data.ending);
     let sheet = Sheet { title, caption, extent, metre, up: NORTH };
     let legend = sheet.legend(legend(run_data));
-    sheet.document(&legend, None, |page, shift| drawing.write(page, shift))
+    sheet.document(&legend, None, |page| drawing.write(page))
 }
 
 /// The drawing alone, with the positions of the frames.
@@ -37,24 +37,19 @@ pub(crate) fn run_drawing(run_data: &RunPageData) -> Drawn {
     let drawing = RunDrawing::of(run_data);
     let extent = drawing.extent();
     let sheet = Sheet { title: "", caption: "", extent, metre: None, up: NORTH };
-    let mut moved = Point::default();
-    let svg = sheet.document(&[], None, |page, shift| {
-        moved = shift;
-        drawing.write(page, shift);
+    let mut places = Vec::new();
+    let svg = sheet.document(&[], None, |page| {
+        drawing.write(page);
+        let at = |round: &PageFrame| page.at(drawing.ground.at(round.pose.position));
+        places = run_data.rounds.iter().map(at).collect();
     });
-    let places = run_data.rounds.iter().map(|round| {
-        let at = drawing.ground.at(round.pose.position) + moved;
-        [at.x, at.y]
-    });
-    Drawn { svg, places: places.collect(), metre: drawing.ground.metre }
+    Drawn { svg, places, metre: drawing.ground.metre }
 }
 
-/// A drawing of a run.
 pub(crate) struct Drawn {
-    /// The SVG document.
     pub(crate) svg: String,
     /// The position of each frame, in units of the drawing, x to the right and y down.
-    pub(crate) places: Vec<[f64; 2]>,
+    pub(crate) places: Vec<Point>,
     /// Units of the drawing per metre.
     pub(crate) metre: f64,
 }
@@ -74,28 +69,24 @@ impl<'a> RunDrawing<'a> {
     }
 
     fn extent(&self) -> Extent {
-        let mut extent = self.ground.extent();
-        for badge in self.badges.extents() {
-            extent.join(badge);
-        }
+        let mut extent = self.ground.extent().joined(self.badges.extents());
         for round in &self.run_data.rounds {
             extent.include(self.ground.at(round.pose.position));
         }
         extent
     }
 
-    fn write(&self, page: &mut Page, shift: Point) {
+    fn write(&self, page: &mut Page) {
         let Self { run_data, ground, badges } = self;
-        ground.write(page, shift);
-        passes::write(page, ground, &run_data.rounds, shift);
-        trajectory::write(page, ground, &run_data.rounds, shift);
-        ground.write_marker(page, run_data.facing, shift);
-        calls::write(page, ground, &run_data.calls, shift);
-        badges.write(page, shift);
+        ground.write(page);
+        passes::write(page, ground, &run_data.rounds);
+        trajectory::write(page, ground, &run_data.rounds);
+        ground.write_marker(page, run_data.facing);
+        calls::write(page, ground, &run_data.calls);
+        badges.write(page);
     }
 }
 
-/// The meaning of the signs.
 fn legend(run_data: &RunPageData) -> Vec<String> {
     let mut lines = vec![
         "line: the robot's path, from light at the start to dark at the end".to_owned(),
@@ -113,21 +104,14 @@ mod tests {
     use resvg::usvg::roxmltree::{Document, Node};
     use toposlam_model::embedded_graph::Dart;
 
-    use super::*;
+    use super::{
+        super::reading::{number, numbers, of_class},
+        *,
+    };
 
-    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
-        let is = |node: &Node| node.attribute("class") == Some(class);
-        document.descendants().filter(is).collect()
-    }
-
-    /// The points of a list such as `1,2 3,4`, or of path data such as `M1 2L3 4Z`.
+    /// The points of a list or of path data.
     fn points(list: &str) -> Vec<Point> {
-        let numbers: Vec<f64> = list
-            .split(|letter: char| letter.is_alphabetic() || [' ', ','].contains(&letter))
-            .filter(|number| !number.is_empty())
-            .map(|number| number.parse().unwrap())
-            .collect();
-        numbers.chunks(2).map(|two| Point::new(two[0], two[1])).collect()
+        numbers(list).chunks(2).map(|two| Point::new(two[0], two[1])).collect()
     }
 
     #[test]
@@ -143,8 +127,8 @@ mod tests {
             way.extend(piece);
         }
         assert_eq!(way.len(), run_data.rounds.len());
-        for (on_line, [x, y]) in way.iter().zip(&drawn.places) {
-            assert!(on_line.distance(Point::new(*x, *y)) < 0.1);
+        for (on_line, place) in way.iter().zip(&drawn.places) {
+            assert!(on_line.distance(*place) < 0.1);
         }
         let metres = (way[0] - way[3]) * (1.0 / drawn.metre);
         assert!(metres.distance(Point::new(0.0, 4.0)) < 0.01, "the first move went 4 m north");
@@ -177,14 +161,14 @@ mod tests {
             let document = Document::parse(&drawn.svg).unwrap();
             let signs = of_class(&document, "marker");
             let shape = |sign: usize| points(signs[sign].attribute("d").unwrap());
-            let [x, y] = drawn.places[0];
+            let place = drawn.places[0];
             let corners = Extent::of(shape(0));
-            assert!(corners.centre().distance(Point::new(x, y)) < 0.1);
+            assert!(corners.centre().distance(place) < 0.1);
             let long = Point::new(ahead.x.abs(), ahead.y.abs());
             assert!((corners.size().dot(long) - 0.60 * drawn.metre).abs() < 0.2);
             let wide = Point::new(long.y, long.x);
             assert!((corners.size().dot(wide) - 0.18 * drawn.metre).abs() < 0.2);
-            let tip = shape(1)[0] - Point::new(x, y);
+            let tip = shape(1)[0] - place;
             assert!(tip.dot(ahead) > 0.5 * drawn.metre && tip.cross(ahead).abs() < 0.1);
         }
     }
@@ -193,8 +177,7 @@ mod tests {
     fn the_numbers_of_moves_are_on_the_right_of_the_path() {
         let drawn = run_drawing(&example::run_page_data());
         let document = Document::parse(&drawn.svg).unwrap();
-        let east_of_hallway =
-            |text: &Node| text.attribute("x").unwrap().parse::<f64>().unwrap() > drawn.places[0][0];
+        let east_of_hallway = |text: &Node| number(*text, "x") > drawn.places[0].x;
         let passes = of_class(&document, "passes");
         let numbers: Vec<_> = passes
             .iter()

@@ -6,7 +6,6 @@ use toposlam_model::embedded_graph::Dart;
 
 use super::{
     super::{
-        geometry::Point,
         svg::{FAINT, Page, short},
         text,
     },
@@ -21,7 +20,7 @@ const LINE: f64 = 11.5;
 const CLEAR: f64 = 6.0;
 
 /// Draws the numbers of all moves.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame]) {
     let graph = ground.plan.graph();
     let mut through = vec![Vec::new(); graph.dart_count()];
     for of_move in rounds.chunk_by(|one, other| one.moves == other.moves) {
@@ -31,7 +30,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame], shif
     }
     page.line(&format!("<g fill=\"{FAINT}\" font-size=\"{SIZE}\" text-anchor=\"middle\">"));
     for (dart, moves) in graph.darts().zip(&through) {
-        write_numbers(page, ground, dart, moves, shift);
+        write_numbers(page, ground, dart, moves);
     }
     page.line("</g>");
 }
@@ -49,7 +48,7 @@ fn passed(ground: &Ground, rounds: &[PageFrame]) -> Option<Dart> {
 }
 
 /// Draws the numbers of the moves that left by a dart: in lines, at the middle of the hallway.
-fn write_numbers(page: &mut Page, ground: &Ground, dart: Dart, moves: &[u64], shift: Point) {
+fn write_numbers(page: &mut Page, ground: &Ground, dart: Dart, moves: &[u64]) {
     if moves.is_empty() {
         return;
     }
@@ -74,7 +73,7 @@ fn write_numbers(page: &mut Page, ground: &Ground, dart: Dart, moves: &[u64], sh
         }
     }
     let half = (from.distance(to) / 2.0, ground.half() / 2.0 + 0.25 * CLEAR);
-    let middle = from + ahead * half.0 + right * half.1 + shift;
+    let middle = page.at(from + ahead * half.0 + right * half.1);
     let first = middle.y + SIZE * 0.36 - LINE * (lines.len() as f64 - 1.0) / 2.0;
     for (number, line) in lines.iter().enumerate() {
         let baseline = first + LINE * number as f64;

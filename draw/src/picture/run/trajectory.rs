@@ -3,10 +3,7 @@
 use std::fmt::Write;
 
 use super::{
-    super::{
-        geometry::Point,
-        svg::{Page, short},
-    },
+    super::svg::{Page, short},
     ground::Ground,
 };
 use crate::run_page_data::PageFrame;
@@ -17,14 +14,14 @@ const COLOURS: usize = 40;
 const RAMP: [[f64; 3]; 3] = [[126.0, 187.0, 234.0], [44.0, 116.0, 186.0], [9.0, 32.0, 66.0]];
 
 /// Draws the line: one piece for each colour, each from the end of the last.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[PageFrame]) {
     page.line(
         "<g fill=\"none\" stroke-width=\"1.7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
     );
     for (first, last, share) in pieces(rounds.len()) {
         let mut points = String::new();
         for round in &rounds[first..=last] {
-            let at = ground.at(round.pose.position) + shift;
+            let at = page.at(ground.at(round.pose.position));
             // Writing to a string does not fail.
             let _ = write!(points, "{},{} ", short(at.x), short(at.y));
         }

@@ -18,113 +18,83 @@ use super::{
 };
 
 /// The colour of the floor.
-pub(in super::super) const FLOOR: &str = "#ebe6db";
+const FLOOR: &str = "#ebe6db";
 /// Inks of edges: the usual one, and those of edges that cross others.
 const EDGES: [&str; INKS + 1] =
     ["#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c"];
 
 impl Page {
-    /// The whole drawing, moved by `shift`.
-    pub(super) fn drawing(
-        &mut self,
-        picture: &WorldPicture,
-        drawing: &Drawing,
-        signs: &[Sign],
-        shift: Point,
-    ) {
-        self.floor(drawing, shift);
-        self.edges(drawing, shift);
-        self.discs(drawing, shift);
-        let size = &drawing.size;
-        if size.knob > 0.0 {
-            self.doors(picture, drawing, shift);
+    pub(super) fn drawing(&mut self, picture: &WorldPicture, drawing: &Drawing, signs: &[Sign]) {
+        self.floor(drawing);
+        self.edges(drawing);
+        self.discs(drawing);
+        if drawing.size.knob > 0.0 {
+            self.doors(picture, drawing);
         }
         for sign in signs {
-            self.sign(&sign.moved(shift));
+            self.sign(sign);
         }
     }
 
     /// The hallways of a floor plan.
-    fn floor(&mut self, drawing: &Drawing, shift: Point) {
-        if drawing.floor.is_none() {
-            return;
+    fn floor(&mut self, drawing: &Drawing) {
+        if drawing.floor.is_some() {
+            self.hallways(drawing.hallways());
         }
+    }
+
+    /// Hallways, by their floor.
+    pub(in super::super) fn hallways(&mut self, hallways: impl Iterator<Item = Extent>) {
         self.line(&format!("<g fill=\"{FLOOR}\">"));
-        for hallway in drawing.hallways() {
-            self.rectangle("class=\"hallway\"", hallway, shift);
+        for hallway in hallways {
+            self.rectangle("class=\"hallway\"", hallway, "");
         }
         self.line("</g>");
     }
 
-    pub(in super::super) fn rectangle(&mut self, attributes: &str, extent: Extent, shift: Point) {
-        let corner = extent.least + shift;
-        self.line(&format!(
-            "<rect {attributes} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-            short(corner.x),
-            short(corner.y),
-            short(extent.size().x),
-            short(extent.size().y)
-        ));
-    }
-
-    fn edges(&mut self, drawing: &Drawing, shift: Point) {
+    fn edges(&mut self, drawing: &Drawing) {
         let thick = thickness(drawing);
         self.line("<g fill=\"none\">");
         for ((dart, other, curve), &ink) in drawing.edges.iter().zip(&drawing.inks) {
-            let path = path(curve, shift);
+            let path = path(curve, self);
             if ink > 0 {
-                let casing = thick + 4.0;
-                self.line(&format!(
-                    "<path d=\"{path}\" stroke=\"{PAPER}\" stroke-width=\"{casing}\"/>"
-                ));
+                let casing = format!("stroke=\"{PAPER}\" stroke-width=\"{}\"", thick + 4.0);
+                self.path("", &path, &casing);
             }
-            self.line(&format!(
-                "<path class=\"edge\" data-darts=\"{} {}\" d=\"{path}\" stroke=\"{}\" \
-                 stroke-width=\"{}\"/>",
-                dart.0,
-                other.0,
-                EDGES[ink],
-                short(thick),
-            ));
+            let darts = format!("class=\"edge\" data-darts=\"{} {}\"", dart.0, other.0);
+            let stroke = format!("stroke=\"{}\" stroke-width=\"{}\"", EDGES[ink], short(thick));
+            self.path(&darts, &path, &stroke);
         }
         self.line("</g>");
     }
 
-    fn discs(&mut self, drawing: &Drawing, shift: Point) {
+    fn discs(&mut self, drawing: &Drawing) {
         let thick = if drawing.size.knob > 0.0 { 1.8 } else { 1.0 };
-        for (vertex, (centre, disc)) in drawing.centres.iter().zip(&drawing.size.discs).enumerate()
-        {
-            let at = *centre + shift;
-            if vertex >= drawing.known {
-                self.line(&format!(
-                    "<circle class=\"unexplored\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{PAPER}\" \
-                     stroke=\"{INK}\" stroke-width=\"1.6\" stroke-dasharray=\"2.4 2\"/>",
-                    short(at.x),
-                    short(at.y),
-                    short(*disc),
-                ));
-                continue;
+        for (vertex, (&at, &disc)) in drawing.centres.iter().zip(&drawing.size.discs).enumerate() {
+            if vertex < drawing.known {
+                let name = format!("class=\"vertex\" data-vertex=\"{vertex}\"");
+                let look = format!("fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"{thick}\"");
+                self.circle(&name, at, disc, &look);
+            } else {
+                let look = format!(
+                    "fill=\"{PAPER}\" stroke=\"{INK}\" stroke-width=\"1.6\" \
+                     stroke-dasharray=\"2.4 2\""
+                );
+                self.circle("class=\"unexplored\"", at, disc, &look);
             }
-            self.line(&format!(
-                "<circle class=\"vertex\" data-vertex=\"{vertex}\" cx=\"{}\" cy=\"{}\" \
-                 r=\"{}\" fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"{thick}\"/>",
-                short(at.x),
-                short(at.y),
-                short(*disc),
-            ));
         }
     }
 
-    pub(in super::super) fn label(&mut self, label: &Label, shift: Point) {
+    pub(in super::super) fn label(&mut self, label: &Label) {
         let (fill, class) = match label.kind {
             LabelKind::Inside | LabelKind::Beside => (INK, "name"),
             LabelKind::Edge => (FAINT, "edge-name"),
         };
         if label.kind != LabelKind::Inside {
             let veil = format!("rx=\"3\" fill=\"{PAPER}\" fill-opacity=\"0.88\"");
-            self.rectangle(&veil, label.extent(), shift);
+            self.rectangle(&veil, label.extent(), "");
         }
-        let at = label.centre + shift;
+        let at = self.at(label.centre);
         let first = at.y + label.size * (0.36 - LINE * (label.lines.len() as f64 - 1.0) / 2.0);
         let mut spans = String::new();
         for (number, line) in label.lines.iter().enumerate() {
@@ -141,7 +111,7 @@ impl Page {
     }
 
     /// The knobs of the doors, with their numbers.
-    fn doors(&mut self, picture: &WorldPicture, drawing: &Drawing, shift: Point) {
+    fn doors(&mut self, picture: &WorldPicture, drawing: &Drawing) {
         let graph = picture.graph;
         let pointing = picture.parts();
         for dart in graph.darts() {
@@ -150,19 +120,14 @@ impl Page {
                 continue;
             }
             let rim = Point::polar(drawing.doors[dart.at()], drawing.size.discs[vertex.at()]);
-            let at = drawing.centres[vertex.at()] + rim + shift;
+            let at = drawing.centres[vertex.at()] + rim;
             let facing = pointing.contains(&MarkerPart::Pointing(dart));
             let (fill, stroke, ink) =
                 if facing { (MARKER, MARKER, "#ffffff") } else { ("#ffffff", INK, INK) };
             let number = graph.index(dart);
-            self.line(&format!(
-                "<circle class=\"door\" data-door=\"{number}\" data-dart=\"{}\" cx=\"{}\" cy=\"{}\" \
-                 r=\"{}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1\"/>",
-                dart.0,
-                short(at.x),
-                short(at.y),
-                short(drawing.size.knob - 0.5),
-            ));
+            let name = format!("class=\"door\" data-door=\"{number}\" data-dart=\"{}\"", dart.0);
+            let look = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1\"");
+            self.circle(&name, at, drawing.size.knob - 0.5, &look);
             let font = drawing.size.knob * if number < 10 { 1.35 } else { 1.1 };
             let baseline = at + Point::new(0.0, font * 0.365);
             self.text(&number.to_string(), baseline, font, ink, "door-number");
@@ -180,18 +145,12 @@ fn thickness(drawing: &Drawing) -> f64 {
 }
 
 /// The curve as path data.
-fn path(curve: &Curve, shift: Point) -> String {
-    let mut path = String::new();
-    let mut put = |sign: char, point: Point| {
-        let point = point + shift;
+fn path(curve: &Curve, page: &Page) -> String {
+    let mut path = format!("M{}", page.at(curve.start));
+    for piece in &curve.pieces {
+        let [one, two, to] = piece.map(|point| page.at(point));
         // Writing to a string does not fail.
-        let _ = write!(path, "{sign}{} {}", short(point.x), short(point.y));
-    };
-    put('M', curve.start);
-    for &[one, two, to] in &curve.pieces {
-        put('C', one);
-        put(' ', two);
-        put(' ', to);
+        let _ = write!(path, "C{one} {two} {to}");
     }
     path
 }

@@ -16,8 +16,7 @@ use super::{
     signs::{Sign, signs},
 };
 
-pub(super) use figure::FLOOR;
-pub(super) use page::{FAINT, INK, MARKER, Page, short};
+pub(super) use page::{FAINT, INK, MARKER, PAPER, Page, short};
 pub(super) use sheet::{NORTH, Sheet};
 
 /// Whether the picture has a legend.
@@ -33,10 +32,8 @@ pub(super) enum Legend {
 pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend) -> String {
     let signs = signs(picture, drawing);
     let labels = labels(drawing, picture, &signs);
-    let mut extent = drawing.extent();
-    for each in labels.iter().map(Label::extent).chain(signs.iter().map(Sign::extent)) {
-        extent.join(each);
-    }
+    let added = labels.iter().map(Label::extent).chain(signs.iter().map(Sign::extent));
+    let extent = drawing.extent().joined(added);
     let metre = drawing.floor.map(|floor| floor.metre);
     let WorldPicture { title, caption, .. } = *picture;
     let sheet = Sheet { title, caption, extent, metre, up: NORTH };
@@ -44,11 +41,11 @@ pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend
         Legend::Below => sheet.legend(says(picture, drawing)),
         Legend::Elsewhere => Vec::new(),
     };
-    sheet.document(&says, signs.first(), |page, shift| {
-        page.drawing(picture, drawing, &signs, shift);
+    sheet.document(&says, signs.first(), |page| {
+        page.drawing(picture, drawing, &signs);
         page.line("<g class=\"names\">");
         for label in &labels {
-            page.label(label, shift);
+            page.label(label);
         }
         page.line("</g>");
     })

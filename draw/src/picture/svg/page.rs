@@ -1,9 +1,11 @@
-//! An SVG document under construction: text, the marker's sign, numbers.
+//! An SVG document under construction: shapes, text, the marker's sign, numbers.
+
+use std::fmt;
 
 use toposlam_model::marker::MarkerLook;
 
 use super::super::{
-    geometry::Point,
+    geometry::{Extent, Point},
     signs::{ARROW, Sign},
     text,
 };
@@ -21,14 +23,55 @@ pub(in super::super) fn short(number: f64) -> String {
     format!("{}", tenths + 0.0)
 }
 
-/// The document so far.
-pub(in super::super) struct Page(pub(in super::super) String);
+/// The coordinates, as path data has them.
+impl fmt::Display for Point {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", short(self.x), short(self.y))
+    }
+}
+
+/// The document so far. The attributes of an element stand before and after those of its place.
+#[derive(Default)]
+pub(in super::super) struct Page {
+    pub(in super::super) text: String,
+    /// The step by which all places are moved.
+    pub(super) shift: Point,
+}
 
 impl Page {
     /// A line of the document's text.
     pub(in super::super) fn line(&mut self, line: &str) {
-        self.0.push_str(line);
-        self.0.push('\n');
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    /// A place in the document.
+    pub(in super::super) fn at(&self, place: Point) -> Point {
+        place + self.shift
+    }
+
+    fn element(&mut self, name: &str, attributes: [&str; 3]) {
+        let attributes: Vec<_> = attributes.into_iter().filter(|some| !some.is_empty()).collect();
+        self.line(&format!("<{name} {}/>", attributes.join(" ")));
+    }
+
+    pub(in super::super) fn circle(&mut self, before: &str, at: Point, radius: f64, after: &str) {
+        let at = self.at(at);
+        let [x, y, radius] = [at.x, at.y, radius].map(short);
+        let place = format!("cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"");
+        self.element("circle", [before, &place, after]);
+    }
+
+    pub(in super::super) fn rectangle(&mut self, before: &str, extent: Extent, after: &str) {
+        let (corner, size) = (self.at(extent.least), extent.size());
+        let [x, y, width, height] = [corner.x, corner.y, size.x, size.y].map(short);
+        let place = format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"");
+        self.element("rect", [before, &place, after]);
+    }
+
+    /// A path by its data, whose places are those [in the document](Self::at).
+    pub(in super::super) fn path(&mut self, before: &str, data: &str, after: &str) {
+        self.element("path", [before, &format!("d=\"{data}\""), after]);
     }
 
     /// Words in one line, their middle at `at`.
@@ -40,12 +83,23 @@ impl Page {
         fill: &str,
         class: &str,
     ) {
+        self.anchored_text(text, at, size, fill, [class, "middle"]);
+    }
+
+    /// Words in one line, of a class, with their start, middle or end at `at`.
+    pub(in super::super) fn anchored_text(
+        &mut self,
+        text: &str,
+        at: Point,
+        size: f64,
+        fill: &str,
+        [class, anchor]: [&str; 2],
+    ) {
+        let at = self.at(at);
+        let [x, y, size] = [at.x, at.y, size].map(short);
         self.line(&format!(
-            "<text class=\"{class}\" x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{fill}\" \
-             text-anchor=\"middle\">{}</text>",
-            short(at.x),
-            short(at.y),
-            short(size),
+            "<text class=\"{class}\" x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{fill}\" \
+             text-anchor=\"{anchor}\">{}</text>",
             text::escaped(text),
         ));
     }
@@ -58,39 +112,36 @@ impl Page {
                     MarkerLook::One => "",
                     MarkerLook::Other => " stroke-dasharray=\"4 3\"",
                 };
-                self.line(&format!(
-                    "<circle class=\"marker\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" \
-                     stroke=\"{MARKER}\" stroke-width=\"2.4\"{dashes}/>",
-                    short(centre.x),
-                    short(centre.y),
-                    short(radius),
-                ));
+                let stroke =
+                    format!("fill=\"none\" stroke=\"{MARKER}\" stroke-width=\"2.4\"{dashes}");
+                self.circle("class=\"marker\"", centre, radius, &stroke);
             }
             Sign::Arrow { at, direction, scale } => {
                 let along = Point::polar(direction, scale);
                 let across = along.quarter_turn() * 5.0;
-                self.marker([at + along * ARROW, at + across, at - across].as_slice());
+                self.marker(&[at + along * ARROW, at + across, at - across]);
             }
             Sign::Bar { at, direction, scale } => {
                 let along = Point::polar(direction, scale) * 2.2;
-                let across = along.quarter_turn() * (5.5 / 2.2);
-                self.marker(&[
-                    at + along + across,
-                    at + along - across,
-                    at - along - across,
-                    at - along + across,
-                ]);
+                self.bar(at, along, along.quarter_turn() * (5.5 / 2.2));
             }
         }
     }
 
+    /// A rectangle in the marker's colour, by its middle and its half sides.
+    pub(in super::super) fn bar(&mut self, at: Point, along: Point, across: Point) {
+        self.marker(&[
+            at + along + across,
+            at + along - across,
+            at - along - across,
+            at - along + across,
+        ]);
+    }
+
     /// A shape in the marker's colour, by its corners.
     pub(in super::super) fn marker(&mut self, corners: &[Point]) {
-        let corners: Vec<_> =
-            corners.iter().map(|at| format!("{} {}", short(at.x), short(at.y))).collect();
-        self.line(&format!(
-            "<path class=\"marker\" d=\"M{}Z\" fill=\"{MARKER}\"/>",
-            corners.join("L")
-        ));
+        let corners: Vec<_> = corners.iter().map(|&at| self.at(at).to_string()).collect();
+        let outline = format!("M{}Z", corners.join("L"));
+        self.path("class=\"marker\"", &outline, &format!("fill=\"{MARKER}\""));
     }
 }

@@ -53,13 +53,12 @@ impl Sheet<'_> {
         says.iter().flat_map(|line| text::lines(line, LEGEND[0], widest)).collect()
     }
 
-    /// The SVG document of a drawing, which moves its content by the given step. The sign is before the
-    /// first line of the legend.
+    /// The SVG document of a drawing. The sign is before the first line of the legend.
     pub(in super::super) fn document(
         &self,
         legend: &[String],
         sign: Option<&Sign>,
-        draw: impl FnOnce(&mut Page, Point),
+        draw: impl FnOnce(&mut Page),
     ) -> String {
         let Self { extent, .. } = *self;
         let title = text::lines(self.title, TITLE[0], self.column());
@@ -80,7 +79,7 @@ impl Sheet<'_> {
         let height = (extent.size().y + above + below).ceil() + 2.0 * MARGIN;
         let middle = width / 2.0;
 
-        let mut page = Page(String::new());
+        let mut page = Page::default();
         page.line(&format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" \
              viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"{2}\">",
@@ -94,7 +93,9 @@ impl Sheet<'_> {
             let baseline = MARGIN + TITLE[0] + number as f64 * TITLE[1] - 2.0;
             page.text(line, Point::new(middle, baseline), TITLE[0], INK, "title");
         }
-        draw(&mut page, Point::new(middle - extent.centre().x, MARGIN + above - extent.least.y));
+        page.shift = Point::new(middle - extent.centre().x, MARGIN + above - extent.least.y);
+        draw(&mut page);
+        page.shift = Point::default();
         let mut baseline = MARGIN + above + extent.size().y + 14.0;
         if let Some(metre) = self.metre {
             let at = Point::new(middle, baseline + 8.0);
@@ -119,7 +120,7 @@ impl Sheet<'_> {
             }
         }
         page.line("</svg>");
-        page.0
+        page.text
     }
 }
 
@@ -132,14 +133,10 @@ impl Page {
         let length = lengths.iter().rev().filter(fits).find(wish).unwrap_or(&0.1);
         let half = length * metre / 2.0;
         let (left, right) = (middle.x - half, middle.x + half);
-        self.line(&format!(
-            "<path class=\"scale\" d=\"M{0} {1}v6M{0} {2}H{3}M{3} {1}v6\" fill=\"none\" \
-             stroke=\"{FAINT}\" stroke-width=\"1.2\"/>",
-            short(left),
-            short(middle.y - 3.0),
-            short(middle.y),
-            short(right),
-        ));
+        let [left, right, top, y] = [left, right, middle.y - 3.0, middle.y].map(short);
+        let bar = format!("M{left} {top}v6M{left} {y}H{right}M{right} {top}v6");
+        let stroke = format!("fill=\"none\" stroke=\"{FAINT}\" stroke-width=\"1.2\"");
+        self.path("class=\"scale\"", &bar, &stroke);
         let words = format!("{length} m, {up}");
         let at = middle + Point::new(0.0, 15.0);
         self.text(&words, at, LEGEND[0], FAINT, "legend");

@@ -75,54 +75,28 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
     }
 }
 
-/// The claim that does not hold.
-#[track_caller]
-fn fails(lemma: fn(&mut ChoiceOdometer) -> CaseResult) -> &'static str {
-    ChoiceOdometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
-}
+/// A lemma on a broken variant.
+type BrokenLemma = fn(&mut ChoiceOdometer) -> CaseResult;
+
+/// What is broken, in a lemma, and the claim that then does not hold.
+const NOTICED: [(BrokenLemma, &str); 11] = [
+    (no_command_exceeds_a_unit::<_, Broken<FARTHER>, 1>, "it goes ahead by at most a unit"),
+    (arrives::<_, Broken<FARTHER>, 0>, "it goes ahead by at most a unit"),
+    (no_false_arrival::<_, Broken<ONE_IMAGE>, 1, 1>, "two images agree"),
+    (doors_in_order::<_, Broken<KEPT>, 0, 0>, "it leaves when it looks to the door"),
+    (doors_in_order::<_, Broken<LEFT_OUT>, 0, 0>, "every door was taken"),
+    (the_first_door::<_, Broken<AT_ONCE>, 4>, "it leaves only if it looks there"),
+    (doors_in_order::<_, Broken<AT_ONCE>, 0, 0>, "it leaves when it looks to the door"),
+    (always_ends::<_, Broken<UNKNOWN_FOR_EVER>, 0, 1>, "it gives up at the seventh unknown"),
+    (always_ends::<_, Broken<STALLED_FOR_EVER>, 0, 1>, "it gives up when nothing is carried out"),
+    (always_ends::<_, Broken<IDLE_FOR_EVER>, 0, 1>, "it makes progress"),
+    (arrives::<_, Broken<NO_STOP>, 0>, "it ends"),
+];
 
 #[test]
-fn a_unit_of_60_cm_is_noticed() {
-    let claim = "it goes ahead by at most a unit";
-    assert_eq!(fails(no_command_exceeds_a_unit::<_, Broken<FARTHER>, 1>), claim);
-    assert_eq!(fails(arrives::<_, Broken<FARTHER>, 0>), claim);
-}
-
-#[test]
-fn a_visit_decided_by_one_image_is_noticed() {
-    assert_eq!(fails(no_false_arrival::<_, Broken<ONE_IMAGE>, 1, 1>), "two images agree");
-}
-
-#[test]
-fn a_door_that_stays_in_the_queue_is_noticed() {
-    let claim = "it leaves when it looks to the door";
-    assert_eq!(fails(doors_in_order::<_, Broken<KEPT>, 0, 0>), claim);
-}
-
-#[test]
-fn a_door_that_is_left_out_is_noticed() {
-    assert_eq!(fails(doors_in_order::<_, Broken<LEFT_OUT>, 0, 0>), "every door was taken");
-}
-
-#[test]
-fn a_robot_that_leaves_without_a_image_is_noticed() {
-    let claim = "it leaves only if it looks there";
-    assert_eq!(fails(the_first_door::<_, Broken<AT_ONCE>, 4>), claim);
-    let claim = "it leaves when it looks to the door";
-    assert_eq!(fails(doors_in_order::<_, Broken<AT_ONCE>, 0, 0>), claim);
-}
-
-#[test]
-fn whatever_may_go_on_for_ever_is_noticed() {
-    let claim = "it gives up at the seventh unknown";
-    assert_eq!(fails(always_ends::<_, Broken<UNKNOWN_FOR_EVER>, 0, 1>), claim);
-    let claim = "it gives up when nothing is carried out";
-    assert_eq!(fails(always_ends::<_, Broken<STALLED_FOR_EVER>, 0, 1>), claim);
-    let claim = "it makes progress";
-    assert_eq!(fails(always_ends::<_, Broken<IDLE_FOR_EVER>, 0, 1>), claim);
-}
-
-#[test]
-fn a_path_that_does_not_stop_is_noticed() {
-    assert_eq!(fails(arrives::<_, Broken<NO_STOP>, 0>), "it ends");
+fn each_flaw_is_noticed() {
+    for (lemma, claim) in NOTICED {
+        let failure = ChoiceOdometer::exhaust(lemma, &mut |_| {}).expect_err(claim);
+        assert_eq!(failure.claim, claim);
+    }
 }
