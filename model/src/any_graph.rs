@@ -7,6 +7,7 @@ use proptest::{collection::vec, prelude::*};
 use crate::{
     embedded_graph::EmbeddedGraph,
     enumerate::{Each, Enumeration, Watch},
+    format::{named_world::NamedWorld, world_file},
     marker::Marker,
     percept::{Door, Percept},
     world::{GraphWorld, World},
@@ -46,6 +47,27 @@ fn grown(class: Class, edges: &[(u16, bool, u16)]) -> EmbeddedGraph {
         })
         .collect();
     EmbeddedGraph::from_edge_lists(&named).unwrap()
+}
+
+/// The embedded graph of the clockwise neighbours of each vertex, as in `a: b | b: a c | c: b`.
+pub(crate) fn by_neighbours(text: &str) -> EmbeddedGraph {
+    EmbeddedGraph::from_neighbour_lists(&lists(text)).unwrap()
+}
+
+/// The embedded graph of the clockwise edges of each vertex, as in `u: loop loop way | v: way`.
+pub(crate) fn by_edges(text: &str) -> EmbeddedGraph {
+    EmbeddedGraph::from_edge_lists(&lists(text)).unwrap()
+}
+
+fn lists(text: &str) -> Vec<(&str, Vec<&str>)> {
+    let vertices = text.split('|').map(|vertex| vertex.split_once(':').unwrap());
+    vertices.map(|(name, list)| (name.trim(), list.split_whitespace().collect())).collect()
+}
+
+/// A world of `worlds/`.
+pub(crate) fn world(name: &str) -> NamedWorld {
+    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    world_file::read(&std::fs::read(path).unwrap()).unwrap()
 }
 
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
