@@ -195,6 +195,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_graph::by_neighbours;
 
     #[test]
     fn the_events_of_a_walk_take_turns() {
@@ -205,6 +206,36 @@ mod tests {
             assert_eq!((WalkEvent::at(index), event.index()), (event, index));
         }
         assert_eq!(events.map(WalkEvent::moves), [0, 0, 1, 1, 2]);
+    }
+
+    fn k4() -> EmbeddedGraph {
+        by_neighbours("a: b c d | b: a d c | c: a b d | d: a c b")
+    }
+
+    #[test]
+    fn doors_are_counted_clockwise_from_the_entry() {
+        let graph = k4();
+        for pose in graph.darts() {
+            assert_eq!(graph.behind(pose, Door(0)), pose);
+            assert_eq!(graph.behind(pose, Door(1)), graph.clockwise(pose));
+            assert_eq!(graph.behind(pose, Door(2)), graph.counterclockwise(pose));
+            assert_eq!(graph.behind(pose, Door(3)), pose);
+            assert_eq!(graph.behind(pose, Door(u32::MAX)), pose);
+        }
+    }
+
+    #[test]
+    fn the_way_back_ends_where_the_path_began_turned_by_its_first_door() {
+        let graph = k4();
+        for pose in graph.darts() {
+            for doors in (0..27).map(|n| [Door(n % 3), Door(n / 3 % 3), Door(n / 9)]) {
+                let path = doors.map(|door| (door, 3));
+                let back: Vec<_> = retrace(path.into_iter()).collect();
+                let end = graph.walk(graph.walk(pose, &doors), &back);
+                assert_eq!(end, graph.behind(pose, doors[0]));
+            }
+        }
+        assert_eq!(retrace(std::iter::empty()).count(), 0);
     }
 
     /// A mark on an edge is noticed by a robot that has just traversed it.

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use toposlam_model::{
     ambiguity::{
-        AmbiguitySearch, Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Unfinished,
-        Walk, replay, state_count,
+        AmbiguitySearch, Comparison, Findings, KeptPairs, PlacedRobot, PlacedWorld, Relation,
+        Unfinished, Walk, replay, state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Watch},
@@ -32,6 +32,38 @@ fn smallest(findings: &Findings) -> Option<[usize; 2]> {
     findings.smallest().map(|pair| pair.map(|world| world.graph.edge_count()))
 }
 
+/// As processes on several machines search: each looks at some parts, and groups the worlds of some quotients.
+#[test]
+fn the_groups_of_some_quotients_and_those_of_the_others_are_all() {
+    for (class, marker) in
+        [(Class::Multigraph, "undirected"), (Class::Corridor, "none"), (Class::Simple, "movable")]
+    {
+        let search = AmbiguitySearch::new(class, 4, named(marker).unwrap()).unwrap();
+        let whole = search.run(&()).unwrap();
+        for kept in [KeptPairs::All, KeptPairs::Smallest] {
+            let mut all = search.grouped(Vec::new(), kept, &()).unwrap();
+            let mut machines = [Vec::new(), Vec::new(), Vec::new()];
+            for part in search.parts().iter().rev() {
+                let (placed_worlds, candidates) = search.look_at_part(part);
+                all.count_placed(part.edges(), placed_worlds);
+                for candidate in candidates {
+                    let key: usize =
+                        candidate.quotient().iter().map(|&byte| usize::from(byte)).sum();
+                    machines[key % 3].push(candidate);
+                }
+            }
+            assert!(machines.iter().all(|candidates| !candidates.is_empty()), "{class}");
+            for candidates in machines {
+                all = all.merged(search.grouped(candidates, kept, &()).unwrap(), kept);
+            }
+            match kept {
+                KeptPairs::All => assert_eq!(all, whole, "{class}"),
+                KeptPairs::Smallest => assert_eq!(all, whole.clone().into_smallest(), "{class}"),
+            }
+        }
+    }
+}
+
 /// All numbers are those of the independent implementation in `tests/oracle/ambiguity.py` of the
 /// workspace.
 // paper: marker.none-insufficient, marker.undirected-insufficient, marker.directional-sufficient
@@ -52,6 +84,26 @@ fn simple_worlds_with_up_to_eight_edges() {
         ("movable", vertices, [0; 8], None),
     ] {
         let findings = search(Class::Simple, 8, marker);
+        assert_eq!(counts(&findings), (placed.to_vec(), ambiguous.to_vec()), "{marker}");
+        assert_eq!(smallest(&findings), pair, "{marker}");
+    }
+}
+
+/// As above.
+#[test]
+fn multigraphs_with_up_to_five_edges() {
+    let directional = [2, 10, 74, 706, 8162];
+    for (marker, placed, ambiguous, pair) in [
+        ("none", [2, 5, 20, 107, 870], [1, 4, 9, 35, 175], Some([1, 2])),
+        ("undirected", [2, 7, 34, 239, 2286], [0, 2, 7, 31, 153], Some([2, 2])),
+        ("directional", directional, [0; 5], None),
+        ("undirected-edge", [2, 6, 42, 366, 4146], [0, 0, 4, 12, 88], Some([3, 3])),
+        ("directed-edge", directional, [0; 5], None),
+        ("two-identical", [2, 6, 33, 241, 2435], [0, 2, 8, 31, 188], Some([2, 2])),
+        ("two-distinct", [2, 8, 47, 375, 3905], [0, 2, 7, 29, 157], Some([2, 2])),
+        ("movable", [2, 7, 34, 239, 2286], [0, 2, 7, 25, 133], Some([2, 2])),
+    ] {
+        let findings = search(Class::Multigraph, 5, marker);
         assert_eq!(counts(&findings), (placed.to_vec(), ambiguous.to_vec()), "{marker}");
         assert_eq!(smallest(&findings), pair, "{marker}");
     }
@@ -139,14 +191,22 @@ fn cycles() -> [EmbeddedGraph; 2] {
     [3, 4].map(EmbeddedGraph::cycle)
 }
 
-/// The lemmas of `toposlam-proofs` alter relations in every other way.
 #[test]
-fn a_relation_that_names_states_that_do_not_exist_proves_nothing() {
+fn a_relation_that_is_not_kept_proves_nothing() {
     let [three, four] = cycles();
-    let comparison = Comparison::new(named("none").unwrap(), (&three, Dart(0)), (&four, Dart(0)));
+    let none = named("none").unwrap();
+    let comparison = Comparison::new(none, (&three, Dart(0)), (&four, Dart(0)));
     let [one, other] = comparison.starts([Dart(0), Dart(0)]);
     let Relation(pairs) = comparison.relation([Dart(0), Dart(0)]).unwrap();
     assert!(Relation(pairs.clone()).verify(&one, &other));
+    // Without any one of its pairs it is not closed.
+    for place in 0..pairs.len() {
+        let mut fewer = pairs.clone();
+        fewer.remove(place);
+        assert!(!Relation(fewer).verify(&one, &other), "{place}");
+    }
+    assert!(!Relation(Vec::new()).verify(&one, &other));
+    // Nor does one that names states that do not exist.
     for nowhere in [
         // A triangle has the darts 0 to 5.
         State { pose: Dart(6), ..one.state() },
@@ -156,6 +216,15 @@ fn a_relation_that_names_states_that_do_not_exist_proves_nothing() {
         let more = [&pairs[..], &[(nowhere, other.state())]].concat();
         assert!(!Relation(more).verify(&one, &other), "{nowhere:?}");
     }
+    // With an undirected marker, the same pairs show different percepts.
+    let undirected = named("undirected").unwrap();
+    let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
+    let [one, other] = comparison.starts([Dart(0), Dart(0)]);
+    let [here, there] = [one.state().placed, other.state().placed];
+    let marked = |(one, other): (State, State)| {
+        (State { placed: here, ..one }, State { placed: there, ..other })
+    };
+    assert!(!Relation(pairs.into_iter().map(marked).collect()).verify(&one, &other));
 }
 
 #[test]

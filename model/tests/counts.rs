@@ -4,7 +4,7 @@ use std::{collections::HashSet, ops::ControlFlow};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, EnumeratedGraph, Enumeration},
+    enumerate::{Class, Each, EnumeratedGraph, Enumeration, SizeError},
     isomorphism::{canonical, code},
 };
 
@@ -119,6 +119,13 @@ fn the_classes_are_what_a_filter_would_leave() {
             }
         }
     }
+}
+
+#[test]
+fn sizes_without_worlds_are_refused() {
+    let error = |edges| Enumeration::new(Each::World, Class::Simple, edges).unwrap_err();
+    assert_eq!(error(0), SizeError::NoEdge);
+    assert_eq!(error(33), SizeError::TooManyEdges(33));
 }
 
 /// A world is shown at its least start; with `a` automorphisms it has `2m / a` starts.

@@ -100,3 +100,16 @@ pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<GraphErr
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_graph_has_at_least_one_edge_and_not_more_than_can_be_numbered() {
+        assert_eq!(size_fault(0), Some(GraphError::NoEdge));
+        assert_eq!(size_fault(2), None);
+        assert_eq!(size_fault(2 * MAX_EDGES), None);
+        assert_eq!(size_fault(2 * (MAX_EDGES + 1)), Some(GraphError::TooManyEdges));
+    }
+}

@@ -136,9 +136,41 @@ mod tests {
         any_graph::{Class, any_graph},
         embedded_graph::Dart,
         marker::{Directional, NoMarker},
-        percept::Sighting,
-        trace::tests::{explored, lollipop},
+        percept::{Door, Sighting},
+        trace::tests::{explored, lollipop, walked},
     };
+
+    #[test]
+    fn the_poses_that_fit_grow_fewer() {
+        let graph = lollipop();
+        // Without a marker, from the end of the tail: 8 poses, one with degree 1. A robot that comes to a vertex with
+        // two doors may stand in 4 ways.
+        let mut trace = walked(&graph, Dart(0), &[Door(0), Door(1), Door(1)]);
+        trace.percepts.iter_mut().for_each(|percept| percept.sighting = Sighting::Nothing);
+        for (trace, left) in [(trace.without(0, 2), 4), (trace, 1)] {
+            let found = poses(&graph, &NoMarker, &anywhere(&graph, &NoMarker), &trace);
+            assert_eq!((found.left[0], found.misfit), (left, None));
+        }
+    }
+
+    #[test]
+    fn a_wrong_percept_and_a_missing_door_are_reported() {
+        let graph = lollipop();
+        let start = [GraphWorld::new(&graph, Dart(0)).state()];
+        let trace = walked(&graph, Dart(0), &[Door(0), Door(1)]);
+        let expected = Percept { degree: 3, sighting: Sighting::Nothing };
+        let (mut percept, mut door) = (trace.clone(), trace);
+        percept.percepts[1].degree = 2;
+        door.doors[1] = Door(3);
+        for (trace, event, reason) in [
+            (percept, 2, MisfitReason::Percept { expected }),
+            (door, 3, MisfitReason::NoSuchDoor { degree: 3 }),
+        ] {
+            let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
+            assert_eq!((misfit.event.id, misfit.moves), (event, 1));
+            assert_eq!(misfit.candidates[0].1, reason);
+        }
+    }
 
     #[test]
     fn a_percept_that_is_amended_leaves_the_poses_that_expect_it() {

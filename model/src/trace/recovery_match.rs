@@ -186,4 +186,18 @@ mod tests {
         let goes_on = reached(&contradictory(ended + 1), 1, 100);
         assert!(!matches!(goes_on, MatchEnd::Departure(_)), "{goes_on:?}");
     }
+
+    #[test]
+    fn a_departure_after_the_bound_on_darts_is_not_known() {
+        // A vertex with three doors, of which the robot would not take the last.
+        let percept = |degree, sighting| TraceEventKind::Percept(Percept { degree, sighting });
+        let start = percept(1, Sighting::Pointing(Door::BACK));
+        let (far, end) = (percept(3, Sighting::Nothing), percept(1, Sighting::Nothing));
+        let door = |door| TraceEventKind::Door(Door(door));
+        let trace = Trace::new([start, door(0), far, door(2), end]);
+        let trace = trace.unwrap();
+        assert!(matches!(reached(&trace, 32, 100), MatchEnd::Departure(_)));
+        let MatchEnd::Bound { event, bound } = reached(&trace, 32, 2) else { panic!() };
+        assert_eq!((event.id, bound), (2, 2));
+    }
 }

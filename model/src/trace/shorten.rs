@@ -36,9 +36,34 @@ mod tests {
     use super::*;
     use crate::{
         embedded_graph::Dart,
+        marker::Directional,
         percept::Door,
-        trace::tests::{lollipop, walked},
+        trace::{
+            poses,
+            tests::{lollipop, walked},
+        },
+        world::GraphWorld,
     };
+
+    #[test]
+    fn a_false_percept_is_shown_by_the_shortest_walk_to_it() {
+        let graph = lollipop();
+        let start = [GraphWorld::new(&graph, Dart(0)).state()];
+        // Round the triangle twice; the last percept is false.
+        let round = [0, 1, 1, 1, 2, 1, 1].map(Door);
+        let mut trace = walked(&graph, Dart(0), &round);
+        trace.percepts.last_mut().unwrap().degree = 7;
+        let misfit = |trace: &Trace| poses(&graph, &Directional, &start, trace).misfit;
+        let why = misfit(&trace).unwrap().candidates[0].1;
+        let shows = |trace: &Trace| {
+            misfit(trace).is_some_and(|misfit| {
+                misfit.event.id == trace.event(trace.len()).id && misfit.candidates[0].1 == why
+            })
+        };
+        let short = shortened(&trace, shows);
+        assert!(shows(&short));
+        assert_eq!(short.doors, [Door(0)]);
+    }
 
     #[test]
     fn a_long_trace_is_tried_as_often_as_the_limit_says() {

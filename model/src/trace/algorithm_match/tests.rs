@@ -61,7 +61,7 @@ fn a_robot_that_goes_on_when_all_is_known_departs() {
         let trace = walked(&graph, Dart(0), &doors);
         let followed = match_algorithm(algorithm, &trace, TraceClaim::Whole, 100);
         let allowed = vec![AllowedStep { door: None, purpose }];
-        let departure = Departure { algorithm, event: trace.event(trace.len() - 1), allowed };
+        let departure = Departure { algorithm, event: trace.door_event(doors.len() - 1), allowed };
         assert_eq!(followed.reached, MatchEnd::Departure(departure));
     }
 }
@@ -79,6 +79,17 @@ fn a_start_without_the_marker_departs_at_once() {
     assert_eq!(departure.event.id, 0);
     let contradiction = Contradiction::Start { perceived: percept };
     assert_eq!(departure.allowed[0].purpose, StepPurpose::Contradicted(contradiction));
+}
+
+#[test]
+fn a_run_that_reaches_the_bound_is_not_matched_further() {
+    let trace = explored(&lollipop(), Dart(0));
+    // The end of the tail has one dart, and the fork behind it has three.
+    for (bound, event) in [(0, 0), (3, 2)] {
+        let end = MatchEnd::Bound { event: trace.event(event), bound };
+        let followed = match_algorithm(Algorithm1, &trace, TraceClaim::Part, bound);
+        assert_eq!((followed.reached, followed.choices), (end, MatchedChoices::Default));
+    }
 }
 
 /// Every start with up to four edges, and runs with many choices in it.
@@ -163,22 +174,84 @@ fn every_part_of_a_run_with_other_choices_is_followed_to_its_end() {
     });
 }
 
-/// A percept that is replaced by another wrong one stays a contradiction.
+/// The percept that Algorithm 1 expects in place of one that contradicts its map.
+fn expected(departure: &Departure) -> Option<Percept> {
+    departure.allowed.iter().find_map(|allowed| match allowed.purpose {
+        StepPurpose::Contradicted(
+            Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
+        ) => Some(expected),
+        _ => None,
+    })
+}
+
+/// The trace with one more door at each of these moves.
+fn wrong_after(trace: &Trace, moves: &[usize]) -> Trace {
+    let mut wrong = trace.clone();
+    for &at in moves {
+        wrong.percepts[at].degree += 1;
+    }
+    wrong
+}
+
 #[test]
-fn no_percept_is_replaced_twice() {
-    let trace = explored(&lollipop(), Dart(0));
-    let asked = (1..trace.percepts().len()).map(|moves| {
-        let mut wrong = trace.clone();
-        wrong.percepts[moves].degree += 1;
-        let mut asked = 0;
-        let mut amend = |_: &Departure| {
-            asked += 1;
-            Some(Percept { degree: 9, sighting: Sighting::Nothing })
+fn all_contradictions_are_amended_in_one_match() {
+    let mut most = 0;
+    for_each_choice(|graph, trace| {
+        let departs = |wrong: &Trace| match match_algorithm(
+            Algorithm1,
+            wrong,
+            TraceClaim::Whole,
+            100,
+        )
+        .reached
+        {
+            MatchEnd::Departure(departure) => Some(departure),
+            _ => None,
         };
-        match_amended(Algorithm1, &wrong, TraceClaim::Whole, 100, Some(&mut amend));
-        asked
+        // The moves after which a wrong percept is a contradiction.
+        let contradicted = |&moves: &usize| {
+            let found = departs(&wrong_after(trace, &[moves]));
+            found.is_some_and(|found| {
+                found.event.id == 2 * moves && expected(&found) == Some(trace.percepts()[moves])
+            })
+        };
+        let wrong: Vec<usize> = (1..trace.percepts().len()).filter(contradicted).collect();
+        let all = wrong_after(trace, &wrong);
+        let mut amended = Vec::new();
+        let mut amend = |departure: &Departure| {
+            amended.push(departure.event.id / 2);
+            expected(departure)
+        };
+        let followed = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut amend));
+        assert_eq!((&followed.reached, &amended), (&MatchEnd::Mapped, &wrong));
+        let map = followed.run.map().complete().unwrap();
+        assert_eq!(code(map, FACING), code(graph, Dart(0)));
+        let good = match_algorithm(Algorithm1, trace, TraceClaim::Whole, 100);
+        assert_eq!(followed.choices, good.choices);
+        // One that is not replaced stays a departure.
+        if let [first, second, ..] = wrong[..] {
+            let mut once = |departure: &Departure| {
+                expected(departure).filter(|_| departure.event.id == 2 * first)
+            };
+            let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut once));
+            let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
+            assert_eq!(departure.event.id, 2 * second);
+        }
+        // A percept that is replaced by a wrong one is not replaced again.
+        if let Some(&first) = wrong.first() {
+            let mut asked = 0;
+            let mut wrongly = |_: &Departure| {
+                asked += 1;
+                Some(Percept { degree: 9, sighting: Sighting::Nothing })
+            };
+            let stopped =
+                match_amended(Algorithm1, &all, TraceClaim::Whole, 100, Some(&mut wrongly));
+            let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
+            assert_eq!((departure.event.id, asked), (2 * first, 1));
+        }
+        most = most.max(wrong.len());
     });
-    assert_eq!(asked.max(), Some(1));
+    assert!(most > 5, "{most}");
 }
 
 proptest! {
