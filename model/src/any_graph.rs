@@ -1,4 +1,4 @@
-//! Embedded graphs for property tests: an edge at a time, between any two corners.
+//! What several tests need: embedded graphs of every kind, a walk in one, and a watch that stops.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -77,7 +77,7 @@ pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
 
 /// Stops what it watches at the question with this number, from 1.
 pub(crate) struct QuestionLimit {
-    pub at: u64,
+    at: u64,
     asked: AtomicU64,
 }
 

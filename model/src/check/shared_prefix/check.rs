@@ -104,19 +104,12 @@ impl SharedPrefixCheck {
         let sample = all.iter().step_by(all.len().div_ceil(SAMPLE).max(1));
         let sample: BTreeMap<_, _> = sample.map(|unit| (*unit, check(unit))).collect();
         let check = |unit: &usize| sample.get(unit).cloned().unwrap_or_else(|| check(unit));
-        let found = in_parts(
-            &all,
-            watch,
-            PartTally::default,
-            check,
-            |tally| tally.starts,
-            PartTally::merged,
-        );
+        let merge = PartTally::merged;
+        let found = in_parts(&all, watch, PartTally::default, check, |tally| tally.starts, merge);
         // The progress is that of the runs.
         let all: Vec<usize> = (pieces.unit_count()..pieces.count()).collect();
         let count = |&piece: &usize| pieces.check(piece, new(), watch);
-        let worlds =
-            in_parts(&all, &(), PartTally::default, count, |found| found.worlds, PartTally::merged);
+        let worlds = in_parts(&all, &(), PartTally::default, count, |found| found.worlds, merge);
         CheckPieces::finished(found.merged(worlds), new)
     }
 
