@@ -15,9 +15,10 @@ use std::{
     error::Error,
 };
 
+use petgraph::{algo::dijkstra, graph::NodeIndex};
 use toposlam_model::{
     check::{Check, RunChoices, Shard},
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     folding::FoldedTrail,
     mapping::MappingAlgorithm,
@@ -46,18 +47,9 @@ struct PossibleStart {
 
 impl PossibleStart {
     fn new(graph: EmbeddedGraph) -> Self {
-        let mut distance = vec![u64::MAX; graph.vertex_count()];
-        distance[0] = 0;
-        let mut queue = VecDeque::from([graph.vertex(FACING)]);
-        while let Some(vertex) = queue.pop_front() {
-            for dart in graph.darts_of(vertex) {
-                let next = graph.vertex(graph.opposite(dart));
-                if distance[next.at()] == u64::MAX {
-                    distance[next.at()] = distance[vertex.at()] + 1;
-                    queue.push_back(next);
-                }
-            }
-        }
+        let node = |vertex: Vertex| NodeIndex::new(vertex.at());
+        let moves = dijkstra(&graph.to_petgraph(), node(graph.vertex(FACING)), None, |_| 1);
+        let distance = graph.vertices().map(|vertex| moves[&node(vertex)]).collect();
         let cycles = graph.edge_count() + 1 - graph.vertex_count();
         Self { graph, distance, cycles }
     }

@@ -1,4 +1,4 @@
-//! Embedded graphs for property tests: an edge at a time, between any two corners.
+//! What several tests need: embedded graphs of every kind, a walk in one, and a watch that stops.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -7,6 +7,7 @@ use proptest::{collection::vec, prelude::*};
 use crate::{
     embedded_graph::EmbeddedGraph,
     enumerate::{Each, Enumeration, Watch},
+    format::{named_world::NamedWorld, world_file},
     marker::Marker,
     percept::{Door, Percept},
     world::{GraphWorld, World},
@@ -48,6 +49,27 @@ fn grown(class: Class, edges: &[(u16, bool, u16)]) -> EmbeddedGraph {
     EmbeddedGraph::from_edge_lists(&named).unwrap()
 }
 
+/// The embedded graph of the clockwise neighbours of each vertex, as in `a: b | b: a c | c: b`.
+pub(crate) fn by_neighbours(text: &str) -> EmbeddedGraph {
+    EmbeddedGraph::from_neighbour_lists(&lists(text)).unwrap()
+}
+
+/// The embedded graph of the clockwise edges of each vertex, as in `u: loop loop way | v: way`.
+pub(crate) fn by_edges(text: &str) -> EmbeddedGraph {
+    EmbeddedGraph::from_edge_lists(&lists(text)).unwrap()
+}
+
+fn lists(text: &str) -> Vec<(&str, Vec<&str>)> {
+    let vertices = text.split('|').map(|vertex| vertex.split_once(':').unwrap());
+    vertices.map(|(name, list)| (name.trim(), list.split_whitespace().collect())).collect()
+}
+
+/// A world of `worlds/`.
+pub(crate) fn world(name: &str) -> NamedWorld {
+    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    world_file::read(&std::fs::read(path).unwrap()).unwrap()
+}
+
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
     Enumeration::new(Each::Start, class, edges).unwrap().graphs()
@@ -55,7 +77,7 @@ pub(crate) fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
 
 /// Stops what it watches at the question with this number, from 1.
 pub(crate) struct QuestionLimit {
-    pub at: u64,
+    at: u64,
     asked: AtomicU64,
 }
 

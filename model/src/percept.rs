@@ -195,6 +195,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_graph::by_neighbours;
 
     #[test]
     fn the_events_of_a_walk_take_turns() {
@@ -208,13 +209,7 @@ mod tests {
     }
 
     fn k4() -> EmbeddedGraph {
-        EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b", "c", "d"]),
-            ("b", vec!["a", "d", "c"]),
-            ("c", vec!["a", "b", "d"]),
-            ("d", vec!["a", "c", "b"]),
-        ])
-        .unwrap()
+        by_neighbours("a: b c d | b: a d c | c: a b d | d: a c b")
     }
 
     #[test]
@@ -226,17 +221,6 @@ mod tests {
             assert_eq!(graph.behind(pose, Door(2)), graph.counterclockwise(pose));
             assert_eq!(graph.behind(pose, Door(3)), pose);
             assert_eq!(graph.behind(pose, Door(u32::MAX)), pose);
-        }
-    }
-
-    /// A mark on an edge is noticed by a robot that has just traversed it.
-    #[test]
-    fn a_mark_on_the_edge_of_another_entry_is_left_out() {
-        for sighting in [Sighting::Passed, Sighting::PassedAlong, Sighting::PassedAgainst] {
-            let percept = Percept { degree: 3, sighting };
-            assert_eq!(percept.seen_from(Door::BACK), percept);
-            let nothing = Percept { degree: 3, sighting: Sighting::Nothing };
-            assert_eq!(percept.seen_from(Door(1)), nothing);
         }
     }
 
@@ -252,5 +236,16 @@ mod tests {
             }
         }
         assert_eq!(retrace(std::iter::empty()).count(), 0);
+    }
+
+    /// A mark on an edge is noticed by a robot that has just traversed it.
+    #[test]
+    fn a_mark_on_the_edge_of_another_entry_is_left_out() {
+        for sighting in [Sighting::Passed, Sighting::PassedAlong, Sighting::PassedAgainst] {
+            let percept = Percept { degree: 3, sighting };
+            assert_eq!(percept.seen_from(Door::BACK), percept);
+            let nothing = Percept { degree: 3, sighting: Sighting::Nothing };
+            assert_eq!(percept.seen_from(Door(1)), nothing);
+        }
     }
 }

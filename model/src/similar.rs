@@ -40,22 +40,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edits_are_insertions_removals_and_replacements() {
-        for (one, other, expected) in [
-            ("", "", 0),
-            ("corner", "Corner", 0),
-            ("corner", "crner", 1),
-            ("corner", "corners", 1),
-            ("kitten", "sitting", 3),
-            ("", "abc", 3),
-            ("abc", "", 3),
-        ] {
-            let letters: Vec<_> = one.chars().collect();
-            assert_eq!(edits(&letters, other), expected, "{one} {other}");
-        }
-    }
-
-    #[test]
     fn the_nearest_name_is_offered_if_it_is_near() {
         for (name, offered) in [
             ("corne", "; did you mean `corner`?"),

@@ -1,35 +1,28 @@
 //! What worlds cost, with each algorithm and at least: the tables in `worlds/README.md` and
 //! `docs/folding.md`.
 
-use std::{fs, ops::RangeInclusive, path::Path};
+use std::ops::RangeInclusive;
 
 use toposlam_model::{
     check::{Check, DEFAULT_STATE_BUDGET, RunChoices, Shard, Tally, every_way},
     embedded_graph::Dart,
     enumerate::Class,
     folding::certificate_length,
-    format::{named_world::NamedWorld, world_file},
+    format::named_world::NamedWorld,
     mapping::{Algorithm1Run, MappingAlgorithm},
     world::GraphWorld,
 };
 
-fn read(path: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    fs::read_to_string(folder.join(path)).unwrap()
-}
+use crate::{text_of, world, world_names};
 
 /// The rows of the table that stands under a heading of a page. Digits of large numbers are grouped there.
 fn printed(page: &str, heading: &str) -> Vec<String> {
-    let page = read(page);
+    let page = text_of(page);
     let (_, section) = page.split_once(&format!("\n## {heading}\n")).unwrap();
     let section = section.split("\n## ").next().unwrap();
     let rows = section.lines().filter(|line| line.starts_with('|'));
     // After its head.
     rows.skip(2).map(|row| row.replace(',', "")).collect()
-}
-
-fn world(name: &str) -> NamedWorld {
-    world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap()
 }
 
 fn moves(algorithm: MappingAlgorithm, world: &NamedWorld, facing: Dart) -> u64 {
@@ -67,13 +60,8 @@ fn the_table_of_costs_is_true() {
 
 /// A row for each world file without loops and parallel edges, from the file's own start.
 fn own_starts() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds");
-    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
-    let names = files.filter_map(|file| Some(file.to_str()?.strip_suffix(".toml")?.to_owned()));
-    let mut names: Vec<_> = names.collect();
-    names.sort();
-    let worlds = names.iter().map(|name| world(name)).filter(|world| world.graph.is_simple());
-    let rows = worlds.map(|world| {
+    let worlds = world_names().into_iter().map(|name| world(&name));
+    let rows = worlds.filter(|world| world.graph.is_simple()).map(|world| {
         let facing = world.start.unwrap();
         let certificate = certificate_length(&world.graph, facing);
         let one = moves(MappingAlgorithm::Algorithm1, &world, facing);

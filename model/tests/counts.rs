@@ -121,6 +121,13 @@ fn the_classes_are_what_a_filter_would_leave() {
     }
 }
 
+#[test]
+fn sizes_without_worlds_are_refused() {
+    let error = |edges| Enumeration::new(Each::World, Class::Simple, edges).unwrap_err();
+    assert_eq!(error(0), SizeError::NoEdge);
+    assert_eq!(error(33), SizeError::TooManyEdges(33));
+}
+
 /// A world is shown at its least start; with `a` automorphisms it has `2m / a` starts.
 #[test]
 fn the_worlds_account_for_all_starts() {
@@ -136,26 +143,4 @@ fn the_worlds_account_for_all_starts() {
             assert_eq!(starts, count(Each::Start, class, edges, |_| true)[edges - 1]);
         }
     }
-}
-
-#[test]
-fn the_parts_are_the_whole_in_order() {
-    for class in Class::ALL {
-        let enumeration = Enumeration::new(Each::World, class, 6).unwrap();
-        let mut joined = Vec::new();
-        for part in enumeration.parts() {
-            let _ = part.for_each(&mut |found| {
-                joined.push(found.graph.clone());
-                ControlFlow::Continue(())
-            });
-        }
-        assert_eq!(joined, enumeration.graphs());
-    }
-}
-
-#[test]
-fn sizes_without_worlds_are_refused() {
-    let error = |edges| Enumeration::new(Each::World, Class::Simple, edges).unwrap_err();
-    assert_eq!(error(0), SizeError::NoEdge);
-    assert_eq!(error(33), SizeError::TooManyEdges(33));
 }

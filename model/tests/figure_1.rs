@@ -1,22 +1,19 @@
 //! Section 2.2: that one undirected marker does not suffice, the cases of the printed proof of it, and
 //! the other claims about markers there. The proof's base and step are lemmas of `toposlam-proofs`.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::collections::BTreeMap;
 
 use toposlam_model::{
     ambiguity::{Comparison, Relation},
     embedded_graph::{Dart, EmbeddedGraph},
-    format::{named_world::NamedWorld, world_file},
+    format::named_world::NamedWorld,
     isomorphism::isomorphism,
     marker::{Marker, named},
     percept::Door,
     world::State,
 };
 
-fn read(name: &str) -> NamedWorld {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../worlds/{name}.toml"));
-    world_file::read(&fs::read(file).unwrap()).unwrap()
-}
+use crate::world;
 
 fn comparison<'w>(
     marker: &'static dyn Marker,
@@ -49,7 +46,7 @@ fn relation([a, b]: [&NamedWorld; 2]) -> Relation {
 // paper: marker.undirected-insufficient
 #[test]
 fn no_walk_tells_the_worlds_of_figure_1_apart_with_an_undirected_marker() {
-    let worlds = [read("figure-1a"), read("figure-1b")];
+    let worlds = [world("figure-1a"), world("figure-1b")];
     assert!(isomorphism(&worlds[0].graph, &worlds[1].graph).is_err());
     let [a, b] = &worlds;
     assert_eq!(relation([a, b]).0.len(), 32);
@@ -59,7 +56,7 @@ fn no_walk_tells_the_worlds_of_figure_1_apart_with_an_undirected_marker() {
 // paper: fig1.cases
 #[test]
 fn the_cases_of_the_printed_proof() {
-    let [a, b] = [read("figure-1a"), read("figure-1b")];
+    let [a, b] = [world("figure-1a"), world("figure-1b")];
     let mut cases = BTreeMap::new();
     for (State { pose: here, .. }, State { pose: there, .. }) in relation([&a, &b]).0 {
         let list = neighbours(&a.graph, here);
@@ -81,7 +78,7 @@ fn the_cases_of_the_printed_proof() {
 // paper: marker.none-cycles, marker.none-insufficient
 #[test]
 fn without_a_marker_the_cycles_of_three_and_of_four_cannot_be_told_apart() {
-    let [three, four] = [read("cycle-3"), read("cycle-4")];
+    let [three, four] = [world("cycle-3"), world("cycle-4")];
     let comparison = comparison(named("none").unwrap(), [&three, &four]);
     for (one, other) in three.graph.darts().flat_map(|d| four.graph.darts().map(move |e| (d, e))) {
         let relation = comparison.relation([one, other]).unwrap();

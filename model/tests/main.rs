@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+use std::{fs, path::Path};
+
 use toposlam_model::{
     check::{Check, RunChoices, Shard, Tally},
     embedded_graph::EmbeddedGraph,
     enumerate::{Class, Each, Enumeration},
+    format::{named_world::NamedWorld, world_file},
     mapping::Explorer,
     percept::{Door, Percept, Sighting},
 };
@@ -13,6 +16,27 @@ use toposlam_model::{
 /// Every start of a class with a number of edges. Its facing dart is dart 0.
 fn starts(class: Class, edges: usize) -> Vec<EmbeddedGraph> {
     Enumeration::new(Each::Start, class, edges).unwrap().graphs()
+}
+
+/// The text of a file of the workspace.
+fn text_of(path: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)).unwrap()
+}
+
+/// A world of `worlds/`.
+fn world(name: &str) -> NamedWorld {
+    let text = text_of(&format!("worlds/{name}.toml"));
+    world_file::read(text.as_bytes()).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The names of all worlds, in order.
+fn world_names() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds");
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
+    let names = files.filter_map(|file| Some(file.to_str()?.strip_suffix(".toml")?.to_owned()));
+    let mut names: Vec<_> = names.collect();
+    names.sort();
+    names
 }
 
 /// The check of explorers with their default choices.

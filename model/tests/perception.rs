@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::{Door, Percept},
-    world::{GraphWorld, RefusedAction, World},
+    world::{GraphWorld, World},
 };
 
 use crate::{marked, markers::junction, plain};
@@ -31,16 +31,6 @@ fn doors_lead_clockwise_from_the_entry() {
     // Round the loop: the other end is entered, and the way back is one or two doors on.
     assert_eq!(from_the_dead_end(&[0, 2, 1]), [marked(1, 0), plain(4), plain(4), marked(1, 0)]);
     assert_eq!(from_the_dead_end(&[0, 3, 2]), [marked(1, 0), plain(4), plain(4), marked(1, 0)]);
-}
-
-#[test]
-fn a_door_that_is_not_there_cannot_be_taken() {
-    let graph = junction();
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let error = RefusedAction::NoSuchDoor { door: Door(1), degree: 1 };
-    assert_eq!(world.traverse(Door(1)), Err(error));
-    assert_eq!(world.pose(), Dart(0));
-    assert_eq!(error.to_string(), "door 1 was taken at a vertex with 1 door");
 }
 
 proptest! {

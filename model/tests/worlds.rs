@@ -1,10 +1,5 @@
 //! The world files of `worlds/`: each is what its name and its README say.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
-
 use toposlam_model::{
     floor_plan::JunctionKind,
     format::{
@@ -12,30 +7,10 @@ use toposlam_model::{
         plantri::{self, PlantriCode},
         world_file,
     },
-    isomorphism::{Difference, isomorphism, mirror_isomorphism},
+    isomorphism::isomorphism,
 };
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds")
-}
-
-fn read(name: &str) -> NamedWorld {
-    let path = folder().join(format!("{name}.toml"));
-    let bytes = fs::read(&path).unwrap();
-    world_file::read(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-/// The names of all worlds, in order.
-fn names() -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
-        .collect();
-    names.sort();
-    names
-}
+use crate::{text_of, world, world_names};
 
 /// The worlds of real buildings without corners are those with corners, smoothed; and these are Figure 1(a) and
 /// shape 6 of the paper, with the corners of the ring on the rim of the wheel.
@@ -45,12 +20,12 @@ fn the_real_buildings_are_the_same_with_and_without_corners() {
         [("aces", "figure-1a", (9, 12), (5, 8)), ("seattle", "shape-6", (6, 6), (2, 2))]
     {
         let [bare, cornered] =
-            [name, &format!("{name}-corners")].map(|name| read(&format!("real/{name}")));
+            [name, &format!("{name}-corners")].map(|name| world(&format!("real/{name}")));
         assert_eq!((cornered.graph.vertex_count(), cornered.graph.edge_count()), size);
         assert_eq!((bare.graph.vertex_count(), bare.graph.edge_count()), smooth);
         let smoothed = cornered.smoothed();
         assert!(isomorphism(&smoothed.graph, &bare.graph).is_ok(), "{name}");
-        let of_paper = read(of_paper).smoothed();
+        let of_paper = world(of_paper).smoothed();
         assert!(isomorphism(&of_paper.graph, &bare.graph).is_ok(), "{name}");
         // The same places have the same positions.
         for (vertex, position) in smoothed.vertex_names.iter().zip(smoothed.positions.unwrap()) {
@@ -59,9 +34,10 @@ fn the_real_buildings_are_the_same_with_and_without_corners() {
             assert_eq!(expected.map(f64::to_bits), position.map(f64::to_bits), "{vertex}");
         }
         for world in [&bare, &cornered] {
-            let file =
-                fs::read_to_string(folder().join(format!("real/{}.toml", world.name))).unwrap();
-            assert_eq!(world_file::to_toml(world), file);
+            assert_eq!(
+                world_file::to_toml(world),
+                text_of(&format!("worlds/real/{}.toml", world.name))
+            );
         }
     }
 }
@@ -69,14 +45,14 @@ fn the_real_buildings_are_the_same_with_and_without_corners() {
 /// Every world has a name, a description and a start, and is written as it was read, also in plantri's codes.
 #[test]
 fn every_world_is_written_as_it_was_read() {
-    let readme = fs::read_to_string(folder().join("README.md")).unwrap();
-    for name in names() {
-        let world = read(&name);
+    let readme = text_of("worlds/README.md");
+    for name in world_names() {
+        let world = world(&name);
         assert_eq!(world.name, name);
         assert!(!world.about.is_empty() && world.start.is_some(), "{name}");
         assert!(readme.contains(&format!("[{name}]({name}.toml)")), "{name}");
 
-        let file = fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap();
+        let file = text_of(&format!("worlds/{name}.toml"));
         assert_eq!(world_file::to_toml(&world), file, "{name} is not as the tools would write it");
         let json = world_file::to_json_text(&world);
         assert_eq!(world_file::read(json.as_bytes()).unwrap(), world);
@@ -99,10 +75,10 @@ fn every_world_is_written_as_it_was_read() {
 
 #[test]
 fn every_world_has_the_size_and_the_genus_that_its_name_says() {
-    let sizes: Vec<_> = names()
+    let sizes: Vec<_> = world_names()
         .into_iter()
         .map(|name| {
-            let graph = read(&name).graph;
+            let graph = world(&name).graph;
             let size = (graph.vertex_count(), graph.edge_count(), graph.genus());
             (name, size)
         })
@@ -133,7 +109,7 @@ fn every_world_has_the_size_and_the_genus_that_its_name_says() {
 
 #[test]
 fn figure_1_is_one_graph_whose_rim_is_reversed() {
-    let (a, b) = (read("figure-1a"), read("figure-1b"));
+    let (a, b) = (world("figure-1a"), world("figure-1b"));
     for vertex in a.graph.vertices() {
         let around = |world: &NamedWorld, reversed: bool| {
             let mut names: Vec<_> = world
@@ -154,15 +130,6 @@ fn figure_1_is_one_graph_whose_rim_is_reversed() {
     }
 }
 
-// paper: fig1.different
-#[test]
-fn figure_1_shows_two_worlds() {
-    let (a, b) = (read("figure-1a").graph, read("figure-1b").graph);
-    assert_eq!((a.genus(), b.genus()), (0, 1));
-    assert_eq!(isomorphism(&a, &b), Err(Difference::Genus(0, 1)));
-    assert_eq!(mirror_isomorphism(&a, &b), None);
-}
-
 // paper: env.hallways, env.junction-types
 #[test]
 fn buildings_have_all_three_kinds_of_junction() {
@@ -172,7 +139,7 @@ fn buildings_have_all_three_kinds_of_junction() {
         ("building-12", [2, 4, 6]),
         ("building-25", [6, 1, 18]),
     ] {
-        let plan = read(name).plan.unwrap();
+        let plan = world(name).plan.unwrap();
         let count = |kind| plan.junctions().iter().filter(|j| j.kind == kind).count();
         let counts = [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T].map(count);
         assert_eq!(counts, kinds, "{name}");

@@ -78,10 +78,6 @@ fn building(junctions: usize, more_hallways: usize, random: &mut Random) -> Embe
             (at.to_string(), around.iter().map(ToString::to_string).collect())
         })
         .collect();
-    let lists: Vec<(&str, Vec<&str>)> = lists
-        .iter()
-        .map(|(at, around)| (at.as_str(), around.iter().map(String::as_str).collect()))
-        .collect();
     EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
 }
 

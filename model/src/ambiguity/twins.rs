@@ -213,16 +213,10 @@ mod tests {
     use super::*;
     use crate::{
         ambiguity::quotient::QuotientCode,
-        any_graph::{Class, starts},
-        format::world_file,
+        any_graph::{Class, starts, world},
         isomorphism::isomorphism,
         marker::{Directional, NoMarker, Undirected},
     };
-
-    fn world(name: &str) -> crate::format::named_world::NamedWorld {
-        let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        world_file::read(&std::fs::read(path).unwrap()).unwrap()
-    }
 
     /// The paper's example: the wheel in the plane, and the wheel on the torus.
     #[test]

@@ -1,11 +1,12 @@
 //! The witnesses: a relation between states that no walk leaves, or a walk that distinguishes states.
 //! Each is verified without regard to how it was found.
 
+use super::PlacedRobot;
 use crate::{
     embedded_graph::Dart,
     marker::Marker,
     percept::Percept,
-    world::{Action, GraphWorld, RefusedAction, State},
+    world::{Action, RefusedAction, State},
 };
 
 /// Pairs of states, one of each world, in which two robots that do the same can be: a bisimulation.
@@ -26,16 +27,12 @@ impl Relation {
     /// never perceive a difference: they are among the pairs; in each pair they perceive the same
     /// and can do the same; and whatever they do leads to another of the pairs.
     // paper: fig1.base, fig1.step, fig1.cases
-    pub fn verify<M: Marker + Clone>(
-        &self,
-        one: &GraphWorld<'_, M>,
-        other: &GraphWorld<'_, M>,
-    ) -> bool {
+    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
         let mut pairs = self.0.clone();
         pairs.sort_unstable();
         let among = |pair: (State, State)| pairs.binary_search(&pair).is_ok();
         // A claim may name states that do not exist.
-        let exists = |world: &GraphWorld<'_, M>, state: State| {
+        let exists = |world: &PlacedRobot<'_>, state: State| {
             let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
             is_dart(state.pose) && state.placed.map_or(world.marker().is_movable(), is_dart)
         };
@@ -47,7 +44,7 @@ impl Relation {
             one.sensed() == other.sensed()
                 && one.actions().eq(other.actions())
                 && one.actions().all(|action| {
-                    let after = |world: &GraphWorld<'_, M>| {
+                    let after = |world: &PlacedRobot<'_>| {
                         let mut world = world.clone();
                         world.act(action).map(|()| world.state())
                     };
@@ -64,12 +61,8 @@ impl Relation {
 impl Walk {
     /// Whether this walk can be walked by the robots in both worlds, and they perceive the same up
     /// to its end, and there what it says, which differs.
-    pub fn verify<M: Marker + Clone>(
-        &self,
-        one: &GraphWorld<'_, M>,
-        other: &GraphWorld<'_, M>,
-    ) -> bool {
-        let replayed = |world: &GraphWorld<'_, M>| replay(world.clone(), &self.actions);
+    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
+        let replayed = |world: &PlacedRobot<'_>| replay(world.clone(), &self.actions);
         let (Ok(mut one), Ok(mut other)) = (replayed(one), replayed(other)) else {
             return false;
         };
@@ -82,8 +75,8 @@ impl Walk {
 ///
 /// # Errors
 /// Returns an error if an action is impossible.
-pub fn replay<M: Marker>(
-    mut world: GraphWorld<'_, M>,
+pub fn replay(
+    mut world: PlacedRobot<'_>,
     actions: &[Action],
 ) -> Result<Vec<Percept>, RefusedAction> {
     let mut percepts = vec![world.sensed()];

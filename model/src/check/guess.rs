@@ -36,11 +36,11 @@ pub fn determines_world(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{folding::certificate, marker::Undirected};
+    use crate::{any_graph::by_edges, folding::certificate, marker::Undirected};
 
     /// An edge with a loop at its end. The start is the other end.
     fn edge_and_loop() -> EmbeddedGraph {
-        EmbeddedGraph::from_edge_lists(&[("a", vec!["e"]), ("b", vec!["e", "l", "l"])]).unwrap()
+        by_edges("a: e | b: e l l")
     }
 
     fn doors(numbers: &[u32]) -> Vec<Door> {
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn without_a_marker_only_a_tree_can_be_determined() {
-        let edge = EmbeddedGraph::from_edge_lists(&[("a", vec!["e"]), ("b", vec!["e"])]).unwrap();
+        let edge = EmbeddedGraph::chain(1);
         let determined = |graph, walk| determines_world((graph, Dart(0)), &NoMarker, &doors(walk));
         assert_eq!(determined(&edge, &[]), Some(false));
         assert_eq!(determined(&edge, &[0]), Some(true));

@@ -49,10 +49,6 @@ impl MappingAlgorithm {
         with_explorer!(self, E => sweep.resume(E::default, units, watch))
     }
 
-    pub fn unit_count(self, sweep: &SharedPrefixCheck) -> usize {
-        with_explorer!(self, E => sweep.unit_count(E::default))
-    }
-
     pub fn pieces(self, sweep: &SharedPrefixCheck, watch: &dyn Watch) -> CheckPieces {
         with_explorer!(self, E => CheckPieces::new(sweep, E::default, watch))
     }

@@ -4,7 +4,7 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{FailedStart, RunChoices, Tally, WorstStart, first_false_step, judge_start};
+use super::{FailedStart, RunChoices, Tally, WorstStart, judge_start};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration, SizeError, Watch, in_parts},
@@ -136,11 +136,7 @@ fn tally_parts<P: Sync>(
         tally.interrupted = check_stop(watch).is_break() || check(part, &mut tally).is_break();
         tally
     };
-    let merge = |mut sum: Tally, later: Tally| {
-        sum.merge(later);
-        sum
-    };
-    in_parts(parts, watch, Tally::default, check, |tally| tally.starts, merge)
+    in_parts(parts, watch, Tally::default, check, |tally| tally.starts, Tally::merged)
 }
 
 /// Checks the starts of one part, one after the other. Memory is kept from start to start.
@@ -176,8 +172,7 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
             if let Some(tree) = &mut self.certificates
                 && measured.is_none_or(|(at, _)| at != vertex)
             {
-                tree.grow(graph, vertex);
-                measured = Some((vertex, tree.length(graph) as u64));
+                measured = Some((vertex, tree.certificate(graph, vertex) as u64));
             }
             tally.starts += 1;
             self.check_start((graph, facing), measured.map(|(_, length)| length), tally);
@@ -221,9 +216,7 @@ impl<'a, E: Explorer, N: Fn() -> E> StartChecker<'a, E, N> {
         };
         if tally.failure.is_none() {
             let (flaw, moves) = failure;
-            let false_step = moves.and_then(|_| first_false_step((self.new)(), graph, facing));
-            let graph = graph.clone();
-            tally.failure = Some(FailedStart { graph, facing, flaw, moves, false_step });
+            tally.failure = Some(FailedStart::new(self.new, (graph, facing), flaw, moves));
         }
     }
 }

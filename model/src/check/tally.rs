@@ -4,11 +4,11 @@ use std::cmp::Reverse;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ChoicesLimit, EveryWay, FalseStep};
+use super::{ChoicesLimit, EveryWay, FalseStep, first_false_step};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{StartCode, canonical},
-    mapping::{CostOrder, Flaw},
+    mapping::{CostOrder, Explorer, Flaw},
 };
 
 /// A start by its place in the [enumeration](crate::enumerate::Enumeration): its world as discovered from its
@@ -58,10 +58,26 @@ pub struct FailedStart {
     pub false_step: Option<FalseStep>,
 }
 
+impl FailedStart {
+    /// The start of a flaw. If that is one of the run with the default choices, the run is made again for its first
+    /// wrong addition.
+    pub(super) fn new<E: Explorer>(
+        new: impl Fn() -> E,
+        (graph, facing): (&EmbeddedGraph, Dart),
+        flaw: Flaw,
+        moves: Option<u64>,
+    ) -> Self {
+        let false_step = moves.and_then(|_| first_false_step(new(), graph, facing));
+        Self { graph: graph.clone(), facing, flaw, moves, false_step }
+    }
+}
+
 /// A start that a [`Tally`] keeps: of all such starts, one.
 pub trait KeptStart {
-    /// Whether it is kept in place of another one, which was counted before it.
-    fn replaces(&self, other: &Self) -> bool;
+    /// Whether it is kept in place of another one, which was counted before it. By default the first is kept.
+    fn replaces(&self, _other: &Self) -> bool {
+        false
+    }
 }
 
 /// Of equals the first is kept.
@@ -71,12 +87,7 @@ impl KeptStart for WorstStart {
     }
 }
 
-/// The first is kept.
-impl KeptStart for FailedStart {
-    fn replaces(&self, _: &Self) -> bool {
-        false
-    }
-}
+impl KeptStart for FailedStart {}
 
 /// The most moves; of equals the start that the enumeration finds first, in whatever order they are counted.
 impl KeptStart for (u64, EnumeratedStart) {
@@ -103,9 +114,9 @@ fn keep<S: KeptStart>(kept: &mut Option<S>, other: Option<S>) {
 /// The counts of a check, or of a part of one: how many starts were mapped correctly, and in how many moves.
 ///
 /// `W` and `F` name the start that took the most moves and the first one that failed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, bound(deserialize = "W: Deserialize<'de>, F: Deserialize<'de>"))]
-pub struct Tally<W = WorstStart, F = FailedStart> {
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Tally<W = Option<WorstStart>, F = Option<FailedStart>> {
     /// Embedded graphs up to isomorphism.
     pub worlds: u64,
     pub starts: u64,
@@ -126,12 +137,12 @@ pub struct Tally<W = WorstStart, F = FailedStart> {
     pub below_certificate: u64,
     /// The first start that took the most moves with the default choices; none in a part of a check if another part
     /// is known to have a run with more.
-    pub worst: Option<W>,
+    pub worst: W,
     /// The moves and the vertices of the run with the most moves per vertex.
     #[serde(alias = "dearest")]
     pub most_moves_per_vertex: Option<(u64, u64)>,
     /// The first start on which the algorithm failed.
-    pub failure: Option<F>,
+    pub failure: F,
     /// With all choices: distinct states at line 4, summed over the starts.
     pub states: u64,
     /// With all choices: runs, summed over the starts.
@@ -147,34 +158,9 @@ pub struct Tally<W = WorstStart, F = FailedStart> {
 
 /// The counts of a part of a check whose starts are enumerated. They do not depend on the order in which starts are
 /// counted and parts are merged.
-pub type PartTally = Tally<(u64, EnumeratedStart), EnumeratedStart>;
+pub type PartTally = Tally<Option<(u64, EnumeratedStart)>, Option<EnumeratedStart>>;
 
-impl<W, F> Default for Tally<W, F> {
-    fn default() -> Self {
-        Self {
-            worlds: 0,
-            starts: 0,
-            mapped: 0,
-            unknown: 0,
-            moves_total: 0,
-            moves_made: 0,
-            certificate_total: 0,
-            certificate_max: 0,
-            below_certificate: 0,
-            worst: None,
-            most_moves_per_vertex: None,
-            failure: None,
-            states: 0,
-            runs: 0,
-            extremes: None,
-            over_budget: 0,
-            over_memory: 0,
-            interrupted: false,
-        }
-    }
-}
-
-impl<F> Tally<WorstStart, F> {
+impl<F> Tally<Option<WorstStart>, F> {
     /// The most moves of a run with the default choices; 0 if there is none.
     pub fn moves_max(&self) -> u64 {
         self.worst.as_ref().map_or(0, |worst| worst.moves)
@@ -226,7 +212,11 @@ impl<W, F> Tally<W, F> {
         }
     }
 
-    pub(super) fn with_starts<V, G>(self, worst: Option<V>, failure: Option<G>) -> Tally<V, G> {
+    pub(super) fn with_starts(
+        self,
+        worst: Option<WorstStart>,
+        failure: Option<FailedStart>,
+    ) -> Tally {
         let mut tally = Tally { worst, failure, ..Tally::default() };
         tally.add_counts(&self);
         tally
@@ -252,7 +242,7 @@ impl<W, F> Tally<W, F> {
     }
 }
 
-impl<W: KeptStart, F: KeptStart> Tally<W, F> {
+impl<W: KeptStart, F: KeptStart> Tally<Option<W>, Option<F>> {
     pub fn count_certificate(&mut self, certificate: Option<u64>) {
         let certificate = certificate.unwrap_or_default();
         self.certificate_total += certificate;
@@ -275,6 +265,11 @@ impl<W: KeptStart, F: KeptStart> Tally<W, F> {
 
     pub fn count_failure(&mut self, failure: F) {
         keep(&mut self.failure, Some(failure));
+    }
+
+    pub(super) fn merged(mut self, later: Self) -> Self {
+        self.merge(later);
+        self
     }
 
     /// Adds the counts of another, later part of the same check.

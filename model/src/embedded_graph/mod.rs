@@ -227,12 +227,12 @@ impl EmbeddedGraph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_graph::{by_edges, by_neighbours};
 
     /// The two-vertex graph with three parallel edges, in the plane (`crossed` = false) and on the
     /// torus.
     fn theta(crossed: bool) -> EmbeddedGraph {
-        let far = if crossed { ["a", "b", "c"] } else { ["c", "b", "a"] };
-        EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
+        by_edges(if crossed { "u: a b c | v: a b c" } else { "u: a b c | v: c b a" })
     }
 
     // paper: world.graph, world.embedding
@@ -240,8 +240,7 @@ mod tests {
     fn three_parallel_edges_lie_in_the_plane_or_on_the_torus() {
         assert_eq!((theta(false).face_count(), theta(false).genus()), (3, 0));
         assert_eq!((theta(true).face_count(), theta(true).genus()), (1, 1));
-        let bouquet = EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "a"])]).unwrap();
-        assert!(!theta(true).is_simple() && !bouquet.is_simple());
+        assert!(!theta(true).is_simple() && !EmbeddedGraph::cycle(1).is_simple());
         assert!(EmbeddedGraph::chain(1).is_simple());
     }
 
@@ -257,14 +256,7 @@ mod tests {
 
     #[test]
     fn the_mirror_image_of_the_mirror_image_is_the_graph() {
-        let graph = EmbeddedGraph::from_neighbour_lists(&[
-            ("x", vec!["a", "b", "c", "d"]),
-            ("a", vec!["x", "b"]),
-            ("b", vec!["x", "a"]),
-            ("c", vec!["x"]),
-            ("d", vec!["x"]),
-        ])
-        .unwrap();
+        let graph = by_neighbours("x: a b c d | a: x b | b: x a | c: x | d: x");
         let mirror = graph.mirror_image();
         assert_ne!(mirror, graph);
         assert_eq!(mirror.mirror_image(), graph);

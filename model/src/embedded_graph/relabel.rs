@@ -51,12 +51,12 @@ impl EmbeddedGraph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_graph::by_edges;
 
     /// That the copy is isomorphic is a test of `isomorphism`.
     #[test]
     fn an_order_names_one_dart_of_every_vertex() {
-        let lists = [("u", vec!["a", "b", "a"]), ("v", vec!["b", "c"]), ("w", vec!["c"])];
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let graph = by_edges("u: a b a | v: b c | w: c");
         let (_, number) = graph.relabelled(&[Dart(5), Dart(4), Dart(1)]).unwrap();
         assert_eq!(number[5], Dart(0));
         for unfit in [&[Dart(5), Dart(4)][..], &[Dart(5), Dart(4), Dart(3)], &[Dart(6); 3]] {

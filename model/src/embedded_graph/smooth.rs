@@ -40,12 +40,7 @@ mod tests {
             let smooth = EmbeddedGraph::cycle(edges).smoothed().0;
             assert_eq!((smooth.vertex_count(), smooth.edge_count(), smooth.genus()), (1, 1, 0));
         }
-        let chain = EmbeddedGraph::from_neighbour_lists(&[
-            ("a", vec!["b"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b"]),
-        ]);
-        let (smooth, darts) = chain.unwrap().smoothed();
+        let (smooth, darts) = EmbeddedGraph::chain(2).smoothed();
         assert_eq!((smooth.vertex_count(), smooth.edge_count()), (2, 1));
         assert_eq!(darts, [Dart(0), Dart(3)]);
     }

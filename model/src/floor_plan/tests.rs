@@ -1,4 +1,5 @@
 use super::*;
+use crate::any_graph::world;
 
 type Plan = Result<FloorPlan, FloorPlanError>;
 
@@ -18,31 +19,9 @@ fn message(plan: Plan) -> String {
     plan.unwrap_err().to_string()
 }
 
-fn shape_6() -> FloorPlan {
-    plan(
-        &[
-            ("end", [4.0, 8.0]),
-            ("corner", [0.0, 8.0]),
-            ("tee", [0.0, 4.0]),
-            ("sw", [0.0, 0.0]),
-            ("se", [4.0, 0.0]),
-            ("ne", [4.0, 4.0]),
-        ],
-        &[
-            ("end", "corner"),
-            ("corner", "tee"),
-            ("tee", "sw"),
-            ("sw", "se"),
-            ("se", "ne"),
-            ("ne", "tee"),
-        ],
-    )
-    .unwrap()
-}
-
 #[test]
 fn doors_stand_clockwise_from_north() {
-    let plan = shape_6();
+    let plan = world("shape-6").plan.unwrap();
     let graph = plan.graph();
     assert_eq!((graph.vertex_count(), graph.edge_count()), (6, 6));
     assert_eq!(graph.genus(), 0);
@@ -67,9 +46,10 @@ fn doors_stand_clockwise_from_north() {
 #[test]
 fn junctions_have_kinds_and_the_floor_reaches_half_a_width_beyond_them() {
     use JunctionKind::{DeadEnd, L, T};
-    let kinds: Vec<_> = shape_6().junctions().iter().map(|j| j.kind).collect();
+    let plan = world("shape-6").plan.unwrap();
+    let kinds: Vec<_> = plan.junctions().iter().map(|j| j.kind).collect();
     assert_eq!(kinds, [DeadEnd, L, T, L, L, L]);
-    let first = shape_6().floor().next().unwrap();
+    let first = plan.floor().next().unwrap();
     assert_eq!((first.least, first.greatest), ([-0.8, 7.2], [4.8, 8.8]));
 }
 

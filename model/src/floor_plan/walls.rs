@@ -117,13 +117,11 @@ fn distinct(mut coordinates: Vec<f64>) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::format::world_file;
-
     use super::*;
+    use crate::any_graph::world;
 
     fn plan(name: &str) -> FloorPlan {
-        let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
+        world(name).plan.unwrap()
     }
 
     const PLANS: [&str; 4] = ["shape-6", "shape-8", "building-12", "building-25"];

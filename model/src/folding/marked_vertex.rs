@@ -63,7 +63,7 @@ impl FoldedTrail {
 mod tests {
     use super::*;
     use crate::{
-        any_graph::walk,
+        any_graph::{by_neighbours, walk},
         embedded_graph::EmbeddedGraph,
         folding::fold,
         marker::Undirected,
@@ -95,14 +95,7 @@ mod tests {
     /// the rim is a loop.
     #[test]
     fn the_marked_hub_of_a_wheel_may_be_entered_by_each_spoke() {
-        let wheel = EmbeddedGraph::from_neighbour_lists(&[
-            ("x", vec!["a", "b", "c", "d"]),
-            ("a", vec!["b", "x", "d"]),
-            ("b", vec!["c", "x", "a"]),
-            ("c", vec!["d", "x", "b"]),
-            ("d", vec!["a", "x", "c"]),
-        ])
-        .unwrap();
+        let wheel = by_neighbours("x: a b c d | a: b x d | b: c x a | c: d x b | d: a x c");
         // From the hub to its first neighbour, along the rim, and back to the hub.
         let trail = walked(&wheel, Dart(0), &[0, 2, 2]);
         assert_eq!(trail.vertex_count(), 4);

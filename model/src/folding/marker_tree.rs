@@ -31,6 +31,12 @@ const NOT_REACHED: TreeVertex =
     TreeVertex { distance: UNREACHED, up: Dart(0), parent: Vertex(0), hangs: false, hanging: 0 };
 
 impl MarkerTree {
+    /// The number of moves of a shortest certificate of a graph with the marker at a vertex.
+    pub(crate) fn certificate(&mut self, graph: &EmbeddedGraph, marked: Vertex) -> usize {
+        self.grow(graph, marked);
+        self.length(graph)
+    }
+
     /// Makes it the tree of a graph with the marker at a vertex.
     pub(crate) fn grow(&mut self, graph: &EmbeddedGraph, root: Vertex) {
         let Self { vertices, order, .. } = self;
@@ -116,12 +122,10 @@ impl MarkerTree {
         self.order.iter().rev().filter_map(saved).max_by_key(|&(_, saved)| saved)
     }
 
-    /// The number of moves of a shortest certificate.
-    ///
     /// Over all edges `uv`, the sum of `d(u) + d(v) + 1` is the number of edges plus the sum of each
     /// vertex's degree times its distance. The edge of the tree above a vertex contributes twice the
     /// vertex's distance to it.
-    pub(crate) fn length(&self, graph: &EmbeddedGraph) -> usize {
+    fn length(&self, graph: &EmbeddedGraph) -> usize {
         let (mut added, mut tree) = (graph.edge_count(), 0);
         for &vertex in &self.order {
             let distance = self.vertices[vertex.at()].distance as usize;

@@ -17,7 +17,6 @@ use std::{borrow::Cow, fmt};
 
 use thiserror::Error;
 
-pub use typed::from_toml;
 pub use value::{DocumentEntry, DocumentTable, DocumentValue};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -145,6 +145,7 @@ impl FromStr for MappingMethod {
 mod tests {
     use super::*;
     use crate::{
+        any_graph::by_neighbours,
         embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Bijection,
         mapping::{ArrivalMeasurement, FACING},
@@ -153,22 +154,9 @@ mod tests {
         world::{GraphWorld, RefusedAction, State, World},
     };
 
-    fn graph(lists: &[(&str, &str)]) -> EmbeddedGraph {
-        let lists: Vec<(&str, Vec<&str>)> =
-            lists.iter().map(|&(name, others)| (name, others.split(' ').collect())).collect();
-        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
-    }
-
     /// Two triangles that share a vertex, and a dead end at it.
     fn bow_tie() -> EmbeddedGraph {
-        graph(&[
-            ("shared", "a b c d end"),
-            ("a", "shared b"),
-            ("b", "a shared"),
-            ("c", "shared d"),
-            ("d", "c shared"),
-            ("end", "shared"),
-        ])
+        by_neighbours("x: a b c d end | a: x b | b: a x | c: x d | d: c x | end: x")
     }
 
     /// The image in the world of a pose in a map, which is right.
@@ -296,9 +284,9 @@ mod tests {
 
     #[test]
     fn lengths_show_that_a_robot_was_carried_unless_nothing_comes_after_it() {
-        let arms = [("a", "centre a-end"), ("b", "centre b-end"), ("c", "centre c-end")];
-        let ends = [("a-end", "a"), ("b-end", "b"), ("c-end", "c")];
-        let graph = graph(&[&[("centre", "a b c")], &arms[..], &ends].concat());
+        let graph = by_neighbours(
+            "hub: a b c | a: hub a-end | b: hub b-end | c: hub c-end | a-end: a | b-end: b | c-end: c",
+        );
         let run = |after_and_to, noise| {
             let world = GraphWorld::new(&graph, FACING);
             let mut world = Carried { world, after_and_to, length: None };

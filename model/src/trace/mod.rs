@@ -220,7 +220,7 @@ impl Trace {
 pub(crate) mod tests {
     use super::*;
     use crate::{
-        any_graph::walk,
+        any_graph::{by_neighbours, walk},
         embedded_graph::{Dart, EmbeddedGraph},
         mapping::{
             MapWalk, MappingAlgorithm, MappingError, MappingEvent, Observed, Observer, explore,
@@ -230,14 +230,6 @@ pub(crate) mod tests {
         percept::Sighting,
         world::{GraphWorld, RefusedAction},
     };
-
-    impl Trace {
-        /// The same walk of a robot that sees no marker.
-        pub(crate) fn without_marker(mut self) -> Self {
-            self.percepts.iter_mut().for_each(|percept| percept.sighting = Sighting::Nothing);
-            self
-        }
-    }
 
     /// What a robot perceives on a walk.
     pub(crate) fn recorded<M: Marker>(
@@ -294,13 +286,7 @@ pub(crate) mod tests {
 
     /// A triangle with a tail; dart 0 is the end of the tail.
     pub(crate) fn lollipop() -> EmbeddedGraph {
-        EmbeddedGraph::from_neighbour_lists(&[
-            ("end", vec!["a"]),
-            ("a", vec!["end", "b", "c"]),
-            ("b", vec!["a", "c"]),
-            ("c", vec!["b", "a"]),
-        ])
-        .unwrap()
+        by_neighbours("end: a | a: end b c | b: a c | c: b a")
     }
 
     #[test]

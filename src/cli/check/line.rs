@@ -168,7 +168,7 @@ impl From<CountOverflow> for CliError {
 
 impl SizeLine {
     /// The same line with the counts of a check.
-    pub(super) fn with_counts<F>(self, tally: &Tally<WorstStart, F>) -> Self {
+    pub(super) fn with_counts<F>(self, tally: &Tally<Option<WorstStart>, F>) -> Self {
         let certificate = |value| self.certificate_total.and(Some(value));
         let mut line = Self {
             worlds: tally.worlds,

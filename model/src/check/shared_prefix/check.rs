@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{
     check::{
-        EnumeratedStart, FailedStart, PartTally, Shard, Tally, WorstStart, first_false_step,
-        judge_start, one_by_one::check_stop,
+        EnumeratedStart, FailedStart, PartTally, Shard, Tally, WorstStart, judge_start,
+        one_by_one::check_stop,
     },
     enumerate::{
         Answer, Class, Draft, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
@@ -63,11 +63,6 @@ impl FinishedUnits for () {
     fn finish(&self, _: usize, _: &PartTally) {}
 }
 
-fn merged(mut one: PartTally, other: PartTally) -> PartTally {
-    one.merge(other);
-    one
-}
-
 impl SharedPrefixCheck {
     /// A check of one shard of the starts.
     ///
@@ -109,17 +104,13 @@ impl SharedPrefixCheck {
         let sample = all.iter().step_by(all.len().div_ceil(SAMPLE).max(1));
         let sample: BTreeMap<_, _> = sample.map(|unit| (*unit, check(unit))).collect();
         let check = |unit: &usize| sample.get(unit).cloned().unwrap_or_else(|| check(unit));
-        let found = in_parts(&all, watch, PartTally::default, check, |tally| tally.starts, merged);
+        let merge = PartTally::merged;
+        let found = in_parts(&all, watch, PartTally::default, check, |tally| tally.starts, merge);
         // The progress is that of the runs.
         let all: Vec<usize> = (pieces.unit_count()..pieces.count()).collect();
         let count = |&piece: &usize| pieces.check(piece, new(), watch);
-        let worlds = in_parts(&all, &(), PartTally::default, count, |found| found.worlds, merged);
-        CheckPieces::finished(merged(found, worlds), new)
-    }
-
-    pub fn unit_count<E: Explorer>(&self, new: impl Fn() -> E) -> usize {
-        // A count that stops early would be wrong.
-        self.units(new, &()).len()
+        let worlds = in_parts(&all, &(), PartTally::default, count, |found| found.worlds, merge);
+        CheckPieces::finished(found.merged(worlds), new)
     }
 
     /// Knuth's random probe of the tree of all runs. Each number draws one of the possible answers; then every
@@ -214,10 +205,9 @@ impl CheckPieces {
     pub fn finished<E: Explorer>(counts: PartTally, new: impl Fn() -> E) -> Tally {
         let failure = counts.failure.as_ref().and_then(EnumeratedStart::start);
         let failure = failure.and_then(|(graph, facing)| {
-            let judged = judge_start(&mut new(), &graph, facing, &mut Candidate::default());
-            let (moves, flaw) = (Some(judged.0), judged.1.err()?);
-            let false_step = first_false_step(new(), &graph, facing);
-            Some(FailedStart { graph, facing, flaw, moves, false_step })
+            let (moves, judged) =
+                judge_start(&mut new(), &graph, facing, &mut Candidate::default());
+            Some(FailedStart::new(&new, (&graph, facing), judged.err()?, Some(moves)))
         });
         let worst = counts.worst.as_ref().and_then(|&(moves, ref start)| {
             let (graph, facing) = start.start()?;

@@ -76,10 +76,9 @@ impl<'m> LeafJudge<'m> {
     fn count(&mut self, graph: &EmbeddedGraph, moves: u64, is_right: bool) {
         let tally = &mut self.tally;
         tally.starts += 1;
-        let certificate = self.certificates.as_mut().map(|tree| {
-            tree.grow(graph, graph.vertex(FACING));
-            tree.length(graph) as u64
-        });
+        let certificates = self.certificates.as_mut();
+        let certificate =
+            certificates.map(|tree| tree.certificate(graph, graph.vertex(FACING)) as u64);
         tally.count_certificate(certificate);
         if !is_right {
             tally.count_failure(EnumeratedStart::new(graph, FACING));

@@ -12,13 +12,8 @@ use serde::{
 };
 
 use super::{
-    Content, Document, DocumentEntry, DocumentError, DocumentErrorKind, DocumentValue, TextPosition,
+    Content, DocumentEntry, DocumentError, DocumentErrorKind, DocumentValue, TextPosition,
 };
-
-/// Reads a TOML file in which every key may be missing: the text may be empty.
-pub fn from_toml<T: for<'d> Deserialize<'d>>(bytes: &[u8]) -> Result<T, DocumentError> {
-    Document::parse_settings(bytes)?.root().read()
-}
 
 impl<'d> DocumentValue<'d> {
     pub fn read<T: Deserialize<'d>>(self) -> Result<T, DocumentError> {
@@ -184,6 +179,7 @@ impl<'d> IntoDeserializer<'d, DocumentError> for DocumentValue<'d> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::document::Document;
 
     #[derive(Debug, PartialEq, Deserialize)]
     #[serde(rename_all = "lowercase")]
@@ -208,6 +204,10 @@ mod tests {
         name: String,
     }
 
+    fn settings(text: &str) -> Result<Settings, DocumentError> {
+        Document::parse_settings(text.as_bytes())?.root().read()
+    }
+
     #[test]
     fn a_document_is_read_as_a_type() {
         let text =
@@ -219,8 +219,8 @@ mod tests {
             size: Some(Size::Large),
             quirk: vec![Named { name: "a".to_owned() }],
         };
-        assert_eq!(from_toml::<Settings>(text.as_bytes()), Ok(expected));
-        assert_eq!(from_toml::<Settings>(b""), Ok(Settings::default()));
+        assert_eq!(settings(text), Ok(expected));
+        assert_eq!(settings(""), Ok(Settings::default()));
         let json = Document::parse(br#"{"corners": true, "views": null}"#).unwrap();
         let expected = Settings { corners: true, ..Settings::default() };
         assert_eq!(json.root().read(), Ok(expected));
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_a_type_has_line_column_and_key() {
-        let message = |text: &str| from_toml::<Settings>(text.as_bytes()).unwrap_err().to_string();
+        let message = |text| settings(text).unwrap_err().to_string();
         for (text, expected) in [
             (
                 "speed = 2\nspede = 3",

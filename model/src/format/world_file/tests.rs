@@ -267,9 +267,9 @@ fn each_fault_of_a_floor_plan_has_its_place() {
 
 #[test]
 fn about_can_have_any_character() {
-    let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
+    let graph = EmbeddedGraph::cycle(1);
     let all: String = ('\0'..='\u{ff}').chain("\u{feff}\u{2028}\u{1f600}".chars()).collect();
-    reads_back(&NamedWorld::numbered("", &all, graph.clone(), None));
+    reads_back(&NamedWorld::numbered("", &all, graph, None));
 }
 
 fn reads_back(world: &NamedWorld) {
@@ -370,13 +370,6 @@ proptest! {
             reads_back(&world);
         }
     }
-
-    #[test]
-    fn no_lines_make_the_reader_panic(
-        lines in vec("(\\[(clockwise|doors|floor|junctions|start|\\[hallways\\])\\]|(a|b|at|facing|from|to|hallway_width) = (\"[ab]\"|\\[\"[ab]\", \"[ab]\"\\]|\\[[0-9], 4\\]|[0-9]))", 0..9)
-    ) {
-        let _ = read(lines.join("\n").as_bytes());
-    }
 }
 
 #[test]
@@ -391,7 +384,7 @@ fn deep_nesting_is_rejected() {
 
 #[test]
 fn a_start_may_name_its_marker() {
-    let graph = EmbeddedGraph::from_neighbour_lists(&[("a", vec!["b"]), ("b", vec!["a"])]).unwrap();
+    let graph = EmbeddedGraph::chain(1);
     for marker in MARKERS {
         let world = NamedWorld {
             marker: Some(marker),

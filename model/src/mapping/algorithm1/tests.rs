@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    any_graph::{Class, any_graph, starts},
+    any_graph::{Class, any_graph, by_edges, starts},
     check::{
         every_way,
         smallest_failure::{delegate_to_run, new, smallest_failure, too_large},
@@ -175,8 +175,7 @@ fn every_way_of_a_broken_variant_is_judged() {
 }
 
 fn theta() -> EmbeddedGraph {
-    let lists = [("u", ["a", "b", "c"].to_vec()), ("v", ["c", "b", "a"].to_vec())];
-    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+    by_edges("u: a b c | v: c b a")
 }
 
 /// A step out of order is an error and changes nothing. Nothing is left of an earlier run.
@@ -235,21 +234,6 @@ fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
     assert_eq!((run.map(), run.is_at_line_8()), (&map, true));
     run.close_loop(Dart(1), &mut world).unwrap();
     assert_eq!(run.map().opposite(Dart(1)), Some(Dart(4)));
-}
-
-#[test]
-fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
-    let graph = theta();
-    let mut world = GraphWorld::new(&graph, Dart(0));
-    let mut run = Algorithm1Run::new(6);
-    run.begin(&mut world).unwrap();
-    run.step(MappingChoice::Edge(Dart(0)), &mut world).unwrap();
-    run.trail.clear();
-    run.go_through(Door::BACK, &mut world).unwrap();
-    run.arrive_at_marker(Dart(0));
-    // Out, back, out again and over the edge.
-    run.explore(Dart(4), &mut world).unwrap();
-    assert_eq!((run.moves(), run.robot()), (4, Dart(3)));
 }
 
 /// The fewest edges from each vertex to a root, by relaxing every edge until nothing changes.

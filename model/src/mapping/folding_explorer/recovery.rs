@@ -196,9 +196,14 @@ pub(crate) fn map_with_recovery<W: Relocate + ObservedWorld>(
         walks,
         has_failed: false,
         has_retried: false,
-        recoveries: 0,
-        audit_moves: 0,
-        audited_percepts: Vec::new(),
+        mapped: MappedWorld {
+            pose: FACING,
+            moves: 0,
+            audit_moves: 0,
+            audited_percepts: Vec::new(),
+            recoveries: 0,
+            blocked: Vec::new(),
+        },
     };
     let mut ended = if earlier.is_empty() {
         explore(recovery.exploration, &mut recovery.world)
@@ -208,18 +213,12 @@ pub(crate) fn map_with_recovery<W: Relocate + ObservedWorld>(
     loop {
         match ended.and_then(|()| recovery.check_map()) {
             Ok((pose, blocked)) => {
-                let Recovery { world, audit_moves, audited_percepts, recoveries, .. } = recovery;
-                let moves = world.moves;
-                return Ok(MappedWorld {
-                    pose,
-                    moves,
-                    audit_moves,
-                    audited_percepts,
-                    recoveries,
-                    blocked,
-                });
+                let moves = recovery.world.moves;
+                return Ok(MappedWorld { pose, moves, blocked, ..recovery.mapped });
             }
-            Err(error) if recovery.recoveries == config.most_recoveries => return Err(error),
+            Err(error) if recovery.mapped.recoveries == config.most_recoveries => {
+                return Err(error);
+            }
             Err(error) => ended = recovery.recover(error),
         }
     }
@@ -233,9 +232,8 @@ struct Recovery<'w, 'e, W> {
     /// Whether the last search, for a junction or for the marker, was without success.
     has_failed: bool,
     has_retried: bool,
-    recoveries: u32,
-    audit_moves: u64,
-    audited_percepts: Vec<u64>,
+    /// What it took so far.
+    mapped: MappedWorld,
 }
 
 impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
@@ -250,7 +248,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
 
     /// Leaves the place of a contradiction, looks for the marker and goes on with the walks that agree.
     fn recover(&mut self, error: MappingError<W::Error>) -> Mapped<W> {
-        self.recoveries += 1;
+        self.mapped.recoveries += 1;
         self.keep_walk();
         match error {
             MappingError::Contradiction(contradiction) => {
@@ -290,7 +288,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
     /// not come from one mistake, so the second is the last.
     fn failed(&mut self, error: MappingError<W::Error>) -> MappingError<W::Error> {
         if mem::replace(&mut self.has_failed, true) {
-            self.recoveries = self.config.most_recoveries;
+            self.mapped.recoveries = self.config.most_recoveries;
         }
         error
     }
@@ -321,7 +319,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
     fn check_map(&mut self) -> Mapped<W, (Dart, Vec<Dart>)> {
         let before = self.world.moves;
         let audited = self.audit_map();
-        self.audit_moves += self.world.moves - before;
+        self.mapped.audit_moves += self.world.moves - before;
         let (pose, blocked) = audited?;
         self.compare_measurements()?;
         if !self.config.retries_blocked || self.has_retried || blocked.is_empty() {
@@ -368,7 +366,7 @@ impl<W: Relocate + ObservedWorld> Recovery<'_, '_, W> {
             }
         };
         let pose;
-        (pose, self.audited_percepts) =
+        (pose, self.mapped.audited_percepts) =
             audit_times(self.config.audits, &mut self.world, walk, note)?;
         blocked.sort_unstable();
         Ok((pose, blocked))

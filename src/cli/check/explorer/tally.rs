@@ -18,17 +18,13 @@ use crate::cli::{
 };
 
 /// The first start of its kind is kept.
-impl KeptStart for FailureLine {
-    fn replaces(&self, _: &Self) -> bool {
-        false
-    }
-}
+impl KeptStart for FailureLine {}
 
 #[derive(Default)]
 pub(in crate::cli::check) struct ExplorerTally {
     /// The counts. Certificates are those of the starts that were mapped correctly. Of the others, those on which a
     /// limit was reached are unknown.
-    pub(in crate::cli::check) counts: Tally<WorstStart, FailureLine>,
+    pub(in crate::cli::check) counts: Tally<Option<WorstStart>, Option<FailureLine>>,
     /// The first start on which a limit was reached.
     limit: Option<FailureLine>,
     /// The number of starts for each name of a fault.
