@@ -3,12 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
-use std::sync::Arc;
-
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_simulator::{
-    LaserScanner, ScannedBuilding, ScannerParams,
+    LaserScanner, ScannerParams,
     evaluation::laser::{
         corridor_world::{BuildingKind, CorridorWorld},
         walk::{LaserWalk, WalkStep},
@@ -26,7 +24,7 @@ fn main() {
 /// A scanner of 360 readings in a furnished building.
 fn scanner(world: &CorridorWorld) -> LaserScanner {
     let params = ScannerParams::default();
-    LaserScanner::new(Arc::new(ScannedBuilding::new(&world.plan, &params, 1)), &params, 1)
+    LaserScanner::new(&world.plan, &params, 1)
 }
 
 /// The scans of a walk: one each 0.25 m, at the speed of the robot two in a second.

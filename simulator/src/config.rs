@@ -8,11 +8,8 @@ use toposlam_model::{
     floor_plan::{FloorPlan, JunctionKind},
 };
 
-use super::{faults::RobotFault, motion::MotionNoise};
+use super::faults::RobotFault;
 use crate::truth::angle;
-
-/// The default time to take an image, in seconds.
-pub const IMAGE_TIME: f64 = 0.3;
 
 /// The start, the noise and the faults of a simulated robot.
 #[derive(Clone, Debug)]
@@ -20,10 +17,9 @@ pub struct SimulationConfig {
     pub plan: Arc<FloorPlan>,
     pub marker: Dart,
     pub pose: Pose,
-    /// Noise of the wheels as a multiple of [`MotionNoise::DEFAULT`]. Without images, it also
+    /// Noise of the wheels as a multiple of [`MotionNoise::DEFAULT`](crate::MotionNoise). Without images, it also
     /// multiplies the measured errors of sensing.
     pub noise: f64,
-    pub image_time: f64,
     pub faults: Vec<RobotFault>,
     /// Whether wheel speeds are recorded for [`Robot::track`](toposlam_robot::robot::Robot::track).
     pub keeps_track: bool,
@@ -40,15 +36,10 @@ impl SimulationConfig {
             marker: facing,
             pose,
             noise: 1.0,
-            image_time: IMAGE_TIME,
             faults: Vec::new(),
             keeps_track: false,
             seed,
         }
-    }
-
-    pub(super) fn motion_noise(&self) -> MotionNoise {
-        MotionNoise::DEFAULT.times(self.noise)
     }
 }
 

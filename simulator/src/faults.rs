@@ -71,12 +71,7 @@ impl RobotFault {
 
     /// Whether it affects the image with this number.
     pub(super) fn spoils(&self, frame: u64) -> bool {
-        self.begins(frame) || frame > self.frame && frame - self.frame < u64::from(self.lasting)
-    }
-
-    /// Whether it starts with the image with this number.
-    pub(super) fn begins(&self, frame: u64) -> bool {
-        self.frame == frame
+        frame >= self.frame && !self.has_passed(frame)
     }
 }
 

@@ -6,13 +6,14 @@ use std::fmt;
 use toposlam_logs::record::{Event, EventKind, RunObserver};
 use toposlam_model::{
     driving::{algorithm2::Standing, odometry::Odometry, pose::Pose, scene::wrapped},
-    embedded_graph::Dart,
+    embedded_graph::{Dart, Vertex},
     floor_plan::FloorPlan,
     percept::{Door, Percept},
     world::{GraphWorld, State, World},
 };
+use toposlam_vision::geometry::distance;
 
-use crate::truth::{JunctionTruth, angle};
+use crate::truth::{JunctionTruth, angle, nearest};
 
 /// A robot is at a junction up to this distance from its turning point, in metres.
 const THERE: f64 = 0.5;
@@ -114,16 +115,10 @@ impl<'p> GroundTruthMonitor<'p> {
     /// The dart of the junction at a pose whose hallway leads in a direction.
     fn dart_at(&self, pose: Pose, entry: f64) -> Option<Dart> {
         let graph = self.plan.graph();
-        let off = |vertex: &_| {
-            let [x, y] = self.plan.junction(*vertex).position;
-            (x - pose.position[0]).hypot(y - pose.position[1])
-        };
-        let vertex = graph
-            .vertices()
-            .filter(|vertex| off(vertex) <= THERE)
-            .min_by(|one, other| off(one).total_cmp(&off(other)))?;
+        let off = |vertex: &Vertex| distance(self.plan.junction(*vertex).position, pose.position);
+        let vertex = nearest(graph.vertices(), off).filter(|vertex| off(vertex) <= THERE)?;
         let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
-        graph.darts_of(vertex).min_by(|one, other| turned(one).total_cmp(&turned(other)))
+        nearest(graph.darts_of(vertex), turned)
     }
 
     /// What a robot at a pose knows if it is at the expected junction; `None` at a junction of a kind that

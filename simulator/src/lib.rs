@@ -41,13 +41,12 @@ pub use crate::render::{
     Building, BuildingLook, CameraRay, Colour, EffectScope, EffectSettings, Effects, FloorCovering,
     KNOBS, Knob, KnobError, LOOKS, RayPath, Rig, RigErrors, label_mask, labels, render,
 };
-pub use config::{IMAGE_TIME, SimulationConfig, start_pose, starts_of};
+pub use config::{SimulationConfig, start_pose, starts_of};
 pub use faults::{FAULTS, FOR_EVER, FaultError, FaultKind, RobotFault};
 pub use learned_sensors::{LearnedSensors, LearningError, learned};
 pub use motion::{MotionNoise, SimulatedBase};
 pub use plans::{NamedPlan, plan_named, plans};
 pub use scanner::{
-    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannedBuilding, ScannedWall,
-    ScannerParams, Segment, WallSurface,
+    ConvexPolygon, Corridor, CorridorPlan, LaserScanner, Lobby, ScannerParams, Segment,
 };
 pub use simulated_robot::{RobotEquipment, SimulatedRobot};

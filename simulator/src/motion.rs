@@ -5,7 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose},
-    floor_plan::{FloorPlan, Rectangle},
+    floor_plan::FloorPlan,
 };
 use toposlam_robot::{
     robot::{RobotError, Sample, TimedOdometry},
@@ -51,12 +51,12 @@ impl MotionNoise {
 /// A simulated base in a building.
 #[derive(Clone, Debug)]
 pub struct SimulatedBase {
-    pose: Pose,
+    pub(super) pose: Pose,
     wheels: WheelSpeeds,
     silent: f64,
     time: f64,
     odometer: Odometer,
-    surroundings: Surroundings,
+    pub(super) surroundings: Surroundings,
     uneven: f64,
     /// Errors of the wheels, as shares: permanent, and in this motion.
     always: [f64; 2],
@@ -169,26 +169,6 @@ impl SimulatedBase {
 
     pub(super) fn ignore(&mut self, commands: u32) {
         self.deaf = commands;
-    }
-
-    pub(super) fn carry(&mut self, pose: Pose) {
-        self.pose = pose;
-        self.read();
-    }
-
-    pub(super) fn put(&mut self, obstacle: Rectangle) {
-        self.surroundings.put(obstacle);
-        self.read();
-    }
-
-    pub(super) fn clear_obstacles(&mut self) {
-        self.surroundings.clear_obstacles();
-        self.read();
-    }
-
-    /// Whether there may be a way for the robot to a place.
-    pub(super) fn may_reach(&self, place: [f64; 2]) -> bool {
-        self.surroundings.may_lead(self.pose.position, place)
     }
 
     /// Moves the robot for this time unless something is in its way. Its wheels turn in either

@@ -4,18 +4,17 @@
 //! isomorphic to the floor plan with that hallway cut, as far as the robot can come. An obstacle at a junction
 //! cuts all its hallways.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Vector2, center};
 use toposlam_model::{
     driving::pose::Pose,
     embedded_graph::{Dart, EmbeddedGraph},
-    floor_plan::FloorPlan,
+    floor_plan::{FloorPlan, Rectangle},
     isomorphism::Bijection,
     mapping::{FACING, Flaw},
 };
 use toposlam_robot::superscout::{CLEARANCE, RADIUS};
 
-/// The least and the greatest coordinates of an obstacle, in metres.
-type Obstacle = [[f64; 2]; 2];
+use crate::SimulatedRobot;
 
 /// The robot's centre keeps this distance from what is ahead, in metres.
 const KEPT: f64 = RADIUS + CLEARANCE;
@@ -35,7 +34,7 @@ pub(crate) fn judge_with_obstacle(
     facing: Dart,
     (map, pose): (&EmbeddedGraph, Dart),
     place: TruePlace,
-    obstacle: Option<Obstacle>,
+    obstacle: Option<Rectangle>,
 ) -> Result<(), Flaw> {
     let compare = |world: &EmbeddedGraph, facing, reached: Option<Dart>| {
         let bijection = Bijection::of_starts((map, FACING), (world, facing));
@@ -98,17 +97,16 @@ pub enum WayToMarker {
 }
 
 impl WayToMarker {
-    /// The way of a robot from where it truly stands. `may_reach`: whether there may be a way for its body to a
-    /// place.
+    /// The way of a robot from where it truly stands.
     pub(crate) fn from_place(
         plan: &FloorPlan,
         facing: Dart,
         place: TruePlace,
-        obstacle: Option<Obstacle>,
-        may_reach: impl FnOnce([f64; 2]) -> bool,
+        robot: &SimulatedRobot,
     ) -> Self {
-        let Some(obstacle) = obstacle else { return Self::Free };
-        if !may_reach(plan.junction(plan.graph().vertex(facing)).position) {
+        let Some(obstacle) = robot.obstacle else { return Self::Free };
+        let marker = plan.junction(plan.graph().vertex(facing)).position;
+        if !robot.base.surroundings.may_lead(robot.base.pose.position, marker) {
             Self::None
         } else if is_cut_off(plan, facing, place, obstacle) {
             Self::Narrow
@@ -120,7 +118,7 @@ impl WayToMarker {
 
 /// Whether no way leads from the robot to the marker but through hallways whose middle line comes nearer to an obstacle
 /// than the robot does.
-fn is_cut_off(plan: &FloorPlan, facing: Dart, place: TruePlace, obstacle: Obstacle) -> bool {
+fn is_cut_off(plan: &FloorPlan, facing: Dart, place: TruePlace, obstacle: Rectangle) -> bool {
     let edges = blocked(plan, obstacle, KEPT);
     let robot = match place {
         TruePlace::Junction(reached) => reached,
@@ -136,16 +134,16 @@ fn hallway_behind(
     plan: &FloorPlan,
     edges: &[Dart],
     pose: Pose,
-    [least, greatest]: Obstacle,
+    obstacle: Rectangle,
 ) -> Option<Dart> {
     let graph = plan.graph();
-    let centre = [0, 1].map(|axis| f64::midpoint(least[axis], greatest[axis]));
+    let centre: Point2<f64> = center(&obstacle.least.into(), &obstacle.greatest.into());
     let both_ways = edges.iter().flat_map(|&dart| [dart, graph.opposite(dart)]);
     let aside_and_before = |dart: Dart| {
         let onwards = Vector2::from(plan.direction(dart).vector());
         let junction = Point2::from(plan.junction(graph.vertex(dart)).position);
         let [to_robot, to_obstacle] =
-            [pose.position, centre].map(|place| Point2::from(place) - junction);
+            [Point2::from(pose.position), centre].map(|place| place - junction);
         let (robot, aside) = (onwards.dot(&to_robot), onwards.perp(&to_robot));
         let obstacle = onwards.dot(&to_obstacle);
         (robot <= obstacle).then_some((aside.abs(), robot))
@@ -158,19 +156,13 @@ fn hallway_behind(
 }
 
 /// A dart of each hallway whose middle line comes nearer to an obstacle than a margin, in metres.
-fn blocked(plan: &FloorPlan, [least, greatest]: Obstacle, margin: f64) -> Vec<Dart> {
+fn blocked(plan: &FloorPlan, obstacle: Rectangle, margin: f64) -> Vec<Dart> {
     let graph = plan.graph();
-    let position = |dart: Dart| plan.junction(graph.vertex(dart)).position;
-    // Hallways run along the axes.
-    let is_blocked = |&dart: &Dart| {
-        let [from, to] = [position(dart), position(graph.opposite(dart))];
-        (0..2).all(|axis| {
-            from[axis].min(to[axis]) <= greatest[axis] + margin
-                && from[axis].max(to[axis]) >= least[axis] - margin
-        })
-    };
-    let edges = graph.edges().map(|(dart, _)| dart);
-    edges.filter(is_blocked).collect()
+    let place = |dart: Dart| plan.junction(graph.vertex(dart)).position;
+    let edges = graph.edges().filter(|&(dart, opposite)| {
+        Rectangle::around(place(dart), place(opposite)).meets(&obstacle.widened(margin))
+    });
+    edges.map(|(dart, _)| dart).collect()
 }
 
 #[cfg(test)]
@@ -178,22 +170,15 @@ mod tests {
     use super::*;
     use crate::plans;
 
-    /// An obstacle of 30 cm in the middle of a hallway.
-    fn obstacle_in(plan: &FloorPlan, dart: Dart) -> Obstacle {
-        let graph = plan.graph();
-        let ends = [dart, graph.opposite(dart)].map(|dart| plan.junction(graph.vertex(dart)));
-        let middle =
-            [0, 1].map(|axis| f64::midpoint(ends[0].position[axis], ends[1].position[axis]));
-        [middle.map(|place| place - 0.15), middle.map(|place| place + 0.15)]
-    }
-
     #[test]
     fn a_robot_is_cut_off_beyond_a_bridge_and_nowhere_else() {
         let mut bridges = 0;
         for (name, plan) in plans().unwrap() {
             let graph = plan.graph();
             for (dart, opposite) in graph.edges() {
-                let obstacle = obstacle_in(&plan, dart);
+                let ends = [dart, opposite].map(|dart| plan.junction(graph.vertex(dart)).position);
+                let middle: Point2<f64> = center(&ends[0].into(), &ends[1].into());
+                let obstacle = Rectangle::centred(middle.into(), [0.15; 2]);
                 let is_bridge = graph.cut(&[dart], dart).1[opposite.at()].is_none();
                 bridges += usize::from(is_bridge);
                 for [marker, robot] in [[dart, opposite], [opposite, dart]] {

@@ -24,14 +24,13 @@ use toposlam_robot::{
     superscout::{Base, WheelSpeeds},
 };
 
-use crate::SimulatedRobot;
+use crate::{SimulatedRobot, simulated_robot::IMAGE_TIME};
 
 /// Wheel speeds take effect after at most this time, in seconds of simulated time.
 const TICK: f64 = 0.05;
 /// Odometry is published every this many ticks: ten times a second.
 const READING: u64 = 2;
-/// Interval between images in seconds, if the camera is fast enough. Rendering takes most of the
-/// time.
+/// Interval between images in seconds. Rendering takes most of the time.
 const IMAGE_EVERY: f64 = 1.0;
 /// The greatest speed of simulated time relative to real time. At higher speeds a motion would be
 /// over before odometry reports it.
@@ -81,7 +80,7 @@ pub fn serve(
         due = (due + tick).max(Instant::now());
         thread::sleep(due.saturating_duration_since(Instant::now()));
     }
-    let (seconds, frames) = (scout.robot.time(), scout.robot.frames());
+    let (seconds, frames) = (scout.robot.base.time(), scout.robot.frames());
     Ok(ServeSummary { seconds, real_seconds: begun.elapsed().as_secs_f64(), frames })
 }
 
@@ -113,7 +112,7 @@ impl Scout {
         if let Some(wheels) = self.commands.take() {
             self.command(wheels);
         }
-        self.robot.base().wait(TICK);
+        self.robot.base.wait(TICK);
         if number.is_multiple_of(READING) {
             self.publish_odometry((number / READING) as u32)?;
         }
@@ -122,7 +121,7 @@ impl Scout {
 
     /// A motion begins when the wheels are set in motion.
     fn command(&mut self, wheels: WheelSpeeds) {
-        let base = self.robot.base();
+        let base = &mut self.robot.base;
         let stood = base.wheels() == WheelSpeeds::STOP;
         if wheels == WheelSpeeds::STOP {
             self.ignores = false;
@@ -137,7 +136,7 @@ impl Scout {
     }
 
     fn publish_odometry(&mut self, number: u32) -> Result<(), RobotError> {
-        let base = self.robot.base();
+        let base = &self.robot.base;
         let (reading, wheels) = (base.reading(), base.wheels());
         let reckoning = Reckoning { stamp: self.stamp(reading.time), at: reading.odometry, wheels };
         self.odometry.publish(&odometry(number, &reckoning))?;
@@ -146,7 +145,7 @@ impl Scout {
 
     /// Takes an image if one is due, and publishes it when it has arrived.
     fn photograph(&mut self) -> Result<(), RobotError> {
-        let time = self.robot.time();
+        let time = self.robot.base.time();
         if let Some((_, exposed)) = self.exposed.take_if(|(there, _)| *there <= time) {
             let number = self.robot.frames() as u32;
             let stamp = self.stamp(exposed.taken);
@@ -161,9 +160,8 @@ impl Scout {
             }
         }
         if time >= self.next_image {
-            let takes = self.robot.image_time();
-            self.next_image = time + takes.max(IMAGE_EVERY);
-            self.exposed = self.robot.expose().map(|image| (time + takes, image));
+            self.next_image = time + IMAGE_EVERY;
+            self.exposed = self.robot.expose().map(|image| (time + IMAGE_TIME, image));
         }
         Ok(())
     }

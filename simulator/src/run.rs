@@ -149,15 +149,12 @@ pub fn run<'p>(
         Some(pose) if is_at_obstacle => TruePlace::BeforeObstacle(pose),
         _ => TruePlace::Junction(monitor.truly_reached()),
     };
-    let way_to_marker = WayToMarker::from_place(plan, facing, place, robot.obstacle(), |place| {
-        robot.may_reach(place)
-    });
+    let way_to_marker = WayToMarker::from_place(plan, facing, place, &robot);
     let flaw = mapped.as_ref().and_then(|mapped| {
         if method.recovers() {
             let map = mapping.map().complete();
-            let judge = |map| {
-                judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle())
-            };
+            let judge =
+                |map| judge_with_obstacle(plan, facing, (map, mapped.pose), place, robot.obstacle);
             map.map_or(Err(Flaw::WrongMap), judge).err()
         } else {
             // A robot at no junction is not at its pose in the map.
@@ -167,7 +164,7 @@ pub fn run<'p>(
         }
     });
     let explore_moves = explored(plan, facing, method.algorithm(), dart_bound);
-    let (seconds, frames) = (robot.time(), robot.frames());
+    let (seconds, frames) = (robot.base.time(), robot.frames());
     Run {
         method,
         mapping,

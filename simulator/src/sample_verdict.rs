@@ -1,5 +1,7 @@
 //! Verdicts on the samples of a measurement, and their numbers.
 
+use std::iter::Sum;
+
 /// How a sample compares with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SampleVerdict {
@@ -39,6 +41,16 @@ impl SampleTally {
     /// The number of samples that are not right.
     pub fn failed(&self) -> usize {
         self.undecided + self.wrong
+    }
+}
+
+impl Sum for SampleTally {
+    fn sum<I: Iterator<Item = Self>>(tallies: I) -> Self {
+        tallies.fold(Self::default(), |one, other| Self {
+            right: one.right + other.right,
+            undecided: one.undecided + other.undecided,
+            wrong: one.wrong + other.wrong,
+        })
     }
 }
 

@@ -19,8 +19,8 @@ use super::{
     config::SimulationConfig,
     faults::{FaultKind, RobotFault},
     learned_sensors::LearnedSensors,
-    motion::SimulatedBase,
-    scanner::{CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams},
+    motion::{MotionNoise, SimulatedBase},
+    scanner::{CorridorPlan, LaserScanner, ScannerParams},
 };
 use crate::render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream};
 
@@ -28,18 +28,19 @@ use crate::render::{Building, BuildingLook, Effects, Rig, StreamPurpose, stream}
 #[derive(Debug)]
 pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
-    base: SimulatedBase,
+    pub(crate) base: SimulatedBase,
     camera: SimulatedCamera,
     scanner: Option<LaserScanner>,
-    image_time: f64,
     faults: Vec<RobotFault>,
     seed: u64,
     frames: u64,
     last: Option<Frame>,
     /// What a fault has put in its way.
-    obstacle: Option<Rectangle>,
+    pub(crate) obstacle: Option<Rectangle>,
 }
 
+/// The time to take an image, in seconds.
+pub(crate) const IMAGE_TIME: f64 = 0.3;
 /// How much an overexposed image is overexposed, in stops.
 const OVEREXPOSURE: f64 = 4.0;
 /// Distance of an obstacle ahead of the robot's centre, and its depth, in metres.
@@ -72,8 +73,7 @@ impl SimulationConfig {
 
     /// A laser scanner in the robot's building. Its rooms, furniture and people follow from the seed.
     pub fn scanner(&self, params: &ScannerParams) -> LaserScanner {
-        let building = ScannedBuilding::new(&CorridorPlan::from(&*self.plan), params, self.seed);
-        LaserScanner::new(Arc::new(building), params, self.seed)
+        LaserScanner::new(&CorridorPlan::from(&*self.plan), params, self.seed)
     }
 
     fn scene_camera(&self) -> SceneCamera {
@@ -116,37 +116,19 @@ impl RobotEquipment {
 
 impl SimulatedRobot {
     fn new(config: &SimulationConfig, camera: SimulatedCamera) -> Self {
-        let SimulationConfig { plan, pose, image_time, faults, seed, .. } = config.clone();
-        let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
+        let SimulationConfig { plan, pose, faults, seed, .. } = config.clone();
+        let noise = MotionNoise::DEFAULT.times(config.noise);
+        let mut base = SimulatedBase::new(&plan, pose, &noise, seed);
         if config.keeps_track {
             base.keep_track();
         }
         let (scanner, last, obstacle) = (None, None, None);
-        Self { plan, base, camera, scanner, image_time, faults, seed, frames: 0, last, obstacle }
+        Self { plan, base, camera, scanner, faults, seed, frames: 0, last, obstacle }
     }
 
     #[must_use]
     pub fn with_scanner(self, scanner: LaserScanner) -> Self {
         Self { scanner: Some(scanner), ..self }
-    }
-
-    /// The least and the greatest corner of the obstacle that a fault has put on the floor, in metres.
-    pub fn obstacle(&self) -> Option<[[f64; 2]; 2]> {
-        self.obstacle.map(|obstacle| [obstacle.least, obstacle.greatest])
-    }
-
-    /// Whether there may be a way for the robot's body to a place. If not, no robot of its size can go there.
-    pub fn may_reach(&self, place: [f64; 2]) -> bool {
-        self.base.may_reach(place)
-    }
-
-    pub fn pose(&self) -> Pose {
-        self.base.pose()
-    }
-
-    /// Time since it was switched on, in seconds.
-    pub fn time(&self) -> f64 {
-        self.base.time()
     }
 
     /// The number of images or scans that were requested.
@@ -158,20 +140,14 @@ impl SimulatedRobot {
     pub(crate) fn expose(&mut self) -> Option<Frame> {
         self.frames += 1;
         let number = self.frames;
-        let begin: Vec<RobotFault> =
-            self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
-        let stays = |fault: &RobotFault| {
-            fault.kind == FaultKind::Blocked && fault.frame < number && !fault.has_passed(number)
+        let is_blocked = |at: u64| {
+            let mut blocked = self.faults.iter().filter(|fault| fault.kind == FaultKind::Blocked);
+            blocked.any(|fault| fault.frame < number && !fault.has_passed(at))
         };
-        let passes = |fault: &RobotFault| {
-            fault.kind == FaultKind::Blocked
-                && fault.has_passed(number)
-                && !fault.has_passed(number - 1)
-        };
-        if self.faults.iter().any(passes) && !self.faults.iter().any(stays) {
-            self.base.clear_obstacles();
+        if is_blocked(number - 1) && !is_blocked(number) {
+            self.base.surroundings.obstacles.clear();
         }
-        for fault in &begin {
+        for fault in self.faults.clone().iter().filter(|fault| fault.frame == number) {
             self.begin(fault);
         }
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
@@ -191,36 +167,23 @@ impl SimulatedRobot {
                 if spoilt(FaultKind::Corrupt) { corrupt(frame, number) } else { frame }
             }
         };
-        let dropped = spoilt(FaultKind::Dropped);
-        if dropped {
+        if spoilt(FaultKind::Dropped) {
             return None;
         }
         self.last = Some(frame.clone());
         Some(frame)
     }
 
-    #[cfg(feature = "ros1")]
-    pub(crate) fn image_time(&self) -> f64 {
-        self.image_time
-    }
-
-    /// The base, for a caller that controls the wheels itself.
-    #[cfg(feature = "ros1")]
-    pub(crate) fn base(&mut self) -> &mut SimulatedBase {
-        &mut self.base
-    }
-
     fn begin(&mut self, fault: &RobotFault) {
         match fault.kind {
             FaultKind::Ignored => self.base.ignore(fault.lasting),
             FaultKind::Blocked => {
-                let obstacle = across_hallway(self.pose(), &self.plan);
+                let obstacle = across_hallway(self.base.pose(), &self.plan);
                 self.obstacle = Some(obstacle);
-                self.base.put(obstacle);
+                self.base.surroundings.obstacles.push(obstacle);
             }
             FaultKind::Carried => {
-                let pose = elsewhere(&self.plan, self.seed, fault.frame);
-                self.base.carry(pose);
+                self.base.pose = elsewhere(&self.plan, self.seed, fault.frame);
             }
             _ => {}
         }
@@ -230,7 +193,7 @@ impl SimulatedRobot {
 impl Robot for SimulatedRobot {
     fn capture(&mut self) -> Result<Frame, RobotError> {
         let frame = self.expose();
-        self.base.wait(self.image_time);
+        self.base.wait(IMAGE_TIME);
         frame.ok_or(RobotError::NoImage)
     }
 
@@ -251,7 +214,7 @@ impl Robot for SimulatedRobot {
     }
 
     fn truth(&self) -> Option<Pose> {
-        Some(self.pose())
+        Some(self.base.pose())
     }
 }
 

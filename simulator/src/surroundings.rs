@@ -19,33 +19,22 @@ const NEIGHBOURS: [[i32; 2]; 8] =
 
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
-    /// The walls as rectangles without depth.
-    walls: Vec<Rectangle>,
-    /// The walls within a sonar's range of each place.
-    near: Squares,
-    obstacles: Vec<Rectangle>,
+    /// The walls within a sonar's range of each place, as rectangles without depth.
+    walls: Squares<Rectangle>,
+    pub(super) obstacles: Vec<Rectangle>,
 }
 
 impl Surroundings {
     pub(super) fn new(plan: &FloorPlan) -> Self {
         let walls: Vec<_> = walls(plan).iter().map(rectangle).collect();
         let floors: Vec<_> = plan.floor().collect();
-        let around: Vec<_> = walls.iter().map(|wall| wall.widened(RANGE)).collect();
-        Self { near: Squares::new(&floors, 0.5, &around), walls, obstacles: Vec::new() }
-    }
-
-    pub(super) fn put(&mut self, obstacle: Rectangle) {
-        self.obstacles.push(obstacle);
-    }
-
-    pub(super) fn clear_obstacles(&mut self) {
-        self.obstacles.clear();
+        let walls = Squares::new(&floors, 0.5, walls, |wall| wall.widened(RANGE));
+        Self { walls, obstacles: Vec::new() }
     }
 
     /// The walls near a place, and all obstacles.
     fn near(&self, [x, y]: [f64; 2]) -> impl Iterator<Item = Rectangle> {
-        let walls = self.near.at([x as f32, y as f32]).iter();
-        walls.map(|&number| self.walls[number as usize]).chain(self.obstacles.iter().copied())
+        self.walls.at([x as f32, y as f32]).chain(&self.obstacles).copied()
     }
 
     pub(super) fn has_room(&self, place: [f64; 2]) -> bool {
@@ -155,7 +144,7 @@ mod tests {
         let mut hallway = hallway();
         assert!(hallway.has_room([3.0, 0.999 - RADIUS]));
         assert!(!hallway.has_room([3.0, 1.001 - RADIUS]));
-        hallway.put(Rectangle { least: [3.5, -0.2], greatest: [3.7, 0.2] });
+        hallway.obstacles.push(Rectangle { least: [3.5, -0.2], greatest: [3.7, 0.2] });
         assert!(!hallway.has_room([3.4, 0.0]) && hallway.has_room([3.2, 0.0]));
         let range = hallway.sonar(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 }, 0);
         assert!((range - (0.5 - RADIUS)).abs() < 1e-6);
@@ -179,7 +168,7 @@ mod tests {
                     });
                     let mut surroundings = Surroundings::new(&plan);
                     assert!(surroundings.may_lead(ends[0], ends[1]), "{name}");
-                    surroundings.put(Rectangle::centred(middle, half));
+                    surroundings.obstacles.push(Rectangle::centred(middle, half));
                     let may_lead = surroundings.may_lead(ends[0], ends[1]);
                     assert_eq!(may_lead, is_passable || !is_bridge, "{name} {dart:?}");
                     // A robot in the obstacle cannot move.

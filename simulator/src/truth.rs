@@ -61,7 +61,7 @@ impl Truth {
         let on_floor = plan.hallways().iter().zip(plan.floor());
         let stretches = on_floor.filter(|(_, floor)| floor.holds(pose.position));
         let stretches = stretches.map(|(&hallway, _)| Stretch::new(plan, hallway, pose.position));
-        let stretch = stretches.min_by(|one, other| one.off().total_cmp(&other.off()))?;
+        let stretch = nearest(stretches, Stretch::off)?;
         let near = |within: f64| {
             let ends = stretch.ends().into_iter().filter(move |&(_, distance)| distance <= within);
             ends.map(|(vertex, _)| JunctionTruth::from_plan(plan, vertex, pose))
@@ -189,6 +189,11 @@ pub fn true_marker(plan: &FloorPlan, dart: Dart, pose: Pose) -> MarkerView {
         axis: undirected(points),
         door: junction.form.and(door).map(|door| Door(door as u32)),
     }
+}
+
+/// The item with the least distance.
+pub(crate) fn nearest<T>(items: impl IntoIterator<Item = T>, off: impl Fn(&T) -> f64) -> Option<T> {
+    items.into_iter().min_by(|one, other| off(one).total_cmp(&off(other)))
 }
 
 /// A direction, in radians counter-clockwise from east.

@@ -18,7 +18,7 @@ use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
     percept::Door,
 };
-use toposlam_simulator::{Corridor, CorridorPlan, LaserScanner, ScannedBuilding, ScannerParams};
+use toposlam_simulator::{Corridor, CorridorPlan, LaserScanner, ScannerParams};
 use toposlam_vision::{
     geometry::{self, moved},
     laser::{
@@ -48,7 +48,7 @@ fn scanner(degrees: u32, plan: &CorridorPlan) -> LaserScanner {
     let field_of_view = f64::from(degrees);
     let params =
         ScannerParams { field_of_view, least_range: 0.0, range: 80.0, ..ScannerParams::PLAIN };
-    LaserScanner::new(Arc::new(ScannedBuilding::new(plan, &params, 1)), &params, 1)
+    LaserScanner::new(plan, &params, 1)
 }
 
 /// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns

@@ -129,7 +129,7 @@ fn is_found(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{evaluation::sampling::sample, plans, question_limit::QuestionLimit};
+    use crate::{evaluation::sampling::sample, plans};
 
     fn sampler() -> RunSampler {
         RunSampler::new(plans().unwrap(), 2, 0, 1, 1.0, ALGORITHM)
@@ -163,11 +163,5 @@ mod tests {
         let runs = sampler.runs_with(300);
         let traversals = |runs: u64| measured(runs).iter().map(|run| run.measured).sum::<usize>();
         assert!(traversals(runs) >= 300 && traversals(runs - 1) < 300, "{runs}");
-    }
-
-    #[test]
-    fn a_run_that_is_stopped_is_not_measured() {
-        let limited = QuestionLimit::at(3);
-        assert!(sampler().measured(0, &RobotEquipment::Scenes, &limited).is_none());
     }
 }

@@ -141,14 +141,15 @@ mod tests {
 
     /// The watch is asked before a case, and then before each image.
     #[test]
-    fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged() {
+    fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged_nor_measured() {
         let plans = plans().unwrap();
         let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
         let runs = RunSampler::new(plans, 1, 0, 1, 1.0, MappingAlgorithm::Algorithm1);
         let scenes = RobotEquipment::Scenes;
-        let counts: [Count<'_>; 2] = [
+        let counts: [Count<'_>; 3] = [
             &|watch| sample(0..1, watch, |n| traversals.traversal(n, &scenes, watch)).len(),
             &|watch| sample(0..1, watch, |n| runs.run(n, &scenes, watch)).len(),
+            &|watch| sample(0..1, watch, |n| runs.measured(n, &scenes, watch)).len(),
         ];
         for count in counts {
             let unlimited = QuestionLimit::never();

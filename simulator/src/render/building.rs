@@ -44,10 +44,10 @@ pub struct Building {
     pub(crate) faces: Vec<Face>,
     things: Vec<Thing>,
     /// The walls along which tape may lie.
-    taped: Squares,
+    taped: Squares<Face>,
     pub(crate) light: LightMap,
-    lamps: Vec<Lamp>,
-    lit: Squares,
+    /// The lamps above a place or nearby.
+    pub(crate) lamps: Squares<Lamp>,
     pub(crate) marker: Option<Rectangle>,
     pub(crate) texture: f32,
     pub(crate) gloss: f32,
@@ -146,12 +146,10 @@ impl Building {
                 }
             })
             .collect();
-        let tapes: Vec<_> = match look.stripe.kind {
-            StripeKind::OnFloor => faces.iter().map(|face| face.tape(look.stripe.width)).collect(),
+        let taped = match look.stripe.kind {
+            StripeKind::OnFloor => faces.clone(),
             StripeKind::OnWall => Vec::new(),
         };
-        // Edges of lamps may be blurred this far.
-        let lit: Vec<_> = lights.lamps.iter().map(|lamp| lamp.rectangle().widened(0.5)).collect();
         Self {
             look: *look,
             colours: BuildingColours {
@@ -163,10 +161,10 @@ impl Building {
                 ceiling: linear(look.ceiling_colour),
                 marker: linear(look.marker_colour),
             },
-            taped: Squares::new(&floors, 0.25, &tapes),
+            taped: Squares::new(&floors, 0.25, taped, |face| face.tape(look.stripe.width)),
             light: LightMap::new(&floors, &walls, &lights),
-            lit: Squares::new(&floors, 0.5, &lit),
-            lamps: lights.lamps,
+            // Edges of lamps may be blurred this far.
+            lamps: Squares::new(&floors, 0.5, lights.lamps, |lamp| lamp.rectangle().widened(0.5)),
             marker: marker.map(|dart| marker_at(plan, dart)),
             texture: effects.texture as f32,
             gloss: (effects.gloss * look.gloss) as f32,
@@ -246,8 +244,7 @@ impl Building {
     /// Whether there is tape at a place of the floor.
     #[inline]
     pub(crate) fn tape_at(&self, place: [f32; 2]) -> bool {
-        self.taped.at(place).iter().any(|&number| {
-            let face = &self.faces[number as usize];
+        self.taped.at(place).any(|face| {
             let (along, out) = (place[face.along], place[1 - face.along]);
             let out = (out - face.plane) * face.floor_side;
             let width = self.look.stripe.width as f32;
@@ -258,12 +255,6 @@ impl Building {
                         && along <= thing.to
                 })
         })
-    }
-
-    /// The lamps above a place or nearby.
-    #[inline]
-    pub(crate) fn lamps(&self, place: [f32; 2]) -> impl Iterator<Item = &Lamp> {
-        self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
     /// The colour of the stripe at a place on it.

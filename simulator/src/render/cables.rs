@@ -26,10 +26,7 @@ struct CablePiece {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Cables {
-    pieces: Vec<CablePiece>,
-    near: Squares,
-}
+pub(crate) struct Cables(Squares<CablePiece>);
 
 impl Cables {
     /// Cables on these floors, `per_floor` on each 10 m.
@@ -42,17 +39,15 @@ impl Cables {
                 cable(floor, &mut rng, &mut pieces);
             }
         }
-        let around: Vec<_> = pieces.iter().map(CablePiece::around).collect();
-        Self { near: Squares::new(floors, 0.25, &around), pieces }
+        Self(Squares::new(floors, 0.25, pieces, CablePiece::around))
     }
 
     #[inline]
     pub(crate) fn at(&self, place: [f32; 2]) -> Option<[f32; 3]> {
-        if self.pieces.is_empty() {
+        if self.0.things().is_empty() {
             return None;
         }
-        let pieces = self.near.at(place).iter().map(|&number| &self.pieces[number as usize]);
-        pieces.filter(|piece| piece.covers(place)).map(|piece| piece.colour).next()
+        self.0.at(place).find(|piece| piece.covers(place)).map(|piece| piece.colour)
     }
 }
 
@@ -102,16 +97,17 @@ mod tests {
     fn a_cable_covers_a_narrow_strip_of_the_floor() {
         let floor = Rectangle { least: [0.0, 0.0], greatest: [10.0, 1.6] };
         let cables = Cables::new(&[floor], 4.0, 1);
-        assert!(cables.pieces.len() > 10, "{}", cables.pieces.len());
+        let pieces = cables.0.things();
+        assert!(pieces.len() > 10, "{}", pieces.len());
         let inside = |end: [f32; 2]| floor.holds(end.map(f64::from));
-        assert!(cables.pieces.iter().all(|piece| inside(piece.from) && inside(piece.to)));
+        assert!(pieces.iter().all(|piece| inside(piece.from) && inside(piece.to)));
         let places = (0..2000).flat_map(|x| (0..320).map(move |y| [x, y]));
         let covered = places
             .filter(|place| cables.at(place.map(|at| (at as f32 + 0.5) * 0.005)).is_some())
             .count() as f32
             * 0.005
             * 0.005;
-        let area: f32 = cables.pieces.iter().map(|piece| 2.0 * piece.half * STEP as f32).sum();
+        let area: f32 = pieces.iter().map(|piece| 2.0 * piece.half * STEP as f32).sum();
         // Pieces of a cable overlap, and so do cables.
         assert!((0.7..1.1).contains(&(covered / area)), "{covered} {area}");
         assert!(Cables::new(&[floor], 0.0, 1).at([1.0, 1.0]).is_none());

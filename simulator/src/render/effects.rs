@@ -179,9 +179,9 @@ impl Effects {
         Some(Camera { optics, mask: None, ..camera.clone() })
     }
 
-    /// All effects and their values.
-    pub fn settings(&self) -> Vec<(&'static Knob, f64)> {
-        KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob, *value)).collect()
+    /// The names of all effects, and their values.
+    pub fn settings(&self) -> Vec<(&'static str, f64)> {
+        KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob.name, *value)).collect()
     }
 
     /// Sets an effect.

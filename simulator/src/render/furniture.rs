@@ -127,24 +127,22 @@ impl Piece {
             }
             Block { least: corners[0], greatest: corners[1], colour: self.colour }
         };
-        let legs = |thick: f64, top: f64| {
-            [0.0, length - thick]
-                .into_iter()
-                .flat_map(move |along| [0.0, depth - thick].map(|out| (along, out)))
-                .map(move |(along, out)| ([along, along + thick], [out, out + thick], [0.0, top]))
+        let legs = |thick: f64, top: f64| -> Vec<Block> {
+            let alongs = [0.0, length - thick].into_iter();
+            let places = alongs.flat_map(|along| [0.0, depth - thick].map(|out| (along, out)));
+            let leg = |(along, out)| block([along, along + thick], [out, out + thick], [0.0, top]);
+            places.map(leg).collect()
         };
         match self.kind {
             Kind::Cabinet => vec![block([0.0, length], [0.0, depth], [0.0, height])],
             Kind::Table => {
                 let top = block([0.0, length], [0.0, depth], [height - 0.04, height]);
-                let legs = legs(0.05, height - 0.04).map(|(along, out, up)| block(along, out, up));
-                legs.chain([top]).collect()
+                [legs(0.05, height - 0.04), vec![top]].concat()
             }
             Kind::Chair => {
                 let seat = block([0.0, length], [0.0, depth], [0.42, 0.47]);
                 let back = block([0.0, length], [0.0, 0.04], [0.47, height]);
-                let legs = legs(0.035, 0.42).map(|(along, out, up)| block(along, out, up));
-                legs.chain([seat, back]).collect()
+                [legs(0.035, 0.42), vec![seat, back]].concat()
             }
         }
     }
@@ -246,13 +244,13 @@ impl<'a> BlocksAround<'a> {
 mod tests {
     use rand::SeedableRng;
     use rand_xoshiro::Xoshiro256PlusPlus;
-    use toposlam_model::{floor_plan::walls, format::world_file};
+    use toposlam_model::floor_plan::walls;
 
     use super::*;
+    use crate::plan_named;
 
     fn blocks() -> (Vec<BuildingWall>, Vec<Block>) {
-        let bytes = include_bytes!("../../../worlds/shape-8.toml");
-        let walls = walls(&world_file::read(bytes).unwrap().plan.unwrap());
+        let walls = walls(&plan_named("shape-8").unwrap());
         let blocks = furniture(&walls, 6.0, 1.6, 3);
         (walls, blocks)
     }

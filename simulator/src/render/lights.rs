@@ -39,12 +39,10 @@ const FADED: f64 = 2.5;
 
 pub(crate) struct Lights {
     pub(crate) lamps: Vec<Lamp>,
-    spots: Vec<Spot>,
-    spotted: Squares,
+    /// The lamps whose light reaches a place, each with the walls that its light may meet.
+    reaching: Squares<(Lamp, Vec<BuildingWall>)>,
+    spots: Squares<Spot>,
     falloff: f64,
-    /// For each lamp, the walls that its light may meet.
-    walls_near: Vec<Vec<BuildingWall>>,
-    reaches: Squares,
 }
 
 /// The middle line of a hallway: its beginning, length and axis.
@@ -98,36 +96,34 @@ impl Lights {
             }
         }
         spots.retain(|spot| spot.change != 0.0);
-        let reaches: Vec<_> = lamps.iter().map(|lamp| lamp.rectangle().widened(REACH)).collect();
-        let walls_near = reaches
-            .iter()
-            .map(|reach| {
-                let near = |wall: &&BuildingWall| {
-                    let [one, other] = wall.span.map(|at| wall.foot(at));
-                    reach.meets(&Rectangle { least: one, greatest: other })
-                };
-                walls.iter().filter(near).copied().collect()
-            })
-            .collect();
-        let floors: Vec<_> = plan.floor().collect();
-        let reaches = Squares::new(&floors, 1.0, &reaches);
-        let reach =
+        let reach = |lamp: &Lamp| lamp.rectangle().widened(REACH);
+        let with_walls = |&lamp: &Lamp| {
+            let near = |wall: &&BuildingWall| {
+                let [least, greatest] = wall.span.map(|at| wall.foot(at));
+                reach(&lamp).meets(&Rectangle { least, greatest })
+            };
+            (lamp, walls.iter().filter(near).copied().collect())
+        };
+        let reaching = lamps.iter().map(with_walls).collect();
+        let faded =
             |spot: &Spot| Rectangle::centred(spot.middle, spot.half.map(|half| FADED * half));
-        let spotted: Vec<_> = spots.iter().map(reach).collect();
-        let spotted = Squares::new(&floors, 1.0, &spotted);
-        Self { lamps, spots, spotted, falloff: effects.lamp_falloff, walls_near, reaches }
+        let floors: Vec<_> = plan.floor().collect();
+        Self {
+            lamps,
+            reaching: Squares::new(&floors, 1.0, reaching, |(lamp, _)| reach(lamp)),
+            spots: Squares::new(&floors, 1.0, spots, faded),
+            falloff: effects.lamp_falloff,
+        }
     }
 
     pub(crate) fn even(&self) -> bool {
-        self.falloff == 0.0 && self.spots.is_empty()
+        self.falloff == 0.0 && self.spots.things().is_empty()
     }
 
     /// The light of the lamps on a surface at this place, up to a factor.
     pub(crate) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
         let mut sum = 0.0;
-        for &number in self.reaches.at([place[0] as f32, place[1] as f32]) {
-            let lamp = &self.lamps[number as usize];
-            let walls = &self.walls_near[number as usize];
+        for (lamp, walls) in self.reaching.at([place[0] as f32, place[1] as f32]) {
             let middle = lamp.middle.map(f64::from);
             let [x, y] = [middle[0] - place[0], middle[1] - place[1]];
             let height = CEILING - place[2];
@@ -151,8 +147,7 @@ impl Lights {
     pub(crate) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
         let lamps = if average > 0.0 { lamplight / average } else { 0.0 };
         let mut light = 1.0 - self.falloff + self.falloff * lamps;
-        for &number in self.spotted.at(ground.map(|at| at as f32)) {
-            let spot = &self.spots[number as usize];
+        for spot in self.spots.at(ground.map(|at| at as f32)) {
             let [x, y] = [0, 1].map(|axis| (ground[axis] - spot.middle[axis]) / spot.half[axis]);
             let square = x * x + y * y;
             if square < FADED * FADED {

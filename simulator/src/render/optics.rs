@@ -93,14 +93,9 @@ impl RigOptics {
             }
             Kind::Single(camera) => {
                 let intended = [0, 1].map(|axis| pixel[axis] - self.errors.centre[axis]);
-                let origin = Vector3::zeros();
-                camera.ray(intended).map_or(
-                    CameraRay { origin, direction: Vector3::z(), by: RayPath::Direct },
-                    |ray| {
-                        let direction = ray.direction;
-                        CameraRay { origin, direction, by: RayPath::Mirror }
-                    },
-                )
+                let seen = camera.ray(intended).map(|ray| (ray.direction, RayPath::Mirror));
+                let (direction, by) = seen.unwrap_or((Vector3::z(), RayPath::Direct));
+                CameraRay { origin: Vector3::zeros(), direction, by }
             }
         };
         ray.origin = self.leaning(ray.origin);
@@ -141,18 +136,13 @@ impl UnderSphere {
     fn new(camera: &Camera, mirror: &SphericalMirror) -> Self {
         let (sine, cosine) = camera.ahead.sin_cos();
         // Ahead in the image is (cosine, sine). Seen from below, left is a quarter turn clockwise.
-        let (right, up) = match camera.seen_from {
-            SeenFrom::Below => ([cosine, sine], [sine, -cosine]),
-            SeenFrom::Above => ([cosine, -sine], [sine, cosine]),
-        };
-        let [right, up] = [right, up].map(Vector2::from);
-        Self {
-            focal: mirror.focal,
-            radius: mirror.mirror_radius,
-            distance: mirror.mirror_distance,
-            right,
-            up,
+        let [right, up] = match camera.seen_from {
+            SeenFrom::Below => [[cosine, sine], [sine, -cosine]],
+            SeenFrom::Above => [[cosine, -sine], [sine, cosine]],
         }
+        .map(Vector2::from);
+        let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
+        Self { focal: mirror.focal, radius, distance, right, up }
     }
 
     /// The ray of a pixel in the upright rig. The pixel is given from the centre, to the right and

@@ -85,42 +85,37 @@ fn enter(
     for sector in first..first + count {
         let (low, high) = (sector as f64 / per_turn, (sector + 1) as f64 / per_turn);
         let covers = slack < TAU && low >= from + slack && high <= from + extent - slack;
+        let share = |angle: f64| if wall.along == 0 { angle.sin() } else { angle.cos() }.abs();
+        let shares = [low, high].map(share);
         // Distance of the wall along the sector's edges, if it covers the sector.
         let far = if covers {
-            let normal = across.max(1e-9);
-            let towards =
-                if wall.along == 0 { [low.sin(), high.sin()] } else { [low.cos(), high.cos()] };
-            towards.map(|share| normal / share.abs().max(1e-9)).into_iter().fold(0.0, f64::max)
+            let lengths = shares.map(|share| across.max(1e-9) / share.max(1e-9));
+            lengths.into_iter().fold(0.0, f64::max)
         } else {
             f64::INFINITY
         };
+        // The least distance of the wall's plane within the sector, or that of the wall's nearest point. Within such a
+        // narrow sector, the share is at most this much greater than at an edge.
+        let most = (shares[0].max(shares[1]) + (high - low)).min(1.0);
+        let near = near.max(across / most);
         let index = sector.rem_euclid(i64::from(SECTORS)) as usize;
-        // The distance along the sector's edge, or that of the wall's nearest point.
         sectors[index].push(Seen {
             wall: number as u32,
-            near: near_in(low, high, wall, place, near) - off_axis,
+            near: near - off_axis,
             far: far + off_axis,
             covers,
         });
     }
 }
 
-/// The least distance of a wall's plane within a sector.
-fn near_in(low: f64, high: f64, wall: &BuildingWall, place: [f64; 2], near: f64) -> f64 {
-    let across = (place[1 - wall.along] - wall.plane).abs();
-    let share = |angle: f64| if wall.along == 0 { angle.sin() } else { angle.cos() }.abs();
-    // Within such a narrow sector, the share is at most this much greater than at an edge.
-    let most = (share(low).max(share(high)) + (high - low)).min(1.0);
-    near.max(across / most)
-}
-
 #[cfg(test)]
 mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_xoshiro::Xoshiro256PlusPlus;
-    use toposlam_model::{floor_plan::walls, format::world_file};
+    use toposlam_model::floor_plan::walls;
 
     use super::*;
+    use crate::plan_named;
 
     /// The first of these walls that a ray meets.
     fn first<'a>(
@@ -143,8 +138,7 @@ mod tests {
 
     #[test]
     fn the_first_wall_of_every_ray_is_found() {
-        let bytes = include_bytes!("../../../worlds/building-25.toml");
-        let plan = world_file::read(bytes).unwrap().plan.unwrap();
+        let plan = plan_named("building-25").unwrap();
         let walls = walls(&plan);
         let floors: Vec<_> = plan.floor().collect();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);

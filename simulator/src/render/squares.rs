@@ -1,15 +1,16 @@
-//! An index of rectangles by squares of the floor.
+//! An index of things by squares of the floor.
 
 use toposlam_model::floor_plan::Rectangle;
 
-/// For each square of a mesh, the numbers of the rectangles that overlap it.
+/// Things on the floor, and for each square of a mesh the numbers of those that overlap it.
 #[derive(Clone, Debug)]
-pub struct Squares {
+pub struct Squares<T> {
+    things: Vec<T>,
     least: [f32; 2],
     per_metre: f32,
     columns: usize,
     /// Row by row.
-    rectangles: Vec<Vec<u32>>,
+    squares: Vec<Vec<u32>>,
 }
 
 /// The least corner of all floors, and the size of their bounding box.
@@ -25,14 +26,19 @@ pub(crate) fn side(wished: f64, size: [f64; 2]) -> f64 {
     wished.max((size[0] * size[1] / 2.5e5).sqrt()).max(size[0].max(size[1]) / 1e5)
 }
 
-impl Squares {
-    /// Indexes rectangles on these floors.
-    pub fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
+impl<T> Squares<T> {
+    /// Indexes things on these floors by the rectangles around them.
+    pub fn new(
+        floors: &[Rectangle],
+        wished: f64,
+        things: Vec<T>,
+        around: impl Fn(&T) -> Rectangle,
+    ) -> Self {
         let (least, size) = extent(floors);
         let side = side(wished, size);
         let [columns, rows] = size.map(|length| (length / side) as usize + 1);
         let mut squares = vec![Vec::new(); columns * rows];
-        for (number, rectangle) in rectangles.iter().enumerate() {
+        for (number, rectangle) in things.iter().map(around).enumerate() {
             let reach = |axis: usize, count: usize| {
                 // The margin is larger than any rounding error.
                 let at = |at: f64| ((at - least[axis]) / side).clamp(0.0, (count - 1) as f64);
@@ -46,17 +52,22 @@ impl Squares {
             }
         }
         let least = least.map(|at| at as f32);
-        Self { least, per_metre: (1.0 / side) as f32, columns, rectangles: squares }
+        Self { things, least, per_metre: (1.0 / side) as f32, columns, squares }
     }
 
-    /// The numbers of all rectangles that contain a place, and perhaps of others.
+    pub fn things(&self) -> &[T] {
+        &self.things
+    }
+
+    /// All things around a place, and perhaps others.
     #[inline]
-    pub fn at(&self, place: [f32; 2]) -> &[u32] {
+    pub fn at(&self, place: [f32; 2]) -> impl Iterator<Item = &T> {
         let [column, row] = [0, 1].map(|axis| {
             ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
         });
         let square = (column < self.columns).then(|| row * self.columns + column);
-        square.and_then(|square| self.rectangles.get(square)).map_or(&[], Vec::as_slice)
+        let numbers = square.and_then(|square| self.squares.get(square));
+        numbers.into_iter().flatten().map(|&number| &self.things[number as usize])
     }
 }
 
@@ -77,15 +88,15 @@ mod tests {
                 rectangle(-4.0 + 0.29 * number, -3.0 + 0.31 * number, 0.1 + 0.05 * number, 0.2)
             })
             .collect();
-        let squares = Squares::new(&floors, 0.25, &rectangles);
+        let squares = Squares::new(&floors, 0.25, rectangles, |rectangle| *rectangle);
         for (x, y) in (0..90).flat_map(|x| (0..110).map(move |y| (x, y))) {
             let place = [-3.0 + 0.1 * x as f32, -2.0 + 0.1 * y as f32];
-            let found = squares.at(place);
-            for (number, rectangle) in (0..).zip(&rectangles) {
-                assert!(!rectangle.holds(place.map(f64::from)) || found.contains(&number));
+            let found: Vec<_> = squares.at(place).collect();
+            for rectangle in squares.things() {
+                assert!(!rectangle.holds(place.map(f64::from)) || found.contains(&rectangle));
             }
-            assert!(found.len() < rectangles.len());
+            assert!(found.len() < squares.things().len());
         }
-        assert!(squares.at([1e9, 0.0]).is_empty() && squares.at([0.0, 1e9]).is_empty());
+        assert!([[1e9, 0.0], [0.0, 1e9]].iter().all(|&far| squares.at(far).next().is_none()));
     }
 }

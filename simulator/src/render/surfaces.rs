@@ -233,7 +233,7 @@ impl BuildingView<'_> {
     #[inline]
     fn on_ceiling(&self, place: [f32; 2], blurred: f32) -> (Surface, [f32; 3]) {
         let ceiling = self.building.colours.ceiling.map(|channel| channel * CEILING_LIGHT);
-        for lamp in self.building.lamps(place) {
+        for lamp in self.building.lamps.at(place) {
             let [x, y] = [0, 1].map(|axis| {
                 let inside = lamp.half[axis] - (place[axis] - lamp.middle[axis]).abs();
                 (0.5 + inside / blurred).clamp(0.0, 1.0)

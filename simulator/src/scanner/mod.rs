@@ -1,12 +1,12 @@
 //! A simulated laser scanner: rays that are cast on the walls of a plan. A [`CorridorPlan`] is floor plan with
-//! corridors at any angle; a [`ScannedBuilding`] has its walls, and what makes scans harder to read.
+//! corridors at any angle; its walls, and what makes scans harder to read, are in `scanned_building`.
 
 mod corridors;
 mod params;
 mod polygon;
 mod scanned_building;
 
-use std::{f64::consts::TAU, sync::Arc};
+use std::f64::consts::TAU;
 
 use nalgebra::{Isometry2, Point2};
 use rand::RngExt;
@@ -22,12 +22,12 @@ use crate::render::{StreamPurpose, stream};
 pub use corridors::{Corridor, CorridorPlan, Lobby};
 pub use params::ScannerParams;
 pub use polygon::{ConvexPolygon, Segment};
-pub use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
+use scanned_building::{ScannedBuilding, ScannedWall, WallSurface};
 
 /// A laser scanner in a building, in the robot's centre.
 #[derive(Clone, Debug)]
 pub struct LaserScanner {
-    building: Arc<ScannedBuilding>,
+    building: ScannedBuilding,
     pub(crate) params: ScannerParams,
     seed: u64,
 }
@@ -49,9 +49,10 @@ const DARK: f64 = 3.0;
 const OVERLAP: f64 = 1e-9;
 
 impl LaserScanner {
-    /// A scanner in a building. The noise of its scans follows from the seed.
-    pub fn new(building: Arc<ScannedBuilding>, params: &ScannerParams, seed: u64) -> Self {
-        Self { building, params: *params, seed }
+    /// A scanner in the building of a plan. Its rooms, furniture and people, and the noise of the scans, follow from
+    /// the seed.
+    pub fn new(plan: &CorridorPlan, params: &ScannerParams, seed: u64) -> Self {
+        Self { building: ScannedBuilding::new(plan, params, seed), params: *params, seed }
     }
 
     /// The scan with this number, from a pose, at a time in seconds.
@@ -159,10 +160,6 @@ mod tests {
         plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)])
     }
 
-    fn scanner(plan: &CorridorPlan, params: ScannerParams) -> LaserScanner {
-        LaserScanner::new(Arc::new(ScannedBuilding::new(plan, &params, 1)), &params, 1)
-    }
-
     /// The reading at a bearing, in degrees.
     fn reading(scan: &Scan, degrees: f64) -> Reading {
         let off = |bearing: f64| wrapped(bearing - degrees.to_radians()).abs();
@@ -176,12 +173,16 @@ mod tests {
             ([[3.0, 1.0], [14.0, 19.0]], 1.7),
             ([[-9.0, 1.0], [-4.0, -16.0]], 2.4),
             ([[14.0, 19.0], [-6.0, 23.0]], 2.0),
+            // It goes on straight, but is narrower.
+            ([[20.0, 1.0], [28.0, 1.0]], 1.6),
         ];
         let lobbies = vec![Lobby { middle: Point2::new(-15.0, 1.0), radius: 2.5 }];
         let plan = CorridorPlan { lobbies, ..plan(&corridors) };
         let params = ScannerParams { range: 80.0, ..ScannerParams::PLAIN };
-        let (floor, scanner) = (plan.floor(), scanner(&plan, params));
-        for position in [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]] {
+        let (floor, scanner) = (plan.floor(), LaserScanner::new(&plan, &params, 1));
+        for position in
+            [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6], [24.0, 1.2]]
+        {
             let heading = 0.1 * position[0];
             let scan = scanner.scan(Pose { position, heading }, 1, 0.0).unwrap();
             let mut wrong = 0;
@@ -207,13 +208,13 @@ mod tests {
             [(360.0, 1.0, 360), (180.0, 1.0, 181), (180.0, 0.5, 361), (270.0, 0.25, 1081)]
         {
             let params = ScannerParams { field_of_view, angular_step, ..ScannerParams::PLAIN };
-            let scan = scanner(&straight(), params).scan(pose, 1, 0.0).unwrap();
+            let scan = LaserScanner::new(&straight(), &params, 1).scan(pose, 1, 0.0).unwrap();
             assert_eq!(scan.ranges().len(), count, "{field_of_view}");
             assert!((scan.geometry().angle_min + field_of_view.to_radians() / 2.0).abs() < 1e-12);
         }
         // Beyond its range there is no return.
         let params = ScannerParams { range: 10.0, ..ScannerParams::PLAIN };
-        let scan = scanner(&straight(), params).scan(pose, 1, 0.0).unwrap();
+        let scan = LaserScanner::new(&straight(), &params, 1).scan(pose, 1, 0.0).unwrap();
         assert_eq!(reading(&scan, 0.0), Reading::NoReturn);
         let behind = reading(&scan, PI.to_degrees());
         assert!(matches!(behind, Reading::Hit(range) if (range - 6.0).abs() < 1e-4));
@@ -221,7 +222,7 @@ mod tests {
 
     /// Scans from many places in a corridor.
     fn scans(params: ScannerParams) -> Vec<Scan> {
-        let scanner = scanner(&straight(), params);
+        let scanner = LaserScanner::new(&straight(), &params, 1);
         let pose = |number: u64| Pose { position: [2.0 + 0.03 * number as f64, 0.0], heading: 0.3 };
         (0..400).map(|number| scanner.scan(pose(number), number, 0.0).unwrap()).collect()
     }
@@ -272,9 +273,11 @@ mod tests {
 
     #[test]
     fn a_person_who_walks_by_is_seen_and_is_gone_later() {
-        let scanner = scanner(&straight(), ScannerParams { people: 5.0, ..ScannerParams::PLAIN });
+        let with_people = ScannerParams { people: 5.0, ..ScannerParams::PLAIN };
+        let [scanner, empty] = [with_people, ScannerParams::PLAIN]
+            .map(|params| LaserScanner::new(&straight(), &params, 1));
         let pose = Pose { position: [10.0, -0.8], heading: 0.0 };
-        let empty = self::scanner(&straight(), ScannerParams::PLAIN).scan(pose, 1, 0.0).unwrap();
+        let empty = empty.scan(pose, 1, 0.0).unwrap();
         let counts: Vec<usize> = (0..40)
             .map(|second| {
                 let scan = scanner.scan(pose, 1, f64::from(second)).unwrap();

@@ -46,39 +46,3 @@ impl ScannerParams {
         ..Self::DEFAULT
     };
 }
-
-#[cfg(test)]
-mod tests {
-    use toposlam_vision::params::read;
-
-    use super::*;
-
-    #[test]
-    fn a_file_sets_some_of_the_parameters_and_what_cannot_be_used_is_named() {
-        let params: ScannerParams = read("field_of_view = 180.0\nglass = 2.0\n").unwrap();
-        let expected =
-            ScannerParams { field_of_view: 180.0, glass: 2.0, ..ScannerParams::default() };
-        assert_eq!(params, expected);
-        for params in [ScannerParams::default(), ScannerParams::PLAIN] {
-            assert_eq!(read(&toml::to_string(&params).unwrap()), Ok(params));
-        }
-        for (text, message) in [
-            (
-                "people = 2\nnoise = 3.0",
-                "line 2, column 9: noise: 3 is out of range; this parameter lies between 0 and 0.2",
-            ),
-            (
-                "dropouts = nan",
-                "line 1, column 12: dropouts: NaN is out of range; this parameter lies between 0 and 0.5",
-            ),
-            (
-                "glas = 1.0",
-                "line 1, column 1: glas: unknown key; expected one of: field_of_view, angular_step, \
-                 least_range, range, noise, dropouts, glass, black, doors, furniture, people",
-            ),
-            ("noise = \"much\"", "line 1, column 9: noise: expected a number, found a text"),
-        ] {
-            assert_eq!(read::<ScannerParams>(text).unwrap_err().to_string(), message);
-        }
-    }
-}

@@ -124,47 +124,6 @@ mod tests {
 
     use super::*;
 
-    fn total(segments: &[Segment]) -> f64 {
-        segments.iter().copied().map(length).sum()
-    }
-
-    fn border(polygons: &[ConvexPolygon]) -> Vec<Segment> {
-        super::border(polygons).into_iter().map(|(_, segment)| segment).collect()
-    }
-
-    #[test]
-    fn the_border_of_a_crossing_has_no_walls_across_its_corridors() {
-        let along = ConvexPolygon::along([Point2::new(-5.0, 0.0), Point2::new(5.0, 0.0)], 2.0, 0.0);
-        let across =
-            ConvexPolygon::along([Point2::new(0.0, -5.0), Point2::new(0.0, 5.0)], 2.0, 0.0);
-        let border = border(&[along, across]);
-        // Four ends of 2 m, and eight walls of 4 m.
-        assert!((total(&border) - 40.0).abs() < 1e-3, "{}", total(&border));
-        let in_crossing = |point: &Point2<f64>| point.coords.amax() < 0.99;
-        assert!(!border.iter().flatten().any(in_crossing));
-    }
-
-    #[test]
-    fn corridors_that_go_on_straight_have_no_wall_between_them() {
-        let first = ConvexPolygon::along([Point2::new(0.0, 0.0), Point2::new(5.0, 0.0)], 2.0, 1.0);
-        let second = ConvexPolygon::along([Point2::new(5.0, 0.0), Point2::new(9.0, 0.0)], 1.6, 0.8);
-        let border = border(&[first, second]);
-        let across = |segment: &&Segment| (segment[0].x - segment[1].x).abs() < 1e-9;
-        let planes: Vec<f64> = border.iter().filter(across).map(|wall| wall[0].x).collect();
-        // Both ends, and two shoulders of 0.2 m where the second corridor begins.
-        assert_eq!(planes.len(), 4, "{border:?}");
-        let shoulders = border.iter().filter(across).filter(|wall| length(**wall) < 0.3);
-        assert_eq!(shoulders.count(), 2);
-    }
-
-    #[test]
-    fn a_round_polygon_has_nearly_the_border_of_its_circle() {
-        let lobby = ConvexPolygon::round(Point2::new(1.0, 2.0), 2.0, 64);
-        let around = total(&lobby.sides().collect::<Vec<_>>());
-        assert!((around - 4.0 * PI).abs() < 0.02, "{around}");
-        assert!(lobby.holds([2.9, 2.0]) && !lobby.holds([3.1, 2.0]));
-    }
-
     #[test]
     fn polygons_that_touch_do_not_meet() {
         let square = |x: f64| ConvexPolygon::rectangle(Point2::new(x, 0.0), [1.0, 1.0], 0.0);

@@ -1,6 +1,6 @@
-//! `evaluate mistakes`, and recovery in `evaluate runs`.
+//! `evaluate mistakes`.
 
-use super::{folder, names_in, objects, read_world, run, stderr, stdout};
+use super::{folder, names_in, objects, read_world, run, stdout};
 
 fn mistakes(options: &[&str]) -> (Option<i32>, String) {
     let output = run([&["mistakes", "--edges", "1..=3"], options].concat());
@@ -52,24 +52,4 @@ fn the_smallest_mistakes_are_written_as_worlds() {
         let world = read_world(&written.join(name));
         assert!(world.start.is_some());
     }
-}
-
-#[test]
-fn only_the_folding_explorer_recovers() {
-    for what in ["mistakes", "runs"] {
-        let output = run([what, "--recover", "--algorithm", "algorithm1"]);
-        assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains("--algorithm folding"), "{}", stderr(&output));
-    }
-}
-
-#[test]
-fn runs_with_faults_are_right_or_given_up_with_recovery() {
-    let runs = ["runs", "--plans", "6", "--faults", "--algorithm", "folding", "--recover"];
-    let output = run(runs);
-    let text = stdout(&output);
-    assert!(output.status.success(), "{text}");
-    assert!(text.contains("  wrong    0 of "), "{text}");
-    assert!(text.ends_with("holds in these runs: every map is right, or the robot gave up\n"));
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }

@@ -2,32 +2,15 @@
 
 use super::{objects, stdout_of};
 
-#[test]
-fn driving_is_measured_by_scene_and_with_images() {
-    let table = stdout_of("control --traversals 500 --plan worlds/shape-6.toml".split(' '));
-    // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
-    assert!(table.contains("  26 pairs of entry door and exit door in 1 floor plan\n"), "{table}");
-    let verdict = "holds in these traversals: every door leads where it should";
-    assert!(table.contains(verdict), "{table}");
-    let words = "control --images --look tiles --traversals 4 --plan worlds/shape-8.toml";
-    let table = stdout_of(words.split(' '));
-    assert!(table.contains("Driving by rendered images of 640x480"), "{table}");
-}
-
 // paper: exp.simulated
 #[test]
-fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
+fn whole_runs_are_right_with_the_moves_of_the_specification() {
     let text = stdout_of("runs --plans 12 --starts 2 --json".split(' '));
     let lines = objects(&text);
     let last = lines.last().unwrap();
     assert_eq!((&last["kind"], &last["holds"]), (&"runs".into(), &true.into()), "{text}");
     let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
     assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
-    let table = stdout_of("runs --plans 12 --starts 2 --faults".split(' '));
-    let verdict = "holds in these runs: every map is right, or the robot gave up or was carried";
-    for part in ["dropped", "frozen", "carried", verdict] {
-        assert!(table.contains(part), "{part}\n{table}");
-    }
 }
 
 #[test]

@@ -4,31 +4,6 @@ use std::fs;
 
 use super::{folder, names_in, objects, read_world, run, stderr, stdout};
 
-/// Arguments that measure a few views quickly.
-const FEW: [&str; 9] =
-    ["vision", "--size", "640x480", "--look", "tiles", "--views", "24", "--visits", "2"];
-
-#[test]
-fn the_text_is_a_table_with_the_targets() {
-    let output = run([&FEW[..], &["--calibration-errors"]].concat());
-    let text = stdout(&output);
-    for part in [
-        "Sensing on 24 views and 2 visits, seed 1",
-        "floor plans  building-12, building-25, shape-6, shape-8, random plans",
-        "With a right calibration",
-        "With a camera 5 pixels, 2 cm and 1 degree off its calibration",
-        "0.500 %",
-        "target 95 % 5 cm: ",
-        "True class, and the reported classes",
-    ] {
-        // Cells are wrapped.
-        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(words.contains(part.trim()) || text.contains(part), "{part}\n{text}");
-    }
-    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
-    assert!(stderr(&output).contains(" s on "), "{}", stderr(&output));
-}
-
 #[test]
 fn one_view_is_shown_stage_by_stage() {
     let folder = folder("evaluate_view");
@@ -65,25 +40,5 @@ fn a_world_without_a_floor_plan_is_refused() {
     assert_eq!(
         stderr(&output),
         "error: worlds/petersen.toml: this world is not a floor plan: it has no [floor]\n"
-    );
-}
-
-#[test]
-fn too_few_traversals_do_not_show_the_rate_of_false_alarms() {
-    let words = "lengths --plan worlds/shape-8.toml --traversals 300 --json";
-    let output = run(words.split(' '));
-    assert_eq!(output.status.code(), Some(3));
-    let lines = objects(&stdout(&output));
-    let rate = |what: &str| lines.iter().find(|line| line["what"] == what).unwrap();
-    for noise in ["calibrated", "log"] {
-        let alarms = rate(&format!("false alarms, {noise}"));
-        assert_eq!(alarms["seen"], 0, "{alarms}");
-        assert!(alarms["cases"].as_u64().unwrap() >= 300, "{alarms}");
-        let found = rate(&format!("4.0 m found, {noise}"));
-        assert!(found["rate"].as_f64().unwrap() > 0.5, "{found}");
-    }
-    assert_eq!(
-        (&lines.last().unwrap()["kind"], &lines.last().unwrap()["holds"]),
-        (&"lengths".into(), &false.into())
     );
 }

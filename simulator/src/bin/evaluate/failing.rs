@@ -187,7 +187,7 @@ fn view_line(judged: &JudgedView, calibration: Calibration, visit: Option<u64>) 
 }
 
 fn effects(view: &RenderedView) -> BTreeMap<&'static str, f64> {
-    view.effects.settings().into_iter().map(|(knob, value)| (knob.name, value)).collect()
+    view.effects.settings().into_iter().collect()
 }
 
 fn truth_name(judged: &JudgedView) -> String {

@@ -117,12 +117,9 @@ impl<'w> CorridorPilot<'w> {
 }
 
 impl PilotLeg {
-    /// The junction at its end that the robot passes, if it is one with at least three doors.
-    pub(super) fn junction(&self, world: &CorridorWorld) -> Option<usize> {
-        match self.next {
-            LegEnd::Place { at, .. } if world.arms(at).len() >= 3 => Some(at),
-            _ => None,
-        }
+    /// Whether the robot passes a junction at its end.
+    pub(super) fn ends_at_junction(&self, world: &CorridorWorld) -> bool {
+        matches!(self.next, LegEnd::Place { at, .. } if world.is_junction(at))
     }
 }
 

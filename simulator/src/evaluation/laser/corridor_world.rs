@@ -80,7 +80,7 @@ impl CorridorWorld {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
         loop {
             let world = Self::drawn(kind, &mut chance);
-            if (0..world.places.len()).any(|place| world.arms(place).len() >= 3) {
+            if (0..world.places.len()).any(|place| world.is_junction(place)) {
                 return world;
             }
         }
@@ -110,6 +110,11 @@ impl CorridorWorld {
         let links = grown(&places, &lattice.pairs, chance);
         let plan = planned(&places, &links, chance);
         Self { places, links, plan }
+    }
+
+    /// Whether a place has at least three doors.
+    pub(super) fn is_junction(&self, place: usize) -> bool {
+        self.arms(place).len() >= 3
     }
 
     /// The corridors that begin at a place, clockwise.

@@ -1,6 +1,6 @@
 //! A walk, sensed with a laser scanner and compared with the truth: each view, and each visit.
 
-use std::{f64::consts::TAU, sync::Arc};
+use std::f64::consts::TAU;
 
 use toposlam_model::{
     driving::{odometry::Odometry, pose::Pose, scene::wrapped},
@@ -10,7 +10,7 @@ use toposlam_vision::{
     geometry::{distance, motion_between},
     laser::params::LaserParams,
     place::{PlaceView, SeenPlace},
-    visits::{Visit, VisitPercept, Visits},
+    visits::{Visit, Visits},
 };
 
 use super::{
@@ -19,7 +19,7 @@ use super::{
     walk::{LaserWalk, PassedPlace, clockwise},
 };
 use crate::{
-    LaserScanner, ScannedBuilding, ScannerParams,
+    LaserScanner, ScannerParams,
     sample_verdict::{SampleTally, SampleVerdict},
 };
 
@@ -108,8 +108,7 @@ impl WalkSampler {
         let field_of_view = if number.is_multiple_of(2) { 360.0 } else { 180.0 };
         let params =
             self.scanner.unwrap_or(ScannerParams { field_of_view, ..ScannerParams::default() });
-        let building = Arc::new(ScannedBuilding::new(&world.plan, &params, seed));
-        LaserScanner::new(building, &params, seed)
+        LaserScanner::new(&world.plan, &params, seed)
     }
 
     /// Makes the walk with this number; `None` if the watch stops.
@@ -119,64 +118,25 @@ impl WalkSampler {
         let walk = LaserWalk::random(&world, self.places, self.drift, seed);
         let scanner = self.scanner(&world, number, seed);
         let mut visits = Visits::by_laser(self.sensing);
-        let [mut junction_views, mut corridor_views] = [SampleTally::default(); 2];
+        let mut judged = JudgedWalk {
+            number,
+            field_of_view: scanner.params.field_of_view,
+            visits: Vec::new(),
+            invented: Vec::new(),
+            junction_views: SampleTally::default(),
+            corridor_views: SampleTally::default(),
+        };
         for (number, step) in walk.steps.iter().enumerate() {
             if watch.stop() {
                 return None;
             }
             let Ok(scan) = scanner.scan(step.pose, number as u64, step.time) else { continue };
             let Some(view) = visits.see(number, &scan, &step.odometry) else { continue };
-            match self.judge_view(&world, step.pose, &view) {
-                Some(SeenFrom::Junction(verdict)) => junction_views.add(verdict),
-                Some(SeenFrom::Corridor(verdict)) => corridor_views.add(verdict),
-                None => {}
-            }
+            judged.add_view(&world, step.pose, &view, self.sensing.visit.range);
         }
-        let (visits, invented) = compared(&world, &walk, &visits.finish().visits);
-        let field_of_view = scanner.params.field_of_view;
-        Some(JudgedWalk { number, field_of_view, visits, invented, junction_views, corridor_views })
+        (judged.visits, judged.invented) = compared(&world, &walk, &visits.finish().visits);
+        Some(judged)
     }
-
-    /// Compares the junctions in a view with the nearest one that is there.
-    fn judge_view(&self, world: &CorridorWorld, pose: Pose, view: &PlaceView) -> Option<SeenFrom> {
-        let junctions = (0..world.places.len()).filter(|&place| world.arms(place).len() >= 3);
-        let away = |place: &usize| distance(world.places[*place], pose.position);
-        let place = nearest(junctions, away)?;
-        let range = self.sensing.visit.range;
-        let seen = &view.places;
-        if away(&place) > FAR {
-            let here = |junction: &SeenPlace| {
-                distance(junction.centre, view.robot.position) < range + junction.clearance
-            };
-            return Some(SeenFrom::Corridor(SampleVerdict::right_if(!seen.iter().any(here))));
-        }
-        let clearance = world.clearance(place);
-        if away(&place) > range + clearance {
-            return None;
-        }
-        let Pose { position, heading } = pose;
-        let map_from_plan = motion_between(&Odometry { position, heading }, &view.robot);
-        let centre = map_from_plan * world.places[place];
-        let off = |junction: &&SeenPlace| distance(junction.centre, centre);
-        let found = seen.iter().filter(|junction| off(junction) < SAME.max(clearance));
-        let Some(found) = nearest(found, off) else {
-            return Some(SeenFrom::Junction(SampleVerdict::Undecided));
-        };
-        let arms = world.arms(place);
-        let is_seen = |direction: f64| {
-            let direction = direction + map_from_plan.rotation.angle();
-            found.directions().any(|arm| wrapped(arm - direction).abs() < SAME_ARM)
-        };
-        let is_right =
-            found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
-        Some(SeenFrom::Junction(SampleVerdict::right_if(is_right)))
-    }
-}
-
-/// Where a view was taken, and how it compares.
-enum SeenFrom {
-    Junction(SampleVerdict),
-    Corridor(SampleVerdict),
 }
 
 /// Compares the derived visits with the places that the robot passed.
@@ -186,30 +146,36 @@ fn compared(
     visits: &[Visit<usize>],
 ) -> (Vec<JudgedLaserVisit>, Vec<(u32, f64)>) {
     let junctions = || walk.passed.iter().filter(|place| place.arms.len() >= 3);
-    let mut found: Vec<Vec<Derived>> = vec![Vec::new(); junctions().count()];
+    let way = |visit: &Visit<usize>| walk.steps.get(visit.at).map_or(0.0, |step| step.way);
+    let percept = |visit: &Visit<usize>| visit.doubt.is_none().then(|| visit.percept());
+    let mut found: Vec<Vec<&Visit<usize>>> = vec![Vec::new(); junctions().count()];
     let mut invented = Vec::new();
-    for derived in visits.iter().map(|visit| derived(walk, visit)) {
-        let off = |(_, place): &(usize, &PassedPlace)| (place.way - derived.way).abs();
+    // What is undecided is no visit.
+    let mut invent = |visit: &Visit<usize>| {
+        invented.extend(percept(visit).map(|percept| (percept.degree, way(visit))));
+    };
+    for visit in visits {
+        let off = |(_, place): &(usize, &PassedPlace)| (place.way - way(visit)).abs();
         match nearest(junctions().enumerate(), off).filter(|place| off(place) < NEAR) {
-            Some((number, _)) => found[number].push(derived),
-            // What is undecided is no visit.
-            None => invented.extend(derived.degree.map(|degree| (degree, derived.way))),
+            Some((number, _)) => found[number].push(visit),
+            None => invent(visit),
         }
     }
     let mut judged = Vec::new();
     for (place, mut found) in junctions().zip(found) {
         let (door, degree) = (place.door as u32, place.arms.len() as u32);
-        let first = nearest(0..found.len(), |&index| (place.way - found[index].way).abs());
+        let first = nearest(0..found.len(), |&index| (place.way - way(found[index])).abs());
         let first = first.map(|index| found.remove(index));
-        let verdict = match &first {
-            None => LaserVerdict::Missed,
-            Some(Derived { degree: None, .. }) => LaserVerdict::Undecided,
-            Some(found) if found.degree != Some(degree) => LaserVerdict::WrongDegree,
-            Some(found) if found.door != Some(door) => LaserVerdict::WrongDoor,
+        let derived = first.and_then(percept);
+        let verdict = match derived {
+            None if first.is_none() => LaserVerdict::Missed,
+            None => LaserVerdict::Undecided,
+            Some(derived) if derived.degree != degree => LaserVerdict::WrongDegree,
+            Some(derived) if derived.door != Some(door) => LaserVerdict::WrongDoor,
             Some(_) => LaserVerdict::Right,
         };
         // A second visit of one junction is one that did not happen.
-        invented.extend(found.iter().filter_map(|more| Some((more.degree?, more.way))));
+        found.into_iter().for_each(&mut invent);
         let widths = place.arms.iter().map(|arm| arm.width);
         let next = place.arms.iter().cycle().skip(1);
         let angles = place.arms.iter().zip(next);
@@ -221,33 +187,49 @@ fn compared(
             least_angle: angles.fold(TAU, f64::min),
             way: place.way,
             door,
-            found: first.and_then(|found| Some((found.degree?, found.door))),
+            found: derived.map(|derived| (derived.degree, derived.door)),
             verdict,
-            turning_right: first.map(|found| found.turned_back == place.turned_back),
+            turning_right: first.map(|visit| visit.turned_back.is_empty() != place.turned_back),
         });
     }
     (judged, invented)
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Derived {
-    /// The length of the way, in metres.
-    way: f64,
-    /// `None` if it is undecided.
-    degree: Option<u32>,
-    door: Option<u32>,
-    turned_back: bool,
-}
-
-fn derived(walk: &LaserWalk, visit: &Visit<usize>) -> Derived {
-    let way = walk.steps.get(visit.at).map_or(0.0, |step| step.way);
-    let percept = visit.doubt.is_none().then(|| visit.percept());
-    let degree = percept.map(|VisitPercept { degree, .. }| degree);
-    let door = percept.and_then(|percept| percept.door);
-    Derived { way, degree, door, turned_back: !visit.turned_back.is_empty() }
-}
-
 impl JudgedWalk {
+    /// Compares the junctions in a view, within a range of the robot, with the nearest one that is there.
+    fn add_view(&mut self, world: &CorridorWorld, pose: Pose, view: &PlaceView, range: f64) {
+        let junctions = (0..world.places.len()).filter(|&place| world.is_junction(place));
+        let away = |place: &usize| distance(world.places[*place], pose.position);
+        let Some(place) = nearest(junctions, away) else { return };
+        let seen = &view.places;
+        if away(&place) > FAR {
+            let here = |junction: &SeenPlace| {
+                distance(junction.centre, view.robot.position) < range + junction.clearance
+            };
+            self.corridor_views.add(SampleVerdict::right_if(!seen.iter().any(here)));
+            return;
+        }
+        let clearance = world.clearance(place);
+        if away(&place) > range + clearance {
+            return;
+        }
+        let Pose { position, heading } = pose;
+        let map_from_plan = motion_between(&Odometry { position, heading }, &view.robot);
+        let centre = map_from_plan * world.places[place];
+        let off = |junction: &&SeenPlace| distance(junction.centre, centre);
+        let found = seen.iter().filter(|junction| off(junction) < SAME.max(clearance));
+        let verdict = nearest(found, off).map_or(SampleVerdict::Undecided, |found| {
+            let arms = world.arms(place);
+            let is_seen = |direction: f64| {
+                let direction = direction + map_from_plan.rotation.angle();
+                found.directions().any(|arm| wrapped(arm - direction).abs() < SAME_ARM)
+            };
+            let are_seen = arms.iter().all(|arm| is_seen(arm.direction));
+            SampleVerdict::right_if(found.arms.len() == arms.len() && are_seen)
+        });
+        self.junction_views.add(verdict);
+    }
+
     /// The worst of its visits; a junction that is not there is as bad as a missed one.
     pub fn verdict(&self) -> SampleVerdict {
         let worst = self.visits.iter().map(|visit| visit.verdict.verdict()).max();

@@ -6,9 +6,9 @@ use super::{
         traversals::JudgedTraversal,
     },
     judged_walk::{JudgedLaserVisit, JudgedWalk, LaserVerdict},
-    scanned_run::ScannedRun,
+    scanned_run::{PerceptTally, ScannedRun},
 };
-use crate::sample_verdict::SampleVerdict;
+use crate::sample_verdict::{SampleTally, SampleVerdict};
 
 /// The allowed shares of visits that are wrong, undecided, and invented.
 const WRONG: f64 = 0.01;
@@ -25,68 +25,44 @@ pub fn figures(
 ) -> Figures {
     let visits = walks.iter().flat_map(|walk| walk.visits.iter().map(move |visit| (walk, visit)));
     let visits: Vec<WalkVisit> = visits.collect();
-    let mut rates = of_walks(walks, &visits);
-    let is = |of, what, verdicts: &[SampleVerdict], verdict| {
-        Rate::counted(of, what, None, verdicts, |&found| Some(found == verdict))
-    };
-    let verdicts: Vec<_> = runs.iter().map(|run| run.outcome.verdict()).collect();
-    let sum = |part: fn(&ScannedRun) -> u64| runs.iter().map(|run| part(run) as usize).sum();
-    let (percepts, wrong): (usize, _) = (sum(|run| run.tally.percepts), sum(|run| run.tally.wrong));
-    let passed: usize = sum(|run| run.tally.passed);
-    rates.extend([
-        is("run", "wrong", &verdicts, SampleVerdict::Wrong),
-        is("run", "gave up", &verdicts, SampleVerdict::Undecided),
-        Rate { of: "percept", what: "wrong", seen: wrong, cases: percepts, limit: None },
-        Rate {
-            of: "percept",
-            what: "missing",
-            seen: passed,
-            cases: percepts + passed,
-            limit: None,
-        },
-    ]);
-    let verdicts: Vec<_> = traversals.iter().map(|made| made.outcome.verdict()).collect();
-    rates.extend([
-        is("control", "wrong", &verdicts, SampleVerdict::Wrong),
-        is("control", "gave up", &verdicts, SampleVerdict::Undecided),
-    ]);
-    Figures { rates, groups: groups(&visits), ..Figures::default() }
-}
-
-fn of_walks(walks: &[JudgedWalk], visits: &[WalkVisit]) -> Vec<Rate> {
-    type Kind = (&'static str, fn(LaserVerdict) -> bool, Option<f64>);
-    let sum = |part: fn(&JudgedWalk) -> usize| walks.iter().map(part).sum();
-    let rate = |of, what, seen, cases| Rate { of, what, seen, cases, limit: None };
-    let views: usize = sum(|walk| walk.junction_views.all());
-    let corridor_views = sum(|walk| walk.corridor_views.all());
-    let mut rates = vec![
-        rate("junction", "not seen", sum(|walk| walk.junction_views.undecided), views),
-        rate("junction", "arms wrong", sum(|walk| walk.junction_views.wrong), views),
-        rate("hallway", "called junction", sum(|walk| walk.corridor_views.wrong), corridor_views),
-    ];
-    let kinds: [Kind; 5] = [
-        ("wrong", |found| found.verdict() == SampleVerdict::Wrong, Some(WRONG)),
-        ("missed", |found| found == LaserVerdict::Missed, None),
-        ("degree wrong", |found| found == LaserVerdict::WrongDegree, None),
-        ("door wrong", |found| found == LaserVerdict::WrongDoor, None),
-        ("undecided", |found| found == LaserVerdict::Undecided, Some(UNDECIDED)),
-    ];
-    rates.extend(kinds.map(|(what, fails, limit)| {
-        Rate::counted("visit", what, limit, visits, |(_, visit)| Some(fails(visit.verdict)))
-    }));
-    let invented = sum(|walk| walk.invented.len());
+    let junctions: SampleTally = walks.iter().map(|walk| walk.junction_views).sum();
+    let corridors: SampleTally = walks.iter().map(|walk| walk.corridor_views).sum();
+    let found: SampleTally = visits.iter().map(|(_, visit)| visit.verdict.verdict()).collect();
+    let with = |verdict| visits.iter().filter(|(_, visit)| visit.verdict == verdict).count();
+    let invented: usize = walks.iter().map(|walk| walk.invented.len()).sum();
     let derived = visits.iter().filter(|(_, visit)| visit.found.is_some()).count() + invented;
-    let invented = rate("visit", "invented", invented, derived);
-    rates.push(Rate { limit: Some(INVENTED), ..invented });
-    rates.push(Rate::counted("visit", "turning back wrong", None, visits, |(_, visit)| {
-        visit.turning_right.map(|right| !right)
-    }));
-    rates.extend([("wrong", SampleVerdict::Wrong), ("undecided", SampleVerdict::Undecided)].map(
-        |(what, verdict)| {
-            Rate::counted("walk", what, None, walks, |walk| Some(walk.verdict() == verdict))
-        },
-    ));
-    rates
+    let turned = visits.iter().filter_map(|(_, visit)| visit.turning_right);
+    let turned: SampleTally = turned.map(SampleVerdict::right_if).collect();
+    let walked: SampleTally = walks.iter().map(JudgedWalk::verdict).collect();
+    let mapped: SampleTally = runs.iter().map(|run| run.outcome.verdict()).collect();
+    let sum = |part: fn(&PerceptTally) -> u64| -> usize {
+        runs.iter().map(|run| part(&run.tally) as usize).sum()
+    };
+    let [percepts, wrong, passed] =
+        [sum(|tally| tally.percepts), sum(|tally| tally.wrong), sum(|tally| tally.passed)];
+    let driven: SampleTally = traversals.iter().map(|made| made.outcome.verdict()).collect();
+    let rates = [
+        ("junction", "not seen", junctions.undecided, junctions.all(), None),
+        ("junction", "arms wrong", junctions.wrong, junctions.all(), None),
+        ("hallway", "called junction", corridors.wrong, corridors.all(), None),
+        ("visit", "wrong", found.wrong, found.all(), Some(WRONG)),
+        ("visit", "missed", with(LaserVerdict::Missed), found.all(), None),
+        ("visit", "degree wrong", with(LaserVerdict::WrongDegree), found.all(), None),
+        ("visit", "door wrong", with(LaserVerdict::WrongDoor), found.all(), None),
+        ("visit", "undecided", found.undecided, found.all(), Some(UNDECIDED)),
+        ("visit", "invented", invented, derived, Some(INVENTED)),
+        ("visit", "turning back wrong", turned.wrong, turned.all(), None),
+        ("walk", "wrong", walked.wrong, walked.all(), None),
+        ("walk", "undecided", walked.undecided, walked.all(), None),
+        ("run", "wrong", mapped.wrong, mapped.all(), None),
+        ("run", "gave up", mapped.undecided, mapped.all(), None),
+        ("percept", "wrong", wrong, percepts, None),
+        ("percept", "missing", passed, percepts + passed, None),
+        ("control", "wrong", driven.wrong, driven.all(), None),
+        ("control", "gave up", driven.undecided, driven.all(), None),
+    ];
+    let rates = rates.map(|(of, what, seen, cases, limit)| Rate { of, what, seen, cases, limit });
+    Figures { rates: rates.into(), groups: groups(&visits), ..Figures::default() }
 }
 
 fn groups(visits: &[WalkVisit]) -> Vec<Group> {

@@ -146,7 +146,7 @@ impl<'w> LaserRobot<'w> {
                 LegResult::LookedAround => {}
                 LegResult::Driven => {
                     let is_other = distance(begin, leg.to) > 2.0 * ROBOT.left_behind;
-                    let is_junction = leg.junction(self.world).is_some();
+                    let is_junction = leg.ends_at_junction(self.world);
                     self.tally.passed += u64::from(is_other && is_junction);
                     points.push(leg.to);
                     let Some(next) = self.pilot.after(&leg) else {
@@ -232,28 +232,39 @@ impl<'w> LaserRobot<'w> {
 
     /// The directions on the plan of the doors of the place where it stands, clockwise from the entry; `None` if it is no
     /// junction.
-    fn decide(&mut self, place: SeenPlace, entry: f64) -> Result<Option<Vec<f64>>, ScanFailure> {
+    fn decide(
+        &mut self,
+        mut place: SeenPlace,
+        entry: f64,
+    ) -> Result<Option<Vec<f64>>, ScanFailure> {
+        let doors = self.doors_of(&mut place, entry);
+        self.left = Some((place.centre, place.clearance));
+        doors
+    }
+
+    /// The same. The place becomes the one that it has seen last.
+    fn doors_of(
+        &mut self,
+        last: &mut SeenPlace,
+        entry: f64,
+    ) -> Result<Option<Vec<f64>>, ScanFailure> {
         self.look_around()?;
         // The directions of the arms that it has looked into, and whether they are arms.
         let mut known: Vec<(f64, bool)> = Vec::new();
-        let (mut last, mut has_moved, mut tries) = (place, false, 0);
+        let (mut has_moved, mut tries) = (false, 0);
         for _ in 0..ROBOT.looks {
             let Some(place) = self.visits.status() else {
                 let off = |seen: &&SeenPlace| distance(seen.centre, self.on_local_map());
                 let near = nearest(self.seen.last().into_iter().flatten(), off)
                     .filter(|seen| off(seen) < ROBOT.same_place && !has_moved);
-                let Some(seen) = near else {
-                    self.left = Some((last.centre, last.clearance));
-                    return Ok(None);
-                };
+                let Some(seen) = near.cloned() else { return Ok(None) };
                 has_moved = true;
-                let seen = seen.clone();
                 self.go_to(&seen)?;
                 self.look_around()?;
                 continue;
             };
             let turn = self.plan_from_map().rotation.angle();
-            last = place.clone();
+            last.clone_from(&place);
             let is_known = |arm: f64| known.iter().any(|known| is_same(known.0, arm));
             let uncertain = self.uncertain_arms(&place).into_iter().map(|arm| wrapped(arm + turn));
             let next = uncertain.into_iter().find(|&arm| !is_same(arm, entry) && !is_known(arm));
@@ -264,14 +275,12 @@ impl<'w> LaserRobot<'w> {
             }
             let is_undecided = place.arms.iter().any(|arm| arm.certainty == Certainty::Possible);
             if is_undecided && known.is_empty() {
-                if tries < 2 {
-                    tries += 1;
-                    let towards = entry + PI * f64::from(tries);
-                    self.look_from_further(towards)?;
-                    continue;
+                if tries == 2 {
+                    return Err(ScanFailure::Undecided);
                 }
-                self.left = Some((place.centre, place.clearance));
-                return Err(ScanFailure::Undecided);
+                tries += 1;
+                self.look_from_further(entry + PI * f64::from(tries))?;
+                continue;
             }
             let doors: Vec<f64> = if is_undecided {
                 let view = self.seen.last().map(Vec::as_slice).unwrap_or_default();
@@ -287,10 +296,8 @@ impl<'w> LaserRobot<'w> {
                     doors.push(arm);
                 }
             }
-            self.left = Some((place.centre, place.clearance));
             return Ok((doors.len() >= 3).then(|| in_order(doors, entry)));
         }
-        self.left = Some((last.centre, last.clearance));
         Err(ScanFailure::Undecided)
     }
 
@@ -351,9 +358,8 @@ impl<'w> LaserRobot<'w> {
         let Some(map) = self.visits.sensor().map() else { return false };
         let Some(skeleton) = &map.skeleton else { return false };
         let ways = WayGraph::new(skeleton, &map.clearances);
-        let is_meet = |&node: &usize| ways.at(node).len() >= 3;
-        let near = |node: &usize| distance(ways.nodes[*node].point, robot) < ROBOT.opening;
-        (0..ways.nodes.len()).filter(near).any(|node| is_meet(&node))
+        let is_near = |node: usize| distance(ways.nodes[node].point, robot) < ROBOT.opening;
+        (0..ways.nodes.len()).any(|node| is_near(node) && ways.at(node).len() >= 3)
     }
 
     /// What may be a junction at a place, in a view.

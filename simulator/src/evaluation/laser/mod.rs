@@ -9,7 +9,4 @@ mod robot_params;
 pub mod scanned_run;
 pub mod walk;
 
-/// The item with the least distance.
-fn nearest<T>(items: impl IntoIterator<Item = T>, off: impl Fn(&T) -> f64) -> Option<T> {
-    items.into_iter().min_by(|one, other| off(one).total_cmp(&off(other)))
-}
+use crate::truth::nearest;
