@@ -74,7 +74,7 @@ pub struct ReplayDifference {
     /// The number of the frame, counted from 1.
     pub frame: u64,
     /// When it was taken, in seconds since the first message of the log.
-    time: f64,
+    pub time: f64,
     pub what: &'static str,
     pub recorded: String,
     pub found: String,

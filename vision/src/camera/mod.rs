@@ -119,6 +119,7 @@ impl Camera {
 
     /// The same camera with another size of image. Both images show the same, so their proportions
     /// should be the same.
+    #[must_use]
     pub fn sized(&self, image: [u32; 2]) -> Self {
         let factor = f64::from(image[0]) / f64::from(self.image[0]);
         let optics = match &self.optics {
