@@ -195,6 +195,8 @@ pub fn open_choice(
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use toposlam_model::isomorphism::code;
 
     use super::*;
@@ -211,7 +213,7 @@ mod tests {
                     codes.push(code(&graph, Dart(0)));
                     Ok(())
                 },
-                &mut |_| {},
+                &mut |_| ControlFlow::Continue(()),
             );
             assert_eq!(drawn, Ok(count));
             codes.sort_unstable();
@@ -228,7 +230,7 @@ mod tests {
                 drawn.push(permutation::<5>(choose, 5));
                 Ok(())
             },
-            &mut |_| {},
+            &mut |_| ControlFlow::Continue(()),
         );
         assert_eq!(count, Ok(120));
         drawn.sort_unstable();
@@ -244,7 +246,7 @@ mod tests {
                 drawn.push(pairing::<8>(choose, 8));
                 Ok(())
             },
-            &mut |_| {},
+            &mut |_| ControlFlow::Continue(()),
         );
         // 7 * 5 * 3
         assert_eq!(count, Ok(105));
@@ -261,7 +263,7 @@ mod tests {
                 drawn.push(number::<1>(choose));
                 Ok(())
             },
-            &mut |_| {},
+            &mut |_| ControlFlow::Continue(()),
         );
         assert_eq!(count, Ok(32));
         assert_eq!(drawn[..16], std::array::from_fn::<u32, 16, _>(|n| n as u32));

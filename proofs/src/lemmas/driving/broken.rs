@@ -1,5 +1,7 @@
 //! The lemmas fail on broken variants of Algorithm 2.
 
+use std::ops::ControlFlow;
+
 use toposlam_model::driving::algorithm2::{Lost, LostReason};
 
 use super::*;
@@ -78,7 +80,9 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
 /// The claim that does not hold.
 #[track_caller]
 fn fails(lemma: fn(&mut ChoiceOdometer) -> CaseResult) -> &'static str {
-    ChoiceOdometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
+    ChoiceOdometer::exhaust(lemma, &mut |_| ControlFlow::Continue(()))
+        .expect_err("the lemma fails")
+        .claim
 }
 
 #[test]
